@@ -1,8 +1,8 @@
 /**
- * The console: signed out it is one page, signed in a header and the page the address names.
+ * The console: the sign-in page, or a header and the page that the address names.
  *
- * Where a sign-in ends by itself, the page it was used on is hidden, not thrown away: the same
- * person goes on with what they were writing, anybody else begins afresh.
+ * When a sign-in expires, the page it was used on is hidden rather than discarded: the same person
+ * can continue what they were writing, anybody else starts with a fresh page.
  */
 import { Center, Loader } from "@mantine/core";
 import type { Account } from "@shared/api/types";
@@ -29,7 +29,7 @@ export function Console(): JSX.Element {
   const [address] = useHashLocation();
   const token = INVITATION.exec(address)?.[1];
   useOpenDialogsHidden(account.data === null);
-  // What is known stays on the page while the server does not answer.
+  // Cached data stay on the page while the server does not answer.
   if (account.data === undefined) {
     return (
       <Center mih="100dvh" p="xl">
@@ -55,14 +55,14 @@ export function Console(): JSX.Element {
   );
 }
 
-/** Dialogs are drawn beside the page, so they have to be hidden with it. */
+/** Hide open dialogs along with the page, since they are rendered outside of it. */
 function useOpenDialogsHidden(hidden: boolean): void {
   useEffect(() => {
     document.body.toggleAttribute("data-signed-out", hidden);
   }, [hidden]);
 }
 
-/** The signed-in console: its head, the page of the address, and what goes on behind it. */
+/** The signed-in console: its header, the page of the address, and background tasks. */
 function Shell({ account }: { readonly account: Account }): JSX.Element {
   const { t } = useTexts();
   useSignInAgain();
@@ -89,7 +89,7 @@ const Waiting = (): JSX.Element => (
   </Center>
 );
 
-/** The address after `#` belongs to the router, so skipping moves the focus itself. */
+/** The address after `#` belongs to the router, so the skip link moves the focus with a script. */
 function focusMain(): void {
   document.getElementById("main")?.focus();
 }

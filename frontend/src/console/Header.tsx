@@ -1,4 +1,4 @@
-/** The console's head: where else to go, the language, the appearance, help, one's own account. */
+/** The console's header: navigation, language, colour scheme, help and the account menu. */
 import { ActionIcon, Button, useComputedColorScheme, useMantineColorScheme } from "@mantine/core";
 import type { Role } from "@shared/api/people";
 import type { Account } from "@shared/api/types";
@@ -37,7 +37,7 @@ interface Place {
   readonly href: string;
   readonly icon: IconName;
   readonly name: Key;
-  /** Shown to those who may do it; to everybody where there is none. */
+  /** The permission required to see it; without one it is shown to everybody. */
   readonly act?: Act;
 }
 

@@ -14,7 +14,7 @@ import { StudiesPage } from "./pages/Studies";
 import { StudyPage } from "./pages/study/StudyPage";
 import classes from "./Shell.module.css";
 
-// Whoever opens the console for a session waits for none of these.
+// Loaded lazily, so that opening the console for a session does not wait for these.
 const ReplayPage = lazy(async () => ({
   default: (await import("./replay/ReplayPage")).ReplayPage,
 }));

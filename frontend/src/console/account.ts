@@ -1,4 +1,4 @@
-/** Who is signed in. The cookie is the server's; this page only asks whom it belongs to. */
+/** The signed-in account. The cookie is the server's; this page only queries whose it is. */
 import { accounts } from "@shared/api/endpoints";
 import { isUnauthorised } from "@shared/api/request";
 import type { Account } from "@shared/api/types";
@@ -6,7 +6,7 @@ import { type QueryClient, useQuery, useQueryClient } from "@tanstack/react-quer
 import { useEffect } from "react";
 
 const KEY = ["account"] as const;
-/** Whose sign-in ended while the page was in use, and whose page is kept until it goes on. */
+/** The account whose sign-in expired while the page was in use, and whose page is kept for it. */
 const ENDED = ["account", "ended"] as const;
 
 /** The account, or null when nobody is signed in. */
@@ -18,7 +18,7 @@ export function useAccount() {
   });
 }
 
-/** Who was signed in when the sign-in ended by itself; null else. */
+/** The account whose sign-in has expired; null if none has. */
 export function useEnded(): Account | null {
   const ended = useQuery<Account | null>({
     queryKey: ENDED,
@@ -35,17 +35,19 @@ export async function signIn(queries: QueryClient, username: string, password: s
   begin(queries, account);
 }
 
-/** Somebody has a sign-in now; nothing of anybody else stays in the page's memory. */
+/**
+ * Start a session of the console for an account; data of any other account are removed from memory.
+ */
 export function begin(queries: QueryClient, account: Account): void {
   const before = queries.getQueryData<Account | null>(ENDED);
   if (before?.id !== account.id) forget(queries);
   queries.setQueryData(ENDED, null);
   queries.setQueryData(KEY, account);
-  // The same person goes on where they were; what they see may have changed meanwhile.
+  // The same person continues where they were; the data may have changed meanwhile.
   void queries.invalidateQueries({ predicate: isData });
 }
 
-/** Leave nothing of this person's data in the page's memory. */
+/** Sign out, and remove this person's data from the page's memory. */
 export async function signOut(queries: QueryClient) {
   await accounts.logout().catch(() => undefined);
   forget(queries);
@@ -61,17 +63,20 @@ function forget(queries: QueryClient): void {
   queries.getMutationCache().clear();
 }
 
-/** Ask who is signed in, because something hints that nobody is; a lost line says nothing. */
+/**
+ * Check whether the sign-in still exists, because something suggests that it does not; a network
+ * error proves nothing.
+ */
 export async function lookAgain(queries: QueryClient): Promise<void> {
   const who = await accounts.me().catch(() => undefined);
   if (who?.account === null) end(queries);
 }
 
-/** Any answer "nobody is signed in" means that the sign-in has ended: show its page again. */
+/** Show the sign-in page again as soon as any request fails because nobody is signed in. */
 export function useSignInAgain(): void {
   const queries = useQueryClient();
   useEffect(() => {
-    // Only an error that has just come: an old one is still there when the same person goes on.
+    // Only new errors: an old one is still in the cache when the same person continues.
     const look = (news: { readonly type: string; readonly action?: unknown }) => {
       const action = news.action as { readonly type: string; readonly error?: unknown } | undefined;
       if (news.type !== "updated" || action?.type !== "error") return;
@@ -93,5 +98,5 @@ function end(queries: QueryClient): void {
   queries.setQueryData(KEY, null);
 }
 
-/** `account:admin` is admin. */
+/** The name of an actor: `account:admin` is admin. */
 export const nameOf = (actor: string): string => actor.replace("account:", "");

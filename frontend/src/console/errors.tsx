@@ -1,4 +1,4 @@
-/** The console's wording around errors, and a notice that uses it. */
+/** The console's wording of errors, and a notice that uses it. */
 import { ErrorNotice, type ErrorTexts } from "@shared/ui/Notice";
 import type { JSX } from "react";
 import { useTexts } from "./i18n";

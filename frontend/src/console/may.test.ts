@@ -1,4 +1,4 @@
-/** The console's table of rights against the server's, read from its own file. */
+/** Compare the console's table of permissions with the server's, read from its own file. */
 import { readFileSync } from "node:fs";
 import { describe, expect, it } from "vitest";
 import { RULES } from "./permissions";
@@ -17,8 +17,8 @@ const POLICY = new Map(
   ]),
 );
 
-describe("the console's table of rights", () => {
-  it("reads every row of the server's", () => {
+describe("the console's table of permissions", () => {
+  it("covers every row of the server's", () => {
     expect(POLICY.size).toBe(SOURCE.split("/api/").length - 1);
   });
 

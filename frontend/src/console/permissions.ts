@@ -1,6 +1,6 @@
 /**
- * Who may do what, so that nobody is shown a door that is locked for them. The server decides; this
- * table repeats the rows of `app/platform/policy.py` that the console draws by, and a test compares.
+ * Who may do what, so that nobody is shown what they may not use. The server decides; this table
+ * repeats the rows of `app/platform/policy.py` that the console needs, and a test compares both.
  */
 import type { Role } from "@shared/api/people";
 import { useAccount } from "./account";
@@ -12,7 +12,7 @@ const READERS: readonly Role[] = ["admin", "experimenter", "analyst"];
 
 interface Rule {
   readonly roles: readonly Role[];
-  /** The routes of the server that stand behind it; all of them are for these roles. */
+  /** The server's routes that it needs, all of which are allowed for these roles. */
   readonly routes: readonly string[];
 }
 
@@ -119,7 +119,7 @@ export type Act = keyof typeof RULES;
 
 export const may = (role: Role, act: Act): boolean => RULES[act].roles.includes(role);
 
-/** What the person who is signed in may do. */
+/** Return a function that checks the permissions of the signed-in account. */
 export function useMay(): (act: Act) => boolean {
   const role = useAccount().data?.role;
   return (act) => role !== undefined && may(role, act);

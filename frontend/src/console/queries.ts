@@ -1,4 +1,4 @@
-/** The console's reads of the server, each with the key under which it is kept. */
+/** The console's queries to the server, each with its cache key. */
 import { type Asked, analysis, type FigureGroup } from "@shared/api/analysis";
 import { drafts, instruments, versions } from "@shared/api/drafts";
 import { network, sessions, studies } from "@shared/api/endpoints";
@@ -10,7 +10,7 @@ import { rights } from "@shared/api/rights";
 import type { DataKind, Kind } from "@shared/api/types";
 import { infiniteQueryOptions, keepPreviousData, queryOptions } from "@tanstack/react-query";
 
-/** Looked at again now and then: a laptop that joins another network gets other addresses. */
+/** Refreshed now and then: a laptop that joins another network gets other addresses. */
 export const networkQuery = queryOptions({
   queryKey: ["network"],
   queryFn: network.get,
@@ -60,7 +60,7 @@ export const dashboardQuery = (key: string, asked: Asked, group: FigureGroup) =>
   queryOptions({
     queryKey: ["studies", key, "dashboard", asked, group],
     queryFn: () => analysis.dashboard(key, asked, group),
-    // The server tells what it drew last, and draws anew where there is more.
+    // The server returns the last figures it drew, and redraws them if there are newer data.
     refetchInterval: ({ state }) => (state.data?.current === false ? 1500 : false),
     placeholderData: keepPreviousData,
   });
@@ -72,7 +72,7 @@ export const statisticsQuery = (key: string, kind: DataKind) =>
     refetchInterval: ({ state }) => (state.data?.current === false ? 1500 : false),
   });
 
-/** Kept for a day, so that a page whose sign-in has ended is there again with what was typed. */
+/** Kept for a day, so that a page whose sign-in has expired is restored with what was typed. */
 export const sessionQuery = (id: string) =>
   queryOptions({
     queryKey: ["sessions", id],
@@ -92,7 +92,7 @@ export const eventsQuery = (id: string, version: number) =>
     queryFn: () => sessions.events(id),
   });
 
-/** `state` changes whenever an alarm begins or ends. */
+/** `state` changes whenever an alarm starts or ends. */
 export const alarmsQuery = (id: string, state: string) =>
   queryOptions({
     queryKey: ["sessions", id, "alarms", state],
@@ -142,14 +142,14 @@ export const participantsQuery = (key: string) =>
     queryFn: () => rights.participants(key),
   });
 
-/** Everything that was answered in a session, with the wordings; it changes with each correction. */
+/** All answers of a session, with the wordings; they change with each correction. */
 export const formsQuery = (id: string) =>
   queryOptions({ queryKey: ["sessions", id, "forms"], queryFn: () => rights.answers(id) });
 
 export const preflightQuery = (id: string) =>
   queryOptions({ queryKey: ["preflight", id], queryFn: () => sessions.preflight(id) });
 
-/** Looked at while something is being made. */
+/** Refreshed while a file is being made. */
 export const exportsQuery = queryOptions({
   queryKey: ["exports"],
   queryFn: exports.list,
@@ -170,7 +170,7 @@ export const tryoutQuery = queryOptions({
     state.data?.state === "starting" ? 400 : state.data?.state === "running" ? 1500 : false,
 });
 
-/** Reads of imported answers, each with the key under which it is kept. */
+/** Queries of imported answers, each with its cache key. */
 export const importsQuery = (key: string) =>
   queryOptions({ queryKey: ["studies", key, "imports"], queryFn: () => imports.list(key) });
 
@@ -180,7 +180,7 @@ export const importQuery = (key: string, id: string) =>
     queryFn: () => imports.get(key, id),
   });
 
-/** `file` stands for the text, which is long. */
+/** `file` identifies the text, which is long. */
 export const checkQuery = (key: string, file: string, text: string, mapping: ImportMapping) =>
   queryOptions({
     queryKey: ["studies", key, "import-check", file, mapping],

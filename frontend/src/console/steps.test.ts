@@ -4,7 +4,7 @@ import { registryEn, STEP_KINDS } from "./i18n/registries.generated";
 import { isForm, isTimed, stepIcon, stepName, stepText } from "./steps";
 
 const kinds = Object.keys(STEP_KINDS) as StepKind[];
-/** Every kind with each limb that it is done with, as plans have them. */
+/** Every kind of step with each of its limbs, as plans contain them. */
 const steps = kinds.flatMap((kind) => {
   const { limbs } = STEP_KINDS[kind];
   const named: readonly (Limb | null)[] = limbs.length > 0 ? limbs : [null];
@@ -20,19 +20,19 @@ describe("a step", () => {
     }
   });
 
-  it("has a button that completes it exactly where the table says so", () => {
+  it("has a button that completes it exactly if the table says so", () => {
     for (const kind of kinds) {
       const { isCompletedByButton } = STEP_KINDS[kind];
       expect([kind, `do.complete.${kind}` in registryEn]).toEqual([kind, isCompletedByButton]);
     }
   });
 
-  it("shows the limb that it is done with, else the icon of its kind", () => {
+  it("shows the icon of its limb, otherwise of its kind", () => {
     expect(stepIcon({ kind: "practice", limb: "foot" })).toBe("foot");
     expect(stepIcon({ kind: "free_roam", limb: null })).toBe("walk");
   });
 
-  it("keeps its own name and icon where it comes after a task of a limb", () => {
+  it("keeps its own name and icon after a task with a limb", () => {
     const asked = { kind: "questionnaire", limb: "hand" } as const;
     expect(isForm(asked)).toBe(true);
     expect(stepName(asked)).toBe("step.questionnaire");

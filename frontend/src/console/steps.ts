@@ -1,4 +1,4 @@
-/** The kinds of steps: what they are called, their icons, and what is done in them. */
+/** The kinds of steps: their names, their icons, and what is done in them. */
 import type { Limb, PhaseSummary, SessionView, Step, StepKind } from "@shared/api/types";
 import { latency } from "@shared/format";
 import type { IconName } from "@shared/ui/Icon";
@@ -7,8 +7,8 @@ import { type Key, useTexts } from "./i18n";
 import { STEP_KINDS } from "./i18n/registries.generated";
 
 /**
- * `limbs`: those it is done with, at the boxes; none where it needs none. `counts`: its phases are
- * the study's data. `isCompletedByButton`: the experimenter ends it with a plain button.
+ * `limbs`: those it is done with, at the boxes; empty if it needs none. `counts`: its phases are
+ * the study's data. `isCompletedByButton`: the experimenter completes it with a plain button.
  */
 interface StepKindSpec {
   readonly family: "timed" | "form" | "by hand";
@@ -37,19 +37,21 @@ export const stepName = (step: Named): Key => stepText("step", step);
 
 export const stepIcon = (step: Named): IconName => limbOf(step) ?? KINDS[step.kind].icon;
 
-/** Steps that run on the phase clock, in the headset. */
+/** Whether a step runs on the phase clock, in the headset. */
 export const isTimed = ({ kind }: OfKind): boolean => KINDS[kind].family === "timed";
 
-/** Steps that are answered at the tablet (or read out by the operator). */
+/** Whether a step is answered at the tablet (or read out by the operator). */
 export const isForm = ({ kind }: OfKind): boolean => KINDS[kind].family === "form";
 
-/** Phases that are the study's data; all others are in no figure or test. */
+/** Whether a step's phases are the study's data; all others are in no figure or test. */
 export const isCounted = ({ kind }: OfKind): boolean => KINDS[kind].counts;
 
-/** Steps that the experimenter completes with a plain button; height and consent have forms. */
+/** Whether the experimenter completes a step with a plain button; height and consent have forms. */
 export const isCompletedByButton = ({ kind }: OfKind): boolean => KINDS[kind].isCompletedByButton;
 
-/** How the phases of a session are named: block, task, and the latency where it may be known. */
+/**
+ * Whether a phase is over; its name has the block, the task, and the latency if it may be known.
+ */
 export const isOver = ({ status }: PhaseSummary): boolean =>
   status === "done" || status === "voided";
 

@@ -1,4 +1,4 @@
-/** One avatar: the paper's three statures, or any other. */
+/** The choice of one avatar: one of the paper's three statures, or any other. */
 import { NumberInput, SegmentedControl } from "@mantine/core";
 import { type JSX, useState } from "react";
 import { useTexts } from "../i18n";

@@ -1,4 +1,4 @@
-/** What the capture is called, what it is, and the file it came from. */
+/** The head of a capture's page: its title, its properties and the file it came from. */
 import { ActionIcon, Button, TextInput, Title, Tooltip } from "@mantine/core";
 import { type Capture, captures } from "@shared/api/captures";
 import { dateTime, number } from "@shared/format";

@@ -1,4 +1,4 @@
-/** One capture: its movement, its joint map, and whether it holds on avatars. */
+/** One capture: its movement, its joint map, and its verification on avatars. */
 import { Tabs } from "@mantine/core";
 import type { Capture } from "@shared/api/captures";
 import { Icon, type IconName } from "@shared/ui/Icon";
@@ -59,7 +59,7 @@ function Found({ capture, tab }: { readonly capture: Capture; readonly tab: Tab 
   const { t } = useTexts();
   const [, navigate] = useLocation();
   useTitle(capture.title);
-  // Here, so that what is being edited survives a look at another tab.
+  // Kept here, so that unsaved changes survive a visit to another tab.
   const map = useJointMap(capture);
   const Content = CONTENT[tab];
   return (

@@ -1,4 +1,6 @@
-/** The list of captures: what each is, how long, and whether it can go onto an avatar. */
+/**
+ * The list of captures: what each one is, how long, and whether it can be transferred to an avatar.
+ */
 import { Button, Popover, Table } from "@mantine/core";
 import type { CaptureListed } from "@shared/api/captures";
 import { dateTime, number } from "@shared/format";
@@ -110,7 +112,7 @@ function HasSkeleton({ capture }: { readonly capture: CaptureListed }): JSX.Elem
   );
 }
 
-/** The reason is part of the capture itself, so it is fetched when it is asked for. */
+/** The reason is part of the capture itself, so it is fetched on request. */
 function Why({ capture }: { readonly capture: CaptureListed }): JSX.Element {
   const { t } = useTexts();
   const [opened, setOpened] = useState(false);

@@ -1,4 +1,4 @@
-/** All captures of the lab, and where new ones are brought in. */
+/** All captures of the lab, and the upload of new ones. */
 import { Text, TextInput, Title } from "@mantine/core";
 import type { CaptureListed, CapturePage } from "@shared/api/captures";
 import { useQuery } from "@tanstack/react-query";

@@ -1,4 +1,4 @@
-/** By which conventions the file was read, who says so, and how to read it otherwise. */
+/** The conventions by which the file was read, their source, and a form to change them. */
 import { Title } from "@mantine/core";
 import type { Capture, Conventions, Origin } from "@shared/api/captures";
 import { number } from "@shared/format";
@@ -13,7 +13,7 @@ import { ReadingForm } from "./ReadingForm";
 
 interface ConventionsPanelProps {
   readonly capture: Capture;
-  /** What the capture holds, for its size; null while something else is shown. */
+  /** The movement, whose size is shown; null while something else is shown. */
   readonly motion: PointMotion | null;
 }
 
@@ -25,7 +25,8 @@ export function ConventionsPanel({ capture, motion }: ConventionsPanelProps): JS
   const { conventions, notes, observed } = capture.summary;
   const isGuessed = CONVENTIONS.some((name) => conventions[name].origin === "guessed");
   const size = useMemo(() => (motion === null ? null : boxOf(motion)), [motion]);
-  // Digits that count, not decimals: a wrong unit makes it a thousandth or a thousandfold.
+  // Significant digits rather than decimals: a wrong unit changes the size by a factor of a
+  // thousand.
   const digits = new Intl.NumberFormat(language, { maximumSignificantDigits: 3 });
   const side = (axis: 0 | 1 | 2) =>
     size === null ? "" : digits.format(size.max[axis] - size.min[axis]);

@@ -1,4 +1,4 @@
-/** Asks before a capture goes for good. */
+/** A dialog that asks for confirmation before a capture is deleted for good. */
 import { Button, Group, Modal, Stack, Text } from "@mantine/core";
 import { captures } from "@shared/api/captures";
 import { useMutation, useQueryClient } from "@tanstack/react-query";

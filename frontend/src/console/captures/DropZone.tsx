@@ -1,4 +1,4 @@
-/** Where capture files are brought in: dropped, or chosen with a button. */
+/** The upload of capture files: dropped, or chosen with a button. */
 import { Button, FileButton } from "@mantine/core";
 import { Icon } from "@shared/ui/Icon";
 import { type DragEvent, type JSX, useState } from "react";
@@ -56,13 +56,13 @@ type Format = (typeof CAPTURE_FORMATS)[number];
 const isFormat = (key: string): key is Format =>
   (CAPTURE_FORMATS as readonly string[]).includes(key);
 
-/** The name of a format; of one that this page does not know, its key. */
+/** Return a function for the name of a format; an unknown format is called by its key. */
 export function useFormatName(): (format: string) => string {
   const { t } = useTexts();
   return (format) => (isFormat(format) ? t(`format.${format}`) : format);
 }
 
-/** What can be brought in, and which programs write it. */
+/** The supported formats, and which programs write them. */
 export function Formats(): JSX.Element {
   const { t } = useTexts();
   return (

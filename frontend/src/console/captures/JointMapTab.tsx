@@ -1,4 +1,4 @@
-/** The joint map: 22 parts of the body, each with the joint of the skeleton that plays it. */
+/** The joint map: 22 joints of the body, each with the joint of the skeleton assigned to it. */
 import { Button, Center, Loader, Title } from "@mantine/core";
 import type { JointMapView } from "@shared/api/captures";
 import { ApiError } from "@shared/api/request";
@@ -158,7 +158,7 @@ function MapBar({ map, view, problems }: MapBarProps): JSX.Element {
   );
 }
 
-/** What became of saving, or what stands in its way. */
+/** The result of saving, or what prevents it. */
 function Outcome({ map, view }: Omit<MapBarProps, "problems">): JSX.Element | null {
   const { t } = useTexts();
   if (map.stale) {
@@ -185,7 +185,7 @@ function Outcome({ map, view }: Omit<MapBarProps, "problems">): JSX.Element | nu
   return <Notice tone="info" icon="check" title={t("map.saved")} remedy={t("map.saved.body")} />;
 }
 
-/** What the server found wrong with a joint. */
+/** The problems that the server found, by joint. */
 function refusedJoints(error: unknown): ReadonlyMap<string, string> {
   const details = error instanceof ApiError ? error.details : [];
   return new Map(details.map(({ path, message }) => [path ?? "", message]));
@@ -203,7 +203,7 @@ function useProblemWords(): (problem: MapProblem | undefined) => string | null {
   };
 }
 
-/** As everywhere: Ctrl Z takes back, Ctrl Shift Z or Ctrl Y does it again. */
+/** The usual keys: Ctrl Z undoes, Ctrl Shift Z or Ctrl Y redoes. */
 function useUndoKeys(map: JointMapDraft): void {
   useEffect(() => {
     const onKey = (event: KeyboardEvent) => {

@@ -1,4 +1,4 @@
-/** One part of the body and the joint that plays it. */
+/** One joint of the body and the skeleton's joint assigned to it. */
 import { Select } from "@mantine/core";
 import type { JointMapView } from "@shared/api/captures";
 import type { JSX } from "react";
@@ -42,7 +42,8 @@ export function JointRow({
         clearButtonProps={{
           "aria-label": t("map.clear", { joint: name }),
           "aria-hidden": false,
-          // In the way of whoever goes through all of them by keyboard, so only where one stops.
+          // Reachable by keyboard only in the row being edited, so that tabbing through the rows
+          // stays short.
           tabIndex: isEditing ? 0 : -1,
         }}
         disabled={disabled}
@@ -64,7 +65,7 @@ export function JointRow({
   );
 }
 
-/** Indented by how far it is from the root, so that the hierarchy can be seen while choosing. */
+/** The depth below the root, by which names are indented to show the hierarchy. */
 function depthOf(view: JointMapView, name: string): number {
   let depth = 0;
   let at = view.rig_parents[view.rig_joints.indexOf(name)] ?? -1;

@@ -1,4 +1,4 @@
-/** What a joint map leaves out, on both sides. */
+/** The joints that a joint map leaves out, on both sides. */
 import { Title } from "@mantine/core";
 import type { JointMapView } from "@shared/api/captures";
 import type { JSX } from "react";

@@ -1,4 +1,4 @@
-/** The skeleton in space and the body on paper, with the joint that is being edited marked in both. */
+/** The skeleton in 3-D and a drawing of the body, with the joint being edited marked in both. */
 import { Center, Loader } from "@mantine/core";
 import type { Capture } from "@shared/api/captures";
 import { type Figure, LEFT_COLOUR, RIGHT_COLOUR } from "@shared/stage/figure";
@@ -32,7 +32,7 @@ export function MapPreview({ capture, joints, editing, problems }: MapPreviewPro
   const marked = motion?.names.indexOf(joints[editing ?? ""] ?? "") ?? -1;
   const figures = useMemo((): readonly Figure[] => {
     if (motion === undefined) return [];
-    // The first frame alone: the floor then lies close around the body.
+    // The first frame alone, so that the floor fits closely around the body.
     const still = {
       ...motion,
       frames: 1,
@@ -87,7 +87,7 @@ export function MapPreview({ capture, joints, editing, problems }: MapPreviewPro
   );
 }
 
-/** What the marks on the body mean, where nothing else is said about it. */
+/** The legend of the marks on the body, shown while there is nothing else to say about it. */
 function Legend(): JSX.Element {
   const { t } = useTexts();
   return (
@@ -106,7 +106,7 @@ function Legend(): JSX.Element {
 
 type BodyFigureProps = Omit<MapPreviewProps, "capture">;
 
-/** Full where a joint plays the part, hollow where none does, a cross where something is wrong. */
+/** The body's joints: filled if assigned, hollow if not, a cross if there is a problem. */
 function BodyFigure({ joints, editing, problems }: BodyFigureProps): JSX.Element {
   const { t } = useTexts();
   return (

@@ -1,4 +1,4 @@
-/** The movement in space, as recorded or on an avatar, beside how its file was read. */
+/** The movement in 3-D, as recorded or on an avatar, next to how its file was read. */
 import { Center, Checkbox, Loader, SegmentedControl } from "@mantine/core";
 import type { Capture } from "@shared/api/captures";
 import { type JSX, useState } from "react";

@@ -1,4 +1,4 @@
-/** What every tab of a capture gets, and what it says where no avatar can be moved by it. */
+/** The props of a capture's tabs, and what they show if no avatar can be moved by it. */
 import { Button } from "@mantine/core";
 import type { Capture } from "@shared/api/captures";
 import { Notice } from "@shared/ui/Notice";
@@ -12,7 +12,7 @@ export interface TabProps {
   readonly map: JointMapDraft;
 }
 
-/** Why the movement cannot be put onto an avatar, and where that is mended. */
+/** Why the movement cannot be transferred to an avatar, and where to fix that. */
 export function NoAvatar({ capture, map }: TabProps): JSX.Element | null {
   const { t } = useTexts();
   let why: ReactNode = null;

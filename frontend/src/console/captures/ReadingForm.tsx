@@ -1,4 +1,4 @@
-/** To read a file by another unit or another upward axis than was taken. */
+/** A form to read a file with another unit or another up axis. */
 import { Button, NumberInput, Select } from "@mantine/core";
 import { type Capture, captures, type ReadingChoice } from "@shared/api/captures";
 import { Notice } from "@shared/ui/Notice";

@@ -1,4 +1,4 @@
-/** What was just brought in, or why not: beside the name of the file, until it is taken away. */
+/** The files just uploaded, or why they were rejected; each entry stays until it is dismissed. */
 import { ActionIcon, Button, FileButton, Progress } from "@mantine/core";
 import { ApiError } from "@shared/api/request";
 import { number } from "@shared/format";
@@ -138,7 +138,7 @@ function PhaseWords({ upload, onAgain }: PhaseProps): JSX.Element {
   }
 }
 
-/** Line, reason and remedy; a lost line can be tried again as it is. */
+/** The file's name, the reason and the remedy; after a network error the upload can be retried. */
 function Refusal({
   error,
   onAgain,

@@ -1,4 +1,4 @@
-/** The verification in a sentence. */
+/** The result of the verification in a sentence. */
 import type { Verification, Walker } from "@shared/api/captures";
 import { number } from "@shared/format";
 import { Notice } from "@shared/ui/Notice";

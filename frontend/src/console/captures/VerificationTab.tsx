@@ -1,4 +1,6 @@
-/** The paper's verification: does the movement keep its character on avatars of several statures? */
+/**
+ * The paper's verification: does the movement keep its character on avatars of several statures?
+ */
 import { Figure } from "@charts/Figure";
 import { Button, Center, Loader, Title } from "@mantine/core";
 import type { Capture, Verification } from "@shared/api/captures";
@@ -122,7 +124,7 @@ function Found({ capture, verification }: FoundProps): JSX.Element {
 
 function useFigureWords(): FigureWords {
   const { t, language } = useTexts();
-  // By language alone: a table of words that is new each time would draw the figures anew.
+  // Depends on the language alone: a new table of words at each render would redraw the figures.
   // biome-ignore lint/correctness/useExhaustiveDependencies: `t` follows the language.
   return useMemo(
     () => ({

@@ -1,4 +1,4 @@
-/** The verification in numbers, and the movement on each avatar to take along. */
+/** The verification in numbers, and the movement on each avatar to download. */
 import { Button, Table } from "@mantine/core";
 import {
   type AvatarWalker,
@@ -35,7 +35,7 @@ export function VerificationTable({ capture, verification }: VerificationTablePr
   const stem = capture.file_name.replace(/\.[^.]+$/, "");
   return (
     <>
-      {/* Wider than the page on a small screen, where it is scrolled. */}
+      {/* Wider than the page on a small screen, where it scrolls. */}
       <section className={classes.frame} aria-label={t("verify.table")}>
         <Table verticalSpacing="xs" horizontalSpacing="sm">
           <Table.Thead>
@@ -133,7 +133,7 @@ interface PairProps {
   readonly right: number | string;
 }
 
-/** The left foot above the right. */
+/** The left foot's value above the right foot's. */
 function Pair({ left, right }: PairProps): JSX.Element {
   const { t } = useTexts();
   return (

@@ -1,4 +1,4 @@
-/** The stage with its camera and its transport. */
+/** The stage with its camera and its transport controls. */
 import { ActionIcon, SegmentedControl, Tooltip } from "@mantine/core";
 import {
   type CameraMode,
@@ -71,7 +71,7 @@ interface CameraBarProps {
   readonly onMode: (mode: CameraMode) => void;
 }
 
-/** The camera of one stage, or of several that are moved together. */
+/** The camera controls of one stage, or of several that are moved together. */
 export function CameraBar({ mode, hasEyes, stage, onMode }: CameraBarProps): JSX.Element {
   const { t } = useTexts();
   const zooms = [

@@ -1,7 +1,10 @@
-/** The 22 joints of a human body (Unity's HumanBodyBones), their groups, and a figure to point at. */
+/**
+ * The 22 joints of a human body (Unity's HumanBodyBones), their groups, and where they are on a
+ * drawing.
+ */
 import type { BodyRoles } from "@shared/stage/figure";
 
-/** The joint above each, as in app/science/skeleton. */
+/** The parent of each joint, as in app/science/skeleton. */
 export const BODY: Readonly<Record<string, string | null>> = {
   Hips: null,
   Spine: "Hips",
@@ -60,7 +63,7 @@ const LEFT: Readonly<Record<string, readonly [number, number]>> = {
   Toes: [14, 97],
 };
 
-/** Where a body joint is on the small figure. */
+/** The position of a body joint on the small drawing. */
 export function placeOnBody(joint: string): readonly [x: number, y: number] {
   const centre = CENTRE[joint];
   if (centre !== undefined) return centre;
@@ -69,7 +72,7 @@ export function placeOnBody(joint: string): readonly [x: number, y: number] {
   return [isLeft ? x : -x, y];
 }
 
-/** Which joints of a skeleton are which part of the body, so that a stage can tell them apart. */
+/** Which joints of a skeleton are which part of the body, so that a stage can distinguish them. */
 export function rolesFrom(
   joints: readonly string[],
   map: Readonly<Record<string, string>>,
@@ -93,7 +96,7 @@ export function rolesFrom(
   };
 }
 
-/** An avatar's joints are the body's own. */
+/** The joint map of an avatar, whose joints are the body's own. */
 export const AVATAR_MAP: Readonly<Record<string, string>> = Object.fromEntries(
   Object.keys(BODY).map((joint) => [joint, joint]),
 );

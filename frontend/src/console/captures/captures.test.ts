@@ -11,7 +11,7 @@ const pairs = (...names: string[]) =>
   pairFiles(named(...names)).ready.map(({ file, companion }) => [file.name, companion?.name]);
 
 describe("files that belong together", () => {
-  it("are an AMC and the ASF whose name it begins with; others go alone", () => {
+  it("are an AMC and the ASF whose name it starts with; others are uploaded alone", () => {
     expect(pairs("walk.bvh", "02_01.amc", "02.asf", "02_06.AMC", "5.asf")).toEqual([
       ["walk.bvh", undefined],
       ["02_01.amc", "02.asf"],
@@ -23,14 +23,14 @@ describe("files that belong together", () => {
     expect(pairs("take.amc", "skeleton.asf")).toEqual([["take.amc", "skeleton.asf"]]);
   });
 
-  it("wait for each other, and it is said what is missing", () => {
+  it("wait for each other, and the missing one is named", () => {
     const { ready, lonely } = pairFiles(named("02_01.amc"));
     expect(ready).toEqual([]);
     expect(lonely.map(missingBeside)).toEqual([".asf"]);
     expect(pairFiles(named("02.asf")).lonely.map(missingBeside)).toEqual([".amc"]);
   });
 
-  it("are sent as one body, whose last bytes are the companion", () => {
+  it("are sent as one body, which ends with the companion", () => {
     const file = new File(["frames"], "02 ä.amc");
     const companion = new File(["bones"], "02.asf");
     const query = new URL(uploadUrl({ file, companion }), "http://localhost").searchParams;
@@ -47,7 +47,7 @@ const RIG = { names: ["root", "thigh", "shin", "foot"], parents: [-1, 0, 1, 2] }
 const LEGS = { Hips: "root", LeftUpperLeg: "thigh", LeftLowerLeg: "shin" };
 
 describe("editing a joint map", () => {
-  it("can be undone and done again, step by step", () => {
+  it("can be undone and redone, step by step", () => {
     const first = begin(LEGS);
     const second = assign(first, "LeftFoot", "foot");
     const third = assign(second, "LeftLowerLeg", null);
@@ -59,12 +59,12 @@ describe("editing a joint map", () => {
     expect(redo(third)).toBe(third);
   });
 
-  it("forgets what was undone once something else is done", () => {
+  it("forgets what was undone after another change", () => {
     const edit = assign(undo(assign(begin(LEGS), "LeftFoot", "foot")), "LeftUpperLeg", null);
     expect(redo(edit)).toBe(edit);
   });
 
-  it("takes no step where nothing changes, and a whole map in one", () => {
+  it("adds no step if nothing changes, and one step for a whole map", () => {
     const edit = begin(LEGS);
     expect(assign(edit, "Hips", "root")).toBe(edit);
     expect(assign(edit, "Head", null)).toBe(edit);
@@ -73,7 +73,7 @@ describe("editing a joint map", () => {
     expect(sameMap({ a: "1" }, { a: "1", b: "2" })).toBe(false);
   });
 
-  it("says what the server would refuse", () => {
+  it("reports what the server would reject", () => {
     expect(problemsOf(LEGS, BODY, RIG).size).toBe(0);
     expect(problemsOf({ LeftFoot: "foot" }, BODY, RIG).get("Hips")).toEqual({ kind: "hips" });
     const twice = problemsOf({ ...LEGS, LeftFoot: "shin" }, BODY, RIG);
@@ -96,12 +96,12 @@ describe("the body", () => {
     expect(Object.values(GROUPS).flat().toSorted()).toEqual(Object.keys(BODY).toSorted());
   });
 
-  it("is drawn from the front, left and right apart", () => {
+  it("is drawn from the front, with left and right apart", () => {
     expect(placeOnBody("LeftHand")[0]).toBeGreaterThan(0);
     expect(placeOnBody("RightHand")[0]).toBe(-placeOnBody("LeftHand")[0]);
   });
 
-  it("is found again in a skeleton by its map", () => {
+  it("is found in a skeleton by its joint map", () => {
     const roles = rolesFrom(RIG.names, LEGS);
     expect(roles).toMatchObject({ head: null, leftHip: 1, rightHip: null });
     expect([...roles.left]).toEqual([1, 2]);
@@ -109,12 +109,12 @@ describe("the body", () => {
 });
 
 describe("avatars", () => {
-  it("are named by a stature that the server takes", () => {
+  it("are named by a stature that the server accepts", () => {
     expect([165, "172.5", 172.46].map(avatarOf)).toEqual(["165cm", "172.5cm", "172.5cm"]);
     expect([49, 261, "", "tall"].map(avatarOf)).toEqual([null, null, null, null]);
   });
 
-  it("stand in order of stature, each once", () => {
+  it("are listed in order of stature, without duplicates", () => {
     expect(withAvatar(["130cm", "190cm"], "165cm")).toEqual(["130cm", "165cm", "190cm"]);
     expect(withAvatar(["95.5cm", "130cm"], "130cm")).toEqual(["95.5cm", "130cm"]);
   });

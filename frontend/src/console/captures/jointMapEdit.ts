@@ -1,4 +1,4 @@
-/** A joint map that is being edited: what it was, what it is, and what is wrong with it. */
+/** A joint map that is being edited: its history, its current state, and its problems. */
 export type BodyMap = Readonly<Record<string, string>>;
 
 export interface MapEdit {
@@ -14,13 +14,13 @@ const step = (edit: MapEdit, next: BodyMap): MapEdit =>
     ? edit
     : { past: [...edit.past, edit.present], present: next, future: [] };
 
-/** Let a joint of the skeleton play a body joint; null takes it away. */
+/** Assign a joint of the skeleton to a body joint; null removes the assignment. */
 export function assign(edit: MapEdit, bodyJoint: string, rigJoint: string | null): MapEdit {
   const { [bodyJoint]: _before, ...rest } = edit.present;
   return step(edit, rigJoint === null ? rest : { ...rest, [bodyJoint]: rigJoint });
 }
 
-/** Another map as a whole, which can be undone as well. */
+/** Replace the whole map, as a step that can be undone. */
 export const replace = (edit: MapEdit, map: BodyMap): MapEdit => step(edit, map);
 
 export function undo(edit: MapEdit): MapEdit {
@@ -55,10 +55,10 @@ export type MapProblem =
   | { readonly kind: "hips" };
 
 /**
- * What the server would refuse, by body joint; told while it is edited.
+ * What the server would reject, by body joint, so that it is shown during editing.
  *
- * One joint plays one part; whatever is further out on the body is below on the skeleton; without
- * hips no body can be placed.
+ * A joint of the skeleton is assigned only once; a body joint further from the root is further down
+ * the skeleton; without hips no body can be placed.
  */
 export function problemsOf(
   map: BodyMap,

@@ -1,4 +1,4 @@
-/** The reads of captures. Everything of one capture is kept under its id. */
+/** The queries of captures. Everything of one capture is cached under its id. */
 import { type Capture, captures, type ReadingChoice, type Shown } from "@shared/api/captures";
 import { keepPreviousData, queryOptions } from "@tanstack/react-query";
 
@@ -7,7 +7,7 @@ export const capturesQuery = queryOptions({ queryKey: ["captures"], queryFn: cap
 export const captureQuery = (id: string) =>
   queryOptions({ queryKey: ["captures", id], queryFn: () => captures.get(id) });
 
-/** A file never changes; how it is read may, so that is part of what the movement is kept under. */
+/** A file never changes, but its reading may, so the reading is part of the cache key. */
 const readAs = ({ metres_per_unit, up }: ReadingChoice) => `${metres_per_unit} ${up}`;
 
 export const motionQuery = (capture: Capture, shown: Shown) =>
@@ -18,7 +18,7 @@ export const motionQuery = (capture: Capture, shown: Shown) =>
     placeholderData: keepPreviousData,
   });
 
-/** `map` is the version of the joint map: another one moves the avatar otherwise. */
+/** `map` is the version of the joint map: another version moves the avatar differently. */
 export const avatarMotionQuery = (
   capture: Capture,
   avatar: string,

@@ -1,4 +1,6 @@
-/** What stands on the stage: the capture as recorded, its skeleton, or an avatar beside its source. */
+/**
+ * The figures on the stage: the capture as recorded, its skeleton, or an avatar next to its source.
+ */
 import type { Capture } from "@shared/api/captures";
 import { type Figure, facingOf } from "@shared/stage/figure";
 import type { PointMotion } from "@shared/stage/motion";
@@ -17,7 +19,7 @@ export interface Wish {
   readonly ghost: boolean;
 }
 
-/** Far enough for two people with their arms spread. */
+/** Far enough apart for two people with their arms spread. */
 const BESIDE_M = 1.3;
 
 export function useFigures(capture: Capture, wish: Wish, map: JointMapDraft) {
@@ -52,7 +54,7 @@ export function sourceOf(
   map: Readonly<Record<string, string>> | undefined,
 ): Figure {
   const plain: Figure = { key: "source", motion, tone: "solid" };
-  // Markers and rigid bodies are not joints, even where one is called so.
+  // Markers and rigid bodies are not joints, even if one has a joint's name.
   if (map === undefined || motion.kind !== "skeleton") return plain;
   return { ...plain, roles: rolesFrom(motion.names, map) };
 }

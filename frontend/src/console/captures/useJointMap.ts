@@ -1,4 +1,4 @@
-/** The joint map of a capture's skeleton as it is on the server, and as somebody is changing it. */
+/** The joint map of a capture's skeleton, as stored on the server and as edited here. */
 import { type Capture, captures, type JointMapView } from "@shared/api/captures";
 import { isApiError } from "@shared/api/request";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
@@ -6,7 +6,7 @@ import { useState } from "react";
 import { type BodyMap, begin, type MapEdit, sameMap } from "./jointMapEdit";
 import { capturesQuery, jointMapQuery } from "./queries";
 
-/** `base` is the map on which was begun, `version` the server's number of it. */
+/** `base` is the map on which the edit is based, `version` its number on the server. */
 interface Draft {
   readonly edit: MapEdit;
   readonly base: BodyMap;
@@ -14,7 +14,7 @@ interface Draft {
 }
 
 export interface JointMapDraft {
-  /** Undefined while it is on its way, or where the capture has no skeleton. */
+  /** Undefined while it is loading, or if the capture has no skeleton. */
   readonly view: JointMapView | undefined;
   readonly loadError: unknown;
   readonly edit: MapEdit;
@@ -24,7 +24,7 @@ export interface JointMapDraft {
   readonly saving: boolean;
   readonly saved: boolean;
   readonly error: unknown;
-  /** Somebody else has saved since this was begun. */
+  /** Somebody else has saved since this edit was started. */
   readonly stale: boolean;
   readonly takeTheirs: () => void;
   readonly saveMine: () => void;
@@ -38,12 +38,13 @@ export function useJointMap(capture: Capture): JointMapDraft {
   const [draft, setDraft] = useState<Draft | null>(null);
   const view = query.data;
   const unsaved = draft !== null && !sameMap(draft.edit.present, draft.base);
-  // Without changes of one's own, what somebody else saved is what there is.
+  // Without unsaved changes, the version that somebody else saved is shown.
   const kept = draft !== null && (unsaved || draft.version === view?.version) ? draft : null;
   const edit = kept?.edit ?? begin(view?.joint_map ?? NOTHING);
   const save = useMutation({
     mutationFn: ({ map, version }: { readonly map: BodyMap; readonly version: number }) =>
-      // What equals the proposal follows it, so that a better one of a later version is taken.
+      // A map equal to the proposal follows it, so that a better proposal of a later version is
+      // used.
       view !== undefined && sameMap(map, view.proposal)
         ? captures.resetJointMap(capture.id, version)
         : captures.saveJointMap(capture.id, version, map),

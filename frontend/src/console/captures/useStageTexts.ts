@@ -1,4 +1,4 @@
-/** The stage's words in the console's languages. */
+/** The stage's texts in the console's languages. */
 import { number } from "@shared/format";
 import type { StageTexts } from "@shared/stage/Stage";
 import type { TransportTexts } from "@shared/stage/Transport";

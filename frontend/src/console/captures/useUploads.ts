@@ -1,4 +1,7 @@
-/** Files on their way to the server, one after the other; what was refused stays until it is read. */
+/**
+ * The queue of uploads, sent one after the other; rejected ones stay listed until they are
+ * dismissed.
+ */
 import { type CaptureFiles, type Uploaded, uploadCapture } from "@shared/api/captures";
 import { useQueryClient } from "@tanstack/react-query";
 import { useReducer, useRef } from "react";
@@ -100,9 +103,9 @@ interface Named {
 }
 
 interface Pairs<File extends Named> {
-  /** Ready to be sent. */
+  /** Files that can be sent. */
   readonly ready: readonly { readonly file: File; readonly companion: File | null }[];
-  /** An AMC without its ASF, or the other way round. */
+  /** An AMC without its ASF, or vice versa. */
   readonly lonely: readonly File[];
 }
 
@@ -110,10 +113,13 @@ const ending = (name: string): string => /\.([^.]+)$/.exec(name)?.[1]?.toLowerCa
 const isAmc = ({ name }: Named): boolean => ending(name) === "amc";
 const isAsf = ({ name }: Named): boolean => ending(name) === "asf";
 
-/** What is missing beside a lonely file. */
+/** The file type that a lonely file is missing. */
 export const missingBeside = (file: Named): ".asf" | ".amc" => (isAmc(file) ? ".asf" : ".amc");
 
-/** One ASF serves every AMC of its person: CMU's 02.asf goes with 02_01.amc and 02_06.amc. */
+/**
+ * Pair files by name. One ASF serves every AMC of its person: CMU's 02.asf goes with 02_01.amc and
+ * 02_06.amc.
+ */
 export function pairFiles<File extends Named>(files: readonly File[]): Pairs<File> {
   const skeletons = files.filter(isAsf);
   const movements = files.filter(isAmc);
@@ -133,7 +139,7 @@ export function pairFiles<File extends Named>(files: readonly File[]): Pairs<Fil
   };
 }
 
-/** The one whose name begins alike; the only one there is, whatever it is called. */
+/** The skeleton whose name the file's name starts with, or the only one, whatever it is called. */
 function skeletonFor<File extends Named>(file: File, skeletons: readonly File[]): File | null {
   if (skeletons.length === 1) return skeletons[0] ?? null;
   const alike = skeletons.filter(({ name }) =>

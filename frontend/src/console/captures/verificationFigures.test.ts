@@ -72,7 +72,7 @@ describe("the figures of a verification", () => {
     }
   });
 
-  it("draw hip, knee and ankle of each leg, apart from each other", () => {
+  it("draw hip, knee and ankle of each leg separately", () => {
     const { data } = anglesFigure(verification, words);
     expect(data.map(({ name, yaxis, y }) => [name, yaxis, y])).toEqual([
       ["left", "y", [1, 2, 3]],
@@ -85,7 +85,7 @@ describe("the figures of a verification", () => {
     expect(data.map(({ showlegend }) => showlegend)).toEqual([1, 0, 0, 1, 0, 0].map(Boolean));
   });
 
-  it("draw the toes of every body on the same scale, the source dashed", () => {
+  it("draw the toes of every body on the same scale, with the source dashed", () => {
     const { data, layout } = toeFigure(verification, words);
     expect(data).toHaveLength(6);
     expect(data.filter(({ showlegend }) => showlegend).map(({ name }) => name)).toEqual([
@@ -103,7 +103,7 @@ describe("the figures of a verification", () => {
     const [left, right] = data as unknown as { base: number[]; x: number[]; y: number[] }[];
     expect(left?.base).toEqual([0.5, 0.6, 0.7]);
     for (const length of left?.x ?? []) expect(length).toBeCloseTo(0.4, 12);
-    // Rows run downwards: what is smaller stands above.
+    // The y axis is reversed: smaller values are drawn further up.
     for (const [row, y] of (left?.y ?? []).entries()) {
       expect(y).toBeLessThan(row);
       expect(right?.y[row]).toBeGreaterThan(row);

@@ -57,7 +57,7 @@ export function anglesFigure(verification: Verification, words: FigureWords): Fi
   return { data, layout: { height: 520, xaxis, ...Object.fromEntries(axes) } };
 }
 
-/** Figure 9 of the paper: the way of the toe joint, the left foot beside the right. */
+/** Figure 9 of the paper: the path of the toe joint, the left foot next to the right. */
 export function toeFigure(verification: Verification, words: FigureWords): Figure {
   const bodies = [verification.source, ...verification.avatars];
   const data = bodies.flatMap((body, index) =>
@@ -84,7 +84,7 @@ export function toeFigure(verification: Verification, words: FigureWords): Figur
   return { data, layout };
 }
 
-/** The source comes first; it is grey and dashed. */
+/** The first line is the source, grey and dashed; the others are avatars. */
 const lineOf = (index: number) =>
   index === 0
     ? { color: SOURCE_COLOUR, dash: "dot", width: 2.4 }

@@ -1,4 +1,4 @@
-/** Who, which study, which order, and whether this page is up to date. */
+/** The cockpit's header: participant, study, order, and whether this page is up to date. */
 import { ActionIcon, Button, Tooltip } from "@mantine/core";
 import type { FeedState } from "@shared/api/live";
 import type { SessionView } from "@shared/api/types";
@@ -16,7 +16,7 @@ import { Reveal } from "./Reveal";
 interface HeaderProps {
   readonly session: SessionView;
   readonly feed: FeedState;
-  /** Missing while the list is on the page anyway, or there is nothing left to check. */
+  /** Missing while the list is on the page anyway, or when there is nothing left to check. */
   readonly onChecks: (() => void) | undefined;
   readonly onLog: () => void;
   readonly onHelp: () => void;
@@ -105,12 +105,12 @@ export function Header({ session, feed, onChecks, onLog, onHelp }: HeaderProps):
 const hasConsent = ({ steps }: SessionView): boolean =>
   steps.some((step) => step.kind === "consent" && step.status === "done");
 
-/** A short break of the line is not worth a warning; one that lasts is. */
+/** A short loss of connection does not deserve a warning; a longer one does. */
 const WARN_AFTER_MS = 1500;
 
 interface FeedProps {
   readonly state: FeedState;
-  /** Nothing of a session that is over is live; that the line is broken is still said. */
+  /** A session that has ended is no longer shown as live; a lost connection still is. */
   readonly ended: boolean;
 }
 

@@ -1,4 +1,4 @@
-/** Showing a blinded session's condition before it is over: for a reason that the record keeps. */
+/** Show a blinded session's condition before its end, for a reason that is recorded. */
 import { Button, Group, Modal, Stack, Text } from "@mantine/core";
 import { useDisclosure } from "@mantine/hooks";
 import { blinding } from "@shared/api/people";
@@ -17,7 +17,7 @@ const REASONS: readonly Key[] = [
   "blind.reason.fault",
 ];
 
-/** Nothing where there is nothing hidden, or where it is hidden for good. */
+/** Renders nothing if no condition is hidden, or if it stays hidden for good. */
 export function Reveal({ session }: { readonly session: SessionView }): JSX.Element | null {
   const { t } = useTexts();
   const may = useMay();

@@ -36,7 +36,7 @@ import { HeldCard, RefusedCard } from "./step/HeldCard";
 import { OperatorEntry } from "./step/OperatorEntry";
 import { ReasonDialog } from "./step/ReasonDialog";
 
-/** Only one of them is ever allowed. Pausing asks for no reason: it has to be quick. */
+/** Only one of them is ever allowed. Pausing does not require a reason: it has to be quick. */
 const PAUSING = ["pause", "resume"] as const;
 
 export function SessionPage({ id }: { readonly id: string }): JSX.Element {
@@ -49,7 +49,7 @@ export function SessionPage({ id }: { readonly id: string }): JSX.Element {
   );
 }
 
-/** The session of somebody who may watch and not command. */
+/** The session for somebody who may watch but not send commands. */
 const readOnly = (session: SessionView): SessionView => ({ ...session, allowed: [] });
 
 interface CockpitProps {
@@ -68,14 +68,14 @@ function Cockpit({ session, live: direct }: CockpitProps): JSX.Element {
   const [list, lists] = useDisclosure();
   const isPlanned = may("run") && session.status === "planned";
   const flight = usePreflight(session, direct, isPlanned || list);
-  // A start looks at the list first; everything else goes its own way.
+  // A start checks the pre-flight list first; every other command is sent directly.
   const send: Send = (command, onDone) =>
     command.type === "start" ? void flight.start() : direct.send(command, onDone);
   const live = { ...direct, send, sending: direct.sending || flight.looking };
   const alarms = useAlarms(session, live.store, live.storage, live.failing);
   const worst = alarms.on[0];
   const ended = session.ended_at !== null;
-  // Whoever looks at another tab still sees it.
+  // Visible in the tab's title while another tab is in front.
   useTitle(
     worst?.severity === "critical"
       ? `▲ ${t(titleKey(worst))} · ${session.participant_code}`

@@ -35,25 +35,25 @@ describe("the primary action", () => {
     expect(action?.command.step_index).toBe(5);
   });
 
-  it("is never a consent: one press of the experimenter is nobody's agreement", () => {
+  it("is never a consent: one press by the experimenter is not the participant's agreement", () => {
     expect(primaryAction(view(at(0), ["complete_step"]))).toBeNull();
   });
 
-  it("leaves height to its form and answers to the participant", () => {
+  it("leaves the height to its form and answers to the participant", () => {
     expect(primaryAction(view(at(1), ["complete_step"]))).toBeNull();
     expect(primaryAction(view(at(3), ["enter_answers"]))).toBeNull();
   });
 });
 
 describe("the guidance", () => {
-  it("follows the phase while one is on and the outcome after the end", () => {
+  it("follows the phase while one is running, and the outcome after the end", () => {
     expect(guidance(view(at(2, { status: "walk_back" }), []))).toBe("guide.walk_back");
     expect(guidance(view(at(4), []))).toBe("guide.task.foot");
     expect(guidance(view(null, [], { status: "withdrawn" }))).toBe("guide.withdrawn");
   });
 });
 
-describe("what needs a headset", () => {
+describe("an action that needs a headset", () => {
   const headset = (connected: boolean) => ({
     id: "h",
     kind: "headset" as const,
@@ -63,7 +63,7 @@ describe("what needs a headset", () => {
     last_seen_at: null,
   });
 
-  it("is said before it is pressed, and only there", () => {
+  it("is marked as such before it is pressed, and no other is", () => {
     for (const type of ["materialise", "begin_phase", "resume"] as const) {
       expect(lacksHeadset(view(at(2), [type]))).toBe(true);
       expect(lacksHeadset(view(at(2), [type], { devices: [headset(false)] }))).toBe(true);
@@ -74,7 +74,7 @@ describe("what needs a headset", () => {
 });
 
 describe("why a command failed", () => {
-  it("is told while the session stands where it was sent, and no longer", () => {
+  it("is shown only until the session has moved on", () => {
     const sent = { view: view(at(2), []) };
     expect(isOutlived(sent, view(at(2), [], { version: 9 }))).toBe(false);
     expect(isOutlived(sent, view(at(3), []))).toBe(true);
@@ -87,7 +87,7 @@ describe("what another operator changed", () => {
   const keys = (before: SessionView, after: SessionView) =>
     changesBetween(before, after).map(({ key }) => key);
 
-  it("is told by status, step, phase and notes", () => {
+  it("is described by status, step, phase and notes", () => {
     const running = view(at(2, { status: "running" }), []);
     const paused = view(at(2, { status: "paused" }), []);
     const note = { id: "n", text: "x", at: "2026-01-01T12:00:00Z", by: "admin" };
@@ -97,7 +97,7 @@ describe("what another operator changed", () => {
     expect(keys(running, view(null, [], { status: "aborted" }))).toEqual(["change.status.aborted"]);
   });
 
-  it("is told where it was the participant who changed it", () => {
+  it("is described also if it was the participant who changed it", () => {
     const refused = { ...session, refusal: { step: 0, at: null } };
     expect(keys(session, refused)).toEqual(["change.refused"]);
     expect(keys(refused, session)).toEqual(["change.retracted"]);
@@ -105,19 +105,19 @@ describe("what another operator changed", () => {
     expect(keys(session, { ...session, alarms: [alarm] })).toEqual(["change.question"]);
   });
 
-  it("is never nothing", () => {
+  it("is never an empty list", () => {
     expect(keys(session, session)).toEqual(["change.other"]);
   });
 });
 
-describe("doing over", () => {
-  it("means the running step, or the task that was just done", () => {
+describe("repeating a step", () => {
+  it("proposes the running step, or the task that was just completed", () => {
     expect(redoTarget(view(at(2, { status: "running" }), []))).toBe(2);
     expect(redoTarget(view(at(3), []))).toBe(2);
     expect(redoTarget(view(at(1), []))).toBe(0);
   });
 
-  it("offers no step that lies ahead or has not begun", () => {
+  it("offers no step that is still to come or has not started", () => {
     const offered = (current: Current) => redoable(view(current, [])).map(({ index }) => index);
     expect(offered(at(3))).toEqual([0, 1, 2]);
     expect(offered(at(2, { status: "running" }))).toEqual([0, 1, 2]);
@@ -132,7 +132,7 @@ describe("doing over", () => {
 });
 
 describe("the timeline", () => {
-  it("gathers the steps into before, blocks and after without losing one", () => {
+  it("groups the steps into before, blocks and after without losing one", () => {
     const groups = groupSteps(steps);
     expect(groups.flatMap((group) => group.steps)).toEqual(steps);
     expect(groups.map(({ number, latency }) => [number, latency])).toEqual([

@@ -1,4 +1,4 @@
-/** One file: what it is, how far it is, and what can be done with it. */
+/** One file: what it is, its progress, and what can be done with it. */
 import { ActionIcon, Button, CopyButton, Progress } from "@mantine/core";
 import { type Export, exports } from "@shared/api/housekeeping";
 import { bytes, duration, number, timeOfDay } from "@shared/format";
@@ -227,7 +227,7 @@ interface DownloadListProps {
   readonly studyKey?: string;
 }
 
-/** The person's files, newest first; of one study where a page is about it. */
+/** The account's files, newest first; only those of one study on that study's pages. */
 export function DownloadList({ query, studyKey }: DownloadListProps): JSX.Element | null {
   const { t } = useTexts();
   const { gone } = useDesk();

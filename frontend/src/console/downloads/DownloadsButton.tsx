@@ -22,7 +22,7 @@ import {
 export function DownloadsButton(): JSX.Element {
   const { t } = useTexts();
   const { opened, wanted } = useDesk();
-  // Nobody is asked while nothing was ordered and nobody looks.
+  // Nothing is requested while no file is expected and the list is closed.
   const query = useExports(opened || wanted.length > 0);
   useHandingOver(query.isFetchedAfterMount ? query.data : undefined);
   const busy = query.data?.filter(isOpen).length ?? 0;
@@ -69,7 +69,7 @@ export function DownloadsButton(): JSX.Element {
   );
 }
 
-/** On a session that is over: its own files, without the rest of the study. */
+/** The download of a finished session: its own files, without the rest of the study. */
 export function SessionDownload({
   session,
 }: {
@@ -78,7 +78,7 @@ export function SessionDownload({
   const { t } = useTexts();
   const may = useMay();
   const order = useOrder();
-  // An expert's session is advice, and in no table.
+  // An expert's session contains suggestions only, and is in no table.
   if (!may("compare") || session.kind === "expert") return null;
   const kind: DataKind = session.kind;
   return (

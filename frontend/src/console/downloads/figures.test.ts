@@ -1,4 +1,4 @@
-/** Sizes, forecasts and shares as people read them. */
+/** Tests of sizes, forecasts and shares as they are displayed. */
 import type { StorageRoom } from "@shared/api/housekeeping";
 import { bytes } from "@shared/format";
 import { describe, expect, it } from "vitest";
@@ -19,7 +19,7 @@ describe("sizes", () => {
     expect(bytes(size, "en")).toBe(words);
   });
 
-  it("uses the language's own signs", () => {
+  it("use the language's own notation", () => {
     expect(bytes(1_250_000_000, "de")).toBe("1,25 GB");
   });
 });
@@ -51,11 +51,11 @@ describe("the disk", () => {
     expect(diskShares(room({}))).toEqual({ own: 30, other: 10, free: 60, total: 100 });
   });
 
-  it("holds no tables of a database elsewhere", () => {
+  it("contains no tables of a database elsewhere", () => {
     expect(diskShares(room({ holds_database: false }))).toMatchObject({ own: 5, other: 35 });
   });
 
-  it("never has more taken by this server than is taken", () => {
+  it("never shows more used by this server than is used", () => {
     expect(diskShares(room({ free_bytes: 90 }))).toMatchObject({ own: 10, other: 0 });
   });
 });

@@ -1,4 +1,4 @@
-/** The person's exports, ordering and removing them, and handing over those that are ready. */
+/** The account's exports: request, delete, and download those that are ready. */
 import { type Export, type ExportWish, exports } from "@shared/api/housekeeping";
 import { type UseQueryResult, useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { useEffect, useSyncExternalStore } from "react";
@@ -36,7 +36,10 @@ export function useRemoval() {
   });
 }
 
-/** Hands what this tab ordered to the browser, which writes it to the disk as it arrives. */
+/**
+ * Start the browser's download of each export requested in this tab once it is ready; the browser
+ * writes it to disk as it arrives.
+ */
 export function useHandingOver(list: readonly Export[] | undefined): void {
   const { wanted } = useDesk();
   const queries = useQueryClient();
@@ -49,7 +52,7 @@ export function useHandingOver(list: readonly Export[] | undefined): void {
       else if (one.state === "ready") {
         wantNoMore(id);
         save(one);
-        // It counts as fetched once the server has heard of it.
+        // It counts as fetched once the server has noticed the download.
         setTimeout(() => void queries.invalidateQueries({ queryKey: exportsQuery.queryKey }), 1000);
       }
     }
@@ -67,7 +70,7 @@ const KEY = "reembody.downloads.wanted";
 
 interface Desk {
   readonly opened: boolean;
-  /** Exports that were ordered here and are not handed over yet. */
+  /** Exports that were requested here and are not downloaded yet. */
   readonly wanted: readonly string[];
   /** One of them vanished before it was ready. */
   readonly gone: boolean;
@@ -87,8 +90,8 @@ function change(next: Partial<Desk>): void {
 }
 
 /**
- * What this tab has ordered: such a file is handed to the browser as soon as it is ready. It is
- * remembered over a reload of the page, and other tabs do not fetch it as well.
+ * The exports that this tab has requested: each is downloaded as soon as it is ready. They are
+ * remembered when the page is reloaded, and other tabs do not fetch them too.
  */
 export const openDownloads = (): void => change({ opened: true });
 export const closeDownloads = (): void => change({ opened: false, gone: false });

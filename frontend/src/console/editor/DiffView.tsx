@@ -1,4 +1,4 @@
-/** Two versions of a study side by side: what it means, each place, and the text. */
+/** Two versions of a study side by side: a summary, each change, and the text. */
 import { type Difference, drafts, type StudyDiff } from "@shared/api/drafts";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
@@ -83,7 +83,7 @@ const written = (value: unknown): string =>
 function Unified({ text }: { readonly text: string }): JSX.Element {
   const { t } = useTexts();
   return (
-    // biome-ignore lint/a11y/noNoninteractiveTabindex: a region that scrolls has to take the focus
+    // biome-ignore lint/a11y/noNoninteractiveTabindex: a scrollable region has to be focusable
     // biome-ignore lint/a11y/useSemanticElements: a section may not be preformatted
     <pre className={classes.unified} tabIndex={0} role="region" aria-label={t("diff.text")}>
       {text.split("\n").map((line, index) => (
@@ -108,7 +108,7 @@ interface ChangesProps {
   readonly studyKey: string;
 }
 
-/** What saving the draft would change, against the newest version. */
+/** What saving the draft would change, compared with the newest version. */
 export function Changes({ draft, studyKey }: ChangesProps): JSX.Element {
   const { t } = useTexts();
   const usable = draft.upToDate && draft.check?.ok === true;

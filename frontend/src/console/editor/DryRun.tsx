@@ -1,4 +1,4 @@
-/** One participant's visit before there is one: every step with its time, for any slot. */
+/** A dry run of one participant's session: every step with its time, for any slot. */
 import { NumberInput, SegmentedControl } from "@mantine/core";
 import { drafts, type Timeline, type TimelineStep } from "@shared/api/drafts";
 import { clockFace, latency, number } from "@shared/format";
@@ -87,10 +87,10 @@ export function DryRun({ draft }: { readonly draft: Draft }): JSX.Element {
 
 const minutes = (time: number, language: string): string => number(time / 60, language, 1);
 
-/** Okabe and Ito's colours, told apart by nearly everybody; a pattern and a word come on top. */
+/** Okabe and Ito's colours, distinguishable by nearly everybody; a pattern and a word are added. */
 const HUES = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#f0e442"];
 
-/** Conditions get their colour by latency, so that it is the same in every order. */
+/** Conditions are coloured by latency, so that the colours are the same in every order. */
 function hueOf(timeline: Timeline, step: TimelineStep): string | undefined {
   if (step.block === null || step.latency_ms === null) return undefined;
   const ranks = [...timeline.latencies_ms].sort((a, b) => a - b);

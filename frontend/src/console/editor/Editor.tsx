@@ -1,4 +1,4 @@
-/** Writing a study: the form at the left, its YAML at the right, both always the same study. */
+/** The study editor: the form on the left, its YAML on the right, always of the same study. */
 import { ActionIcon, Button, Tabs, Tooltip } from "@mantine/core";
 import { notifications } from "@mantine/notifications";
 import { drafts } from "@shared/api/drafts";
@@ -26,10 +26,10 @@ import { type Draft, useDraft } from "./useDraft";
 import { YamlField } from "./YamlField";
 
 interface EditorProps {
-  /** The study that gets a new version; null makes a new study. */
+  /** The study that gets a new version; null creates a new study. */
   readonly studyKey: string | null;
   readonly title: string;
-  /** What is stored, and what the writing begins with. */
+  /** The stored text, with which the editing starts. */
   readonly stored: string;
   readonly initial: string;
   readonly notice?: ReactNode;
@@ -243,7 +243,7 @@ interface FiguresProps {
   readonly figures: components["schemas"]["StudyFigures"] | null;
 }
 
-/** What a draft asks for, in a line: how large its design is and how long a visit. */
+/** The figures of a draft, in a line: the size of its design and the length of a session. */
 function Figures({ figures }: FiguresProps): JSX.Element | null {
   const { t, language } = useTexts();
   if (figures === null) return null;

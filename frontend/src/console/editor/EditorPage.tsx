@@ -1,4 +1,7 @@
-/** The page of a study that is being written: a stored one, or a new one from some beginning. */
+/**
+ * The page for editing a study: a stored one, or a new one from a template, a study, a file or
+ * nothing.
+ */
 import { Button } from "@mantine/core";
 import { drafts } from "@shared/api/drafts";
 import { studies } from "@shared/api/endpoints";
@@ -18,7 +21,7 @@ import { dropDraft, keptDraft } from "./LeaveGuard";
 export function EditStudyPage({ studyKey }: { readonly studyKey: string }): JSX.Element {
   const { t, language } = useTexts();
   useTitle(t("editor.title", { name: studyKey }));
-  // Always fresh: whoever writes must begin with what is stored now.
+  // Always fetched: editing must start from what is stored now.
   const query = useQuery({
     queryKey: ["studies", studyKey, "to-edit"],
     queryFn: () => studies.get(studyKey),
@@ -96,11 +99,13 @@ interface BegunProps {
   readonly title: string;
   readonly stored: string;
   readonly begin: string;
-  /** A beginning that was chosen just now counts more than what was kept. */
+  /** Whether the starting point was just chosen, so that it replaces a kept draft. */
   readonly fresh?: boolean;
 }
 
-/** What was written here before and not saved is there again, and can be dropped. */
+/**
+ * The editor, starting with the unsaved changes kept from an earlier visit, which can be discarded.
+ */
 function Begun({ id, studyKey, title, stored, begin, fresh = false }: BegunProps): JSX.Element {
   const { t, language } = useTexts();
   const [kept] = useState(() => (fresh ? null : keptDraft(id)));

@@ -1,4 +1,4 @@
-/** The left half of the editor: the study as a form, a section at a time. */
+/** The left half of the editor: the study as a form, one section at a time. */
 import { Tabs } from "@mantine/core";
 import { type JSX, useState } from "react";
 import { useTexts } from "../i18n";
@@ -75,7 +75,7 @@ function Content({ section, spec }: ContentProps): JSX.Element {
 const inside = (spec: Spec | undefined, name: string): Spec | undefined =>
   spec?.kind === "object" ? spec.fields.find((field) => field.name === name)?.spec : undefined;
 
-/** One list that lies deeper in the file. */
+/** One list that is nested deeper in the file. */
 function Inner({ spec, path }: { readonly spec: ObjectSpec; readonly path: readonly string[] }) {
   const labels = useLabels();
   const found = path.reduce<Spec | undefined>(inside, spec);
@@ -84,7 +84,7 @@ function Inner({ spec, path }: { readonly spec: ObjectSpec; readonly path: reado
   ) : null;
 }
 
-/** Before, in and after the blocks; the timed phases have a section of their own. */
+/** The steps before, in and after the blocks; the timed phases have a section of their own. */
 function ProcedureSection({ spec }: { readonly spec: ObjectSpec }): JSX.Element | null {
   const { t } = useTexts();
   const procedure = inside(spec, "procedure");

@@ -1,10 +1,13 @@
-/** Changes that are not saved yet: kept in the browser, and asked about before they are left behind. */
+/** Unsaved changes: kept in the browser, with a confirmation before the page is left. */
 import { Button, Group, Modal, Text } from "@mantine/core";
 import { type JSX, useEffect, useState } from "react";
 import { useLocation } from "wouter";
 import { useTexts } from "../i18n";
 
-/** Asks before unsaved changes are left behind: at links of the page, and at closing the tab. */
+/**
+ * Ask for confirmation before unsaved changes are left: on links of the page, and on closing the
+ * tab.
+ */
 export function LeaveGuard({ unsaved }: { readonly unsaved: boolean }): JSX.Element {
   const { t } = useTexts();
   const [, navigate] = useLocation();
@@ -19,7 +22,7 @@ export function LeaveGuard({ unsaved }: { readonly unsaved: boolean }): JSX.Elem
       setTarget(link.getAttribute("href")?.slice(1) ?? "/");
     };
     const onClose = (event: BeforeUnloadEvent) => event.preventDefault();
-    // Before the link itself hears of it.
+    // In the capture phase, before the link itself receives the click.
     document.addEventListener("click", onClick, true);
     window.addEventListener("beforeunload", onClose);
     return () => {
@@ -52,7 +55,7 @@ export function LeaveGuard({ unsaved }: { readonly unsaved: boolean }): JSX.Elem
   );
 }
 
-/** What was written and not saved yet, kept in this browser: closing a page loses nothing. */
+/** The prefix of unsaved drafts in this browser's storage, so that closing a page loses nothing. */
 const PREFIX = "reembody.draft.";
 
 export function keptDraft(id: string): string | null {
@@ -63,7 +66,7 @@ export function keepDraft(id: string, text: string): void {
   try {
     localStorage.setItem(PREFIX + id, text);
   } catch {
-    // A full or forbidden storage must not stop the writing; the page still warns before it closes.
+    // A full or forbidden storage must not prevent editing; the page still warns before it closes.
   }
 }
 

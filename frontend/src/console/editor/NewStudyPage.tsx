@@ -1,4 +1,4 @@
-/** How a new study begins: from a template, from a study that exists, from a file, from nothing. */
+/** The start of a new study: from a template, from an existing study, from a file, or empty. */
 import { Button, FileButton, Title } from "@mantine/core";
 import type { Template } from "@shared/api/drafts";
 import { inLanguage } from "@shared/text";

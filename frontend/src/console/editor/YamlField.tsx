@@ -1,4 +1,4 @@
-/** The YAML of a file as a React component around the text field. */
+/** The YAML text field as a React component. */
 import { defaultKeymap, history, historyKeymap, isolateHistory } from "@codemirror/commands";
 import { yaml } from "@codemirror/lang-yaml";
 import {
@@ -23,7 +23,7 @@ import { type JSX, type RefObject, useEffect, useRef } from "react";
 import classes from "./Editor.module.css";
 
 interface YamlFieldProps {
-  /** The text at the beginning; from then on the field holds it. */
+  /** The initial text; from then on the field owns it. */
   readonly initial: string;
   readonly label: string;
   readonly problems: readonly ConfigProblem[];
@@ -103,7 +103,9 @@ export interface YamlText {
   readonly setReadable: (label: string, editable: boolean) => void;
 }
 
-/** The text field for YAML: line numbers, colours, problems at their lines, undo and redo. */
+/**
+ * Create the text field for YAML: line numbers, colours, problems at their lines, undo and redo.
+ */
 function createYamlText(
   parent: HTMLElement,
   doc: string,
@@ -131,7 +133,7 @@ function createYamlText(
         bracketMatching(),
         syntaxHighlighting(colours),
         EditorView.lineWrapping,
-        // Tab stays the way out of the field, for everybody who has no mouse.
+        // Tab leaves the field, for keyboard users.
         keymap.of([...defaultKeymap, ...historyKeymap, ...lintKeymap]),
         look,
         attributes.of(own("", true)),
@@ -150,7 +152,7 @@ function createYamlText(
   };
 }
 
-/** Replace the text by one that differs in one stretch, as one step that can be undone. */
+/** Replace the text by one that differs in one place, as one undoable step. */
 export function replaceText(view: EditorView, next: string): void {
   const before = view.state.doc.toString();
   if (before === next) return;
@@ -162,7 +164,7 @@ export function replaceText(view: EditorView, next: string): void {
   });
 }
 
-/** The one stretch in which two texts differ. */
+/** The one range in which two texts differ. */
 function stretch(before: string, after: string) {
   const most = Math.min(before.length, after.length);
   let from = 0;
@@ -172,7 +174,7 @@ function stretch(before: string, after: string) {
   return { from, to: before.length - tail, insert: after.slice(from, after.length - tail) };
 }
 
-/** Mark each problem from its place to the end of its line. */
+/** Mark each problem from its position to the end of its line. */
 function markProblems(view: EditorView, problems: readonly ConfigProblem[]): void {
   const { doc } = view.state;
   const marks: Diagnostic[] = problems
@@ -190,7 +192,9 @@ function markProblems(view: EditorView, problems: readonly ConfigProblem[]): voi
   view.dispatch(setDiagnostics(view.state, marks));
 }
 
-/** Put the cursor into a line and show it; `focus` also takes the keyboard there. */
+/**
+ * Move the cursor to a line and scroll it into view; `focus` also moves the keyboard focus there.
+ */
 export function showLine(view: EditorView, number: number, focus: boolean): void {
   const line = view.state.doc.line(Math.min(Math.max(number, 1), view.state.doc.lines));
   view.dispatch({

@@ -1,4 +1,7 @@
-/** What every field of the form shares: the file's values, its problems, and a way to change it. */
+/**
+ * The context shared by all fields of the form: the file's values, its problems, and a way to
+ * change it.
+ */
 import type { ConfigProblem } from "@shared/api/types";
 import { createContext, useContext, useEffect, useRef, useState } from "react";
 import { type Key, useTexts } from "../i18n";
@@ -13,7 +16,7 @@ export interface FormState {
   readonly instruments: readonly string[];
   readonly problems: readonly ConfigProblem[];
   readonly change: (changes: readonly Change[]) => void;
-  /** Show the place in the text. */
+  /** Show the position in the text. */
   readonly reveal: (path: Path) => void;
 }
 
@@ -25,7 +28,7 @@ export function useForm(): FormState {
   return state;
 }
 
-/** What is wrong at just this place, in one text; null if nothing is. */
+/** The problems at exactly this path, joined into one text; null if there are none. */
 export function useProblem(path: Path): string | null {
   const { problems } = useForm();
   const own = pathText(path);
@@ -37,7 +40,7 @@ export function useProblem(path: Path): string | null {
 
 export const useValue = (path: Path) => valueAt(useForm().tree, path);
 
-/** What fields and their values are called: in the reader's language where we have a word for them. */
+/** The names of fields and their values: in the reader's language if there is a text for them. */
 const NAMED: Readonly<Record<string, string>> = {
   ...fieldsEn,
   ...preregistrationEn,
@@ -45,7 +48,10 @@ const NAMED: Readonly<Record<string, string>> = {
 };
 const UNITS: Readonly<Record<string, string>> = { s: "s", ms: "ms", m: "m", cm: "cm", deg: "°" };
 
-/** `freeze_s` as `Freeze (s)`: for a setting that is newer than the tables of words. */
+/**
+ * Make a setting's name readable: `freeze_s` becomes `Freeze (s)`, if it is newer than the tables
+ * of texts.
+ */
 function readable(name: string): string {
   const parts = name.split("_");
   const unit = parts.length > 1 ? UNITS[parts.at(-1) ?? ""] : undefined;
@@ -72,7 +78,7 @@ export function useLabels(): Labels {
 
 const PAUSE_MS = 700;
 
-/** A text field that tells of its content when the writer pauses or leaves it, not at every key. */
+/** A text field that reports its content when the writer pauses or leaves it, not at every key. */
 export function useCommitted(value: string, commit: (value: string) => void) {
   const [local, setLocal] = useState(value);
   const pending = useRef<string | null>(null);
@@ -81,7 +87,7 @@ export function useCommitted(value: string, commit: (value: string) => void) {
   useEffect(() => {
     latest.current = commit;
   });
-  // What is being written stays; anything else follows the file.
+  // What is being typed stays; otherwise the field follows the file.
   useEffect(() => {
     if (pending.current === null || pending.current === value) {
       pending.current = null;

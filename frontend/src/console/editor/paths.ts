@@ -1,4 +1,4 @@
-/** Places within a file: keys and positions, written as the server writes them. */
+/** Paths within a file: keys and positions, in the server's notation. */
 export type Path = readonly (string | number)[];
 export type Json =
   | null
@@ -9,7 +9,7 @@ export type Json =
   | { readonly [key: string]: Json };
 export type JsonObject = { readonly [key: string]: Json };
 
-/** `conditions[1].latency_ms` */
+/** A path as text: `conditions[1].latency_ms`. */
 export function pathText(path: Path): string {
   return path
     .map((part) => (typeof part === "number" ? `[${part}]` : `.${part}`))
@@ -17,7 +17,7 @@ export function pathText(path: Path): string {
     .replace(/^\./, "");
 }
 
-/** The value at a place; undefined where there is none. */
+/** The value at a path; undefined if there is none. */
 export function valueAt(tree: Json | undefined, path: Path): Json | undefined {
   let node = tree;
   for (const part of path) {
@@ -33,7 +33,7 @@ export const isObject = (value: Json | undefined): value is JsonObject =>
 
 export const isList = (value: Json | undefined): value is readonly Json[] => Array.isArray(value);
 
-/** One change of the form, as the server takes it. */
+/** One change of the form, in the format of the server. */
 export interface Change {
   readonly path: Path;
   readonly action: "set" | "remove" | "insert" | "move";

@@ -1,8 +1,8 @@
 /**
- * From the JSON schema of study files to the fields of a form.
+ * Convert the JSON schema of study files to the fields of a form.
  *
- * The form is made from the schema and not by hand: whatever the study language learns appears in
- * the editor without a change here.
+ * The form is generated from the schema: whatever the study language gains appears in the editor
+ * without a change here.
  */
 import type { Json } from "./paths";
 
@@ -117,7 +117,7 @@ function object(root: Raw, node: Raw): Spec {
   if (node.properties !== undefined) {
     const required = new Set(node.required ?? []);
     const fields = Object.entries(node.properties)
-      // What only older files have is kept in them and not offered.
+      // Deprecated fields are kept in older files but not offered.
       .filter(([, inner]) => inner.deprecated !== true)
       .map(([name, inner]) => ({
         name,
@@ -139,7 +139,7 @@ function union(root: Raw, { propertyName, mapping }: NonNullable<Raw["discrimina
   return { kind: "union", tag: propertyName, options };
 }
 
-/** References followed, and the side of an optional that is not null. */
+/** Follow references, and take the side of an optional that is not null. */
 function resolved(root: Raw, node: Raw): Raw {
   if (node.$ref !== undefined) {
     const name = node.$ref.split("/").at(-1) ?? "";
@@ -149,7 +149,7 @@ function resolved(root: Raw, node: Raw): Raw {
   return option === undefined ? node : resolved(root, option);
 }
 
-/** A value to begin with; texts in every language of the study. */
+/** An initial value; texts get an entry for every language of the study. */
 export function blank(spec: Spec, languages: readonly string[], tag?: string): Json {
   switch (spec.kind) {
     case "texts":

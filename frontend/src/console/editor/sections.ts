@@ -17,7 +17,10 @@ export const SECTIONS = [
 ] as const;
 export type Section = (typeof SECTIONS)[number];
 
-/** Settings by the beginning of their path. What is claimed by nobody is shown under safety. */
+/**
+ * Which settings belong to a section, by the beginning of their path. All others are shown under
+ * safety.
+ */
 const CLAIMED: Readonly<Record<Section, readonly string[]>> = {
   basics: [
     "key",
@@ -40,7 +43,7 @@ const CLAIMED: Readonly<Record<Section, readonly string[]>> = {
   preregistration: ["preregistration"],
 };
 
-/** The top settings of a section, in the order of the file. */
+/** The top-level settings of a section, in the order of the file. */
 export function fieldsOf(section: Section, spec: ObjectSpec): ObjectSpec {
   const claimed = new Set(Object.values(CLAIMED).flat());
   const mine = new Set(CLAIMED[section]);
@@ -52,7 +55,7 @@ export function fieldsOf(section: Section, spec: ObjectSpec): ObjectSpec {
   };
 }
 
-/** The section in which a problem can be mended: the one that claims the most of its path. */
+/** The section in which a problem can be fixed: the one with the longest matching path. */
 export function sectionOf(problem: Pick<ConfigProblem, "path">): Section {
   let found: Section = "safety";
   let length = 0;

@@ -1,6 +1,7 @@
 /**
- * A study file that is being written. The text in the field is the truth: the form asks the server
- * for the text after a change, and puts the difference into the field, where it can be undone.
+ * The state of a study file that is being edited. The text in the field is authoritative: after a
+ * change in the form, the server returns the new text, and the difference is put into the field,
+ * where it can be undone.
  */
 import { redo, undo } from "@codemirror/commands";
 import { useDebouncedValue } from "@mantine/hooks";
@@ -18,10 +19,10 @@ export interface Draft {
   readonly text: string;
   readonly field: RefObject<YamlText | null>;
   readonly onText: (text: string, byForm: boolean) => void;
-  /** Of the newest text that was checked; undefined before the first answer. */
+  /** The check of the newest text that was checked; undefined before the first answer. */
   readonly check: CheckResult | undefined;
   readonly problems: CheckResult["problems"];
-  /** Whether the check speaks of the text as it is now. */
+  /** Whether the check is of the current text. */
   readonly upToDate: boolean;
   readonly error: unknown;
   readonly change: (changes: readonly Change[]) => void;
@@ -81,7 +82,10 @@ export function useDraft(initial: string): Draft {
   };
 }
 
-/** Somebody may go on typing while the server answers: then the change is asked for anew. */
+/**
+ * If somebody continues to type while the server answers, the change is requested again on the
+ * newer text.
+ */
 async function apply(field: RefObject<YamlText | null>, changes: readonly Change[]): Promise<void> {
   for (let attempt = 0; attempt < 5; attempt += 1) {
     const view = field.current?.view;

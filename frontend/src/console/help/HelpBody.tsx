@@ -1,11 +1,11 @@
-/** Draws the tree of a help page. */
+/** Render the tree of a help page. */
 import { createElement, type JSX, type ReactNode } from "react";
 import { Link } from "wouter";
 import { useTexts } from "../i18n";
 import classes from "./Help.module.css";
 import type { HelpNode } from "./nodes";
 
-/** So that the ids of headings are nobody else's. */
+/** Headings get a prefix so that their ids are unique on the page. */
 export const headingId = (id: string): string => `help-${id}`;
 
 export function HelpBody({ body }: { readonly body: readonly HelpNode[] }): JSX.Element {
@@ -14,7 +14,7 @@ export function HelpBody({ body }: { readonly body: readonly HelpNode[] }): JSX.
     nodes.map((node, at) => {
       if (typeof node === "string") return node;
       const [tag, attributes, ...inside] = node;
-      // A page never changes while it is shown, so places are names enough.
+      // A page never changes while it is shown, so positions can serve as keys.
       return element(String(at), tag, attributes, drawn(inside), t("helpPages.table"));
     });
   return <>{drawn(body)}</>;
@@ -44,14 +44,14 @@ function element(
   if (tag === "img") return <img key={key} src={src} alt={alt} loading="lazy" />;
   if (tag === "table")
     return (
-      // biome-ignore lint/a11y/noNoninteractiveTabindex: what scrolls must be reached with the keyboard
+      // biome-ignore lint/a11y/noNoninteractiveTabindex: scrollable content must be reachable with the keyboard
       <section key={key} className={classes.table} aria-label={table} tabIndex={0}>
         <table>{inside}</table>
       </section>
     );
   if (tag === "pre")
     return (
-      // biome-ignore lint/a11y/noNoninteractiveTabindex: what scrolls must be reached with the keyboard
+      // biome-ignore lint/a11y/noNoninteractiveTabindex: scrollable content must be reachable with the keyboard
       <pre key={key} tabIndex={0}>
         {inside}
       </pre>

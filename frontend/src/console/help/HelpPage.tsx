@@ -1,4 +1,4 @@
-/** The docs for people at the console: a list of pages, a search over their headings, one page. */
+/** The docs inside the console: a list of pages, a search over their headings, one page. */
 
 import { parts } from "virtual:help";
 import { Button, Text, TextInput } from "@mantine/core";
@@ -93,7 +93,7 @@ function Body({
   );
 }
 
-/** Search and list. Arrow keys move through what is listed, as in a menu. */
+/** The search and the list of pages. Arrow keys move through the list, as in a menu. */
 function Contents({ current }: { readonly current: Page | undefined }): JSX.Element {
   const { t } = useTexts();
   const [query, setQuery] = useState("");
@@ -168,7 +168,7 @@ function Contents({ current }: { readonly current: Page | undefined }): JSX.Elem
   );
 }
 
-/** The current page lists its sections below it. */
+/** A link to a page; below the current page its sections are listed. */
 function PageLink({
   page,
   current,

@@ -1,6 +1,6 @@
-/** Addresses of help pages, and which of them belongs to a page of the console. */
+/** Addresses of help pages, and which help page belongs to a page of the console. */
 
-/** The page that helps most where somebody is; the first that fits counts. */
+/** The most relevant help page for each page of the console; the first match counts. */
 export const HELPS: readonly (readonly [address: RegExp, key: string])[] = [
   [/^\/sessions\//, "operators-tour"],
   [/^\/studies\/[^/]+\/participants/, "participants-rights"],
@@ -20,6 +20,6 @@ const ELSE = "operators-tour";
 export const helpAddress = (key: string, heading?: string): string =>
   heading === undefined ? `/help/${key}` : `/help/${key}/${heading}`;
 
-/** Where help about the page at `address` is. */
+/** The address of the help about the page at `address`. */
 export const helpFor = (address: string): string =>
   helpAddress(HELPS.find(([pattern]) => pattern.test(address))?.[1] ?? ELSE);

@@ -5,7 +5,7 @@ import type { HelpPart } from "./nodes";
 import { search } from "./search";
 
 describe("the key ?", () => {
-  it("opens the page about where one is, else the tour", () => {
+  it("opens the help about the current page, or the tour", () => {
     expect(helpFor("/studies/a/participants")).toBe("/help/participants-rights");
     expect(helpFor("/")).toBe("/help/operators-tour");
   });
@@ -35,14 +35,14 @@ describe("the search", () => {
   const found = (query: string) =>
     search(parts, query).map(({ page: { key }, heading }) => `${key}#${heading?.id ?? ""}`);
 
-  it("takes a page's title for a word of its headings", () => {
+  it("matches headings by the title of their page, too", () => {
     expect(found("backup restor")).toEqual([
       "backups#restoring",
       "rights#restoring-an-older-backup",
     ]);
   });
 
-  it("puts first what begins with the query, and finds nothing for nothing", () => {
+  it("lists what starts with the query first, and finds nothing for an empty query", () => {
     expect(found("restoring")).toEqual(["backups#restoring", "rights#restoring-an-older-backup"]);
     expect(found("backup")[0]).toBe("backups#");
     expect(found("  ")).toEqual([]);
@@ -51,7 +51,7 @@ describe("the search", () => {
 });
 
 describe("the texts of the help", () => {
-  it("are in both languages", () => {
+  it("exist in both languages", () => {
     expect(Object.keys(helpPagesDe)).toEqual(Object.keys(helpPagesEn));
   });
 });

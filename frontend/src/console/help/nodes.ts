@@ -1,6 +1,9 @@
-/** What `frontend/helpPages.ts` makes of the docs, and the console's help draws. */
+/**
+ * The types shared by `frontend/helpPages.ts`, which converts the docs, and the help, which renders
+ * them.
+ */
 
-/** A piece of a page: text, or an element with its attributes and what is inside. */
+/** A node of a page: text, or an element with its attributes and children. */
 export type HelpNode =
   | string
   | readonly [tag: string, attributes: Readonly<Record<string, string>>, ...inside: HelpNode[]];
@@ -8,16 +11,16 @@ export type HelpNode =
 export interface HelpHeading {
   /** As in links to the same file on GitHub. */
   readonly id: string;
-  /** 2 for a section of the page, and so on. */
+  /** 2 for a section of the page, 3 for a subsection, and so on. */
   readonly level: number;
   readonly title: string;
 }
 
 export interface HelpPage {
-  /** In addresses: the name of its file. */
+  /** The key in addresses: the name of its file. */
   readonly key: string;
   readonly title: string;
-  /** The sentence that `docs/README.md` has about it. */
+  /** The sentence about it in `docs/README.md`. */
   readonly about: string;
   readonly headings: readonly HelpHeading[];
   readonly load: () => Promise<{ readonly body: readonly HelpNode[] }>;

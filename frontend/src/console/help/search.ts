@@ -1,19 +1,21 @@
-/** Finds headings of the help by their words. */
+/** Search the headings of the help by their words. */
 import type { HelpHeading, HelpPage, HelpPart } from "./nodes";
 
 export interface Found {
   readonly page: HelpPage;
-  /** Undefined where the page itself is found. */
+  /** Undefined if the match is the page itself. */
   readonly heading: HelpHeading | undefined;
 }
 
 const MOST = 40;
 
 /**
- * Pages and headings that have every word of `query`, in any order and as parts of words.
+ * Find the pages and headings that contain every word of `query`, in any order and as parts of
+ * words.
  *
- * A heading's words count together with its page's title, so "backup restore" finds "Restoring" on
- * the page "Backups". Pages come before headings, and those that begin with the query first.
+ * A heading is searched together with its page's title, so "backup restore" finds "Restoring" on
+ * the
+ * page "Backups". Pages come before headings, and those that start with the query come first.
  */
 export function search(parts: readonly HelpPart[], query: string): readonly Found[] {
   const words = query.toLowerCase().split(/\s+/).filter(Boolean);

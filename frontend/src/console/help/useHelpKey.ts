@@ -1,10 +1,10 @@
-/** The key `?`: help about the page that is shown. */
+/** The key `?`: help about the current page. */
 import { useEffect } from "react";
 import { useHashLocation } from "wouter/use-hash-location";
 import { isBusy } from "../cockpit/session/keys";
 import { helpFor } from "./address";
 
-/** In the cockpit and in a replay `?` lists the keys first; that list leads here. */
+/** In the cockpit and in a replay `?` opens the list of keys instead, which links to the help. */
 const LISTS_KEYS = /^\/sessions\/[^/]+(\/replay.*)?$/;
 
 export function useHelpKey(): void {

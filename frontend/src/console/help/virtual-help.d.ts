@@ -1,4 +1,4 @@
-/** The module that `frontend/helpPages.ts` makes while the pages are built. */
+/** The modules that `frontend/helpPages.ts` generates while the pages are built. */
 declare module "virtual:help" {
   export const parts: readonly import("./nodes").HelpPart[];
 }

@@ -1,4 +1,7 @@
-/** The signal strip and the list of alarms; the words of each alarm come from the server's registry. */
+/**
+ * Texts of the signal strip and the list of alarms; the texts of each alarm come from the server's
+ * registry.
+ */
 export const alarmsEn = {
   "signal.label": "Signal and alarms",
   "signal.rate": "Frame rate",

@@ -1,4 +1,4 @@
-/** What came out of a study: filters and files of its figures, and its tests. */
+/** Texts of a study's results: filters and files of its figures, and its tests. */
 export const analysisEn = {
   "figures.filter": "Choose what is drawn",
   "figures.participants": "Participants",

@@ -1,4 +1,4 @@
-/** The audit trail in plain words: one sentence for every act the server records. */
+/** Texts of the audit trail: one sentence for every action that the server records. */
 export const auditEn = {
   "audit.lead":
     "Who did what around the sessions, newest first. Nothing here can be changed or removed unnoticed: every entry carries a hash of the one before.",

@@ -17,7 +17,7 @@ const TABLES: readonly [
 const placeholders = (text = "") => [...text.matchAll(/{{(\w+)}}/g)].map(([, name]) => name).sort();
 
 describe.each(TABLES)("the texts of %s", (_, en, de) => {
-  it("fill in the same values in both languages, and none is empty", () => {
+  it("have the same placeholders in both languages, and none is empty", () => {
     expect(Object.keys(de).sort()).toEqual(Object.keys(en).sort());
     for (const key of Object.keys(en)) {
       expect([key, placeholders(de[key])]).toEqual([key, placeholders(en[key])]);

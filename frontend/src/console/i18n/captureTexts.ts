@@ -1,4 +1,4 @@
-/** Captures of movement: uploading them, and the list. */
+/** Texts of captures: uploading them, and the list. */
 export const capturesEn = {
   "captures.title": "Captures",
   "captures.lead": "Recorded movement, retargeted to avatars of any size.",

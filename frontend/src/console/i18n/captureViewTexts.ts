@@ -1,4 +1,4 @@
-/** One capture: its movement in space, and by which conventions its file was read. */
+/** Texts of one capture: its movement in 3-D, and the conventions by which its file was read. */
 export const captureViewEn = {
   "capture.tab.movement": "Movement",
   "capture.tab.joints": "Joint map",

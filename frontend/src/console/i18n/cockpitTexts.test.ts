@@ -7,7 +7,7 @@ const placeholders = (text: string | undefined) =>
   [...(text ?? "").matchAll(/{{(\w+)}}/g)].map(([, name]) => name).sort();
 
 describe("the texts of pre-flight, registries and live view", () => {
-  it("fill in the same values in both languages", () => {
+  it("have the same placeholders in both languages", () => {
     const en: Readonly<Record<string, string>> = { ...registryEn, ...preflightEn, ...liveEn };
     const de: Readonly<Record<string, string>> = { ...registryDe, ...preflightDe, ...liveDe };
     for (const key of Object.keys(en)) {

@@ -1,4 +1,4 @@
-/** What an experimenter can do in a session, why it is done, and with which keys. */
+/** Texts of an experimenter's commands in a session, with their reasons and keys. */
 export const commandsEn = {
   "stale.title": "Another operator acted first",
   "stale.remedy":

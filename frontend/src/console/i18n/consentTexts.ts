@@ -1,4 +1,4 @@
-/** The record of a consent, and a consent on paper. */
+/** Texts of the record of a consent, and of a consent on paper. */
 export const consentEn = {
   "consent.link": "Consent",
   "consent.page": "Consent record",

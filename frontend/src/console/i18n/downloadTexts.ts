@@ -1,4 +1,4 @@
-/** Files that are made on the server and fetched from it. */
+/** Texts of files that are made on the server and downloaded. */
 export const downloadsEn = {
   "downloads.title": "Downloads",
   "downloads.open": "Downloads",

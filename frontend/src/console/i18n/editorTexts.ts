@@ -1,4 +1,4 @@
-/** Writing a study: where it begins, the editor, the dry run. */
+/** Texts of the study editor: its starting points, the editor, the dry run. */
 export const editorEn = {
   "new.title": "New study",
   "new.lead":

@@ -1,4 +1,4 @@
-/** The equipment's own delay from movement to picture. */
+/** Texts of the equipment's own delay from movement to picture. */
 export const equipmentEn = {
   "equipment.title": "Equipment",
   "equipment.lead":

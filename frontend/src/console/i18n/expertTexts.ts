@@ -1,4 +1,4 @@
-/** Expert sessions and what experts advise. */
+/** Texts of expert sessions and the experts' suggestions. */
 export const expertEn = {
   "kind.expert": "Expert",
   "kind.expert.hint": "Reviews the study and gives advice. Never in figures or exports.",

@@ -1,6 +1,6 @@
-/** What a study's settings and their values are called, and the editor's sections. */
+/** Texts for the names of a study's settings and their values, and the editor's sections. */
 
-/** What the values of a study's settings are called. */
+/** The names of the values of a study's settings. */
 const valuesEn = {
   "value.typed": "typed",
   "value.drawn": "drawn",

@@ -1,4 +1,4 @@
-/** Answers that were collected elsewhere. */
+/** Texts of importing answers that were collected elsewhere. */
 export const importsEn = {
   "imports.title": "Answers collected elsewhere",
   "imports.lead":

@@ -117,7 +117,7 @@ const allDe = {
 export type Key = KeyOf<typeof allEn>;
 
 const REMEMBERED = "reembody.console.language";
-// Tests of what stands beside words run where there is no storage.
+// Tests of modules that import these texts run where there is no storage.
 const wanted = [globalThis.localStorage?.getItem(REMEMBERED) ?? [], navigator.languages].flat();
 
 export const translations = createTranslations({ en: allEn, de: allDe }, preferredLanguage(wanted));

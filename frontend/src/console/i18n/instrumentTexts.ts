@@ -1,4 +1,6 @@
-/** The library of instruments: the list, an instrument in full, trying it out, writing one. */
+/**
+ * Texts of the library of instruments: the list, an instrument in full, trying it out, writing one.
+ */
 export const instrumentsEn = {
   "instruments.title": "Instruments",
   "instruments.lead":

@@ -1,4 +1,4 @@
-/** Coming in: by an invitation, again after a sign-in has ended, and with a new password. */
+/** Texts of signing in: by an invitation, after a sign-in has expired, and with a new password. */
 export const joinEn = {
   "login.ended.title": "Your sign-in has ended",
   "login.ended.body":

@@ -1,4 +1,7 @@
-/** Which joint of a skeleton plays which part of the body, and the 22 parts by name. */
+/**
+ * Texts of joint maps: which joint of a skeleton is which part of the body, and the 22 parts by
+ * name.
+ */
 export const jointMapEn = {
   "map.lead":
     "Which joint of this skeleton stands for which part of the body. Applies to every capture of the same skeleton.",

@@ -29,7 +29,7 @@ describe("the texts of studies, editor and library", () => {
     expect(Object.keys(en).filter((key) => !en[key]?.trim() || !de[key]?.trim())).toEqual([]);
   });
 
-  it("fill in the same values in both languages", () => {
+  it("have the same placeholders in both languages", () => {
     for (const key of Object.keys(en))
       expect([key, placeholders(de[key])]).toEqual([key, placeholders(en[key])]);
   });

@@ -1,4 +1,4 @@
-/** The movement of a running session, live. */
+/** Texts of the live movement of a running session. */
 export const liveEn = {
   "live3d.title": "Live view",
   "live3d.show": "Show the live view",

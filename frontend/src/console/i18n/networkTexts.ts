@@ -1,4 +1,4 @@
-/** How devices reach the server: the page Network, and what pairing says about it. */
+/** Texts of the page Network and of the pairing dialog: how devices reach the server. */
 export const networkEn = {
   "network.title": "Network",
   "network.lead": "How tablets and headsets reach this server.",

@@ -18,7 +18,7 @@ const TABLES: Readonly<Record<string, readonly [Table, Table]>> = {
 const gaps = (text: string) => [...text.matchAll(/{{(\w+)}}/g)].map(([, name]) => name).sort();
 
 describe.each(Object.entries(TABLES))("the texts of %s", (_, [en, de]) => {
-  it("are there in both languages and fill in the same values", () => {
+  it("exist in both languages and have the same placeholders", () => {
     expect(Object.keys(de).sort()).toEqual(Object.keys(en).sort());
     for (const [key, text] of Object.entries(en)) {
       expect([key, text.trim() !== ""]).toEqual([key, true]);

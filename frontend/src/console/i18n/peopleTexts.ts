@@ -1,4 +1,4 @@
-/** The lab's people: roles, the page People, invitations. */
+/** Texts of the page People: roles, accounts, invitations. */
 export const peopleEn = {
   "role.admin": "Admin",
   "role.experimenter": "Experimenter",

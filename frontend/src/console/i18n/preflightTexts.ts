@@ -1,4 +1,4 @@
-/** The pre-flight list around its checks, whose own words come from the server's registry. */
+/** Texts of the pre-flight list; the texts of each check come from the server's registry. */
 export const preflightEn = {
   "preflight.title": "Pre-flight",
   "preflight.clear": "Everything that can be told is in order.",

@@ -1,4 +1,4 @@
-/** What a study declares beforehand. */
+/** Texts of preregistrations. */
 export const preregistrationEn = {
   "study.tab.preregistration": "Preregistration",
   "section.preregistration": "Preregistration",

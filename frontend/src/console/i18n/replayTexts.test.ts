@@ -6,7 +6,7 @@ const placeholders = (text: string) =>
 const keys = Object.keys(replayEn) as (keyof typeof replayEn)[];
 
 describe("the texts of replays", () => {
-  it("fill in the same values in both languages, and none is empty", () => {
+  it("have the same placeholders in both languages, and none is empty", () => {
     expect(Object.keys(replayDe).sort()).toEqual([...keys].sort());
     for (const key of keys) {
       expect([key, placeholders(replayDe[key])]).toEqual([key, placeholders(replayEn[key])]);

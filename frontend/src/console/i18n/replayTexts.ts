@@ -1,4 +1,4 @@
-/** Replaying a phase. */
+/** Texts of the replay of a phase. */
 export const replayEn = {
   "replay.title": "Replay",
   "replay.open": "Replay",

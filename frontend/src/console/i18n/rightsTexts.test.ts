@@ -6,7 +6,7 @@ const placeholders = (text: string) =>
 const keys = Object.keys(rightsEn) as (keyof typeof rightsEn)[];
 
 describe("the texts of participants' rights", () => {
-  it("fill in the same values in both languages, and none is empty", () => {
+  it("have the same placeholders in both languages, and none is empty", () => {
     expect(Object.keys(rightsDe).sort()).toEqual([...keys].sort());
     for (const key of keys) {
       expect([key, placeholders(rightsDe[key])]).toEqual([key, placeholders(rightsEn[key])]);

@@ -1,4 +1,4 @@
-/** What participants may ask for: a copy of their data, a correction, and that their data go. */
+/** Texts of participants' rights: a copy of their data, a correction, and erasure. */
 export const rightsEn = {
   "study.tab.participants": "Participants",
   "rights.search": "Search for a code",

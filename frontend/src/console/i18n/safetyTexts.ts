@@ -1,4 +1,4 @@
-/** Practice, stop rules, heights that differ. */
+/** Texts of practice, stop rules, and heights that differ. */
 export const safetyEn = {
   "practice.until_one": "Ends after {{count}} completed task",
   "practice.until_other": "Ends after {{count}} completed tasks",

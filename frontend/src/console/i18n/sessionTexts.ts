@@ -1,4 +1,4 @@
-/** How a session stands: its steps and clock, what comes next, what changed. */
+/** Texts of a session's state: its steps and clock, what comes next, what changed. */
 export const sessionEn = {
   "change.status.planned": "The session is back to planned.",
   "change.status.active": "The session was started.",

@@ -1,4 +1,4 @@
-/** The side panel of a session: devices, notes, scores, and measurements. */
+/** Texts of the side panel of a session: devices, notes, scores, and measurements. */
 export const sideEn = {
   "side.label": "Devices, notes and scores",
   "devices.title": "Devices",

@@ -1,4 +1,4 @@
-/** What takes how much room. */
+/** Texts of the page Storage: what takes how much space. */
 export const storageEn = {
   "storage.title": "Storage",
   "storage.lead": "How much space everything takes on the server, and how many more sessions fit.",

@@ -1,6 +1,6 @@
-/** A study, read: its design and procedure, ledger, dashboard and export. */
+/** Texts of a study's pages: its design and procedure, ledger, dashboard and export. */
 
-/** What an export of a study holds, file by file. */
+/** The contents of a study's export, file by file. */
 const exportsEn = {
   "export.files": "What is in the archive",
   "export.download": "Download",

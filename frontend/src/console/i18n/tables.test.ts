@@ -12,7 +12,7 @@ describe("the texts", () => {
     expect(keys.filter((key) => en[key].trim() === "" || de[key].trim() === "")).toEqual([]);
   });
 
-  it("fill in the same values in both languages", () => {
+  it("have the same placeholders in both languages", () => {
     for (const key of keys)
       expect([key, placeholders(de[key])]).toEqual([key, placeholders(en[key])]);
   });

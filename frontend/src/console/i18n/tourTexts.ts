@@ -1,4 +1,4 @@
-/** The scripted participant, and the tour of a session's page. */
+/** Texts of the scripted participant, and of the tour of a session's page. */
 export const tourEn = {
   "help.title": "Help",
   "help.try": "Try it with a scripted participant",

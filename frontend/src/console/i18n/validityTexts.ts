@@ -1,4 +1,4 @@
-/** When a completed session counts: the rules in the editor, and why one does not. */
+/** Texts of validity: the rules in the editor, and why a completed session does not count. */
 export const validityEn = {
   "section.validity": "What counts",
   "section.validity.lead":

@@ -1,4 +1,4 @@
-/** Whether a walk keeps its character on avatars of several statures. */
+/** Texts of the verification: whether a walk keeps its character on avatars of several statures. */
 export const verificationEn = {
   "verify.lead":
     "The movement on several avatars, as Degen et al. (2022) verify it: lifts of the feet as often and when the source's are, steps as much longer as the legs.",

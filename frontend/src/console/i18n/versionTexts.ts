@@ -1,4 +1,4 @@
-/** Versions of a study, and what differs between them. */
+/** Texts of a study's versions and their differences. */
 export const versionsEn = {
   "changes.broken": "Changes are shown once there are no problems",
   "diff.same": "The content is the same",

@@ -1,4 +1,4 @@
-/** How people walk: importing walks, and fitting a model. */
+/** Texts of walking: importing walks, and fitting a model. */
 export const walkSetEn = {
   "walking.delete": "Delete",
   "walking.delete.of": "Delete {{title}}",

@@ -1,4 +1,4 @@
-/** How people walk: the models, what is in them, and the scenes. */
+/** Texts of walking: the models, their contents, and the scenes. */
 export const walkingModelEn = {
   "walking.none": "No models yet",
   "walking.none.body":

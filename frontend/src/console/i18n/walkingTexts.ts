@@ -1,4 +1,4 @@
-/** How people walk: asking a model. */
+/** Texts of walking: querying a model. */
 export const walkingEn = {
   "walking.title": "Walking",
   "walking.lead": "How long people take to walk a path: a distribution, not one number.",

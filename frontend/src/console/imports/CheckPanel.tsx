@@ -1,4 +1,4 @@
-/** What an import would do: counts, every cell that does not fit, and the first forms. */
+/** The preview of an import: counts, every invalid cell, and the first forms. */
 import { Button, Title } from "@mantine/core";
 import type { CellProblem, ImportCheck, ImportMapping } from "@shared/api/imports";
 import { number } from "@shared/format";
@@ -74,7 +74,7 @@ function Problems({ problems, count }: ProblemsProps): JSX.Element {
       <section
         className={classes.problems}
         aria-label={t("imports.problems", { count })}
-        // biome-ignore lint/a11y/noNoninteractiveTabindex: what scrolls must be reached with the keyboard
+        // biome-ignore lint/a11y/noNoninteractiveTabindex: scrollable content must be reachable with the keyboard
         tabIndex={0}
       >
         <table className={`${classes.table} numbers`}>
@@ -110,7 +110,7 @@ function FirstForms({ check }: { readonly check: ImportCheck }): JSX.Element | n
   if (first === undefined) return null;
   const scores = Object.keys(first.scores);
   return (
-    // biome-ignore lint/a11y/noNoninteractiveTabindex: what scrolls must be reached with the keyboard
+    // biome-ignore lint/a11y/noNoninteractiveTabindex: scrollable content must be reachable with the keyboard
     <section className={classes.scroll} aria-label={t("imports.firstForms")} tabIndex={0}>
       <table className={`${classes.grid} numbers`}>
         <caption>{t("imports.firstForms")}</caption>
@@ -143,7 +143,7 @@ function FirstForms({ check }: { readonly check: ImportCheck }): JSX.Element | n
   );
 }
 
-/** `5 × x − 5`. */
+/** A linear recoding as a formula: `5 × x − 5`. */
 const formula = (multiply: number, add: number): string =>
   `${multiply} × x ${add < 0 ? "−" : "+"} ${Math.abs(add)}`;
 

@@ -1,4 +1,7 @@
-/** Which instrument a file answers, and the columns that say who, under what, and when. */
+/**
+ * Which instrument a file answers, and which columns contain the participant, the condition and the
+ * time.
+ */
 import { NumberInput, Select } from "@mantine/core";
 import type { ImportLook, ImportMapping } from "@shared/api/imports";
 import { useQuery } from "@tanstack/react-query";

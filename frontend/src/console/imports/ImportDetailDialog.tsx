@@ -1,4 +1,4 @@
-/** One import: where it is from, what its scores came to, its file, and the way back. */
+/** One import: its source, the results of its scores, its file, and how to undo it. */
 import { Button, Group, Modal, Stack, TextInput, Title } from "@mantine/core";
 import { type AnswerImport, type ImportDetail, imports } from "@shared/api/imports";
 import { dateTime } from "@shared/format";
@@ -17,7 +17,7 @@ import classes from "./Imports.module.css";
 
 interface DialogProps {
   readonly studyKey: string;
-  /** Which import; null while closed. */
+  /** The import to show; null while closed. */
   readonly id: string | null;
   readonly onClose: () => void;
 }

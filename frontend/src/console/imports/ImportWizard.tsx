@@ -1,4 +1,4 @@
-/** From a file to stored answers: choose it, say what its columns mean, see what would happen. */
+/** The steps from a file to stored answers: choose it, map its columns, check the preview. */
 import { Button, FileButton, Modal } from "@mantine/core";
 import { type AnswerImport, type ImportLook, imports } from "@shared/api/imports";
 import type { StudyDetail } from "@shared/api/types";
@@ -16,7 +16,7 @@ interface WizardProps {
   readonly study: StudyDetail;
   readonly opened: boolean;
   readonly onClose: () => void;
-  /** Show an import that is there. */
+  /** Show an existing import. */
   readonly onOpen: (id: string) => void;
 }
 
@@ -87,7 +87,7 @@ function Looked({ study, file, look, onAgain, onOpen }: LookedProps): JSX.Elemen
     <>
       {look.same_file !== null && <Same found={look.same_file} onOpen={onOpen} />}
       <MappingStep
-        // Another file, instrument or head begins anew.
+        // Start over with another file, instrument or number of header rows.
         key={`${file.name} ${look.instrument} ${look.header_rows} ${file.text.length}`}
         study={study}
         file={file}

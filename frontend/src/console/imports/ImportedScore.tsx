@@ -1,4 +1,4 @@
-/** What one score came to in each condition of an import, and how the conditions compare. */
+/** The results of one score in each condition of an import, and how the conditions compare. */
 import { Title } from "@mantine/core";
 import type { ScoreResult } from "@shared/api/imports";
 import { decimals, number } from "@shared/format";
@@ -78,5 +78,5 @@ export function ImportedScore({ result }: { readonly result: ScoreResult }): JSX
   );
 }
 
-/** As papers print it: no zero before the point. */
+/** A p-value as papers print it: without a zero before the decimal point. */
 const pWords = (p: number): string => (p < 0.001 ? "< .001" : p.toFixed(3).replace(/^0/, ""));

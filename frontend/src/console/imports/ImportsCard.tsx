@@ -1,4 +1,4 @@
-/** Answers that were collected elsewhere: what was taken in, and the way to take in more. */
+/** Answers that were collected elsewhere: the imports so far, and a button for a new one. */
 import { Badge, Button, Paper, Title } from "@mantine/core";
 import type { AnswerImport } from "@shared/api/imports";
 import type { StudyDetail } from "@shared/api/types";

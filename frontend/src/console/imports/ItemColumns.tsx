@@ -1,4 +1,4 @@
-/** Which column holds which item; in a wide file a set of columns for each condition. */
+/** Which column contains which item; a wide file has one set of columns per condition. */
 import { Button, Checkbox, Select, TextInput, Title } from "@mantine/core";
 import type { ImportLook, ImportMapping } from "@shared/api/imports";
 import { inLanguage } from "@shared/text";
@@ -13,7 +13,7 @@ interface ItemsProps {
     readonly key: string;
     readonly text: Readonly<Record<string, string>>;
   }[];
-  /** Items that the formulas turn round. */
+  /** Items that the formulas reverse. */
   readonly reversed: readonly string[];
   readonly mapping: ImportMapping;
   readonly onChange: (part: Partial<ImportMapping>) => void;
@@ -54,7 +54,7 @@ export function ItemColumns({ look, items, reversed, mapping, onChange }: ItemsP
             <tr>
               <th scope="col">{t("imports.item")}</th>
               {sets.map((one, at) => (
-                // biome-ignore lint/suspicious/noArrayIndexKey: sets are told apart by their place
+                // biome-ignore lint/suspicious/noArrayIndexKey: sets are identified by their position
                 <th key={at} scope="col">
                   {sets.length > 1 ? (
                     <div className={classes.set}>
@@ -91,7 +91,7 @@ export function ItemColumns({ look, items, reversed, mapping, onChange }: ItemsP
                   <span className={classes.soft}>{inLanguage(text, language)}</span>
                 </th>
                 {sets.map((one, at) => (
-                  // biome-ignore lint/suspicious/noArrayIndexKey: sets are told apart by their place
+                  // biome-ignore lint/suspicious/noArrayIndexKey: sets are identified by their position
                   <td key={at}>
                     <Select
                       size="xs"

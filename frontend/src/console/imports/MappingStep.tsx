@@ -1,4 +1,4 @@
-/** What the columns mean, with what would come of it beside, computed anew at every change. */
+/** The mapping of the columns, next to a preview of the result that is updated at every change. */
 import { Button, Group } from "@mantine/core";
 import { type ImportLook, type ImportMapping, imports } from "@shared/api/imports";
 import type { StudyDetail } from "@shared/api/types";
@@ -133,7 +133,7 @@ function emptyMapping(look: ImportLook): ImportMapping {
   };
 }
 
-/** What the file calls its conditions, by the column that is chosen now. */
+/** The names of the conditions in the file, from the column that is selected now. */
 function conditionWords(
   look: ImportLook,
   mapping: ImportMapping,
@@ -165,7 +165,8 @@ function FilePreview({ look }: { readonly look: ImportLook }): JSX.Element {
       <summary className={classes.summary}>
         {t("imports.read", { rows: look.rows, columns: look.columns.length, separator })}
       </summary>
-      {/* biome-ignore lint/a11y/noNoninteractiveTabindex: what scrolls must be reached with the keyboard */}
+      {/* biome-ignore lint/a11y/noNoninteractiveTabindex: scrollable content must be reachable with
+         the keyboard */}
       <section className={classes.scroll} aria-label={t("imports.firstRows")} tabIndex={0}>
         <table className={`${classes.grid} numbers`}>
           <thead>
@@ -179,7 +180,7 @@ function FilePreview({ look }: { readonly look: ImportLook }): JSX.Element {
           </thead>
           <tbody>
             {look.first_rows.map((row, line) => (
-              // biome-ignore lint/suspicious/noArrayIndexKey: rows of a file have no other name
+              // biome-ignore lint/suspicious/noArrayIndexKey: rows of a file have no other identifier
               <tr key={line}>
                 {row.map((cell, at) => (
                   <td key={look.columns[at]?.name}>{cell}</td>

@@ -1,4 +1,4 @@
-/** What the words of a file mean: answers in words, numbers that count otherwise, conditions. */
+/** The mapping of a file's words: answers in words, numbers on another scale, conditions. */
 import { NumberInput, Select, Title } from "@mantine/core";
 import type { ImportMapping } from "@shared/api/imports";
 import type { StudyDetail } from "@shared/api/types";

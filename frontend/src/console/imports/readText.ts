@@ -1,10 +1,13 @@
-/** The file that answers are imported from, as text. */
+/** Read the file from which answers are imported as text. */
 export interface OpenedFile {
   readonly name: string;
   readonly text: string;
 }
 
-/** The text of a file whose encoding nobody knows: UTF-8, else what its marks or Windows say. */
+/**
+ * The text of a file of unknown encoding: UTF-8 if valid, otherwise by its byte order mark,
+ * otherwise Windows-1252.
+ */
 export function decoded(bytes: ArrayBuffer): string {
   const [first, second] = new Uint8Array(bytes.slice(0, 2));
   if (first === 0xff && second === 0xfe) return new TextDecoder("utf-16le").decode(bytes);
@@ -16,7 +19,7 @@ export function decoded(bytes: ArrayBuffer): string {
   }
 }
 
-/** Whether this is a table's text at all: a picture, a PDF or a workbook is not. */
+/** Whether this can be the text of a table: a picture, a PDF or a workbook is not. */
 export function isText(text: string): boolean {
   if (text.startsWith("%PDF-") || text.startsWith("PK\u0003\u0004")) return false;
   for (const character of text) {

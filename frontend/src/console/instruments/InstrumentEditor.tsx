@@ -1,4 +1,4 @@
-/** Writing an instrument: its file at the left, the form it makes at the right. */
+/** The instrument editor: its file on the left, the resulting form on the right. */
 import { Button } from "@mantine/core";
 import { useDebouncedValue } from "@mantine/hooks";
 import { notifications } from "@mantine/notifications";
@@ -69,7 +69,7 @@ function InstrumentEditor({ id, title, stored, begin }: InstrumentEditorProps): 
   const field = useRef<YamlText | null>(null);
   const query = useQuery({
     queryKey: ["check-instrument", settled],
-    // The text comes with its preview, so that scores are never asked of another file.
+    // The text is returned with its preview, so that scores are never requested for another file.
     queryFn: async () => ({ ...(await instruments.check(settled)), text: settled }),
     placeholderData: keepPreviousData,
     staleTime: Number.POSITIVE_INFINITY,
@@ -158,7 +158,7 @@ function InstrumentEditor({ id, title, stored, begin }: InstrumentEditorProps): 
   );
 }
 
-/** What a new instrument begins with: small, complete, and ours. */
+/** The example with which a new instrument starts: small, complete, and free of others' rights. */
 const EXAMPLE = `# An instrument: items, what can be answered, and how answers become scores.
 key: my_instrument
 version: 1

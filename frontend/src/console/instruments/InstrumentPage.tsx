@@ -164,7 +164,7 @@ function Files({ instrument }: { readonly instrument: InstrumentDetail }): JSX.E
 function Yaml({ text }: { readonly text: string }): JSX.Element {
   const { t } = useTexts();
   return (
-    // biome-ignore lint/a11y/noNoninteractiveTabindex: a region that scrolls has to take the focus
+    // biome-ignore lint/a11y/noNoninteractiveTabindex: a scrollable region has to be focusable
     // biome-ignore lint/a11y/useSemanticElements: a section may not be preformatted
     <pre className={classes.yaml} tabIndex={0} role="region" aria-label={t("instrument.tab.file")}>
       {text}

@@ -1,4 +1,4 @@
-/** The library: every instrument with its source, its licence and who asks it. */
+/** The library: every instrument with its source, its licence and the studies that use it. */
 import { Button, Title } from "@mantine/core";
 import type { InstrumentSummary } from "@shared/api/drafts";
 import { number } from "@shared/format";

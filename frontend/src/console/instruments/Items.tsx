@@ -1,4 +1,4 @@
-/** Every item in all languages side by side, with what can be answered. */
+/** Every item in all languages side by side, with its possible answers. */
 import type { InstrumentPreview, Item, Scale } from "@shared/api/types";
 import { LANGUAGE_NAMES } from "@shared/i18n/i18n";
 import { inLanguage } from "@shared/text";

@@ -1,4 +1,7 @@
-/** An instrument to fill in: the tablet's own form, and the scores with every step beside it. */
+/**
+ * An instrument to fill in: the tablet's own form, next to the scores with every step of their
+ * computation.
+ */
 import { Button, Center, Loader, SegmentedControl } from "@mantine/core";
 import { useDebouncedValue } from "@mantine/hooks";
 import { instruments, type TryResult } from "@shared/api/drafts";
@@ -20,7 +23,7 @@ const FormView = lazy(async () => ({ default: (await import("@shared/forms/FormV
 
 interface TryItProps {
   readonly preview: InstrumentPreview;
-  /** The file that is tried: stored or not. */
+  /** The file to try, stored or not. */
   readonly yaml: string;
 }
 
@@ -74,7 +77,7 @@ function Paper({ preview, yaml, language, draft, onDraft }: PaperProps): JSX.Ele
   const texts = formTexts(t);
   const [done, setDone] = useState(false);
   const [startedAt] = useState(() => new Date());
-  // A form that is drawn anew keeps its answers: an edit of the file does not empty the page.
+  // A form that is rendered again keeps its answers: an edit of the file does not empty the page.
   const administration: Administration = useMemo(
     () => ({
       key: `preview ${yaml.length} ${hash(yaml)}`,
@@ -112,7 +115,7 @@ function Paper({ preview, yaml, language, draft, onDraft }: PaperProps): JSX.Ele
   );
 }
 
-/** A short name of a text; collisions would only leave an old drawing on the page. */
+/** A short hash of a text; a collision would only leave an outdated form on the page. */
 function hash(text: string): number {
   let value = 0;
   for (let at = 0; at < text.length; at += 1) value = (value * 31 + text.charCodeAt(at)) | 0;

@@ -1,4 +1,4 @@
-/** The frame of the pages before anybody is signed in. */
+/** The frame of the pages for people who are not signed in. */
 import { Title } from "@mantine/core";
 import { Mark } from "@shared/ui/Mark";
 import type { JSX, ReactNode } from "react";

@@ -1,4 +1,4 @@
-/** Bring a study (or its next version) into the server from a YAML file, with every problem shown. */
+/** Import a study (or its next version) from a YAML file, and show every problem. */
 import { Button, FileButton, Group, Modal, Stack, Text, Textarea } from "@mantine/core";
 import { studies } from "@shared/api/endpoints";
 import { ApiError, type Problem } from "@shared/api/request";
@@ -136,7 +136,7 @@ function problemsOf(
   return error instanceof ApiError ? error.details : [];
 }
 
-/** Put the cursor at the start of a line, so that the eye finds it. */
+/** Move the cursor to the start of a line, so that it is easy to find. */
 function moveTo(editor: HTMLTextAreaElement | null, line: number): void {
   if (editor === null) return;
   const [start, end] = offsetOfLine(editor.value, line);

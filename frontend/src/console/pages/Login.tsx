@@ -8,7 +8,7 @@ import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { Front } from "./Front";
 
-/** `ended`: who was here when the sign-in ended by itself. */
+/** The sign-in page; `ended` is the account whose sign-in has expired. */
 export function Login({ ended = null }: { readonly ended?: Account | null }): JSX.Element {
   const { t } = useTexts();
   return (

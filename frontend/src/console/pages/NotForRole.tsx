@@ -1,4 +1,4 @@
-/** Pages that somebody came to by an address that is not for their role, or leads nowhere. */
+/** The page for addresses that lead nowhere or are not for the account's role. */
 import { Button } from "@mantine/core";
 import type { JSX, ReactNode } from "react";
 import { Link } from "wouter";
@@ -13,7 +13,7 @@ interface OnlyProps {
   readonly children: ReactNode;
 }
 
-/** Shows a page to those who may use it, and says so calmly to others. */
+/** Show a page to accounts with the permission, and a calm explanation to others. */
 export function Only({ act, children }: OnlyProps): JSX.Element {
   const may = useMay();
   if (may(act)) return <>{children}</>;

@@ -1,4 +1,4 @@
-/** What was declared, with the version and the hash that name it. */
+/** The preregistration, with the version and the hash that identify it. */
 import { Paper, Title } from "@mantine/core";
 import type { Declaration } from "@shared/api/analysis";
 import { dateTime } from "@shared/format";

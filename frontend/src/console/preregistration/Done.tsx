@@ -1,4 +1,4 @@
-/** What was done: who is in the test, who is not and by which rule, and the test as declared. */
+/** The analysis: who is included, who is excluded by which rule, and the test as declared. */
 import { Paper, Title } from "@mantine/core";
 import type { Preregistration, PrimaryResult } from "@shared/api/analysis";
 import { Notice } from "@shared/ui/Notice";

@@ -1,4 +1,4 @@
-/** What the study declared before it looked, what was done, and every way in which they differ. */
+/** The study's preregistration, its analysis, and every way in which they differ. */
 import { Button, Group, Paper, Title } from "@mantine/core";
 import { type Deviation, type Preregistration, preregistrations } from "@shared/api/analysis";
 import type { DataKind, StudyDetail } from "@shared/api/types";
@@ -132,7 +132,7 @@ function Told({ told }: { readonly told: Deviation }): JSX.Element {
   );
 }
 
-/** The read of a study's preregistration, with the key under which it is kept. */
+/** The query of a study's preregistration, with its cache key. */
 const preregistrationQuery = (key: string, kind: DataKind) =>
   queryOptions({
     queryKey: ["studies", key, "preregistration", kind],

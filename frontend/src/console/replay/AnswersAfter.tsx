@@ -1,4 +1,4 @@
-/** What the participant answered after the phase: the scores, then every answer in its words. */
+/** The participant's answers after the phase: the scores, then every answer in its words. */
 import type { Replay } from "@shared/api/replays";
 import type { Form } from "@shared/api/rights";
 import { number } from "@shared/format";

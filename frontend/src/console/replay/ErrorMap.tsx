@@ -1,4 +1,4 @@
-/** How far each joint is from what was asked for right now: a small body, and the largest by name. */
+/** The current error of each joint: a small body, and the largest errors by name. */
 import type { JointErrors } from "@shared/api/replays";
 import type { Seconds } from "@shared/units";
 import type { JSX } from "react";
@@ -11,7 +11,7 @@ interface ErrorMapProps {
   readonly time: Seconds;
 }
 
-/** What is drawn largest, degrees. */
+/** The error that is drawn largest, degrees. */
 const FULL_DEG = 60;
 const SHOWN = 5;
 
@@ -91,11 +91,11 @@ function Body({
 
 interface JointError {
   readonly joint: string;
-  /** Null where nothing can be said. */
+  /** Null if it is unknown. */
   readonly degrees: number | null;
 }
 
-/** How far each joint is from what it was asked for, at a moment. */
+/** The error of each joint, between target and actual rotation, at a moment. */
 export const NO_ERRORS: JointErrors = {
   joints: [],
   frames: 0,
@@ -111,7 +111,7 @@ export function errorsAt({ joints, frames, rateHz, values }: JointErrors, time: 
   });
 }
 
-/** What is smaller cannot be told from none. */
+/** Smaller errors cannot be distinguished from none. */
 const LEAST_DEG = 0.05;
 
 export const largest = (errors: readonly JointError[], count: number): readonly JointError[] =>
@@ -120,7 +120,7 @@ export const largest = (errors: readonly JointError[], count: number): readonly 
     .sort((one, other) => (other.degrees ?? 0) - (one.degrees ?? 0))
     .slice(0, count);
 
-/** Over all joints: the root of the mean square; null where none is known. */
+/** Root mean square over all joints; null if none is known. */
 export function overall(errors: readonly JointError[]): number | null {
   const known = errors.flatMap(({ degrees }) => degrees ?? []);
   if (known.length === 0) return null;

@@ -1,4 +1,4 @@
-/** Everything that happened, in order; it goes along with the time and leads to it. */
+/** All events in order; the list follows the time, and each entry leads to its moment. */
 import { number } from "@shared/format";
 import { BLOCK_COLOURS } from "@shared/stage/figure";
 import { type Seconds, seconds } from "@shared/units";
@@ -17,7 +17,7 @@ export function Happened({ all, time, onSeek }: HappenedProps): JSX.Element {
   const { t } = useTexts();
   const list = useRef<HTMLOListElement>(null);
   const at = latestAt(all, time);
-  // Only the list moves, never the page.
+  // Scroll only the list, never the page.
   useEffect(() => {
     const box = list.current;
     const row = box?.children[Math.max(at, 0)];

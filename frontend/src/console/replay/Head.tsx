@@ -1,4 +1,4 @@
-/** Whose phase it is, which one, and what stands beside it. */
+/** The replay's header: participant, phase, and the phase to compare it with. */
 import { Select } from "@mantine/core";
 import type { SessionView } from "@shared/api/types";
 import { Icon } from "@shared/ui/Icon";
@@ -12,7 +12,7 @@ import { KindBadge } from "../ui/badges";
 import type { Chosen, Wanted } from "./address";
 import classes from "./Replay.module.css";
 
-/** The way from the replay to its session. */
+/** The link from the replay to its session. */
 export function BackLink({ id }: { readonly id: string }): JSX.Element {
   const { t } = useTexts();
   return (
@@ -25,7 +25,7 @@ export function BackLink({ id }: { readonly id: string }): JSX.Element {
 
 interface HeadProps {
   readonly session: SessionView;
-  /** Whose phases can be put beside: this session, or the other one that was chosen. */
+  /** The session whose phases can be compared: this one, or another that was selected. */
   readonly beside: SessionView;
   readonly wanted: Chosen;
   readonly onWanted: (wanted: Wanted) => void;
@@ -98,7 +98,7 @@ interface PhaseSelectProps {
   readonly session: SessionView;
   readonly phase: number | null;
   readonly onPhase: (phase: number | null) => void;
-  /** What no phase is called; there has to be one where it is left out. */
+  /** The label for no phase; if it is missing, a phase has to be selected. */
   readonly none?: string;
   readonly without?: number | null;
 }

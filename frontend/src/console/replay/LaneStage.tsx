@@ -1,4 +1,4 @@
-/** One phase in space, with its boxes lighting up as they were touched. */
+/** One phase in 3-D; its boxes light up as they were touched. */
 import { Center, Loader } from "@mantine/core";
 import { type BlockTones, type CameraMode, LEFT_COLOUR, RIGHT_COLOUR } from "@shared/stage/figure";
 import legend from "@shared/stage/Legend.module.css";
@@ -16,7 +16,7 @@ import { type Lane, useBlocksOf, useFiguresOf } from "./useLane";
 
 interface LaneStageProps {
   readonly lane: Lane;
-  /** The one that stands beside it: both are shown at the same scale. */
+  /** The phase it is compared with: both are shown at the same scale. */
   readonly other: Lane | null;
   readonly time: Seconds;
   readonly mode: CameraMode;
@@ -101,7 +101,7 @@ function Legend({ ghost }: { readonly ghost: boolean }): JSX.Element {
   );
 }
 
-/** The same map while it says the same, so that nothing is drawn anew for nothing. */
+/** Return the same map while its content is the same, so that nothing is redrawn needlessly. */
 function useSteady(tones: BlockTones): BlockTones {
   const before = useRef(tones);
   const told = (map: BlockTones) =>

@@ -61,7 +61,7 @@ export function Player(props: PlayerProps): JSX.Element {
   );
 }
 
-/** Why a phase cannot be replayed, in the reader's language where it is foreseen. */
+/** Why a phase cannot be replayed, in the reader's language if the reason is known. */
 function Refused({ id, error }: { readonly id: string; readonly error: Error }): JSX.Element {
   const { t } = useTexts();
   const known = isApiError(error, "gone")
@@ -163,7 +163,7 @@ function Playing({ session, wanted, lanes, refused }: PlayingProps): JSX.Element
   );
 }
 
-/** The stages' cameras, one by one and moved together. */
+/** The stages' cameras, individually and moved together. */
 function useStages() {
   const first = useRef<StageHandle>(null);
   const second = useRef<StageHandle>(null);
@@ -188,7 +188,7 @@ interface OptionsProps {
   readonly camera: ReactNode;
 }
 
-/** What is shown on the stage, and from where. */
+/** The options of the stage: what is shown, and from where. */
 function Options(props: OptionsProps): JSX.Element {
   const { lanes, ghost, boxes, onGhost, onBoxes, camera } = props;
   const { t } = useTexts();

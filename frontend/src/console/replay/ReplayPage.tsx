@@ -1,4 +1,4 @@
-/** Any phase of a session in space, in step with everything that is known of it. */
+/** Any phase of a session in 3-D, in step with everything that was recorded of it. */
 import type { SessionView } from "@shared/api/types";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, useEffect, useState } from "react";
@@ -36,7 +36,7 @@ function Found({ session }: { readonly session: SessionView }): JSX.Element {
   }
   return (
     <Player
-      // Another phase begins at its own beginning, and a link at its moment.
+      // Another phase starts at its beginning, and a link at its moment.
       key={`${phase} ${arrival}`}
       session={session}
       wanted={{ ...wanted, phase }}
@@ -45,14 +45,14 @@ function Found({ session }: { readonly session: SessionView }): JSX.Element {
   );
 }
 
-/** What the address asks for; what is chosen on the page is written back into it. */
+/** The parameters in the address; changes on the page are written back to it. */
 function useWanted(session: string) {
   const [{ wanted, arrival }, setState] = useState(() => ({
     wanted: wantedFrom(window.location.hash, session),
     arrival: 0,
   }));
   useEffect(() => {
-    // A link to another moment that is followed in the same window.
+    // A link to another moment was followed in the same window.
     const onHash = () =>
       setState((before) => ({
         wanted: wantedFrom(window.location.hash, session),
@@ -63,7 +63,7 @@ function useWanted(session: string) {
   }, [session]);
   return {
     wanted,
-    /** How many links were followed to here. */
+    /** How many links to this page were followed. */
     arrival,
     setWanted: (next: Wanted) => {
       window.history.replaceState(null, "", addressOf(session, next));

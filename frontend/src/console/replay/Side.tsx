@@ -1,4 +1,4 @@
-/** What is told beside the stage: errors of the moment, what happened, and what was answered. */
+/** The panel next to the stage: errors of the moment, events, and answers. */
 import { SegmentedControl, Tabs } from "@mantine/core";
 import { number } from "@shared/format";
 import type { Playback } from "@shared/stage/usePlayback";
@@ -13,7 +13,7 @@ import type { Lane } from "./useLane";
 
 interface SideProps {
   readonly lanes: readonly Lane[];
-  /** Which of them is told. */
+  /** The index of the phase to show. */
   readonly at: number;
   readonly onAt: (at: number) => void;
   readonly playback: Playback;
@@ -50,7 +50,7 @@ export function Side({ lanes, at, onAt, playback }: SideProps): JSX.Element {
           title={t("replay.usualBody", { metres: number(replay.stature_m, language) })}
         />
       )}
-      {/* There from the beginning, so that nothing jumps when the movement has come. */}
+      {/* Rendered from the start, so that nothing jumps when the movement has loaded. */}
       {replay.view === "full" && replay.has_movement && (
         <ErrorMap errors={movement?.errors ?? NO_ERRORS} time={playback.time} />
       )}

@@ -1,4 +1,4 @@
-/** The scrubber, and under it what happened over the whole phase, on the same scale. */
+/** The scrubber, and below it the events of the whole phase, on the same scale. */
 import { BLOCK_COLOURS, type BlockTone } from "@shared/stage/figure";
 import { type Seconds, seconds } from "@shared/units";
 import { type CSSProperties, type JSX, memo, type PointerEvent } from "react";
@@ -45,7 +45,7 @@ export function Tracks({ lanes, duration, time, onSeek }: TracksProps): JSX.Elem
         value={time}
         onChange={(event) => onSeek(seconds(Number(event.currentTarget.value)))}
         onKeyDown={(event) => {
-          // Arrows mean the same here as on the whole page.
+          // Arrow keys do the same here as on the whole page.
           if (event.key.startsWith("Arrow")) event.preventDefault();
         }}
       />
@@ -80,7 +80,7 @@ interface LaneRowsProps {
   readonly named: boolean;
 }
 
-/** Drawn once: only the head above it moves. */
+/** Rendered once: only the playhead above it moves. */
 const LaneRows = memo(function LaneRows({ lane, duration, named }: LaneRowsProps): JSX.Element {
   const { t } = useTexts();
   const { replay, movement } = lane;
@@ -175,7 +175,7 @@ function Mark({ at, text }: { readonly at: number; readonly text: string }): JSX
   );
 }
 
-/** What the colours mean; only those that are there. */
+/** The legend of the colours that are present. */
 function TrackKey({ lanes }: Pick<TracksProps, "lanes">): JSX.Element {
   const { t } = useTexts();
   const contacts = lanes.flatMap(({ replay }) => replay.contacts);

@@ -1,4 +1,4 @@
-/** Play, jump, speed, and the three times of the moment that is shown. */
+/** Play, jump, speed, and the three times of the current moment. */
 import { ActionIcon, CopyButton, SegmentedControl, Tooltip } from "@mantine/core";
 import { Press } from "@shared/stage/Transport";
 import type { Playback } from "@shared/stage/usePlayback";
@@ -15,7 +15,7 @@ interface TransportProps {
   readonly lane: Lane;
   readonly playback: Playback;
   readonly duration: Seconds;
-  /** The address of the moment that is shown. */
+  /** The address of the current moment. */
   readonly link: () => string;
   readonly onHelp: () => void;
 }
@@ -60,7 +60,7 @@ export function Transport(props: TransportProps): JSX.Element {
   );
 }
 
-/** Only as wide as a sign: its name is told, and what became of it. */
+/** Only as wide as an icon, so a tooltip shows its name and whether the link was copied. */
 function CopyLink({ link }: { readonly link: string }): JSX.Element {
   const { t } = useTexts();
   return (

@@ -1,4 +1,4 @@
-/** Where a replay is in the address: which phase, which moment, and what stands beside it. */
+/** The replay's address: which phase, which moment, and which phase it is compared with. */
 
 /** A phase of any session. */
 export interface PhaseRef {
@@ -12,12 +12,12 @@ export interface Wanted {
   readonly beside: PhaseRef | null;
 }
 
-/** What is shown: of what the address may leave open, the phase is chosen. */
+/** What is shown: the address's parameters, with the phase always given. */
 export interface Chosen extends Wanted {
   readonly phase: number;
 }
 
-/** `?phase=2&t=12.5&with=5`; `with=SESSION:5` for a phase of another session. */
+/** Parse `?phase=2&t=12.5&with=5`; `with=SESSION:5` is a phase of another session. */
 export function wantedFrom(address: string, session: string): Wanted {
   const query = new URLSearchParams(address.split("?")[1] ?? "");
   const time = Number(query.get("t"));

@@ -1,4 +1,4 @@
-/** What happened in a phase, in order, and what the boxes mean at a moment. */
+/** The events of a phase in order, and the state of the boxes at a moment. */
 import type { Replay, ReplayContact, ReplayMoment } from "@shared/api/replays";
 import type { BlockTone, BlockTones } from "@shared/stage/figure";
 
@@ -37,7 +37,9 @@ interface Note extends At {
 
 export type Happening = Touch | Done | Clock | Note;
 
-/** Everything in order of time; parts that touch the same surface at once are one touch. */
+/**
+ * All events in order of time; body parts that touch the same surface simultaneously are one touch.
+ */
 export function happenings(replay: Replay): readonly Happening[] {
   const clock = replay.moments.map(
     ({ what, t_s, cause }, at): Clock => ({
@@ -64,7 +66,7 @@ export function happenings(replay: Replay): readonly Happening[] {
   return all.sort((one, other) => one.time - other.time);
 }
 
-/** What a touch was judged to be counts for those that are united with it, in this order. */
+/** The precedence of judgements when simultaneous touches are merged. */
 const RANK = ["out_of_order", "wrong_part", "early", "green", "side", "target", "start"];
 const rank = (effect: string): number =>
   (RANK.indexOf(effect) + RANK.length + 1) % (RANK.length + 1);
@@ -120,12 +122,12 @@ export const toneOf = ({
         ? "good"
         : "touched";
 
-/** A touch that is shorter is shown as long, seconds. */
+/** A shorter touch is shown with this duration, seconds. */
 const LEAST = 0.15;
 
 /**
- * What the blocks mean at a moment: panels stay good until the task is done, everything else glows
- * while it is touched.
+ * The tones of the blocks at a moment: panels stay good until the task is completed, everything
+ * else glows while it is touched.
  */
 export function tonesAt(
   { contacts, completions }: Pick<Replay, "contacts" | "completions">,
@@ -147,7 +149,7 @@ export function tonesAt(
   return tones;
 }
 
-/** The last thing that happened up to a time; -1 before the first. */
+/** The last event up to a time; -1 before the first. */
 export function latestAt(all: readonly At[], time: number): number {
   let low = 0;
   let high = all.length;
@@ -159,7 +161,7 @@ export function latestAt(all: readonly At[], time: number): number {
   return low - 1;
 }
 
-/** The time to jump to: the nearest thing before or after; null where there is none. */
+/** The time to jump to: the nearest event before or after; null if there is none. */
 export function jumpFrom(all: readonly At[], time: number, way: -1 | 1): number | null {
   const apart = 0.02;
   const found =
@@ -169,9 +171,9 @@ export function jumpFrom(all: readonly At[], time: number, way: -1 | 1): number 
   return found?.time ?? null;
 }
 
-// The three times of a moment: the phase's, the active time, and the hour.
+// The three times of a moment: the phase's, the active time, and the time of day.
 
-/** What the active time shows at a time of the phase; it stands between its stretches. */
+/** The active time at a time of the phase; it stands still between its intervals. */
 export function activeAt({ active }: Pick<Replay, "active">, time: number): number {
   let shown = 0;
   for (const one of active) {
@@ -184,7 +186,7 @@ export function activeAt({ active }: Pick<Replay, "active">, time: number): numb
 export const isActive = ({ active }: Pick<Replay, "active">, time: number): boolean =>
   active.some(({ begin_s, end_s }) => begin_s <= time && time < end_s);
 
-/** The moment by the server's clock; null where no run of the headset can be brought onto it. */
+/** The moment by the server's clock; null if the headset's clock cannot be converted to it. */
 export function wallAt(
   { runs, time_scale }: Pick<Replay, "runs" | "time_scale">,
   time: number,

@@ -1,4 +1,7 @@
-/** The keys of a replay. They rest while a dialog is open or something is being typed or chosen. */
+/**
+ * The keys of a replay. They are inactive while a dialog is open or something is being typed or
+ * selected.
+ */
 import type { JSX } from "react";
 import { useEffect, useRef } from "react";
 import { useTexts } from "../i18n";
@@ -51,7 +54,7 @@ export function useReplayKeys(keys: Keys): void {
       event.preventDefault();
       act(latest.current, event.shiftKey);
     };
-    // Some browsers press a button when the space bar comes up.
+    // Some browsers press a button when the space bar is released.
     const onUp = (event: KeyboardEvent) => {
       if (event.key === " " && !isBusy(event)) event.preventDefault();
     };
@@ -65,7 +68,7 @@ export function useReplayKeys(keys: Keys): void {
 }
 
 const TYPED = 'textarea, select, [contenteditable="true"], [role="combobox"], [role="listbox"]';
-/** Where a key already means something else. A moment of the list is chosen with Enter. */
+/** Elements in which a key already has a meaning. An event of the list is selected with Enter. */
 const TAKES: Readonly<Record<string, string>> = {
   " ": `input:not([type="range"]), button:not([data-moment]), a, summary, ${TYPED}`,
   ArrowLeft: `input:not([type="range"]), [role="tab"], [role="radio"], ${TYPED}`,
@@ -80,7 +83,7 @@ function isBusy(event: KeyboardEvent): boolean {
   return target.closest(TAKES[event.key] ?? TAKES_LETTERS) !== null;
 }
 
-/** Every key of the replay. */
+/** The list of all keys of the replay. */
 export function ReplayKeys(props: KeyboardHelpProps): JSX.Element {
   const { t } = useTexts();
   const keys = [

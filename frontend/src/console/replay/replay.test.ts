@@ -32,7 +32,7 @@ const completion = (number: number, t_s: number) => ({
   duration_s: t_s,
   out_of_order_touches: 0,
 });
-/** Active for 10 s, standing for 5 s, active again; a second of the headset is half a real one. */
+/** Active for 10 s, paused for 5 s, active again; a second of the headset is half a real one. */
 const paused = {
   active: [
     { begin_s: 0, end_s: 10, begin_active_s: 0, end_active_s: 10 },
@@ -52,7 +52,7 @@ describe("the address of a moment", () => {
     expect(wantedFrom(addressOf("own", other), "own")).toEqual(other);
   });
 
-  it("asks for nothing where it makes no sense", () => {
+  it("is ignored if it is invalid", () => {
     const nothing = { phase: null, time: 0, beside: null };
     expect(wantedFrom("#/sessions/own/replay", "own")).toEqual(nothing);
     expect(wantedFrom("#/sessions/own/replay?phase=x&t=-3&with=a:", "own")).toEqual(nothing);
@@ -60,7 +60,7 @@ describe("the address of a moment", () => {
 });
 
 describe("the times of a moment", () => {
-  it("let the active time stand in a pause", () => {
+  it("keep the active time constant during a pause", () => {
     expect([9, 12, 17, 99].map((time) => activeAt(paused, time))).toEqual([9, 10, 12, 60]);
     expect([9, 12, 17, 65].map((time) => isActive(paused, time))).toEqual([
       true,
@@ -70,14 +70,14 @@ describe("the times of a moment", () => {
     ]);
   });
 
-  it("count the hour by the server's seconds", () => {
+  it("give the time of day by the server's seconds", () => {
     expect(wallAt(paused, 10)?.toISOString()).toBe("2026-03-02T12:00:05.000Z");
     expect(wallAt({ runs: [], time_scale: 1 }, 10)).toBeNull();
   });
 });
 
-describe("what happened", () => {
-  it("is one touch where several parts touch the same surface at once", () => {
+describe("the events of a phase", () => {
+  it("contain one touch if several parts touch the same surface simultaneously", () => {
     const found = touches([
       contact("hand/2/left", 1, 3),
       contact("hand/2/left", 2, 4, { body_part: "RightLowerArm" }),
@@ -89,7 +89,7 @@ describe("what happened", () => {
     ]);
   });
 
-  it("keeps what was judged of parts that touch together", () => {
+  it("keep the judgement of parts that touch together", () => {
     const [one] = touches([
       contact("hand/2/panel", 1, 3, { effect: "none" }),
       contact("hand/2/panel", 2, 3, { effect: "green" }),
@@ -97,7 +97,7 @@ describe("what happened", () => {
     expect(one?.effect).toBe("green");
   });
 
-  it("is in order of time, and leads from one to the next", () => {
+  it("are in order of time, and lead from one to the next", () => {
     const all = happenings({
       moments: [{ what: "started", t_s: 0, active_s: 0, cause: null }],
       contacts: [contact("hand/2/left", 1, 3)],
@@ -124,7 +124,7 @@ describe("the boxes", () => {
     completions: [completion(1, 8)],
   };
 
-  it("keep a panel good until the task is done, and glow while they are touched", () => {
+  it("keep a panel good until the task is completed, and glow while they are touched", () => {
     expect([...tonesAt(phase, 0.5)]).toEqual([]);
     expect([...tonesAt(phase, 2.5)]).toEqual([
       ["hand/2/panel", "good"],
@@ -144,7 +144,7 @@ describe("joint errors", () => {
     values: Float32Array.from([0, 0, 0, Math.PI / 2, Number.NaN, Math.PI / 6]),
   };
 
-  it("are those of the nearest moment, the largest first, what is unknown left out", () => {
+  it("are those of the nearest moment, the largest first, without unknown ones", () => {
     const now = errorsAt(errors, 0.12);
     expect(now[1]).toEqual({ joint: "LeftHand", degrees: null });
     expect(largest(now, 5).map(({ joint }) => joint)).toEqual(["Head", "RightHand"]);
@@ -168,7 +168,7 @@ describe("the bytes of a movement", () => {
     return bytes.buffer;
   };
 
-  it("hold both bodies and the errors, or the participant alone", () => {
+  it("contain both bodies and the errors, or the participant alone", () => {
     const both = decodeMovement(bytesOf(["target", "actual"], [1, 2, 3, 4, 5, 6, 7]));
     expect([...both.participant.positions]).toEqual([1, 2, 3]);
     expect([...(both.avatar?.positions ?? [])]).toEqual([4, 5, 6]);
@@ -177,7 +177,7 @@ describe("the bytes of a movement", () => {
     expect(decodeMovement(bytesOf(["target"], [1, 2, 3])).avatar).toBeNull();
   });
 
-  it("are refused where they are cut off", () => {
+  it("are rejected if they are truncated", () => {
     expect(() => decodeMovement(bytesOf(["target"], [1, 2]))).toThrow("Expected 3 numbers");
     expect(() => decodeMovement(new ArrayBuffer(2))).toThrow("hold no movement");
   });

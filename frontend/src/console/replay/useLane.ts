@@ -1,4 +1,4 @@
-/** One phase on the stage: what happened in it, what moved, and how it is drawn. */
+/** One phase on the stage: its events, its movement, and how it is drawn. */
 import { type Replay, type ReplayMovement, replays } from "@shared/api/replays";
 import type { SessionView } from "@shared/api/types";
 import type { Block, Figure } from "@shared/stage/figure";
@@ -52,7 +52,7 @@ const person = (key: string, motion: PointMotion, tone: Figure["tone"]): Figure 
   roles: rolesFrom(motion.names, AVATAR_MAP),
 });
 
-/** The avatar, with the participant as its ghost; the participant alone where there is no more. */
+/** The avatar with the participant as its ghost, or the participant alone. */
 export function useFiguresOf(
   { movement }: Pick<Lane, "movement">,
   ghost: boolean,
@@ -79,7 +79,7 @@ export function useBlocksOf({ replay }: Lane): readonly Block[] {
   );
 }
 
-/** The reads of a replay. Both are of a phase that is over, so they hardly ever change. */
+/** The queries of a replay. The phase is over, so their answers hardly ever change. */
 const replayQuery = ({ session, phase }: PhaseRef) =>
   queryOptions({
     queryKey: ["sessions", session, "replay", phase],
@@ -93,12 +93,12 @@ const movementQuery = ({ session, phase }: PhaseRef, view: string) =>
     queryKey: ["sessions", session, "replay", phase, "movement", view],
     queryFn: () => replays.movement(session, phase),
     staleTime: Number.POSITIVE_INFINITY,
-    // Some megabytes each: the browser keeps them, too, and asks whether they are the same.
+    // Some megabytes each: the browser caches them too, and revalidates.
     gcTime: 60_000,
     retry: false,
   });
 
-/** The phase that stands beside, of this session or of another one of the study. */
+/** The phase to compare with, of this session or of another one of the study. */
 export function useBeside(session: SessionView, wanted: PhaseRef | null) {
   const nameOf = usePhaseName();
   const isOther = wanted !== null && wanted.session !== session.id;

@@ -1,4 +1,6 @@
-/** After a withdrawal: keep what was collected so far, or erase it. What was erased says so. */
+/**
+ * After a withdrawal: keep the data collected so far, or erase them, or show that they were erased.
+ */
 import { Button, Group } from "@mantine/core";
 import type { Participant } from "@shared/api/rights";
 import type { Command, SessionView } from "@shared/api/types";
@@ -11,7 +13,7 @@ import { rightsDe, rightsEn } from "../i18n/rightsTexts";
 import { participantsQuery } from "../queries";
 import { EraseDialog } from "./EraseDialog";
 
-/** The answer goes on record as a note, in the language of whoever asked. */
+/** The participant's decision is recorded as a note, in the language of the operator. */
 const MAY_BE_KEPT: readonly string[] = [rightsEn["withdrew.note"], rightsDe["withdrew.note"]];
 
 interface AfterWithdrawalProps {

@@ -1,4 +1,4 @@
-/** One answer to enter, by the kind of its item; null leaves it out. */
+/** A field for one answer, by the kind of its item; null omits it. */
 import { NumberInput, Select, Textarea } from "@mantine/core";
 import type { AnswerValue, Form } from "@shared/api/rights";
 import type { Item } from "@shared/api/types";
@@ -54,7 +54,7 @@ export function AnswerField({ form, item, value, onChange }: AnswerFieldProps): 
   return <Choice form={form} item={item} value={value} onChange={onChange} />;
 }
 
-/** Scales, choices, yes and no: a few words to choose from. */
+/** A choice of a few words: scales, choices, yes and no. */
 function Choice({ form, item, value, onChange }: AnswerFieldProps): JSX.Element {
   const { t, language } = useTexts();
   const scale = scaleOf(form, item);

@@ -1,4 +1,4 @@
-/** Everything that was answered in a session, with what was corrected, and correcting it. */
+/** All answers of a session with their corrections, and a form to correct one. */
 import { Button } from "@mantine/core";
 import type { Form } from "@shared/api/rights";
 import type { Item } from "@shared/api/types";

@@ -1,4 +1,4 @@
-/** Copies outside the database, and saying that one is gone. */
+/** Copies outside the database, and a button to record that one was destroyed. */
 import { Button } from "@mantine/core";
 import { type CopyLeft, rights } from "@shared/api/rights";
 import { dateTime } from "@shared/format";
@@ -25,7 +25,7 @@ function OneCopy({ copy: listed }: { readonly copy: CopyLeft }): JSX.Element {
     mutationFn: () => rights.destroyed(listed.id),
     onSuccess: () => queries.invalidateQueries({ queryKey: ["studies"] }),
   });
-  // The list may be one that was told once, as behind an erasure.
+  // The list may be a snapshot, as after an erasure, so the answer to the click takes precedence.
   const copy: CopyLeft = destroyed.data ?? listed;
   return (
     <li>

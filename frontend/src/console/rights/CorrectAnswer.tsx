@@ -1,4 +1,4 @@
-/** A later value of one answer, and how one knows. */
+/** Correct one answer: a later value and its reason. */
 import { Button, Group, Textarea } from "@mantine/core";
 import { type AnswerValue, type Form, rights } from "@shared/api/rights";
 import type { Item } from "@shared/api/types";

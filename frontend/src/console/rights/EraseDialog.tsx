@@ -1,4 +1,7 @@
-/** Erasing somebody: what goes, what stays, which copies are left, and the code typed again. */
+/**
+ * Erase a participant: what is deleted, what stays, which copies are left, and the code typed as
+ * confirmation.
+ */
 import { Button, Group, Modal, Select, Stack, TextInput } from "@mantine/core";
 import { type ErasureReason, type Participant, rights } from "@shared/api/rights";
 import { Icon, type IconName } from "@shared/ui/Icon";
@@ -13,7 +16,7 @@ import { Tombstone } from "./Tombstone";
 
 interface EraseDialogProps {
   readonly studyKey: string;
-  /** Whom to erase; null while the dialog is closed. */
+  /** The participant to erase; null while the dialog is closed. */
   readonly participant: Participant | null;
   readonly onClose: () => void;
 }
@@ -51,7 +54,7 @@ function Erase({ studyKey, participant, onClose }: EraseProps): JSX.Element {
   const withdrew = participant.sessions.some(({ status }) => status === "withdrawn");
   const [reason, setReason] = useState<ErasureReason>(withdrew ? "withdrawn" : "requested");
   const [typed, setTyped] = useState("");
-  // What was erased is told with the name that is about to go: it is kept while this is open.
+  // The result names the participant, whose name is then gone: it is kept while this is open.
   const [code] = useState(participant.code);
   const erase = useMutation({
     mutationFn: () => rights.erase(studyKey, participant.id, typed, reason),

@@ -1,4 +1,4 @@
-/** What an erasure took, and what is left to do by hand. */
+/** What an erasure removed, and what is left to do by hand. */
 import { Button, Group, Stack } from "@mantine/core";
 import type { Erasure } from "@shared/api/rights";
 import { dateTime } from "@shared/format";

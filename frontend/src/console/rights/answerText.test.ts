@@ -11,13 +11,13 @@ const form = {
 const item = (fields: Partial<Item>) => ({ key: "q", text: { en: "?" }, ...fields }) as Item;
 
 describe("an answer in words", () => {
-  it("tells the label of a step that has one, and else the number", () => {
+  it("shows the label of a step if it has one, otherwise the number", () => {
     const likert = item({ type: "likert" });
     const said = [1, 4, 7].map((value) => answerText(form, likert, value, "en", words));
     expect(said).toEqual(["1 (not at all)", "4", "7 (fully)"]);
   });
 
-  it("tells yes and no as they are stored, a choice by its label, a number with its unit", () => {
+  it("shows yes and no as they are stored, a choice by its label, a number with its unit", () => {
     expect(answerText(form, item({ type: "boolean" }), 1, "en", words)).toBe("yes");
     expect(answerText(form, item({ type: "boolean" }), 0, "en", words)).toBe("no");
     const choice = item({ type: "choice", choices: [{ key: "left", label: { en: "Left" } }] });

@@ -41,7 +41,7 @@ export function stepsOf({ minimum, maximum, step = 1 }: Scale): readonly number[
   return Array.from({ length: count }, (_, index) => minimum + step * index);
 }
 
-/** What stands at this step of the scale: at each, at both ends, or nowhere. */
+/** The label of this step of the scale, if every step or this end has one. */
 export function labelAt(scale: Scale | null, value: number, language: string): string | null {
   if (scale === null || scale.labels.length === 0) return null;
   const steps = stepsOf(scale);

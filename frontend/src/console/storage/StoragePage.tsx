@@ -1,4 +1,4 @@
-/** What takes how much room, and for how many more sessions there is some. */
+/** What takes how much space, and how many more sessions fit. */
 import { Button, Paper, Text, Title } from "@mantine/core";
 import { type StoragePart, type StorageRoom, storageRoom } from "@shared/api/housekeeping";
 import { bytes, dateTime, timeOfDay } from "@shared/format";
@@ -123,7 +123,7 @@ function Room({ room }: { readonly room: StorageRoom }): JSX.Element {
   );
 }
 
-/** The disk as one bar, with a mark where the warning begins. */
+/** The disk as one bar, with a mark at which the warning starts. */
 function DiskBar({ room }: { readonly room: StorageRoom }): JSX.Element {
   const { t, language } = useTexts();
   const shares = diskShares(room);
@@ -159,7 +159,7 @@ function DiskBar({ room }: { readonly room: StorageRoom }): JSX.Element {
   );
 }
 
-/** Files that a crash left unfinished, or that a command is making now. */
+/** Files that a crash left unfinished, or that a command is writing now. */
 function HalfMade({ found }: { readonly found: StorageRoom["half_made"] }): JSX.Element {
   const { t, language } = useTexts();
   return (
@@ -181,7 +181,7 @@ function HalfMade({ found }: { readonly found: StorageRoom["half_made"] }): JSX.
   );
 }
 
-/** Each part with its size, longest first, as bars of one scale. */
+/** Each part with its size, largest first, as bars on one scale. */
 function Parts({ parts }: { readonly parts: readonly StoragePart[] }): JSX.Element {
   const { t, language } = useTexts();
   const most = Math.max(1, ...parts.map((part) => part.bytes));

@@ -1,4 +1,4 @@
-/** Each study with its size, one session's mean, and how many more fit. */
+/** Each study with its size, the mean of a session, and how many more fit. */
 import type { StorageRoom, StudyRoom } from "@shared/api/housekeeping";
 import { bytes, day, number } from "@shared/format";
 import type { JSX } from "react";
@@ -66,7 +66,7 @@ function StudyRow({ study }: { readonly study: StudyRoom }): JSX.Element {
   );
 }
 
-/** The sessions that take the most room. */
+/** The sessions that take the most space. */
 export function LargestSessions({
   sessions,
 }: {

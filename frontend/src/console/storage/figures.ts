@@ -1,4 +1,4 @@
-/** The disk in three parts that fill it: what this server takes, what others take, what is free. */
+/** The disk in three parts that fill it: used by this server, used by others, free. */
 import type { StorageRoom } from "@shared/api/housekeeping";
 
 interface DiskShares {
@@ -9,7 +9,7 @@ interface DiskShares {
 }
 
 export function diskShares({ disk, parts }: StorageRoom): DiskShares {
-  // With a database elsewhere only folders lie on this disk.
+  // If the database is elsewhere, only folders are on this disk.
   const here = parts.filter(
     ({ place }) => disk.holds_database || place === "backups" || place === "scratch",
   );
@@ -21,7 +21,7 @@ export function diskShares({ disk, parts }: StorageRoom): DiskShares {
   return { own, other: taken - own, free: disk.free_bytes, total: disk.total_bytes };
 }
 
-/** Two digits that count: a forecast is no more exact than the mean it comes from. */
+/** Round to two significant digits: a forecast is no more exact than the mean it comes from. */
 export function roughly(count: number): number {
   if (count < 100) return count;
   const step = 10 ** (Math.floor(Math.log10(count)) - 1);

@@ -1,4 +1,6 @@
-/** In the header: the help pages, the scripted participant, and the tour where there is one. */
+/**
+ * The help menu in the header: help pages, scripted participant, and the tour where there is one.
+ */
 import { ActionIcon, Menu } from "@mantine/core";
 import { notifications } from "@mantine/notifications";
 import { studies } from "@shared/api/endpoints";
@@ -95,10 +97,10 @@ export function HelpMenu(): JSX.Element {
 
 const isSession = (address: string): boolean => /^\/sessions\/[^/]+$/.test(address);
 
-/** The study that everybody has, and that needs no preparation. */
+/** The study that is shipped with the product and needs no preparation. */
 const SHIPPED = "reembodiment-latency";
 
-/** The study whose page is open, else the one that everybody has, else the first. */
+/** The study whose page is open, otherwise the shipped one, otherwise the first. */
 export function choose(address: string, keys: readonly string[]): string | null {
   const here = /^\/studies\/([^/?]+)/.exec(address)?.[1];
   return keys.find((key) => key === here) ?? keys.find((key) => key === SHIPPED) ?? keys[0] ?? null;

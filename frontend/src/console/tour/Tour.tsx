@@ -1,8 +1,8 @@
 /**
- * The tour of a session's page: a callout at one part after the other.
+ * The tour of a session's page: a callout that points at one part after the other.
  *
- * It takes no click away from the page. While it is on, the page's own keys rest, because the
- * callout is a dialog; arrows turn its pages and Escape ends it.
+ * It blocks no clicks on the page. While it is open, the page's own keys are inactive, because the
+ * callout is a dialog; arrow keys turn its pages and Escape ends it.
  */
 import { Button, Popover } from "@mantine/core";
 import { Icon } from "@shared/ui/Icon";
@@ -15,7 +15,7 @@ import { useAnchor } from "./useAnchor";
 export function Tour(): JSX.Element | null {
   const number = useTourStep();
   const step = number === null ? undefined : TOUR_STEPS[number];
-  // Whoever leaves the session's page has ended it.
+  // Leaving the session's page ends the tour.
   useEffect(() => () => endTour(), []);
   return number === null || step === undefined ? null : (
     <Callout key={step.key} number={number} step={step} />
@@ -46,7 +46,7 @@ function Callout({ number, step }: CalloutProps): JSX.Element {
       event.stopPropagation();
       act();
     };
-    // Before the page's own keys.
+    // In the capture phase, before the page's own keys.
     document.addEventListener("keydown", onKey, true);
     return () => document.removeEventListener("keydown", onKey, true);
   }, []);

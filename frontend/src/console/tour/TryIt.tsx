@@ -1,4 +1,4 @@
-/** One click: a scripted participant goes through the study while one watches. */
+/** One click: a scripted participant goes through the study while the user watches. */
 import { Button } from "@mantine/core";
 import { tryouts } from "@shared/api/housekeeping";
 import type { StudyDetail } from "@shared/api/types";
@@ -15,7 +15,7 @@ interface TryItProps {
   readonly study: Pick<StudyDetail, "key" | "languages" | "archived_at">;
 }
 
-/** In a place that is empty: the offer with what it means. */
+/** An empty page's offer of a scripted participant, with an explanation. */
 export function TryIt({ study }: TryItProps): JSX.Element | null {
   const { t, language } = useTexts();
   const may = useMay();
@@ -39,13 +39,13 @@ export function TryIt({ study }: TryItProps): JSX.Element | null {
   );
 }
 
-/** The page's language where the study has it. */
+/** The page's language if the study has it, otherwise the study's first. */
 export const spoken = (languages: readonly string[], wanted: string): string =>
   languages.includes(wanted) ? wanted : (languages[0] ?? "en");
 
-// The scripted participant: whether one is here, beginning and stopping it.
+// The scripted participant: whether one is running, starting and stopping it.
 
-/** `enabled`: nobody who may not start one is asked for it. */
+/** `enabled`: only accounts that may start one request its state. */
 export function useTryout(enabled: boolean) {
   const query = useQuery({ ...tryoutQuery, enabled });
   return query.data ?? null;

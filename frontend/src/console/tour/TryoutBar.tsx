@@ -1,7 +1,8 @@
 /**
- * While a scripted participant is here: where it is, the way to it, and the way out, on every page.
+ * The bar on every page while a scripted participant is running: where it is, a link to it, and a
+ * stop button.
  *
- * The page goes to its session as soon as there is one, and the tour begins if it was never seen.
+ * The page goes to its session as soon as there is one, and the tour starts if it was never seen.
  */
 import { Button, Loader } from "@mantine/core";
 import type { Tryout } from "@shared/api/housekeeping";
@@ -28,7 +29,7 @@ export function TryoutBar(): JSX.Element | null {
   useEffect(() => {
     if (tryout?.state === "starting" && tryout.mine) seenStarting.current = true;
     if (session === null || !seenStarting.current) return;
-    // Only who saw it begin is taken along, and only once.
+    // Only a page that saw it start goes to its session, and only once.
     seenStarting.current = false;
     void queries.invalidateQueries({ queryKey: ["studies"] });
     navigate(`/sessions/${session}`);
@@ -36,7 +37,7 @@ export function TryoutBar(): JSX.Element | null {
   }, [tryout, session, queries, navigate]);
   const wasOn = useRef(false);
   if (tryout !== null && isOn(tryout)) wasOn.current = true;
-  // What ended before the page was opened is nobody's news.
+  // Do not report one that had ended before the page was opened.
   if (tryout === null || !wasOn.current || dismissed === tryout.started_at) return null;
   const watching = session !== null && address === `/sessions/${session}`;
   return (

@@ -1,4 +1,7 @@
-/** Whether the tour is on, where it stands, and that it was seen: it begins by itself only once. */
+/**
+ * The state of the tour: its current step, and whether it was seen, since it starts automatically
+ * only once.
+ */
 import { useSyncExternalStore } from "react";
 
 const KEY = "reembody.tour.seen";
@@ -36,12 +39,12 @@ export function useTourStep(): number | null {
   );
 }
 
-/** What the tour shows, in order, and where on the page each thing is. */
+/** The steps of the tour, in order, and where on the page each target is. */
 type Side = "top" | "right" | "bottom" | "left";
 
 export interface TourStep {
   readonly key: "timeline" | "clock" | "next" | "live" | "tablet" | "alarms" | "replay" | "csv";
-  /** Marks (`data-tour`) of what is pointed at; the first that is on the page. */
+  /** The `data-tour` marks of possible targets; the first one on the page is used. */
   readonly marks: readonly string[];
   readonly side: Side;
 }

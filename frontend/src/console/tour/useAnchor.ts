@@ -1,4 +1,4 @@
-/** Where something on the page is, followed while the page scrolls, grows and changes under it. */
+/** The position of an element, followed while the page scrolls, grows and changes. */
 import { useEffect, useState } from "react";
 import { anchorOf, type TourStep } from "./tourStore";
 
@@ -16,11 +16,11 @@ export function useAnchor(step: TourStep): Place | null {
   const [place, setPlace] = useState<Place | null>(null);
   useEffect(() => {
     const anchor = anchorOf(step);
-    // At once: a callout that chases what is scrolled is hard to read.
+    // Without animation: a callout that follows a scrolling target is hard to read.
     anchor?.scrollIntoView({ block: "nearest" });
     const look = () => setPlace((known) => same(known, placeOf(anchorOf(step))));
     look();
-    // What is pointed at may come, go and move with the session, which no event tells.
+    // The target may appear, disappear and move with the session, which no event reports.
     const timer = setInterval(look, LOOK_EVERY_MS);
     window.addEventListener("resize", look);
     return () => {
@@ -31,7 +31,7 @@ export function useAnchor(step: TourStep): Place | null {
   return place;
 }
 
-/** The part of it that is in the window, with a little room around. */
+/** The part of the target that is inside the window, with a small margin. */
 function placeOf(anchor: HTMLElement | null): Place | null {
   if (anchor === null) return null;
   const box = anchor.getBoundingClientRect();

@@ -1,4 +1,4 @@
-/** What an empty place is for and how to fill it. */
+/** The explanation of an empty list: what it is for and how to fill it. */
 import { Title } from "@mantine/core";
 import { Icon, type IconName } from "@shared/ui/Icon";
 import type { JSX, ReactNode } from "react";

@@ -15,12 +15,12 @@ export interface KeyboardHelpProps {
 }
 
 interface KeyListProps extends KeyboardHelpProps {
-  /** What is done by which keys. */
+  /** Each group of keys with its meaning. */
   readonly keys: readonly (readonly [names: readonly string[], meaning: string])[];
   readonly namesClass?: string | undefined;
 }
 
-/** Every key of a page. */
+/** The list of all keys of a page. */
 export function KeyList({ opened, onClose, keys, namesClass }: KeyListProps): JSX.Element {
   const { t } = useTexts();
   return (

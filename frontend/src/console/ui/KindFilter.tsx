@@ -1,11 +1,11 @@
-/** Which sessions are looked at; people, simulated and test are never mixed. */
+/** The filter by kind of session; participants, simulated and test sessions are never mixed. */
 import { SegmentedControl } from "@mantine/core";
 import type { DataKind, Kind } from "@shared/api/types";
 import type { JSX } from "react";
 import { useTexts } from "../i18n";
 
 const DATA_KINDS: readonly DataKind[] = ["people", "simulated", "test"];
-/** All there are: experts' sessions are listed with the others, but never analysed. */
+/** All kinds: experts' sessions are listed with the others, but never analysed. */
 export const KINDS: readonly Kind[] = [...DATA_KINDS, "expert"];
 
 interface KindFilterProps {

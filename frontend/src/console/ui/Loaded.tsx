@@ -1,4 +1,4 @@
-/** The three states of data that comes from the server: on its way, failed, there. */
+/** The three states of data from the server: loading, failed, loaded. */
 import { Center, Loader } from "@mantine/core";
 import type { UseQueryResult } from "@tanstack/react-query";
 import type { JSX, ReactNode } from "react";

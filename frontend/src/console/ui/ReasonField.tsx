@@ -1,4 +1,4 @@
-/** Why something is done that goes on record: usual reasons to choose from, or words of one's own. */
+/** The reason for something that is recorded: a usual one to select, or a text. */
 import { Chip, Group, Textarea } from "@mantine/core";
 import type { JSX } from "react";
 import { type Key, useTexts } from "../i18n";
@@ -9,7 +9,7 @@ interface ReasonFieldProps {
   readonly onChange: (reason: string) => void;
 }
 
-/** Enter sends the form that the field stands in; Shift and Enter begin a new line. */
+/** Enter submits the form that the field is in; Shift and Enter insert a line break. */
 export function ReasonField({ usual, value, onChange }: ReasonFieldProps): JSX.Element {
   const { t } = useTexts();
   return (

@@ -1,4 +1,4 @@
-/** A list from the session's record that slides in beside the cockpit; it is read when opened. */
+/** A list from the session's record in a drawer next to the cockpit; it is loaded when opened. */
 import { Drawer } from "@mantine/core";
 import type { JSX, ReactNode } from "react";
 import { useTexts } from "../i18n";

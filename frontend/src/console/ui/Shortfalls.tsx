@@ -1,4 +1,4 @@
-/** Why a completed session does not count: one line for each thing that it lacks. */
+/** Why a completed session does not count: one line for each shortfall. */
 import type { Shortfall } from "@shared/api/types";
 import { number } from "@shared/format";
 import type { JSX } from "react";

@@ -1,4 +1,7 @@
-/** The kind of data, the state of a session, and a role: shape and word, not colour alone. */
+/**
+ * Badges for the kind of data, the state of a session, and a role: shape and word, not colour
+ * alone.
+ */
 import type { Role } from "@shared/api/people";
 import type { Kind, SessionStatus } from "@shared/api/types";
 import { Icon, type IconName } from "@shared/ui/Icon";
@@ -13,7 +16,9 @@ const KIND_ICONS: Readonly<Record<Kind, IconName>> = {
   expert: "talk",
 };
 
-/** What a session's data are: people's, a simulation's, a test's, or an expert's. Shape and word, not colour alone. */
+/**
+ * The kind of a session: participants, simulated, test or expert. Shape and word, not colour alone.
+ */
 export function KindBadge({ kind }: { readonly kind: Kind }): JSX.Element {
   const { t } = useTexts();
   return (
@@ -32,7 +37,7 @@ const STATUS_ICONS: Readonly<Record<SessionStatus, IconName>> = {
   withdrawn: "close",
 };
 
-/** The state of a session in a word and a sign. */
+/** The state of a session as a word and an icon. */
 export function StatusBadge({ status }: { readonly status: SessionStatus }): JSX.Element {
   const { t } = useTexts();
   return (
@@ -43,7 +48,7 @@ export function StatusBadge({ status }: { readonly status: SessionStatus }): JSX
   );
 }
 
-/** What somebody is here, in a word and a sign. */
+/** All roles, in the order in which they are shown. */
 export const ROLES: readonly Role[] = ["admin", "experimenter", "operator", "analyst"];
 
 export const ROLE_ICONS: Readonly<Record<Role, IconName>> = {

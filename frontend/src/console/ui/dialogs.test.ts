@@ -12,7 +12,7 @@ const functions = (text: string): readonly string[] =>
   text.split(/^(?:export )?function /m).slice(1);
 
 describe("a dialog", () => {
-  it("forgets what failed when it is closed: what is inside of it is made anew, else it resets", () => {
+  it("forgets a failure when it is closed: its content is remounted, or it resets", () => {
     const leaking = files.flatMap(({ name, text }) =>
       functions(text)
         .filter((body) => body.includes("<Modal") && body.includes("useMutation("))
@@ -22,7 +22,7 @@ describe("a dialog", () => {
     expect(leaking).toEqual([]);
   });
 
-  it("never shows what failed elsewhere: a shared command's error is told by one component", () => {
+  it("never shows a failure from elsewhere: one component shows a shared command's error", () => {
     const others = files.filter(({ text }) => /\b(?:live|direct)\.error\b/.test(text));
     expect(others.map(({ name }) => name)).toEqual([
       join("cockpit", "session", "CommandFailure.tsx"),

@@ -6,13 +6,13 @@ import numbers from "./NumbersTable.module.css";
 
 interface ListTableProps {
   readonly columns: readonly string[];
-  /** Whether the last column, which has no name, holds what can be done with a row. */
+  /** Whether the last column, which has no title, contains the actions for a row. */
   readonly withDoing: boolean;
   readonly className?: string | undefined;
   readonly children: ReactNode;
 }
 
-/** A list as a table: the names of its columns, and a row for each thing. */
+/** A list as a table: the titles of its columns, and a row for each item. */
 export function ListTable({
   columns,
   withDoing,
@@ -43,7 +43,7 @@ interface NumbersTableProps {
   readonly className?: string | undefined;
 }
 
-/** The numbers behind a result, as they were written: names of columns, and rows of cells. */
+/** The numbers behind a result, as the server formatted them: column titles and rows of cells. */
 export function NumbersTable({
   label,
   columns,
@@ -51,7 +51,7 @@ export function NumbersTable({
   className = "",
 }: NumbersTableProps): JSX.Element {
   return (
-    // biome-ignore lint/a11y/noNoninteractiveTabindex: what scrolls must be reached with the keyboard
+    // biome-ignore lint/a11y/noNoninteractiveTabindex: scrollable content must be reachable with the keyboard
     <section className={`${numbers.scroll} ${className}`} aria-label={label} tabIndex={0}>
       <table className={`${numbers.table} numbers`}>
         <thead>

@@ -1,4 +1,4 @@
-/** Asking a model: a path is drawn in a scene, and the durations of walks along it are drawn. */
+/** Query a model: draw a path in a scene, and see the durations of walks along it. */
 import { NumberInput, Select } from "@mantine/core";
 import type { ModelListed, Prediction, SceneListed } from "@shared/api/walking";
 import { useQuery } from "@tanstack/react-query";
@@ -63,7 +63,7 @@ function Asking({ models, scenes }: AskingProps): JSX.Element {
     }),
     enabled: model !== undefined && isWay(path.points),
   });
-  // An answer to another question stays while the next is computed, but not beyond the path.
+  // The previous answer stays while the next is computed, but not for another path.
   const found = isWay(path.points) && !query.isError ? query.data : undefined;
   return (
     <div className={classes.ask}>
@@ -117,7 +117,7 @@ function Asking({ models, scenes }: AskingProps): JSX.Element {
   );
 }
 
-/** Between two ends the server plans; what lies between them is not part of that question. */
+/** The ends of a path that the server plans; the points between them are not part of that query. */
 const ends = <T,>(points: readonly T[], planned: boolean): readonly T[] =>
   planned && points.length > 2 ? points.filter((_, at) => at % (points.length - 1) === 0) : points;
 

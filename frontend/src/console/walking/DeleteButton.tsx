@@ -1,4 +1,4 @@
-/** Deletes something of this page, after a question. */
+/** A button that deletes an item of this page, after a confirmation. */
 import { Button, Group, Modal, Stack, Text } from "@mantine/core";
 import { type QueryKey, useMutation, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";

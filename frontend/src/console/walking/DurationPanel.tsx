@@ -101,7 +101,7 @@ function Outside({ prediction }: { readonly prediction: Prediction }): JSX.Eleme
 
 function useDurationWords(): DurationWords {
   const { t, language } = useTexts();
-  // By language alone: a table of words that is new each time would draw the figure anew.
+  // Depends on the language alone: a new table of words at each render would redraw the figure.
   // biome-ignore lint/correctness/useExhaustiveDependencies: `t` follows the language.
   return useMemo(
     () => ({

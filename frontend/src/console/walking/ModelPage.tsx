@@ -1,4 +1,4 @@
-/** One model: what it was fitted on and how, and how well it guesses what it did not see. */
+/** One model: what it was fitted on and how, and how well it predicts unseen walks. */
 import { Figure } from "@charts/Figure";
 import { Button, Title } from "@mantine/core";
 import { type Model, type Range, walking } from "@shared/api/walking";

@@ -1,4 +1,4 @@
-/** The list of models: state, progress, and what can be done with each. */
+/** The list of models: state, progress, and the actions for each. */
 import { Button, Progress, Table } from "@mantine/core";
 import { type ModelListed, walking } from "@shared/api/walking";
 import { number } from "@shared/format";
@@ -106,7 +106,7 @@ interface FitProgressProps {
   readonly named?: boolean;
 }
 
-/** How far a fit is. */
+/** The progress of a fit. */
 export function FitProgress({ model, named }: FitProgressProps): JSX.Element | null {
   const { t } = useTexts();
   if (model.state === "ready" || model.state === "failed") return null;

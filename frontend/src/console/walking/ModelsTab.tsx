@@ -1,4 +1,4 @@
-/** The models, and the sets of walks that they are fitted on. */
+/** The models, and the sets of walks on which they are fitted. */
 import { Button, Title } from "@mantine/core";
 import { Icon } from "@shared/ui/Icon";
 import { useQuery } from "@tanstack/react-query";

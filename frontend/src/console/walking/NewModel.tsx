@@ -1,4 +1,4 @@
-/** Orders a model: on which walks, in which scene, and how it is fitted. */
+/** Start to fit a model: on which walks, in which scene, and with which settings. */
 import { Button, Group, Modal, Select, Stack } from "@mantine/core";
 import { type WalkSet, type NewModel as Wish, walking } from "@shared/api/walking";
 import { useMutation, useQueryClient } from "@tanstack/react-query";

@@ -1,4 +1,4 @@
-/** Brings in walks: a table of tracks, ways cut from captures, or made-up walkers. */
+/** Add walks: a table of tracks, paths cut from captures, or synthetic walkers. */
 import {
   Button,
   FileInput,
@@ -76,7 +76,7 @@ export function NewWalks({ opened, onClose }: NewWalksProps): JSX.Element {
   );
 }
 
-/** Sends a form, and looks at the list again where it was taken. */
+/** Send a form, and reload the list if it was accepted. */
 function useSending(send: () => Promise<unknown>, onDone: () => void) {
   const queries = useQueryClient();
   return useMutation({
@@ -227,7 +227,7 @@ interface Person {
 
 const NOBODY: Person = { subject: "", stature: null };
 
-/** Cuts walks from stored captures: which ones, and who walks in each. */
+/** Cut walks from stored captures: which ones, and who walks in each. */
 function CapturedWalks({ title, onDone }: WayProps): JSX.Element {
   const { t } = useTexts();
   const captures = useQuery(capturesQuery).data?.captures ?? [];

@@ -1,4 +1,4 @@
-/** Before there is a model that can be asked: one that is being fitted, or how to get one. */
+/** Before any model can be queried: the one being fitted, or how to get one. */
 import { Button } from "@mantine/core";
 import { type ModelListed, walking } from "@shared/api/walking";
 import { useMutation, useQueryClient } from "@tanstack/react-query";
@@ -34,7 +34,10 @@ export function NoModel({ models }: { readonly models: readonly ModelListed[] })
 
 const PEOPLE = 8;
 
-/** A model of made-up walkers in one go, so that the page can be tried before anybody was tracked. */
+/**
+ * Fit a model of synthetic walkers in one step, so that the page can be tried before anybody was
+ * tracked.
+ */
 function TryIt(): JSX.Element {
   const { t } = useTexts();
   const queries = useQueryClient();

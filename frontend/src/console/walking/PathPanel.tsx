@@ -1,4 +1,4 @@
-/** The scene with the path, and the same path as numbers for whoever does not draw. */
+/** The scene with the path, and the same path as numbers for people who do not draw. */
 import { ActionIcon, Button, NumberInput, Select, Switch, Title } from "@mantine/core";
 import type { Point, Prediction, Scene } from "@shared/api/walking";
 import { number } from "@shared/format";
@@ -128,7 +128,7 @@ function Numbers({ points, onChange }: NumbersProps): JSX.Element {
         </thead>
         <tbody>
           {points.map((point, at) => (
-            // biome-ignore lint/suspicious/noArrayIndexKey: a point is its place in the path.
+            // biome-ignore lint/suspicious/noArrayIndexKey: a point is identified by its position in the path
             <tr key={at}>
               <td className="numbers">{at + 1}</td>
               {[0, 1].map((axis) => (

@@ -22,7 +22,7 @@ interface SceneDrawingProps {
   readonly way: readonly Point[] | null;
   readonly walkers: Prediction["walkers"];
   readonly synthetic: boolean;
-  /** When the walkers are seen, each at a place of its own. */
+  /** The time at which each walker is shown, s. */
   readonly atS: number;
   readonly onChange: Dispatch<PathChange>;
 }
@@ -59,7 +59,8 @@ export function SceneDrawing(props: SceneDrawingProps): JSX.Element {
   };
   return (
     <div className={classes.picture}>
-      {/* biome-ignore lint/a11y/useSemanticElements: a picture is no field set; each of its points is a button. */}
+      {/* biome-ignore lint/a11y/useSemanticElements: a picture is not a fieldset; each of its points
+         is a button. */}
       <svg
         ref={root}
         viewBox={`0 0 ${WIDTH} ${plan.height}`}
@@ -103,7 +104,7 @@ export function SceneDrawing(props: SceneDrawingProps): JSX.Element {
         )}
         {shown.map((point, at) => (
           <PathPoint
-            // biome-ignore lint/suspicious/noArrayIndexKey: a point is its place in the path.
+            // biome-ignore lint/suspicious/noArrayIndexKey: a point is identified by its position in the path.
             key={at}
             at={at}
             point={point}

@@ -1,4 +1,4 @@
-/** What does not change of a scene: the floor with metres on both axes, obstacles and places. */
+/** The static parts of a scene: the floor with metres on both axes, obstacles and places. */
 import type { Scene } from "@shared/api/walking";
 import { number } from "@shared/format";
 import type { JSX } from "react";

@@ -69,7 +69,7 @@ function Scenes({ scenes }: { readonly scenes: readonly SceneListed[] }): JSX.El
   );
 }
 
-/** Lines of the file are cut for editors; paragraphs are meant. */
+/** Join the lines of the file, which are wrapped for editors, into paragraphs. */
 const unwrapped = (text: string): string => text.trim().replace(/(\S)\n(?=\S)/g, "$1 ");
 
 function Shown({ scene }: { readonly scene: Scene }): JSX.Element {

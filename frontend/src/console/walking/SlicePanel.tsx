@@ -1,4 +1,4 @@
-/** A slice of the map that answers: how suitable pairs of steering parameters are. */
+/** A slice of the map of suitability: how suitable pairs of steering parameters are. */
 import { Figure } from "@charts/Figure";
 import { Select, Slider, Title } from "@mantine/core";
 import type { Prediction, Slice } from "@shared/api/walking";
@@ -88,7 +88,7 @@ function Found({ slice, prediction, held, onHeld, onValue }: FoundProps): JSX.El
           allowDeselect={false}
         />
         <Slider
-          // Moved by whoever drags; asked once it is let go.
+          // Follows the pointer while dragged; the value is requested once it is released.
           key={slice.held.name}
           thumbLabel={t("walking.held.at", { what: told(slice.held.name) })}
           label={(at) => number(at, language)}

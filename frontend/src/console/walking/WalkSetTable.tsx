@@ -1,4 +1,4 @@
-/** The list of sets of walks: who walked, how many, how far. */
+/** The list of sets of walks: who walked, how many walks, how far. */
 import { Table } from "@mantine/core";
 import { type WalkSet, walking } from "@shared/api/walking";
 import { number } from "@shared/format";

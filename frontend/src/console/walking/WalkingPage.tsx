@@ -1,4 +1,4 @@
-/** How people walk: asking a model, the models and their walks, and the scenes. */
+/** The page Walking: querying a model, the models and their walks, and the scenes. */
 import { Tabs, Text, Title } from "@mantine/core";
 import { Icon, type IconName } from "@shared/ui/Icon";
 import type { JSX } from "react";

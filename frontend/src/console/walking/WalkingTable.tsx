@@ -1,4 +1,4 @@
-/** A list of what walking has, in a table; and the cell that tells who made a thing, and when. */
+/** A table of scenes, walks or models, and the cell that shows who created an entry, and when. */
 import { Table } from "@mantine/core";
 import { dateTime } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
@@ -43,7 +43,7 @@ export function Made({ at, by }: MadeProps): JSX.Element {
   );
 }
 
-/** Says of walks, models and figures that no person walked them. */
+/** A mark for walks, models and figures of synthetic walkers. */
 export function Synthetic(): JSX.Element {
   const { t } = useTexts();
   return (

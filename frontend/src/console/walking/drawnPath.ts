@@ -1,4 +1,6 @@
-/** A path that is drawn, with its way back; places are metres, kept to the centimetre. */
+/**
+ * A path that is being drawn, with its undo history; points are metres, rounded to the centimetre.
+ */
 import type { Point } from "@shared/api/walking";
 
 export interface DrawnPath {
@@ -50,6 +52,6 @@ const same = (a: readonly Point[], b: readonly Point[]): boolean =>
 const isSame = (a: Point, b: Point | undefined): boolean =>
   b !== undefined && a[0] === b[0] && a[1] === b[1];
 
-/** Whether a question can be asked: two points or more, no two neighbours the same. */
+/** Whether the path can be queried: at least two points, no two consecutive ones the same. */
 export const isWay = (points: readonly Point[]): boolean =>
   points.length > 1 && points.every((point, at) => !isSame(point, points[at + 1]));

@@ -13,7 +13,7 @@ export interface Plan {
   readonly bounds: Scene["bounds_m"];
   readonly x: (metres: number) => number;
   readonly y: (metres: number) => number;
-  /** From a place in the picture to one on the floor, kept within bounds. */
+  /** Convert a position in the picture to one on the floor, clamped to the bounds. */
   readonly floor: (x: number, y: number) => Point;
 }
 
@@ -42,7 +42,7 @@ export function planOf(bounds: Scene["bounds_m"]): Plan {
 const STEPS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200];
 const WIDEST_PX = 34;
 
-/** Round metres from `low` to `high`, far enough apart to be read. */
+/** Round numbers of metres from `low` to `high`, far enough apart to be readable. */
 export function ticks(low: number, high: number, scale: number): readonly number[] {
   const step = STEPS.find((one) => one * scale >= WIDEST_PX) ?? 500;
   const first = Math.ceil(low / step - 1e-9);

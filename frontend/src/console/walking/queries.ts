@@ -1,4 +1,4 @@
-/** The reads about walking. */
+/** The queries about walking. */
 import {
   type ModelListed,
   type PredictionAsked,

@@ -10,7 +10,7 @@ describe("a drawn path", () => {
   ] as const;
   const drawn = two.reduce(changedPath, NO_PATH);
 
-  it("keeps centimetres, and can be asked about from two points on", () => {
+  it("is rounded to centimetres, and can be queried if it has at least two points", () => {
     expect(drawn.points).toEqual([
       [0, 0.12],
       [1, 1],
@@ -25,7 +25,7 @@ describe("a drawn path", () => {
     ]).toEqual([false, true, false]);
   });
 
-  it("goes back step by step, and not for a change that changes nothing", () => {
+  it("is undone step by step, without steps that changed nothing", () => {
     const still = changedPath(drawn, { do: "move", at: 1, point: [1.001, 1] });
     expect(still).toBe(drawn);
     const moved = changedPath(drawn, { do: "move", at: 1, point: [2, 1] });
@@ -40,7 +40,7 @@ describe("a drawn path", () => {
 describe("the picture of a scene", () => {
   const plan = planOf([-4, -3, 4, 4]);
 
-  it("has y upwards, one scale, and finds back to the floor", () => {
+  it("has y upwards, one scale, and converts back to the floor", () => {
     expect(plan.y(4)).toBeLessThan(plan.y(-3));
     expect(plan.x(1) - plan.x(0)).toBeCloseTo(plan.y(0) - plan.y(1), 9);
     const [x, y] = plan.floor(plan.x(1.5), plan.y(-2));
@@ -56,14 +56,14 @@ describe("the picture of a scene", () => {
 });
 
 describe("the histogram of durations", () => {
-  it("counts every walk once, the slowest too", () => {
+  it("counts every walk once, including the slowest", () => {
     const durations = Array.from({ length: 200 }, (_, at) => 2 + (at / 199) ** 2);
     const { edges, counts } = binned(durations);
     expect(counts.reduce((sum, count) => sum + count, 0)).toBe(200);
     expect([edges[0], edges.at(-1)]).toEqual([2, 3]);
   });
 
-  it("holds walks that all take equally long", () => {
+  it("supports walks that all take equally long", () => {
     expect(binned([3, 3, 3]).counts[0]).toBe(3);
   });
 });

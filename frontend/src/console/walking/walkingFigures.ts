@@ -25,7 +25,10 @@ const BAND = "rgba(14,138,151,0.3)";
 const FEWEST_BINS = 8;
 const MOST_BINS = 40;
 
-/** Histogram, or the share of walks that are over by then; bands hold 50 and 90 % of the walks. */
+/**
+ * A histogram, or the fraction of walks that have ended by a time; bands contain 50 and 90 % of the
+ * walks.
+ */
 export function durationFigure(
   prediction: Prediction,
   words: DurationWords,
@@ -133,7 +136,7 @@ interface SliceWords {
   readonly adapt: string;
 }
 
-/** A heat map of suitability, with what the models choose laid over it. */
+/** A heat map of suitability, overlaid with the parameters that the models choose. */
 export function sliceFigure(slice: Slice, prediction: Prediction, words: SliceWords): Figure {
   const names = slice.order;
   const [across, along] = [names.indexOf(slice.x.name), names.indexOf(slice.y.name)];
@@ -189,7 +192,7 @@ interface CensusWords {
   readonly count: string;
 }
 
-/** How many paths are how long. */
+/** How many paths have which length. */
 export function censusFigure(census: WalkCensus, words: CensusWords) {
   const { edges_m: edges, counts } = census;
   const width = (edges[1] ?? 0.5) - (edges[0] ?? 0);

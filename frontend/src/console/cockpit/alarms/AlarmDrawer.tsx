@@ -1,4 +1,7 @@
-/** Every alarm of the session, the newest first, with its times: taking note of one removes none. */
+/**
+ * Every alarm of the session with its times, newest first; acknowledging an alarm does not remove
+ * it.
+ */
 import type { Alarm, SessionView } from "@shared/api/types";
 import { duration, timeOfDay } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";

@@ -1,6 +1,6 @@
 /**
- * How good the headset's data are, always at the same place and of the same height: what is wrong
- * fills it with colour and says what to do, and nothing on the page moves.
+ * How good the headset's data are, always in the same place and at the same height: a problem fills
+ * it with colour and shows the remedy, and nothing on the page moves.
  */
 import { Button } from "@mantine/core";
 import { sessions } from "@shared/api/endpoints";
@@ -69,7 +69,7 @@ export function SignalStrip({ session, alarms, onHistory }: SignalStripProps): J
   );
 }
 
-/** The participant's call ends when somebody is there, not when somebody has read of it. */
+/** The participant's call ends when somebody is there, not when somebody has read it. */
 function AnswerCall({ session }: { readonly session: SessionView }): JSX.Element | null {
   const { t } = useTexts();
   const may = useMay();
@@ -131,7 +131,7 @@ function Wrong({ alarm, session, others }: WrongProps): JSX.Element {
             {joints !== null && `: ${joints}`}
             <span className="visually-hidden">. {remedy}</span>
           </span>
-          {/* What grows by the second is not read out again by the second. */}
+          {/* A value that grows every second is not announced every second by screen readers. */}
           {much !== null && (
             <span className={`${classes.amount} numbers`} aria-hidden="true">
               {isDuration(alarm) ? t("alarm.for", { time: much }) : much}

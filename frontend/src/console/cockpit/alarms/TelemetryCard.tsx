@@ -49,7 +49,7 @@ export function TelemetryCard({ session, store }: TelemetryCardProps): JSX.Eleme
   );
 }
 
-/** The scale of the bars: a joint error beyond it is drawn full. */
+/** The scale of the bars: a larger joint error is drawn as a full bar. */
 const FULL_SCALE_DEG = 60;
 
 function JointErrors({ errors }: { readonly errors: Readonly<Record<string, number | null>> }) {

@@ -50,8 +50,8 @@ const shown = (alarm: LiveAlarm, view: SessionView = session) => {
   return only;
 };
 
-describe("the alarms that are on", () => {
-  it("begin with the critical ones, then with the newest", () => {
+describe("the active alarms", () => {
+  it("are listed with the critical ones first, then the newest", () => {
     const alarms = [
       live("gap", { since: "2026-03-02T09:30:05Z" }),
       live("jump"),
@@ -64,7 +64,7 @@ describe("the alarms that are on", () => {
     expect(codes).toEqual(["silent", "gap", "jump", "clock_uncertain"]);
   });
 
-  it("are the headset's news while these are fresh, and then the session's own word", () => {
+  it("come from the headset's messages while these are recent, otherwise from the session", () => {
     const view = { ...session, alarms: [recorded("disconnected")] };
     const news = quality([live("gap")]);
     const codes = (now: number, from: typeof news | null) =>
@@ -74,7 +74,7 @@ describe("the alarms that are on", () => {
     expect(codes(0, null)).toEqual(["disconnected"]);
   });
 
-  it("keep what the participant said, whatever the headset tells meanwhile", () => {
+  it("include the participant's calls, whatever the headset reports meanwhile", () => {
     for (const code of ["help_asked", "question_asked", "consent_refused", "stop_rule_met"]) {
       const view = { ...session, alarms: [recorded(code, { severity: "critical" })] };
       const codes = currentAlarms(view, quality([live("gap")]), null, milliseconds(10)).map(
@@ -84,14 +84,14 @@ describe("the alarms that are on", () => {
     }
   });
 
-  it("are the same alarm wherever they were heard of", () => {
+  it("have the same key, whichever source reported them", () => {
     const view = { ...session, alarms: [recorded("gap", { stream: "target" })] };
     const [told] = currentAlarms(session, quality([live("gap", { stream: "target" })]), null, at0);
     const [read] = currentAlarms(view, null, null, at0);
     expect(told?.key).toBe(read?.key);
   });
 
-  it("are joined by the server's own, which no headset and no record can tell", () => {
+  it("include the server's own, which neither the headset nor the record can report", () => {
     const codes = (news: Partial<StorageNews>) => {
       const told = { status: "ok", since: null, reason: null, low_disk: false, ...news } as const;
       const storage = { news: told, heardAt: "2026-03-02T09:30:00Z" };
@@ -115,12 +115,12 @@ describe("the alarm that is shown", () => {
     milliseconds(0),
   );
 
-  it("is a critical one as long as it is on, noted or not", () => {
+  it("is a critical one as long as it is active, acknowledged or not", () => {
     expect(mostUrgent(on, () => false)?.code).toBe("silent");
     expect(mostUrgent(on, ({ code }) => code === "silent")?.code).toBe("silent");
   });
 
-  it("is one that nobody has taken note of among its like", () => {
+  it("is one that is not acknowledged, among those of the same severity", () => {
     const warnings = on.filter(({ severity }) => severity === "warning");
     expect(mostUrgent(warnings, () => false)?.code).toBe("jump");
     expect(mostUrgent(warnings, ({ code }) => code === "jump")?.code).toBe("gap");
@@ -131,8 +131,8 @@ describe("the alarm that is shown", () => {
 
 const at0 = milliseconds(0);
 
-describe("the words for an alarm", () => {
-  it("exist for every code, also for one that this page does not know", () => {
+describe("the texts of an alarm", () => {
+  it("exist for every code, including unknown ones", () => {
     const said = ["question_asked", "consent_refused", "refusal_retracted"];
     for (const code of ["silent", "gap", "clock_unknown", ...said, "of a later version"]) {
       const alarm = shown(live(code));
@@ -142,7 +142,7 @@ describe("the words for an alarm", () => {
     expect(titleKey(shown(live("of a later version")))).toBe("alarm.other");
   });
 
-  it("say that the phase stands while it does", () => {
+  it("say that the phase is paused while it is", () => {
     const silent = shown(live("silent", { severity: "critical" }));
     const paused = { ...session, current: at(2, { status: "paused" }) };
     expect(remedyKey(silent, paused)).toBe("alarm.silent.paused");
@@ -150,7 +150,7 @@ describe("the words for an alarm", () => {
     expect(remedyKey(shown(live("gap")), paused)).toBe("alarm.gap.do");
   });
 
-  it("tell how much in its unit", () => {
+  it("give the amount with its unit", () => {
     const of = (code: string, value: number, unit: string | null) =>
       amount(shown(live(code, { value, unit })), "en");
     expect(of("silent", 4.9, "s")).toBe("4 s");
@@ -162,7 +162,7 @@ describe("the words for an alarm", () => {
     expect(of("jump", 2, null)).toBeNull();
   });
 
-  it("leave out what has grown since it was recorded", () => {
+  it("leave out an amount that has grown since it was recorded", () => {
     expect(fromRecord(recorded("silent", { value: 3, unit: "s" })).value).toBeNull();
     expect(fromRecord(recorded("gap", { value: 0.5, unit: "s" })).value).toBe(0.5);
   });
@@ -175,7 +175,7 @@ describe("the words for an alarm", () => {
   });
 });
 
-describe("news of the headset", () => {
+describe("messages about the headset", () => {
   const signal = {
     frame_rate_hz: 90,
     usual_rate_hz: 90,
@@ -186,7 +186,7 @@ describe("news of the headset", () => {
     behind_s: 0,
   };
 
-  it("keep the clock's last word when they come without frames", () => {
+  it("keep the clock's last report if they come without frames", () => {
     const store = new TelemetryStore();
     const figures: TelemetryNews = { phase_id: 1, active_s: 3, fps: 90, signal, alarms: [] };
     store.put(figures);

@@ -1,4 +1,4 @@
-/** Which alarms are on, in the order in which they matter, and the words for them. */
+/** The active alarms in order of importance, and their texts. */
 import type { Alarm, FailingNews, LiveAlarm, SessionView, StorageNews } from "@shared/api/types";
 import { clockFace, number } from "@shared/format";
 import { type Milliseconds, milliseconds, seconds } from "@shared/units";
@@ -7,24 +7,26 @@ import type { Key } from "../../i18n";
 import { ALARMS, ALARMS_OF_PERSON, ALARMS_THAT_PAUSE } from "../../i18n/registries.generated";
 import { type Quality, type TelemetryStore, useQuality } from "../session/telemetryStore";
 
-/** An alarm as it is shown, whether it was told live or read with the session. */
+/** An alarm as it is shown, whether it was received live or read with the session. */
 export interface ShownAlarm {
-  /** The same for the same alarm, wherever it was heard of. */
+  /** The same for the same alarm, whichever source reported it. */
   readonly key: string;
   readonly code: string;
   readonly severity: Alarm["severity"];
   readonly since: string;
   readonly stream: string | null;
   readonly joints: readonly string[];
-  /** Null where it would be out of date: only live news keep up with it. */
+  /** Null if it would be outdated: only live messages keep it current. */
   readonly value: number | null;
   readonly unit: string | null;
 }
 
-/** News of the headset come once a second; when they stop, the session's own word counts. */
+/**
+ * Messages about the headset come once a second; when they stop, the session's own alarms count.
+ */
 const NEWS_LAST: Milliseconds = 3000 as Milliseconds;
 
-/** What is wrong now: critical first, then the newest. */
+/** The active alarms: critical first, then the newest. */
 export function currentAlarms(
   session: SessionView,
   quality: Quality | null,
@@ -40,7 +42,9 @@ export function currentAlarms(
   );
 }
 
-/** About the participant, not the headset: the headset's news never tell of them. */
+/**
+ * Alarms about the participant rather than the headset: the headset's messages never contain them.
+ */
 const isOfPerson = (code: string): boolean => ALARMS_OF_PERSON.some((one) => one === code);
 
 const SEVERITIES = ["info", "warning", "critical"] as const;
@@ -51,15 +55,18 @@ const keyOf = (alarm: Alarm | LiveAlarm): string =>
 
 const fromNews = (alarm: LiveAlarm): ShownAlarm => ({ ...alarm, key: keyOf(alarm) });
 
-/** The record tells how it began; a length of time, but for a gap's, has grown since. */
+/**
+ * An alarm from the record, which has the value at its start; except for a gap's, a duration has
+ * grown since.
+ */
 export function fromRecord(alarm: Alarm): ShownAlarm {
   const grows = alarm.unit === "s" && alarm.code !== "gap";
   return { ...alarm, key: keyOf(alarm), joints: [], value: grows ? null : alarm.value };
 }
 
 /**
- * The alarm that is shown: of the most severe the newest that nobody has taken note of. One that
- * was noted still stands before anything less severe.
+ * The alarm to show: the newest of the most severe ones that is not acknowledged. An acknowledged
+ * alarm still precedes any less severe one.
  */
 export function mostUrgent(
   alarms: readonly ShownAlarm[],
@@ -70,7 +77,9 @@ export function mostUrgent(
   return alike.find((alarm) => !isSeen(alarm)) ?? first;
 }
 
-/** Differs whenever an alarm begins or ends: by then the list of them has changed, too. */
+/**
+ * A key that changes whenever an alarm starts or ends, because the list of alarms has changed then.
+ */
 export const stateOf = (session: SessionView): string =>
   session.alarms.map((alarm) => alarm.id).join(" ");
 
@@ -80,11 +89,11 @@ const known = (code: string): Code | "other" => ALARMS.find((one) => one === cod
 
 export const titleKey = (alarm: ShownAlarm): Key => `alarm.${known(alarm.code)}`;
 
-/** The participant waits for somebody to come. */
+/** Whether the participant waits for somebody to come. */
 export const isCall = (alarm: ShownAlarm | undefined): boolean =>
   alarm?.code === "help_asked" || alarm?.code === "question_asked";
 
-/** What to do; while the phase stands because of it, that it stands. */
+/** The text of the remedy; while the phase is paused because of the alarm, that it is paused. */
 export function remedyKey(alarm: ShownAlarm, session: SessionView): Key {
   const code = known(alarm.code);
   const stands = session.current?.status === "paused";
@@ -93,7 +102,7 @@ export function remedyKey(alarm: ShownAlarm, session: SessionView): Key {
   return `alarm.${code}.do`;
 }
 
-/** `4 s`, `1:05`, `± 12 ms`, `61 Hz`, `3`: how much of it there is, where that helps. */
+/** `4 s`, `1:05`, `± 12 ms`, `61 Hz`, `3`: the value with its unit, if it is useful. */
 export function amount(alarm: ShownAlarm, language: string): string | null {
   const { value, unit, code } = alarm;
   if (value === null || code === "jump") return null;
@@ -103,7 +112,7 @@ export function amount(alarm: ShownAlarm, language: string): string | null {
   return unit === null ? number(value, language, 0) : `${number(value, language, 0)} ${unit}`;
 }
 
-/** `Left Hand, Head`: the joints meant, at most three. */
+/** `Left Hand, Head`: the joints concerned, at most three. */
 export function jointNames(alarm: ShownAlarm): string | null {
   if (alarm.joints.length === 0) return null;
   const named = alarm.joints.slice(0, 3).map((joint) => joint.replace(/([a-z])([A-Z])/g, "$1 $2"));
@@ -112,11 +121,13 @@ export function jointNames(alarm: ShownAlarm): string | null {
 
 export interface Storage {
   readonly news: StorageNews;
-  /** When this page heard of it, as an ISO time. */
+  /** When this page received it, as an ISO time. */
   readonly heardAt: string;
 }
 
-/** Trouble with the server's disk, as alarms: it concerns every session, and the record cannot tell. */
+/**
+ * Problems with the server's disk, as alarms: they concern every session, and cannot be recorded.
+ */
 function storageAlarms(storage: Storage | null): readonly ShownAlarm[] {
   if (storage === null) return [];
   const { news, heardAt } = storage;
@@ -124,7 +135,7 @@ function storageAlarms(storage: Storage | null): readonly ShownAlarm[] {
   return news.low_disk ? [alarm("low_disk", "warning", heardAt)] : [];
 }
 
-/** A part of the server that fails, while it does. */
+/** The alarm of a failing background task of the server. */
 const failingAlarm = (failing: FailingNews): ShownAlarm => {
   const code = failing.urgency === "critical" ? "writer_failed" : "background_failed";
   return alarm(code, failing.urgency, failing.since);
@@ -148,7 +159,7 @@ export interface Alarms {
   readonly see: (alarm: ShownAlarm) => void;
 }
 
-/** The alarms that are on, and which of them the operator has taken note of. */
+/** The active alarms, and which of them the operator has acknowledged. */
 export function useAlarms(
   session: SessionView,
   store: TelemetryStore,
@@ -166,7 +177,7 @@ export function useAlarms(
   };
 }
 
-/** Draw once more when the news have become old, since nothing else would. */
+/** Re-render when the messages have become outdated, since nothing else would. */
 function useAgain(quality: Quality | null): void {
   const [, again] = useState<Quality | null>(null);
   useEffect(() => {

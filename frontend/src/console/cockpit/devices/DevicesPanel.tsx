@@ -1,4 +1,4 @@
-/** Tablet and headset: whether they are there, and how to bring them in. */
+/** Tablet and headset: whether they are connected, and how to pair them. */
 import { ActionIcon, Button } from "@mantine/core";
 import { sessions } from "@shared/api/endpoints";
 import type { Device, PairedDevice, SessionView } from "@shared/api/types";
@@ -14,7 +14,7 @@ import { isBusy } from "../session/keys";
 import { PairingDialog } from "./PairingDialog";
 
 const KINDS: readonly Device[] = ["tablet", "headset"];
-/** Pairing is far down the page for somebody without a mouse. */
+/** Keys for pairing, whose buttons are far down the page for keyboard users. */
 const PAIR_KEYS: Readonly<Record<Device, string>> = { tablet: "T", headset: "H" };
 
 export function DevicesPanel({ session }: { readonly session: SessionView }): JSX.Element {
@@ -67,7 +67,7 @@ function Unpaired({ kind, onPair }: { readonly kind: Device; readonly onPair: ()
   );
 }
 
-/** Keys that show a code; a device that is there already is replaced by whoever uses it. */
+/** Keys that show a pairing code; a connected device is replaced by the next one to use it. */
 function usePairKeys(pair: (kind: Device) => void): void {
   useEffect(() => {
     const onKey = (event: KeyboardEvent) => {
@@ -140,7 +140,7 @@ function ConnectionMark({ connected }: { readonly connected: boolean }): JSX.Ele
   );
 }
 
-/** The time of day, every five seconds: enough for "last seen". */
+/** The time of day, updated every five seconds: enough for "last seen". */
 function useSlowClock(): Date {
   const [now, setNow] = useState(() => new Date());
   useEffect(() => {

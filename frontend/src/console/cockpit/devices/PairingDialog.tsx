@@ -1,4 +1,4 @@
-/** A short code, in type that can be read across the room, and the same as a QR code. */
+/** A pairing code, in type that can be read across the room, and the same as a QR code. */
 import { Anchor, Button, Loader, Modal } from "@mantine/core";
 import { sessions } from "@shared/api/endpoints";
 import type { Device, Pairing, SessionView } from "@shared/api/types";
@@ -60,7 +60,7 @@ function Code({ session, device, onClose }: CodeProps): JSX.Element {
   return <CodeShown pairing={query.data} device={device} onRenew={() => void query.refetch()} />;
 }
 
-/** A device that was not there when the dialog opened has used the code. */
+/** Close the dialog when the code has been used: a device is there that was not when it opened. */
 function useCloseWhenPaired(session: SessionView, device: Device, onClose: () => void): void {
   const known = useRef(new Set(session.devices.map(({ id }) => id)));
   const arrived = session.devices.some(({ id, kind }) => kind === device && !known.current.has(id));
@@ -146,7 +146,7 @@ function OnlyHere({
   );
 }
 
-/** Folded: needed once for each device, and then in the way. */
+/** Collapsed, because it is needed only once for each device. */
 function FirstTime({ pairing }: { readonly pairing: Pairing }): JSX.Element | null {
   const { t } = useTexts();
   if (pairing.help_url === null || pairing.help_qr_svg === null) return null;

@@ -1,4 +1,4 @@
-/** The movement, live: avatar and participant among the boxes, which light up when touched. */
+/** The live movement: avatar and participant among the boxes, which light up when touched. */
 import { Button, Loader, SegmentedControl } from "@mantine/core";
 import { useLocalStorage } from "@mantine/hooks";
 import type { PoseTouch } from "@shared/api/poses";
@@ -99,7 +99,7 @@ function Picture({ session, store, view }: LiveCardProps & { readonly view: View
   );
 }
 
-/** Why nothing moves, over the picture. */
+/** Why nothing moves, shown over the picture. */
 function State({ session, live }: { readonly session: SessionView; readonly live: Live }) {
   const { t } = useTexts();
   const { way, feed, setup, isMoving } = live;
@@ -155,7 +155,7 @@ function Legend(): JSX.Element {
   );
 }
 
-/** There is something to see from the moment the participant enters the body. */
+/** Whether there is movement to show: from the moment the participant enters the body. */
 export const hasMovement = ({ status, steps }: SessionView): boolean =>
   status === "active" &&
   steps.some((step) => step.kind === "materialise" && step.status !== "pending");
@@ -177,7 +177,7 @@ function useViewKeys(isOn: boolean, setView: (view: View) => void): void {
   }, [isOn]);
 }
 
-/** What the boxes say in colours, in words: the last touch and what it was judged to be. */
+/** The colours of the boxes in words: the last contact and how it was judged. */
 function LastTouch({ touch }: { readonly touch: PoseTouch | null }): JSX.Element {
   const { t } = useTexts();
   if (touch === null) return <span className={classes.last}>{t("live3d.last.none")}</span>;

@@ -1,10 +1,13 @@
-/** Joint errors as colours: after the plasma map, which is read with any kind of colour vision. */
+/**
+ * Joint errors as colours: based on the plasma map, which is readable with any kind of colour
+ * vision.
+ */
 
-/** What is farther off is drawn like this. */
+/** Larger errors have the same colour. */
 export const FULL_SCALE_DEG = 60;
 
 const STOPS = ["#7d4be0", "#b0429f", "#dc5b6b", "#f48849", "#fcce25"] as const;
-/** Where nothing is known. */
+/** The colour of an unknown error. */
 const UNKNOWN = "#8a9898";
 
 type Rgb = readonly [red: number, green: number, blue: number];

@@ -1,10 +1,12 @@
-/** From local rotations to places: forward kinematics, as `app/science/skeleton/kinematics.py`. */
+/**
+ * Forward kinematics: positions from local rotations, as in `app/science/skeleton/kinematics.py`.
+ */
 import type { PoseSetup } from "@shared/api/poses";
 
 export interface Placed {
-  /** x, y, z of every joint, metres in the world. Written anew by `place`. */
+  /** x, y, z of every joint, metres in the world. Overwritten by `place`. */
   readonly positions: Float32Array;
-  /** w, x, y, z of every joint: world from joint. */
+  /** w, x, y, z of every joint: the rotation world from joint. */
   readonly turns: Float32Array;
 }
 
@@ -37,7 +39,7 @@ export function place(setup: PoseSetup, values: Float32Array, into: Placed): voi
 
 type Vector = readonly [x: number, y: number, z: number];
 
-/** A vector of a joint's own frame, in the world. */
+/** Rotate a vector from a joint's own frame into the world. */
 export function turned(turns: Float32Array, joint: number, [x, y, z]: Vector): Vector {
   const [w = 1, a = 0, b = 0, c = 0] = turns.subarray(4 * joint, 4 * joint + 4);
   // v + 2 u x (u x v + w v)
@@ -47,7 +49,7 @@ export function turned(turns: Float32Array, joint: number, [x, y, z]: Vector): V
   return [x + w * tx + b * tz - c * ty, y + w * ty + c * tx - a * tz, z + w * tz + a * ty - b * tx];
 }
 
-/** The rest pose, standing on the floor: what a body is measured by before it moves. */
+/** The rest pose, standing on the floor: a body's proportions before it moves. */
 export function restValues(setup: PoseSetup): Float32Array {
   const values = new Float32Array(3 + 4 * setup.joints.length);
   values.set(setup.offsets_m[0] ?? [0, 0, 0]);

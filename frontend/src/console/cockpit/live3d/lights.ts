@@ -1,13 +1,15 @@
-/** Which boxes are lit, from the touches that came: green stays until the task is done. */
+/**
+ * Which boxes are lit, according to the touches received: green stays until the task is completed.
+ */
 import type { PoseTouch } from "@shared/api/poses";
 import type { BlockTone, BlockTones } from "@shared/stage/figure";
 
-/** How long a touch that does not stay is seen. */
+/** How long a touch that does not stay lit is shown. */
 export const FLASH_MS = 900;
 
 interface Lit {
   readonly tone: BlockTone;
-  /** Infinite while the task lasts. */
+  /** When the light goes out; infinite until the task is completed. */
   readonly until: number;
 }
 
@@ -32,7 +34,7 @@ const TONES: Readonly<Record<string, BlockTone>> = {
 const isNewer = (one: PoseTouch["number"], other: PoseTouch["number"]): boolean =>
   one[0] !== other[0] ? one[0] > other[0] : one[1] > other[1];
 
-/** Take in what came; touches that were seen before are told again and change nothing. */
+/** Add the touches received; those seen before are sent repeatedly and change nothing. */
 export function withTouches(before: Lights, touches: readonly PoseTouch[], now: number): Lights {
   const isFirst = before.seen[0] < 0;
   return touches
@@ -40,7 +42,7 @@ export function withTouches(before: Lights, touches: readonly PoseTouch[], now: 
     .reduce((lights, touch) => taken(lights, touch, now, isFirst), before);
 }
 
-/** What had happened before this page looked is not news: only what stays is lit. */
+/** Add one touch. Touches from before this page was opened do not flash: only what stays is lit. */
 function taken(before: Lights, touch: PoseTouch, now: number, isOld: boolean): Lights {
   const lit = new Map(touch.phase_id === before.phaseId ? before.lit : []);
   const after = { seen: touch.number, phaseId: touch.phase_id, last: touch };
@@ -51,7 +53,7 @@ function taken(before: Lights, touch: PoseTouch, now: number, isOld: boolean): L
     const flash = isOld ? now : now + FLASH_MS;
     const until = stays ? Number.POSITIVE_INFINITY : flash;
     const known = lit.get(touch.surface);
-    // A panel that is done stays done, whatever else touches it.
+    // A completed panel stays lit, whatever else touches it.
     if (known === undefined || known.until < until) {
       lit.set(touch.surface, { tone: TONES[touch.effect] ?? "touched", until });
     }
@@ -59,14 +61,14 @@ function taken(before: Lights, touch: PoseTouch, now: number, isOld: boolean): L
   return { ...after, lit };
 }
 
-/** What is lit now. */
+/** The boxes that are lit now. */
 export function tonesAt({ lit }: Lights, now: number): BlockTones {
   return new Map(
     [...lit].filter(([, one]) => one.until > now).map(([key, { tone }]) => [key, tone]),
   );
 }
 
-/** When the next light goes out; null while none does. */
+/** When the next light goes out; null if none will. */
 export function nextChange({ lit }: Lights, now: number): number | null {
   const times = [...lit.values()].map(({ until }) => until).filter((until) => until > now);
   const next = Math.min(...times);

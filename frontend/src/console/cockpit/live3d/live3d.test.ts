@@ -23,16 +23,16 @@ const setup: PoseSetup = {
 };
 
 describe("placing a pose", () => {
-  it("stands in the rest pose where no joint is turned", () => {
+  it("gives the rest pose if no joint is rotated", () => {
     const placed = makePlaced(3);
     place(setup, restValues(setup), placed);
     expect([...placed.positions]).toEqual([0, 1, 0, 0.25, 1.5, 0, 0.75, 1.5, 0]);
   });
 
-  it("turns what hangs below a joint, in the parent's frame", () => {
+  it("rotates everything below a joint, in the parent's frame", () => {
     const values = restValues(setup);
     const half = Math.SQRT1_2;
-    // The hips a quarter to the left (about y), the arm a quarter upwards (about z).
+    // The hips a quarter turn to the left (about y), the arm a quarter turn upwards (about z).
     values.set([half, 0, half, 0], 3);
     values.set([half, 0, 0, half], 7);
     const placed = makePlaced(3);
@@ -43,7 +43,7 @@ describe("placing a pose", () => {
     });
   });
 
-  it("leaves what is not known unknown, and everything else where it is", () => {
+  it("leaves unknown joints unknown, and all others where they are", () => {
     const values = restValues(setup);
     values[7] = Number.NaN;
     const placed = makePlaced(3);
@@ -65,7 +65,7 @@ const touch = (seq: number, effect: string, surface: string | null, phase = 1): 
 describe("the boxes' lights", () => {
   const first = withTouches(DARK, [touch(0, "green", "hand/1/panel")], 0);
 
-  it("stay for a panel that was touched rightly, until the task is done", () => {
+  it("stay on for a correctly touched panel, until the task is completed", () => {
     const later = withTouches(first, [touch(1, "green", "hand/2/panel")], 10_000);
     expect(tonesAt(later, 20_000)).toEqual(
       new Map([
@@ -78,7 +78,7 @@ describe("the boxes' lights", () => {
     expect(tonesAt(done, 20_001 + FLASH_MS).size).toBe(0);
   });
 
-  it("flash for a wall and say when they go out", () => {
+  it("flash for a wall and report when they go out", () => {
     const hit = withTouches(first, [touch(1, "side", "hand/1/left")], 500);
     expect(tonesAt(hit, 501).get("hand/1/left")).toBe("bad");
     expect(nextChange(hit, 501)).toBe(500 + FLASH_MS);
@@ -86,7 +86,7 @@ describe("the boxes' lights", () => {
     expect(nextChange(hit, 501 + FLASH_MS)).toBeNull();
   });
 
-  it("do not come on again for what was told before, nor for what is long past", () => {
+  it("do not come on for touches that are repeated or long past", () => {
     const told = [touch(0, "green", "hand/1/panel"), touch(1, "side", "hand/1/left")];
     expect(withTouches(withTouches(first, told, 500), told, 9000).lit.get("hand/1/left")).toEqual({
       tone: "bad",
@@ -95,7 +95,7 @@ describe("the boxes' lights", () => {
     expect([...tonesAt(withTouches(DARK, told, 500), 500).keys()]).toEqual(["hand/1/panel"]);
   });
 
-  it("begin anew with the next phase", () => {
+  it("start over with the next phase", () => {
     const next = withTouches(first, [touch(1, "green", "foot/1/panel", 2)], 500);
     expect([...tonesAt(next, 501).keys()]).toEqual(["foot/1/panel"]);
   });
@@ -152,7 +152,7 @@ describe("the feed of poses", () => {
     expect(decodePose(message(1).slice(0, 60))).toBeNull();
   });
 
-  it("comes back after a broken line, but not where it was refused or closed", () => {
+  it("reconnects after a broken connection, but not after a rejection or a close", () => {
     vi.useFakeTimers();
     const sockets: Socket[] = [];
     const states: string[] = [];

@@ -1,6 +1,6 @@
 /**
- * The live scene: the newest poses among the boxes of the task. This module brings three.js with
- * it: import it lazily.
+ * The live scene: the newest poses among the boxes of the task. This module imports three.js:
+ * import it lazily.
  */
 import type { PoseSetup, PoseStream } from "@shared/api/poses";
 import { Body3d } from "@shared/stage/body3d";
@@ -14,7 +14,7 @@ import { aim, type View } from "./views";
 
 const STREAMS: readonly PoseStream[] = ["actual", "target"];
 const NOW = seconds(0);
-/** The place of the study, metres: it is the same for everybody. */
+/** The floor of the study, metres: it is the same for everybody. */
 const FLOOR = { min: [-2, -3], max: [2, 1], step: 1 } as const;
 
 interface Player {
@@ -30,12 +30,12 @@ export class LiveScene extends Space3d {
   #setup: PoseSetup | null = null;
   #view: View = "third";
 
-  /** Throws where the browser has no WebGL. */
+  /** Throws if the browser has no WebGL. */
   constructor(canvas: HTMLCanvasElement) {
     super(new PerspectiveCamera(45, 1, 0.08, 60), { canvas, alpha: true });
   }
 
-  /** Make bodies and boxes anew; poses that were shown stay where they are. */
+  /** Rebuild bodies and boxes; poses already shown stay where they are. */
   prepare(setup: PoseSetup, palette: StagePalette): void {
     this.#setup = setup;
     this.#players = new Map(
@@ -58,7 +58,8 @@ export class LiveScene extends Space3d {
 
   show(stream: PoseStream, values: Float32Array): void {
     const player = this.#players.get(stream);
-    // Asked for all the same: whoever sent it waits to hear that it was drawn.
+    // Request a picture all the same: the server waits for the acknowledgement that the pose was
+    // drawn.
     if (player === undefined || this.#setup === null) {
       this.ask();
       return;
@@ -69,7 +70,7 @@ export class LiveScene extends Space3d {
     this.#moved();
   }
 
-  /** Colour the avatar by how far its joints are off, degrees. */
+  /** Colour the avatar by its joint errors, degrees. */
   heat(errors: Readonly<Record<string, number | null>>): void {
     const { body } = this.#players.get("actual") ?? {};
     const joints = this.#setup?.joints;
@@ -91,11 +92,11 @@ export class LiveScene extends Space3d {
     this.onDrawn();
   }
 
-  /** Something stands elsewhere: the camera goes along. */
+  /** Called after a figure has moved: the camera follows. */
   #moved(): void {
     const came = STREAMS.filter((stream) => this.#players.get(stream)?.came);
     for (const [stream, { body, came: is }] of this.#players) {
-      // Out of the participant's own eyes, their own figure would be in the way.
+      // In the first-person view the participant's own figure would block the view.
       body.group.visible = is && !(this.#view === "first" && stream === "target");
     }
     // The display shows what the participant's head sees, whatever the avatar does.

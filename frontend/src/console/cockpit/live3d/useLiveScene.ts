@@ -1,6 +1,6 @@
 /**
- * The live scene on an element of the page: what comes is drawn, beside React. Only what the words
- * around the picture tell is state. While the page is hidden nothing is asked for.
+ * The live scene on an element of the page. Poses are drawn outside of React; only what the words
+ * around the picture need is state. Nothing is requested while the page is hidden.
  */
 import { useComputedColorScheme } from "@mantine/core";
 import { useDocumentVisibility } from "@mantine/hooks";
@@ -14,7 +14,7 @@ import type { TelemetryStore } from "../session/telemetryStore";
 import { DARK, type Lights, nextChange, tonesAt, withTouches } from "./lights";
 import type { View } from "./views";
 
-/** Frames come at least ten times a second: after so long there are none. */
+/** Frames come at least ten times a second: after this time without one there is no movement. */
 const STILL_AFTER_MS = 1500;
 
 export interface Live {
@@ -41,7 +41,7 @@ export function useLiveScene(
   const lights = useRef<Lights>(DARK);
   const relight = useRef<() => void>(() => {});
 
-  // The appearance is asked for: another one has other colours.
+  // Read the colours again when the colour scheme changes.
   useEffect(() => {
     if (scene === null || setup === null || root.current === null || scheme === undefined) return;
     scene.prepare(setup, paletteOf(root.current));

@@ -1,12 +1,12 @@
-/** From where the live scene is looked at. */
+/** The cameras of the live scene. */
 import type { PoseSetup } from "@shared/api/poses";
 import type { PerspectiveCamera } from "three";
 import { type Placed, turned } from "./kinematics";
 
-/** Out of the participant's eyes, from their right, or from behind them. */
+/** Through the participant's eyes, from their right, or from behind them. */
 export type View = "first" | "side" | "third";
 export const VIEWS: readonly View[] = ["first", "side", "third"];
-/** The keys say which person is meant; what lies between is between them. */
+/** The keys of the views: 1 first person, 3 third person, and 2 for the side view between them. */
 export const VIEW_KEYS: Readonly<Record<View, string>> = { first: "1", side: "2", third: "3" };
 
 interface Subjects {
@@ -17,10 +17,10 @@ interface Subjects {
 
 type Vector = readonly [x: number, y: number, z: number];
 
-/** Fields of view, from top to bottom. */
+/** Vertical fields of view, degrees. */
 const FIELD_DEG = { first: 78, side: 38, third: 42 } as const;
 
-/** Place the camera; where nothing has come yet it looks at the start square. */
+/** Place the camera; before the first pose it looks at the start square. */
 export function aim(camera: PerspectiveCamera, view: View, subjects: Subjects): void {
   const first = view === "first" ? fromEyes(subjects) : null;
   camera.fov = FIELD_DEG[first === null && view === "first" ? "third" : view];
@@ -37,7 +37,7 @@ function fromEyes({ setup, eyes }: Subjects): readonly [Vector, Vector] | null {
   const [fx, fy, fz] = turned(eyes.turns, head, [0, 0, -1]);
   const [ux, uy, uz] = turned(eyes.turns, head, [0, 1, 0]);
   if (!Number.isFinite(x + fx + ux)) return null;
-  // Between the top of the neck and the eyes; turned down a little, as a headset's picture is cut.
+  // Between the top of the neck and the eyes; tilted down a little, like a headset's picture.
   const from = [x + 0.09 * ux + 0.1 * fx, y + 0.09 * uy + 0.1 * fy, z + 0.09 * uz + 0.1 * fz];
   const [ex = 0, ey = 0, ez = 0] = from;
   return [
@@ -50,7 +50,7 @@ function fromOutside(view: View, followed: Placed | null): readonly [Vector, Vec
   const [hipX = 0, , hipZ = 0] = followed?.positions ?? [];
   const x = Number.isFinite(hipX) ? hipX : 0;
   const z = Number.isFinite(hipZ) ? hipZ : 0;
-  // The boxes are in front of the participant: they belong into the picture.
+  // The boxes in front of the participant are part of the picture.
   if (view === "side") {
     return [
       [x + 3.2, 1.2, z - 0.35],

@@ -1,4 +1,4 @@
-/** One list: what is in order, what is missing and what to do about it. */
+/** The list of checks: what is in order, what is missing and what to do about it. */
 import { Button } from "@mantine/core";
 import type { Check } from "@shared/api/types";
 import { timeOfDay } from "@shared/format";
@@ -17,7 +17,7 @@ const ICONS: Readonly<Record<Check["status"], IconName>> = {
 
 interface CheckListProps {
   readonly checks: readonly Check[];
-  /** Missing where nobody has to override anything. */
+  /** Missing if no check can be overridden. */
   readonly onOverride?: ((check: Check) => void) | undefined;
 }
 
@@ -79,7 +79,7 @@ function Row({ check, onOverride }: RowProps): JSX.Element {
   );
 }
 
-/** What it must keep to, and the names and hashes behind it. */
+/** The limit of a check, and the names and hashes behind it. */
 function Aside({ check }: { readonly check: Check }): JSX.Element | null {
   const { t, language } = useTexts();
   const expectation = expectationOf(check);

@@ -1,4 +1,4 @@
-/** Going on although something is not in order: the reason becomes part of the record. */
+/** Override failed checks: the reason becomes part of the record. */
 import { Button, Group, Modal, Stack, Text } from "@mantine/core";
 import type { Check, SessionView } from "@shared/api/types";
 import { useMutation, useQueryClient } from "@tanstack/react-query";
@@ -15,10 +15,10 @@ import { failing } from "./words";
 
 interface OverrideDialogProps {
   readonly session: SessionView;
-  /** Null: the dialog is closed. Empty: what was missing has come since it was opened. */
+  /** Null: the dialog is closed. Empty: all checks have passed since it was opened. */
   readonly checks: readonly Check[] | null;
   readonly onClose: () => void;
-  /** What follows once the reasons are on record: the start of the session. */
+  /** Called once the reasons are recorded: it starts the session. */
   readonly then?: () => Promise<unknown>;
 }
 
@@ -49,7 +49,7 @@ interface OverrideFormProps extends OverrideDialogProps {
   readonly checks: readonly Check[];
 }
 
-/** The field stays where it is when no reason is needed any more: somebody may be writing in it. */
+/** The field stays even when no reason is needed any more: somebody may be typing in it. */
 function OverrideForm({ session, checks, onClose, then }: OverrideFormProps): JSX.Element {
   const { t } = useTexts();
   const queries = useQueryClient();
@@ -96,7 +96,7 @@ interface StartAnywayProps {
   readonly flight: Flight;
 }
 
-/** Asked when somebody starts although a check has failed. */
+/** The dialog for starting although a check has failed. */
 export function StartAnyway({ session, live, flight }: StartAnywayProps): JSX.Element {
   const failed = failing(flight.query.data?.checks ?? []);
   const { asking, stopAsking } = flight;

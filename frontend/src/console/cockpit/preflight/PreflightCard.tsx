@@ -1,4 +1,4 @@
-/** The list in the cockpit, before the start in the middle and afterwards in a drawer. */
+/** The list of checks in the cockpit: in the middle before the start, afterwards in a drawer. */
 import { Button, Loader } from "@mantine/core";
 import type { Check, SessionView } from "@shared/api/types";
 import { timeOfDay } from "@shared/format";
@@ -18,7 +18,7 @@ interface PreflightCardProps {
 }
 
 interface PreflightBodyProps extends PreflightCardProps {
-  /** What stands around it may have the title already. */
+  /** The title, unless the surrounding element shows it. */
   readonly title?: string;
 }
 

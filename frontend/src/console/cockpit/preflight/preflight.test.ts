@@ -11,8 +11,8 @@ const check = (more: Partial<Check>): Check => ({
   ...more,
 });
 
-describe("the words of a check", () => {
-  it("tell quantities with their unit, and counts without", () => {
+describe("the texts of a check", () => {
+  it("give quantities with their unit, and counts without", () => {
     expect(amountOf(1.84, "ms", "en")).toBe("1.8 ms");
     expect(amountOf(89.94, "Hz", "en")).toBe("90 Hz");
     expect(amountOf(1.1, "GB", "de")).toBe("1,1 GB");
@@ -20,13 +20,13 @@ describe("the words of a check", () => {
     expect(valuesOf(check({}), "en")).toEqual({ value: "–", limit: "–" });
   });
 
-  it("name a limit only where it is a quantity", () => {
+  it("name a limit only if it is a quantity", () => {
     const limited = { expected: "at_most", limit: 10 } as const;
     expect(expectationOf(check({ unit: "ms", ...limited }))).toBe("preflight.expected.at_most");
     expect(expectationOf(check({ unit: "phases", ...limited }))).toBeNull();
   });
 
-  it("say what to do about everything that can fail", () => {
+  it("give a remedy for every check that can fail", () => {
     const failures = Object.keys(registryEn)
       .filter((key) => key.startsWith("preflight.todo."))
       .map((key) => key.slice("preflight.todo.".length));
@@ -39,7 +39,7 @@ describe("the words of a check", () => {
     for (const code of failures) expect(found).toContain(`preflight.found.${code}`);
   });
 
-  it("ask again while something is missing, and soon while somebody brings it in", () => {
+  it("are refreshed while something is missing, and sooner while somebody is connecting a device", () => {
     const wait = check({ status: "wait" });
     const fail = check({ key: "disk", status: "fail", code: "disk.low" });
     expect(againAfter([check({}), wait])).toBe(3000);

@@ -1,4 +1,4 @@
-/** The pre-flight of a session: asked for again while something is missing, and before a start. */
+/** The pre-flight of a session: refreshed while something is missing, and before a start. */
 import { sessions } from "@shared/api/endpoints";
 import type { SessionView } from "@shared/api/types";
 import { useQuery, useQueryClient } from "@tanstack/react-query";
@@ -7,12 +7,12 @@ import { preflightQuery } from "../../queries";
 import type { useSession } from "../session/useSession";
 import { againAfter } from "./words";
 
-/** After the list could not be made. */
+/** The delay before a retry when the list could not be loaded. */
 const AGAIN_MS = 3000;
 
 export type Flight = ReturnType<typeof usePreflight>;
 
-/** `watched`: whether the list is in sight. */
+/** `watched`: whether the list is visible. */
 export function usePreflight(
   session: SessionView,
   live: ReturnType<typeof useSession>,
@@ -25,12 +25,12 @@ export function usePreflight(
     ...preflightQuery(session.id),
     enabled: watched && session.ended_at === null,
     refetchOnMount: "always",
-    // A page that nobody looks at does not ask.
+    // A hidden page does not poll.
     refetchInterval: ({ state }) =>
       state.data === undefined ? AGAIN_MS : againAfter(state.data.checks),
   });
 
-  /** Start, or ask for the reason where a check has failed just now. */
+  /** Start, or ask for a reason if a check has just failed. */
   const start = async () => {
     if (looking) return;
     setLooking(true);
@@ -38,7 +38,7 @@ export function usePreflight(
       const fresh = await queries.fetchQuery({ ...preflightQuery(session.id), staleTime: 0 });
       if (fresh.asks && !fresh.clear) return setAsking(true);
     } catch {
-      // The list itself cannot be made: the start says why, if it is refused.
+      // The list cannot be loaded: if the start is refused, its error says why.
     } finally {
       setLooking(false);
     }
@@ -51,12 +51,12 @@ export function usePreflight(
     looking,
     asking,
     stopAsking: () => setAsking(false),
-    /** The list is there and nothing in it is open. */
+    /** Whether the list is loaded and has no open check. */
     isClear: query.data?.clear === true,
   };
 }
 
-/** Put a reason on record for each of the checks. */
+/** Record a reason for each of the checks. */
 export async function overrideAll(
   id: string,
   checks: readonly { readonly key: Parameters<typeof sessions.override>[1] }[],

@@ -1,10 +1,10 @@
-/** What a check has found, in the words of the page. */
+/** The texts for the result of a check. */
 import type { Check } from "@shared/api/types";
 import { number } from "@shared/format";
 import type { Key } from "../../i18n";
 import { CHECKS_MENDED_IN_SECONDS } from "../../i18n/registries.generated";
 
-/** Of a count the word says what is counted. */
+/** Units without a symbol are counts, whose text says what is counted. */
 const SYMBOLS: Readonly<Partial<Record<NonNullable<Check["unit"]>, string>>> = {
   s: "s",
   ms: "ms",
@@ -20,14 +20,14 @@ export function amountOf(value: number, unit: Check["unit"], language: string): 
   return symbol === undefined ? told : `${told} ${symbol}`;
 }
 
-/** The values that the words of a finding are filled with. */
+/** The values to fill into the text of a result. */
 export function valuesOf(check: Check, language: string): Record<string, string> {
   const of = (value: number | null | undefined) =>
     value == null ? "–" : amountOf(value, check.unit, language);
   return { value: of(check.value), limit: of(check.limit) };
 }
 
-/** What it must keep to, where that is a quantity and not a count. */
+/** The text for the limit of a check, if that is a quantity and not a count. */
 export function expectationOf(check: Check): Key | null {
   if (check.unit == null || SYMBOLS[check.unit] === undefined) return null;
   return check.expected == null ? null : `preflight.expected.${check.expected}`;
@@ -35,7 +35,7 @@ export function expectationOf(check: Check): Key | null {
 
 type Todo = Extract<Key, `preflight.todo.${string}`>;
 
-/** What to do about it; nothing where it is in order or comes by itself. */
+/** The remedy; null if the check has passed or will pass without action. */
 export function todoOf(check: Check): Todo | null {
   return check.status === "fail" ? (`preflight.todo.${check.code}` as Todo) : null;
 }
@@ -46,7 +46,7 @@ export const failing = (checks: readonly Check[]): readonly Check[] =>
 const SOON_MS = 3000;
 const LATER_MS = 20_000;
 
-/** When to look again by itself, ms; never where nothing can change for the better. */
+/** When to refresh the list automatically, ms; false if no check can improve without action. */
 export function againAfter(checks: readonly Check[]): number | false {
   const open = checks.filter(({ status }) => status === "wait" || status === "fail");
   if (open.length === 0) return false;

@@ -32,7 +32,7 @@ describe("the verdict on a phase's latency", () => {
     expect(verdictOn(phase({})).kind).toBe("measuring");
   });
 
-  it("says how little was moved, or why else there is none", () => {
+  it("reports how little was moved, or another reason why there is none", () => {
     expect(verdictOn(phase({ movement_s: 3.2 }))).toEqual({ kind: "still", movement: 3.2 });
     const reason = "The bodies do not turn alike at any one lag (correlation 0.20).";
     expect(verdictOn(phase({ movement_s: 58, latency_reason: reason }))).toEqual({
@@ -41,7 +41,7 @@ describe("the verdict on a phase's latency", () => {
     });
   });
 
-  it("gives value, half of the interval and the difference from what was ordered", () => {
+  it("gives the value, half the interval and the difference from the set latency", () => {
     const measured = {
       movement_s: 58,
       achieved_latency_ms: 145,
@@ -59,7 +59,7 @@ describe("the verdict on a phase's latency", () => {
     });
   });
 
-  it("tells a blinded operator no more than whether it is off", () => {
+  it("tells a blinded operator only whether it is out of tolerance", () => {
     const blinded = { movement_s: 58, latency_ms: null };
     expect(verdictOn(phase({ ...blinded, latency_off: true }))).toEqual({
       kind: "hidden",

@@ -1,4 +1,7 @@
-/** The latency that a phase really had: with its uncertainty, and with a badge when it is off. */
+/**
+ * The achieved latency of a phase: with its uncertainty, and with a badge if it is out of
+ * tolerance.
+ */
 import type { PhaseSummary } from "@shared/api/types";
 import { latencyDifference, latencyMeasured, latencyWithin, number } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
@@ -25,7 +28,7 @@ export function AchievedLatency({ phase }: AchievedLatencyProps): JSX.Element {
           {t("achieved.still")}
           <small className={classes.detail}>
             {t("achieved.moved", {
-              // Cut off, not rounded: 4.97 s must not read as the 5 s that are enough.
+              // Truncated rather than rounded: 4.97 s must not read as the 5 s that are required.
               moved: number(Math.floor(verdict.movement * 10) / 10, language, 1),
               needed: LEAST_MOVEMENT,
             })}
@@ -58,7 +61,7 @@ export function AchievedLatency({ phase }: AchievedLatencyProps): JSX.Element {
   }
 }
 
-/** The same in a few words for the list of steps; nothing where there is nothing to say yet. */
+/** The same in a few words for the list of steps; empty while there is no result. */
 export function AchievedInBrief({ phase }: AchievedLatencyProps): JSX.Element | null {
   const { t, language } = useTexts();
   const verdict = verdictOn(phase);
@@ -76,7 +79,8 @@ export function AchievedInBrief({ phase }: AchievedLatencyProps): JSX.Element | 
         <span>{t("achieved.latencyWithin")}</span>
       );
     case "measured": {
-      // Beside a badge there is no room for the uncertainty; it is small against what is off.
+      // Next to the badge there is no room for the uncertainty, which is small compared to the
+      // deviation.
       if (verdict.off)
         return <Off text="achieved.brief" by={latencyMeasured(verdict.value, language)} />;
       const value = latencyWithin(verdict.value, verdict.halfWidth, language);
@@ -99,7 +103,7 @@ function Off({ text, by = "" }: { readonly text: Key; readonly by?: string }): J
   );
 }
 
-/** The server speaks English, whatever the page does. */
+/** The reason from the server, which is always in English. */
 function Reason({ text }: { readonly text: string | null }): JSX.Element | null {
   if (text === null) return null;
   return (
@@ -109,21 +113,21 @@ function Reason({ text }: { readonly text: string | null }): JSX.Element | null 
   );
 }
 
-// What can be said of the latency that a phase really had, beside the one that was ordered.
+// The verdicts on the achieved latency of a phase, compared with the set one.
 
-/** Below this much movement the server claims nothing (`LEAST_MOVEMENT_S` in its science). */
+/** With less movement than this the server gives no result (`LEAST_MOVEMENT_S` in its science). */
 const LEAST_MOVEMENT: Seconds = seconds(5);
 
 type Verdict =
   /** The phase is not over, or was voided before it was measured. */
   | { readonly kind: "none" }
-  /** The server is still at it. */
+  /** The server is still computing it. */
   | { readonly kind: "measuring" }
   /** The participant hardly moved. */
   | { readonly kind: "still"; readonly movement: Seconds }
-  /** It could not be measured; why, in the server's words. */
+  /** It could not be measured; the reason is in the server's words. */
   | { readonly kind: "unknown"; readonly reason: string | null }
-  /** The operator is blinded: in or out of tolerance is all they are told. */
+  /** A blinded operator is told only whether it is in tolerance. */
   | { readonly kind: "hidden"; readonly off: boolean }
   | {
       readonly kind: "measured";
@@ -131,9 +135,9 @@ type Verdict =
       /** Half of the 95 % interval. */
       readonly halfWidth: Milliseconds;
       readonly off: boolean;
-      /** Achieved minus ordered. */
+      /** Achieved minus set latency. */
       readonly by: Milliseconds;
-      /** What to keep in mind, in the server's words. */
+      /** A caveat in the server's words. */
       readonly reason: string | null;
     };
 

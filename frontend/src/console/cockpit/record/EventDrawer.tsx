@@ -1,4 +1,4 @@
-/** The session's own record, event by event, as the server appended it. */
+/** The session's event log, event by event, as the server appended it. */
 import type { SessionEvent, SessionView } from "@shared/api/types";
 import { timeOfDay } from "@shared/format";
 import { Notice } from "@shared/ui/Notice";
@@ -68,7 +68,7 @@ function EventTable({ events }: { readonly events: readonly SessionEvent[] }): J
   );
 }
 
-/** Identifiers and hashes are for the export; people read the rest. */
+/** Identifiers and hashes are for the export, so they are not shown here. */
 const MACHINE = /(_id|_hash|^by|hash)$/;
 
 const detailsOf = (event: SessionEvent): string =>
@@ -77,12 +77,15 @@ const detailsOf = (event: SessionEvent): string =>
     .map(([name, value]) => `${name.replaceAll("_", " ")} ${readable(name, value)}`)
     .join(" · ");
 
-/** Steps are counted from 1 on every page, and lengths of time carry three decimals at most. */
+/**
+ * A value as it is shown: steps counted from 1, as on every page, and durations with at most three
+ * decimals.
+ */
 function readable(name: string, value: unknown): string {
   if (typeof value !== "number") return String(value);
   return name === "step" ? String(value + 1) : String(Math.round(value * 1000) / 1000);
 }
 
-/** `account:admin` is admin; a device is called by its kind. */
+/** The name of an actor: `account:admin` is admin; a device is called by its kind. */
 const actorName = (by: string): string =>
   by.startsWith("account:") ? by.slice("account:".length) : (by.split(":")[0] ?? by);

@@ -1,4 +1,4 @@
-/** What the experimenter saw, with the time: written without leaving the page. */
+/** The experimenter's notes with their times, written without leaving the page. */
 import { Textarea } from "@mantine/core";
 import type { SessionView } from "@shared/api/types";
 import { timeOfDay } from "@shared/format";
@@ -19,7 +19,7 @@ export function NotesPanel({ session, send, sending }: NotesPanelProps): JSX.Ele
   const { t, language } = useTexts();
   const [text, setText] = useState("");
   const save = () => {
-    // The text stays in the field until the server has it.
+    // The text stays in the field until the server has stored it.
     if (text.trim() !== "") send({ type: "note", text: text.trim() }, () => setText(""));
   };
   return (

@@ -22,7 +22,7 @@ const COLUMNS = [
   "contactTime",
 ] as const;
 
-/** The replay's address has a question mark, which the router would take for its own. */
+/** The replay's address contains a question mark, which the router would interpret as its own. */
 const replayOf = (session: string, phase: number): string =>
   `#/sessions/${encodeURIComponent(session)}/replay?phase=${phase}`;
 

@@ -90,7 +90,7 @@ function whereOf(
   return step.latency_ms === null ? name : `${name} · ${latency(milliseconds(step.latency_ms))}`;
 }
 
-/** `−12 … 12`: what the score can be at all, where the instrument says so. */
+/** `−12 … 12`: the possible values of the score, if the instrument defines them. */
 function rangeOf({ minimum, maximum }: Score, language: string): string | undefined {
   if (minimum === null || maximum === null) return undefined;
   return `${number(minimum, language)} … ${number(maximum, language)}`;
@@ -98,7 +98,7 @@ function rangeOf({ minimum, maximum }: Score, language: string): string | undefi
 
 type Hint = AdministrationScores["hints"][number];
 
-/** What is noticeable about how a form was filled in: quiet lines below its scores. */
+/** Remarks on how a form was filled in: unobtrusive lines below its scores. */
 function AnswerHints({ hints }: { readonly hints: readonly Hint[] }): JSX.Element | null {
   const { t, language } = useTexts();
   if (hints.length === 0) return null;
@@ -115,7 +115,7 @@ function AnswerHints({ hints }: { readonly hints: readonly Hint[] }): JSX.Elemen
   return (
     <ul className={answerHintsClasses.hints} title={t("hint.about")}>
       {hints.map((hint, place) => (
-        // biome-ignore lint/suspicious/noArrayIndexKey: hints have no other name than their place
+        // biome-ignore lint/suspicious/noArrayIndexKey: hints have no identifier other than their position
         <li key={place}>
           <Icon name="info" size={16} />
           <span>{words(hint)}</span>

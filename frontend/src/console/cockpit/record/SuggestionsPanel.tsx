@@ -1,4 +1,4 @@
-/** What the expert in the headset advises, kept with the step at which they said it. */
+/** The suggestions of the expert in the headset, stored with the step at which they were made. */
 import { Button, NativeSelect, Stack, Textarea } from "@mantine/core";
 import { suggestions } from "@shared/api/records";
 import type { SessionView } from "@shared/api/types";

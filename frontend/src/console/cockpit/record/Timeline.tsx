@@ -1,4 +1,4 @@
-/** The procedure from top to bottom: what is done, what is on, what comes. */
+/** The procedure from top to bottom: steps that are done, running and to come. */
 import type { PhaseSummary, SessionView, Step } from "@shared/api/types";
 import { duration, latency } from "@shared/format";
 import { milliseconds, seconds } from "@shared/units";
@@ -12,7 +12,7 @@ import classes from "./Timeline.module.css";
 export function Timeline({ session }: { readonly session: SessionView }): JSX.Element {
   const label = useTexts().t("timeline.label");
   return (
-    // biome-ignore lint/a11y/noNoninteractiveTabindex: a region that scrolls has to take the focus
+    // biome-ignore lint/a11y/noNoninteractiveTabindex: a scrollable region has to be focusable
     <nav className={cockpit.steps} tabIndex={0} data-tour="timeline" aria-label={label}>
       {groupSteps(session.steps).map((group) => (
         <Group key={group.steps[0]?.index} group={group} session={session} />
@@ -151,14 +151,14 @@ function StepMark({ status }: { readonly status: Step["status"] }): JSX.Element 
 
 interface StepGroup {
   readonly block: number | null;
-  /** The place of the block in this visit, counted from 1; 0 outside blocks. */
+  /** The number of the block in this session, counted from 1; 0 outside blocks. */
   readonly number: number;
-  /** The block's condition; null where it is hidden or there is none. */
+  /** The block's condition; null if it is hidden or there is none. */
   readonly latency: number | null;
   readonly steps: readonly Step[];
 }
 
-/** The steps of a session, gathered into what comes before, the blocks, and what comes after. */
+/** The steps of a session, grouped into those before the blocks, the blocks, and those after. */
 export function groupSteps(steps: readonly Step[]): readonly StepGroup[] {
   const groups: { block: number | null; number: number; latency: number | null; steps: Step[] }[] =
     [];

@@ -1,4 +1,4 @@
-/** Why the last command was not carried out: refused, or overtaken by another operator. */
+/** Why the last command was not carried out: refused, or another operator was first. */
 import { Button } from "@mantine/core";
 import { Notice } from "@shared/ui/Notice";
 import { type JSX, useEffect, useRef, useState } from "react";
@@ -35,8 +35,8 @@ export function CommandFailure({ live }: CommandFailureProps): JSX.Element | nul
 }
 
 /**
- * In a dialog: what failed since it was opened. What failed before belongs to something else, and
- * what failed here has been read when the dialog is closed.
+ * For a dialog: failures since it was opened. Earlier ones belong to something else, and those
+ * shown here have been read when the dialog is closed.
  */
 export function NewFailure({ live }: CommandFailureProps): JSX.Element | null {
   const [before] = useState({ error: live.error, overtaken: live.overtaken });

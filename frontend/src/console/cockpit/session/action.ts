@@ -1,4 +1,7 @@
-/** What an operator does next, what wants a reason, and what can be done over: all from the session. */
+/**
+ * Derive from the session what an operator does next, which commands need a reason, and which steps
+ * can be repeated.
+ */
 import type { Command, CommandType, Device, SessionView, Step } from "@shared/api/types";
 import type { IconName } from "@shared/ui/Icon";
 import type { Key } from "../../i18n";
@@ -17,8 +20,9 @@ export function currentStep(session: SessionView): Step | null {
 
 /**
  * The primary action, or null when the next move is not the operator's: the tablet is being filled
- * in, the headset counts down, or the session is over. Height has its own form and is not here; nor
- * is consent, which is the participant's to give and takes more than one press on paper, too.
+ * in, the headset counts down, or the session is over. Height is not included, because it has its
+ * own form; nor is consent, which only the participant can give and which takes more than one press
+ * on paper, too.
  */
 export function primaryAction(session: SessionView): PrimaryAction | null {
   const may = (type: Command["type"]): boolean => session.allowed.includes(type);
@@ -41,7 +45,9 @@ export function primaryAction(session: SessionView): PrimaryAction | null {
 
 const NEEDS_HEADSET: readonly CommandType[] = ["materialise", "begin_phase", "resume"];
 
-/** Whether the server would refuse the next action because nothing could carry it out. */
+/**
+ * Whether the server would refuse the next action because no headset is connected to carry it out.
+ */
 export const lacksHeadset = (session: SessionView): boolean =>
   session.allowed.some((type) => NEEDS_HEADSET.some((one) => one === type)) &&
   !isConnected(session, "headset");
@@ -49,7 +55,7 @@ export const lacksHeadset = (session: SessionView): boolean =>
 export const isConnected = ({ devices }: SessionView, device: Device): boolean =>
   devices.some(({ kind, connected }) => kind === device && connected);
 
-/** What to say or do now, for the operator's eye. */
+/** The instruction for the operator: what to say or do now. */
 export function guidance(session: SessionView): Key {
   const step = currentStep(session);
   if (session.status !== "active" && session.status !== "planned") return `guide.${session.status}`;
@@ -63,7 +69,7 @@ export type Reasoned = Extract<
   "redo" | "skip" | "abort" | "withdraw" | "override_stop" | "reopen_consent"
 >;
 
-/** Reasons that come up again and again, one click away. */
+/** Frequent reasons, each one click away. */
 export const COMMON_REASONS: Readonly<Record<Reasoned | "pause", readonly Key[]>> = {
   pause: ["reason.break", "reason.tracking", "reason.question", "reason.unwell"],
   redo: ["reason.tracking", "reason.misunderstood", "reason.interrupted"],
@@ -75,10 +81,11 @@ export const COMMON_REASONS: Readonly<Record<Reasoned | "pause", readonly Key[]>
 };
 
 /**
- * The step that an operator most likely wants done over.
+ * The step that an operator most likely wants to repeat.
  *
- * The current step while its phase is under way; else the task before it, because that is what goes
- * wrong; else the step before. Everything from that step on is then done over.
+ * The current step while its phase is running; otherwise the task before it, because that is what
+ * goes
+ * wrong; otherwise the previous step. Everything from that step on is then repeated.
  */
 export function redoTarget(session: SessionView): number {
   const { current, steps } = session;
@@ -90,7 +97,7 @@ export function redoTarget(session: SessionView): number {
   return task?.index ?? Math.max(0, current.index - 1);
 }
 
-/** The steps that can be done over: those behind, and the current one once it has begun. */
+/** The steps that can be repeated: the completed ones, and the current one once it has started. */
 export function redoable(session: SessionView): readonly Step[] {
   const { current, steps } = session;
   if (current === null) return [];

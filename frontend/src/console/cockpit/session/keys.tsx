@@ -1,4 +1,4 @@
-/** The cockpit's keys. They rest while a dialog is open or something is being typed. */
+/** The cockpit's keys. They are inactive while a dialog is open or something is being typed. */
 import type { JSX } from "react";
 import { useEffect, useRef } from "react";
 import { useTexts } from "../../i18n";
@@ -14,11 +14,14 @@ export interface Keys {
   readonly help: () => void;
   readonly alarms: () => void;
   readonly checks: () => void;
-  /** Changes whenever the primary action means something else. */
+  /** Changes whenever the primary action changes its meaning. */
   readonly step: string;
 }
 
-/** After a step has changed, a key held or hit twice must not trigger the next step's action. */
+/**
+ * After a step has changed, a key that is held or hit twice must not trigger the next step's
+ * action.
+ */
 const ARM_AFTER_MS = 700;
 
 const BINDINGS: Readonly<Record<string, Exclude<keyof Keys, "step">>> = {
@@ -40,7 +43,7 @@ export function useKeys(keys: Keys): void {
   useEffect(() => {
     latest.current = keys;
   });
-  // biome-ignore lint/correctness/useExhaustiveDependencies: the time is of the change of the step
+  // biome-ignore lint/correctness/useExhaustiveDependencies: the time is that of the step's change
   useEffect(() => {
     changedAt.current = performance.now();
   }, [keys.step]);
@@ -58,7 +61,7 @@ export function useKeys(keys: Keys): void {
   }, []);
 }
 
-/** Something is being typed, a dialog is open, or the key belongs to the browser. */
+/** Whether something is being typed, a dialog is open, or the key belongs to the browser. */
 export function isBusy(event: KeyboardEvent): boolean {
   if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return true;
   const target = event.target as HTMLElement;
@@ -66,12 +69,12 @@ export function isBusy(event: KeyboardEvent): boolean {
   return document.querySelector('[role="dialog"], [role="menu"]') !== null;
 }
 
-/** Enter on a focused button or link already means that button or link. */
+/** Whether Enter already activates the focused button or link. */
 const isControl = (target: EventTarget | null): boolean =>
   target instanceof HTMLElement &&
   target.closest("button, a, [role=button], [tabindex='0']") !== null;
 
-/** Every key of the cockpit. */
+/** The list of all keys of the cockpit. */
 export function KeyboardHelp(props: KeyboardHelpProps): JSX.Element {
   const { t } = useTexts();
   const keys = [

@@ -1,6 +1,6 @@
 /**
- * The newest telemetry of one session. It arrives several times a second, so it lives outside the
- * page's state: only the parts that show it draw again.
+ * The newest telemetry of one session. It arrives several times a second, so it is kept outside of
+ * React's state: only the parts that show it render again.
  */
 import type { LiveAlarm, Signal, Telemetry, TelemetryNews } from "@shared/api/types";
 import { type Milliseconds, milliseconds } from "@shared/units";
@@ -11,7 +11,7 @@ export interface Received {
   readonly at: Milliseconds;
 }
 
-/** How good the data are; told also while no frame comes. */
+/** How good the data are; also received while no frames arrive. */
 export interface Quality {
   readonly signal: Signal | null;
   readonly alarms: readonly LiveAlarm[];
@@ -48,13 +48,16 @@ export const useTelemetry = (store: TelemetryStore): Received | null =>
 export const useQuality = (store: TelemetryStore): Quality | null =>
   useSyncExternalStore(store.subscribe, store.quality);
 
-/** News without frames say nothing of the clock: what was told of it before stays. */
+/**
+ * Whether a message has figures. Those without frames do not mention the clock: its last report
+ * stays.
+ */
 const hasFigures = (news: TelemetryNews): news is TelemetryNews & Telemetry =>
   news.phase_id !== undefined;
 
 /**
- * Joint errors need both poses of one moment and are missing from messages that hold only one; the
- * last ones of the same phase stay in sight meanwhile.
+ * Keep the last joint errors of the same phase: they need both poses of one moment, and are missing
+ * from messages with only one.
  */
 function withErrors(news: Telemetry, before: Telemetry | undefined): Telemetry {
   const told = Object.keys(news.joint_error_deg ?? {}).length > 0;

@@ -7,7 +7,7 @@ const START: Command = { type: "start" };
 const view = (changed: Partial<SessionView> = {}): SessionView =>
   ({ id: "one", status: "planned", version: 4, ...changed }) as SessionView;
 
-/** A server whose session goes through these views, one each time somebody looks. */
+/** A server whose session goes through these views, one at each request. */
 function server(views: readonly SessionView[], refusal?: ApiError) {
   const sent: number[] = [];
   let at = 0;
@@ -25,22 +25,22 @@ function server(views: readonly SessionView[], refusal?: ApiError) {
   };
 }
 
-describe("an order that was prepared for a while", () => {
-  it("goes through although another operator's notes arrive in between", async () => {
+describe("a command that was prepared for a while", () => {
+  it("succeeds although another operator's notes arrive in between", async () => {
     const api = server([view(), view({ version: 5 }), view({ version: 6 }), view({ version: 6 })]);
     const done = await orderAnew(api, view(), START);
     expect(done).toEqual({ view: view({ status: "active", version: 7 }), overtaken: false });
     expect(api.sent).toEqual([4, 5, 6]);
   });
 
-  it("is not sent again once another operator was first", async () => {
+  it("is not resent once another operator was first", async () => {
     const started = view({ status: "active", version: 5 });
     const api = server([view(), started]);
     expect(await orderAnew(api, view(), START)).toEqual({ view: started, overtaken: true });
     expect(api.sent).toEqual([4]);
   });
 
-  it("tells every other refusal at once, and gives up in the end", async () => {
+  it("reports every other refusal immediately, and gives up in the end", async () => {
     const refusal = new ApiError(409, { code: "not_now", message: "no" });
     const refused = server([view()], refusal);
     await expect(orderAnew(refused, view(), START)).rejects.toBe(refusal);

@@ -1,4 +1,4 @@
-/** A session as the server sees it, kept current by its live feed, and the way to command it. */
+/** A session as the server sees it, kept current by its live feed, and its commands. */
 import { sessions } from "@shared/api/endpoints";
 import { type FeedState, openFeed } from "@shared/api/live";
 import { isApiError, isUnauthorised } from "@shared/api/request";
@@ -23,7 +23,7 @@ interface Overtaken {
   readonly changes: readonly Change[];
 }
 
-/** A command and the view that it was decided on. */
+/** A command and the view on which it was decided. */
 interface Sent {
   readonly view: SessionView;
   readonly command: Command;
@@ -31,7 +31,7 @@ interface Sent {
 
 /**
  * Commands that stop something never wait for another one that is under way, such as a note on a
- * slow network. The server takes them on any version of the session.
+ * slow network. The server accepts them on any version of the session.
  */
 export const stops = ({ type }: Pick<Command, "type">): boolean =>
   type === "pause" || type === "abort" || type === "withdraw";
@@ -58,7 +58,7 @@ export function useSession(id: string) {
         url: sessions.liveUrl(id),
         onState: (state) => {
           setFeed(state);
-          // A feed does not say why it broke off: the sign-in may have been ended elsewhere.
+          // A feed does not say why it ended: the sign-in may have been ended elsewhere.
           if (state === "lost") void lookAgain(queries);
         },
         on: {
@@ -98,7 +98,9 @@ export function useSession(id: string) {
     way.mutate({ view: query.data, command: order }, { onSuccess: () => onDone?.() });
   };
 
-  /** For an order prepared on `seen` with reasons that have changed the version since. */
+  /**
+   * Send a command that was prepared on `seen`, with reasons that have changed the version since.
+   */
   const sendAnew = async (seen: SessionView, order: Command): Promise<void> => {
     const done = await orderAnew(sessions, seen, order);
     if (done.overtaken) return overtake({ view: seen, command: order }, done.view);
@@ -130,10 +132,12 @@ export function useSession(id: string) {
   };
 }
 
-/** Errors that the page tells in a place of their own. */
+/** Errors that the page shows elsewhere. */
 const isTold = (error: unknown): boolean => isApiError(error, "stale") || isUnauthorised(error);
 
-/** Whether the session has gone on since a command was sent: why that failed is told no longer. */
+/**
+ * Whether the session has moved on since a command was sent: its failure is then no longer shown.
+ */
 export function isOutlived(
   sent: { readonly view: SessionView } | undefined,
   now: SessionView | undefined,
@@ -143,28 +147,34 @@ export function isOutlived(
   return view.status !== now.status || view.current?.index !== now.current?.index;
 }
 
-/** Answers and live events may cross on the line; the view with the higher version stays. */
+/**
+ * The newer of two views: answers and live events may overtake each other, so the higher version
+ * wins.
+ */
 function newer(known: SessionView | undefined, view: SessionView): SessionView {
   return known !== undefined && known.version > view.version ? known : view;
 }
 
 /**
- * An order that was prepared for a while, with reasons written and put on record meanwhile.
+ * The result of a command that was prepared for a while, during which reasons were written and
+ * recorded.
  *
- * Notes and reasons, one's own and those of another operator, change the version of a session and
- * nothing that the order depends on. So it is sent again on the newest version for as long as the
- * session's status is the one that the order was prepared for.
+ * Notes and reasons, one's own and those of another operator, change the version of a session but
+ * nothing that the command depends on. So it is resent on the newest version for as long as the
+ * session's status is the one for which the command was prepared.
  */
 interface Ordered {
   readonly view: SessionView;
-  /** Another operator was first: the status is another one, and nothing was sent. */
+  /** Another operator was first: the status has changed, and nothing was sent. */
   readonly overtaken: boolean;
 }
 
-/** Operators write one reason after the other, and there are few of both. */
+/** The most attempts: few operators write notes, and each writes one at a time. */
 const MOST_TIMES = 20;
 
-/** Raises what the server refuses for another reason, or `stale` when notes never end. */
+/**
+ * Resend a command on the latest version; throws other refusals, and `stale` if notes never stop.
+ */
 export async function orderAnew(
   api: Pick<typeof sessions, "get" | "command">,
   seen: SessionView,
@@ -186,7 +196,7 @@ interface Change {
   readonly values?: Readonly<Record<string, string | number>>;
 }
 
-/** What another operator changed between two views of a session, in the words of the console. */
+/** What another operator changed between two views of a session, in the texts of the console. */
 export function changesBetween(before: SessionView, after: SessionView): readonly Change[] {
   const changes: Change[] = [];
   if (before.status !== after.status) changes.push({ key: `change.status.${after.status}` });

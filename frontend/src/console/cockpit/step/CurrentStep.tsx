@@ -1,4 +1,4 @@
-/** The step that is on, and the one large button that moves the session forward. */
+/** The current step, and the one large button that moves the session forward. */
 import { Button, Loader, Menu } from "@mantine/core";
 import type { SessionView, Step } from "@shared/api/types";
 import { latency } from "@shared/format";
@@ -28,7 +28,7 @@ import { PhaseClock } from "./PhaseClock";
 interface CurrentStepProps {
   readonly session: SessionView;
   readonly live: ReturnType<typeof useSession>;
-  /** Before the start: whether the pre-flight was looked at and nothing in it is open. */
+  /** Before the start: whether the pre-flight is loaded and no check is open. */
   readonly isReady: boolean;
   readonly onAsk: (type: Reasoned) => void;
   readonly onEnterAnswers: () => void;
@@ -220,7 +220,10 @@ function Exceptions({ session, onAsk }: CurrentStepProps): JSX.Element | null {
   );
 }
 
-/** Pausing is instant; why is said afterwards, while the clock stands, and kept as a note. */
+/**
+ * Pausing is instant; the reason is entered afterwards, while the clock is paused, and stored as a
+ * note.
+ */
 function PauseReason({ live }: { readonly live: ReturnType<typeof useSession> }): JSX.Element {
   const { t } = useTexts();
   return (

@@ -1,4 +1,4 @@
-/** Height as the participant states it and as it was matched to the avatar: both are kept. */
+/** Height as stated by the participant and as matched to the avatar: both are stored. */
 import { Button, NumberInput } from "@mantine/core";
 import type { SessionView, StoredAnswers } from "@shared/api/types";
 import { number } from "@shared/format";
@@ -15,7 +15,10 @@ import classes from "./CurrentStep.module.css";
 
 const SHORTEST_CM = 100;
 const TALLEST_CM = 230;
-/** Shoes and posture make a few centimetres; more is a slip, or somebody else's avatar. */
+/**
+ * Shoes and posture account for a few centimetres; a larger difference is a mistake, or another
+ * person's avatar.
+ */
 const MUCH_CM = 10;
 
 interface HeightFormProps {
@@ -30,11 +33,11 @@ export function HeightForm(props: HeightFormProps): JSX.Element {
   const { session, step, send, sending, exceptions } = props;
   const { t, language } = useTexts();
   const answers = useQuery(answersQuery(session.id, session.version));
-  // What the participant wrote on the tablet stands here already; typing over it wins.
+  // Prefilled with what the participant entered on the tablet; typing replaces it.
   const [typed, setStated] = useState<number | string | null>(null);
   const stated = typed ?? heightIn(answers.data ?? []) ?? "";
   const [matched, setMatched] = useState<number | string>("");
-  // The two heights that the question was about: other ones are asked about again.
+  // The two heights that were questioned: after a change they are questioned again.
   const [asking, setAsking] = useState("");
   const valid = isHeight(stated) && isHeight(matched);
   const difference = valid ? Math.abs(Number(stated) - Number(matched)) : 0;
@@ -60,7 +63,7 @@ export function HeightForm(props: HeightFormProps): JSX.Element {
   const common = {
     min: SHORTEST_CM,
     max: TALLEST_CM,
-    // What was typed stays, and is refused in words: another height is nobody's.
+    // What was typed stays and is rejected with a message: a corrected height would be nobody's.
     clampBehavior: "none" as const,
     suffix: " cm",
     decimalScale: 1,
@@ -115,7 +118,7 @@ export function HeightForm(props: HeightFormProps): JSX.Element {
   );
 }
 
-/** The height that a form of this session was answered with, in centimetres. */
+/** The height from a form of this session, in centimetres. */
 function heightIn(forms: readonly StoredAnswers[]): number | null {
   const said = forms.map((form) => form.answers.height_cm).filter(isHeight);
   return said.at(-1) ?? null;

@@ -1,4 +1,7 @@
-/** The session is held: in place of the step stands what to do for the participant, and the ways on. */
+/**
+ * The session is held: in place of the step, what to do for the participant and the ways to
+ * continue.
+ */
 import { Button } from "@mantine/core";
 import type { SessionView } from "@shared/api/types";
 import { timeOfDay } from "@shared/format";
@@ -54,7 +57,7 @@ interface RefusedCardProps {
   readonly onAsk: (type: Reasoned) => void;
 }
 
-/** The participant does not want to take part: nothing goes on before somebody has decided. */
+/** The participant does not want to take part: nothing continues before somebody has decided. */
 export function RefusedCard({ refusal, onAsk }: RefusedCardProps): JSX.Element {
   const { t, language } = useTexts();
   const may = useMay();

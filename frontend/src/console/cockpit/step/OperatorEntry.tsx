@@ -50,7 +50,7 @@ function Entry({ session, stepKey, onClose }: EntryProps): JSX.Element {
   const query = useQuery({
     queryKey: ["administration", session.id, stepKey],
     queryFn: () => sessions.administration(session.id),
-    // Asked again whenever it is opened; kept, so that a draft outlives a sign-in that has ended.
+    // Fetched again whenever it is opened; cached, so that a draft survives an expired sign-in.
     refetchOnMount: "always",
     gcTime: 24 * 60 * 60_000,
   });
@@ -78,7 +78,7 @@ function EntryForm({ session, administration, onClose }: EntryFormProps): JSX.El
   const texts = formTexts(t);
   const [startedAt] = useState(() => new Date());
   const [draft, setDraft] = useState(EMPTY_DRAFT);
-  // One key for one filling-in: sending it again after a lost answer stores it once.
+  // One key per form that is filled in: resending it after a lost answer stores it once.
   const [key] = useState(uuid);
   const save = useMutation({
     mutationFn: sessions.submit.bind(null, session.id),

@@ -1,4 +1,4 @@
-/** A consent that waits for the participant's tablet, or is signed on a sheet instead. */
+/** A consent that waits for the participant's tablet, or is signed on paper instead. */
 import {
   Button,
   Chip,

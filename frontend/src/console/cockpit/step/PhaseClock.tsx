@@ -1,4 +1,4 @@
-/** The large clock of active time. It never claims more than the last report supports. */
+/** The large clock of active time. It never shows more than the last report supports. */
 import type { Current, SessionView } from "@shared/api/types";
 import { activeAt, type ClockReport, isHolding } from "@shared/clock";
 import { clockFace } from "@shared/format";
@@ -66,7 +66,9 @@ export function PhaseClock({ session, store }: PhaseClockProps): JSX.Element | n
   );
 }
 
-/** A pause or its end is only true once the headset has confirmed it. */
+/**
+ * The text of the clock's state; a pause or its end counts only once the headset has confirmed it.
+ */
 function stateKey(current: Current): Key {
   if (current.pausing) return "phase.pausing";
   return current.resuming ? "phase.resuming" : `phase.${current.status}`;
@@ -114,11 +116,12 @@ function Progress({ active, report, label }: ProgressProps): JSX.Element | null 
 const hasHeadset = (session: SessionView): boolean =>
   session.devices.some((device) => device.kind === "headset" && device.connected);
 
-/** The newest word about the clock: the session's own, or telemetry that came after it. */
+/** The newest report of the clock: the session's own, or telemetry that came after it. */
 function useReport(session: SessionView, store: TelemetryStore): ClockReport {
   const received = useTelemetry(store);
   const { current, time_scale } = session;
-  // The page learns of a session's change and of its time together, so the moment is taken here.
+  // The session's change and its time reach the page together, so the moment of receipt is taken
+  // here.
   const own = useMemo(
     () => ({ active: current?.active_s ?? 0, at: milliseconds(performance.now()) }),
     [current],
@@ -141,7 +144,7 @@ function warningOf(session: SessionView, report: ClockReport, now: Milliseconds)
 
 const TICK_MS = 200;
 
-/** The page's monotonic time, ticking only while something depends on it. */
+/** The page's monotonic time, which ticks only while something depends on it. */
 function useNow(ticking: boolean): Milliseconds {
   const [now, setNow] = useState(() => milliseconds(performance.now()));
   useEffect(() => {

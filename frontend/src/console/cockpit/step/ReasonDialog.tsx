@@ -1,4 +1,7 @@
-/** Every exception asks why, because the record keeps the reason; common reasons are one key away. */
+/**
+ * A dialog that asks for the reason of an exception, which is recorded; common reasons are one key
+ * away.
+ */
 import { Button, Group, Modal, Select, Stack, Text } from "@mantine/core";
 import type { SessionView } from "@shared/api/types";
 import { type JSX, useState } from "react";
@@ -47,7 +50,7 @@ function ReasonForm({ type, session, live, onClose }: ReasonFormProps): JSX.Elem
   const refused = type === "withdraw" && session.refusal !== null;
   const [reason, setReason] = useState(refused ? t("reason.refused") : "");
   const [step, setStep] = useState(() => redoTarget(session));
-  // Not a step like any other: none of the usual reasons is one for going on without it.
+  // Skipping a consent is not like other steps: none of the usual reasons justifies it.
   const skipsConsent = type === "skip" && currentStep(session)?.kind === "consent";
   const grave = type === "abort" || type === "withdraw";
   return (
@@ -92,7 +95,7 @@ interface RedoChoiceProps {
   readonly onChange: (step: number) => void;
 }
 
-/** From which step on the session is done over, and what that costs. */
+/** From which step the session is repeated, and what that costs. */
 function RedoChoice({ session, step, onChange }: RedoChoiceProps): JSX.Element {
   const { t } = useTexts();
   const steps = redoable(session).map(({ index, ...one }) => ({

@@ -59,7 +59,7 @@ export function WordsField({
     return <Autocomplete {...common} data={[...known]} onChange={(text) => field.onChange(text)} />;
   const onChange = (event: { currentTarget: { value: string } }) =>
     field.onChange(event.currentTarget.value);
-  // Keys have a pattern and are short; what has none is prose.
+  // Keys have a pattern and are short; a text without a pattern is prose.
   return pattern === null ? (
     <Textarea {...common} autosize maxRows={8} onChange={onChange} />
   ) : (
@@ -67,7 +67,7 @@ export function WordsField({
   );
 }
 
-/** Keys that exist elsewhere in the file or in the library, for fields that name one. */
+/** The keys that exist elsewhere in the file or in the library, for fields that refer to one. */
 function useKnown(path: Path): readonly string[] | null {
   const { tree, instruments } = useForm();
   switch (path.at(-1)) {

@@ -1,4 +1,4 @@
-/** The field for whatever a place of the file can hold. */
+/** The field for any value in the file, chosen by its schema. */
 import { ActionIcon, Button, Menu, TagsInput } from "@mantine/core";
 import { Icon } from "@shared/ui/Icon";
 import type { JSX, KeyboardEvent } from "react";
@@ -46,7 +46,7 @@ function SpecField({ path, spec, label }: SpecFieldProps): JSX.Element | null {
     case "union":
       return <UnionFields path={path} spec={spec} />;
     default:
-      return null; // a fixed value has nothing to choose; maps of texts have a page of their own
+      return null; // a fixed value leaves nothing to choose; maps of texts have a page of their own
   }
 }
 
@@ -55,11 +55,11 @@ const isWords = (spec: Spec): boolean => spec.kind === "words" || spec.kind === 
 interface ObjectFieldsProps {
   readonly path: Path;
   readonly spec: ObjectSpec;
-  /** Fields shown elsewhere. */
+  /** Fields that are shown elsewhere. */
   readonly without?: readonly string[];
 }
 
-/** The fields that are there or required, and buttons that add the others. */
+/** The fields that are present or required, and buttons that add the others. */
 export function ObjectFields({ path, spec, without = [] }: ObjectFieldsProps): JSX.Element {
   const { t } = useTexts();
   const { change, languages } = useForm();
@@ -154,7 +154,7 @@ function TupleField({ path, spec, label }: TupleFieldProps): JSX.Element {
       <div className={classes.axes}>
         {spec.map((item, index) => (
           <SpecField
-            // biome-ignore lint/suspicious/noArrayIndexKey: a coordinate is its place
+            // biome-ignore lint/suspicious/noArrayIndexKey: a coordinate is identified by its position
             key={index}
             path={[...path, index]}
             spec={item}
@@ -200,7 +200,7 @@ interface ListFieldProps {
   readonly label: string;
 }
 
-/** A list of things that are edited one by one: conditions, steps, phases, boxes, orders. */
+/** A list whose entries are edited one by one: conditions, steps, phases, boxes, orders. */
 export function ListField({ path, spec, label }: ListFieldProps): JSX.Element {
   const value = useValue(path);
   const problem = useProblem(path);
@@ -212,7 +212,7 @@ export function ListField({ path, spec, label }: ListFieldProps): JSX.Element {
       <ol>
         {items.map((item, index) => (
           <Entry
-            // biome-ignore lint/suspicious/noArrayIndexKey: an entry is its place in the file
+            // biome-ignore lint/suspicious/noArrayIndexKey: an entry is identified by its position in the file
             key={index}
             path={[...path, index]}
             spec={spec}
@@ -307,7 +307,7 @@ function Tool({ icon, label, off, onClick }: ToolProps): JSX.Element {
   );
 }
 
-/** What an entry is called: by its step, its limb, its key or its number. */
+/** The name of an entry: its step, its limb, its key or its number. */
 function useName(item: Json): string {
   const labels = useLabels();
   if (!isObject(item)) return isList(item) ? item.map(String).join(" → ") : String(item);
@@ -351,7 +351,7 @@ function Add({ path, spec, count, last }: AddProps): JSX.Element {
       </Menu>
     );
   }
-  // A copy of the last one is nearer to what is wanted than empty fields.
+  // A copy of the last entry is a better start than empty fields.
   const next = isList(last) ? last : blank(spec.item, languages);
   return (
     <Button size="xs" variant="default" leftSection={icon} onClick={() => add(next)}>

@@ -1,4 +1,4 @@
-/** A wording in every language of the study, side by side. */
+/** A text in every language of the study, side by side. */
 import { Button, Textarea, TextInput } from "@mantine/core";
 import { LANGUAGE_NAMES } from "@shared/i18n/i18n";
 import { Icon } from "@shared/ui/Icon";
@@ -65,7 +65,7 @@ function Wording({ path, language, label }: WordingProps): JSX.Element {
   );
 }
 
-/** Every text of the study by its key, all languages side by side; and new ones. */
+/** Every text of the study by its key, all languages side by side, with a button to add one. */
 export function TextsSection(): JSX.Element {
   const { t } = useTexts();
   const { change, languages } = useForm();

@@ -1,4 +1,4 @@
-/** Who is signed in, as what, and the way out. */
+/** Who is signed in, in which role, and the button for signing out. */
 import { Button, Menu } from "@mantine/core";
 import { useDisclosure } from "@mantine/hooks";
 import type { Account } from "@shared/api/types";

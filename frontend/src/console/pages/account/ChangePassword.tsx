@@ -1,4 +1,4 @@
-/** One's own password; whoever knows the old one elsewhere is shut out. */
+/** Change one's own password; all other sign-ins of the account are ended. */
 import { Button, Group, Modal, PasswordInput, Stack, Text } from "@mantine/core";
 import { notifications } from "@mantine/notifications";
 import { people } from "@shared/api/people";

@@ -1,4 +1,4 @@
-/** A new password twice, with the rule as a list that fills while somebody types. */
+/** A new password, entered twice, with a list of rules that are ticked off during typing. */
 import { PasswordInput, Stack } from "@mantine/core";
 import { type ApiError, isApiError } from "@shared/api/request";
 import { Icon } from "@shared/ui/Icon";
@@ -87,17 +87,17 @@ function Ring(): JSX.Element {
   );
 }
 
-/** At which field of a form about an account the server's refusal belongs. */
+/** The server's errors about an account form, by field. */
 interface FieldErrors {
   readonly username: string | null;
   readonly password: string | null;
-  /** What belongs to no field. */
+  /** An error that belongs to no field. */
   readonly other: unknown;
 }
 
 const NONE: FieldErrors = { username: null, password: null, other: null };
 
-/** The server repeats a name that it refuses, and never a password. */
+/** The errors by field. The server repeats a rejected name, but never a password. */
 export function fieldErrors(error: unknown): FieldErrors {
   if (error === null) return NONE;
   if (!isApiError(error, "invalid_input")) return { ...NONE, other: error };

@@ -1,4 +1,4 @@
-/** The rule that the page tells is the one that the server enforces. */
+/** Check that the page's password rule is the one that the server enforces. */
 import { readFileSync } from "node:fs";
 import { describe, expect, it } from "vitest";
 import { checkPassword, isGood, LEAST_DIFFERENT, LEAST_LENGTH, MOST_LENGTH } from "./passwordRule";
@@ -29,7 +29,7 @@ describe("the rule for passwords", () => {
     expect(isGood(checkPassword(password, password, username))).toBe(good);
   });
 
-  it("wants the same twice", () => {
+  it("requires both entries to be equal", () => {
     expect(checkPassword("correct horse battery", "correct horse", "ada").same).toBe(false);
   });
 });

@@ -1,4 +1,4 @@
-/** The record of a consent as one would file it: on A4, everything that was shown and given. */
+/** The record of a consent, ready to be filed: on A4, everything that was shown and given. */
 import { Button } from "@mantine/core";
 import type { ConsentRecord } from "@shared/api/records";
 import { dateTime } from "@shared/format";
@@ -72,7 +72,7 @@ function Sheet({ record }: { readonly record: ConsentRecord }): JSX.Element {
           <section lang={record.language}>
             <h2>{record.title}</h2>
             {paragraphs(record.text).map((paragraph, index) => (
-              // biome-ignore lint/suspicious/noArrayIndexKey: a text has no names for its parts
+              // biome-ignore lint/suspicious/noArrayIndexKey: the parts of a text have no identifier
               <Part key={index} paragraph={paragraph} />
             ))}
           </section>
@@ -119,7 +119,7 @@ function Part({ paragraph }: { readonly paragraph: Paragraph }): JSX.Element {
     case "prose":
       return <p>{paragraph.text}</p>;
     case "picture":
-      // What was signed was shown with it; the page to print says that it was there.
+      // The picture was part of what was signed, so the page to print mentions it.
       return <p>[{paragraph.name}]</p>;
     case "points":
       return (
@@ -132,7 +132,7 @@ function Part({ paragraph }: { readonly paragraph: Paragraph }): JSX.Element {
   }
 }
 
-/** The small print of a record: what makes it possible to check it against the study later. */
+/** The small print of a record: the facts by which it can be checked against the study later. */
 function Facts({ record }: { readonly record: ConsentRecord }): JSX.Element {
   const { t, language } = useTexts();
   const facts: readonly (readonly [Key, string])[] = [

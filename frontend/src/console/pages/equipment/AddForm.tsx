@@ -1,4 +1,4 @@
-/** One measurement of an equipment's own delay. */
+/** The form for a measurement of a device's own delay. */
 import {
   Autocomplete,
   Button,

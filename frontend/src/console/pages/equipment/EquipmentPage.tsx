@@ -1,4 +1,4 @@
-/** How slow each piece of equipment is: its newest measurement first, the history below. */
+/** The measured delay of each device: its newest measurement first, the history below. */
 import { Button, Modal, Title } from "@mantine/core";
 import { useDisclosure } from "@mantine/hooks";
 import type { Calibration } from "@shared/api/records";

@@ -1,4 +1,4 @@
-/** Every measurement of one equipment, the newest first; nothing is ever removed. */
+/** Every measurement of one device, the newest first; none is ever removed. */
 import { Button, Group, Modal, Stack, Table, Text, Textarea } from "@mantine/core";
 import { type Calibration, calibrations } from "@shared/api/records";
 import { number } from "@shared/format";

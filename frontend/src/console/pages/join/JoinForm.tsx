@@ -1,4 +1,4 @@
-/** The role that waits, and the name and password that somebody chooses for it. */
+/** An invitation's role, and the name and password to choose for the new account. */
 import { Button, Stack, Text, TextInput } from "@mantine/core";
 import { type InvitationLook, invitations } from "@shared/api/people";
 import { isApiError } from "@shared/api/request";
@@ -17,7 +17,7 @@ import classes from "./Join.module.css";
 interface JoinFormProps {
   readonly token: string;
   readonly look: InvitationLook;
-  /** What to show where the link was used up meanwhile. */
+  /** What to show if the link has been used meanwhile. */
   readonly onRefused: (error: unknown) => JSX.Element;
 }
 

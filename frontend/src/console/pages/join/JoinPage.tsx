@@ -1,4 +1,4 @@
-/** Behind an invitation's link: what it is for, and the account it makes. */
+/** The page of an invitation link: what it is for, and a form that creates the account. */
 import { Button, Group, Loader } from "@mantine/core";
 import { invitations } from "@shared/api/people";
 import { type ApiError, isApiError } from "@shared/api/request";
@@ -73,9 +73,9 @@ function Invitation({ token }: { readonly token: string }): JSX.Element {
 
 type Why = "used" | "expired" | "revoked" | "unknown";
 
-/** Why a link does not open anything (any more); null for every other trouble. */
+/** Why a link is not valid (any more); null for every other error. */
 function whyRefused(error: unknown): Why | null {
-  // A link that was cut short is too short for the server to look up.
+  // A truncated link is too short for the server to look up.
   if (isApiError(error) && [404, 422].includes(error.status)) return "unknown";
   if (!isApiError(error, "gone")) return null;
   const status = (error as ApiError).value;
@@ -106,5 +106,5 @@ function Refused({ error, onRetry }: RefusedProps): JSX.Element {
   );
 }
 
-/** The link does not stay behind in the history. */
+/** The link is removed from the browser's history. */
 const leave = (): void => navigate("/", { replace: true });

@@ -3,7 +3,7 @@ import type { JSX } from "react";
 import { useTexts } from "../../i18n";
 import classes from "./Network.module.css";
 
-/** Something to type elsewhere, with a button that copies it. */
+/** A text to type elsewhere, with a button that copies it. */
 export function Copyable({ text }: { readonly text: string }): JSX.Element {
   const { t } = useTexts();
   return (

@@ -96,7 +96,9 @@ function Addresses({ network }: { readonly network: Network }): JSX.Element {
   );
 }
 
-/** The way that needs no network: the headset's own localhost leads here. */
+/**
+ * The connection by USB cable, without a network: the headset's own localhost leads to the server.
+ */
 function Cable({ cable }: { readonly cable: Network["cable"] }): JSX.Element {
   const { t } = useTexts();
   return (
@@ -114,7 +116,7 @@ function Cable({ cable }: { readonly cable: Network["cable"] }): JSX.Element {
 
 type Shown = NonNullable<Network["certificate"]>;
 
-/** What a person compares with a device's screen before trusting it, and how long it lasts. */
+/** The fingerprint to compare with a device's screen before trusting it, and its expiry date. */
 function Certificate({ certificate }: { readonly certificate: Shown }): JSX.Element {
   const { t } = useTexts();
   const own = certificate.source === "files";
@@ -185,7 +187,7 @@ interface QrCodeProps {
   readonly caption?: string;
 }
 
-/** A QR code that the server drew, on white in either appearance: cameras need the contrast. */
+/** A QR code drawn by the server, on white in either colour scheme: cameras need the contrast. */
 function QrCode({ svg, alt, caption }: QrCodeProps): JSX.Element {
   return (
     <figure className={classes.figure}>
@@ -201,7 +203,7 @@ function QrCode({ svg, alt, caption }: QrCodeProps): JSX.Element {
 
 const PAIRS_IN_A_GROUP = 4;
 
-/** A fingerprint in groups of four pairs: as much as an eye compares at once. */
+/** Split a fingerprint into groups of four pairs: as much as people compare at a glance. */
 export function inGroups(fingerprint: string): readonly { at: number; text: string }[] {
   const pairs = fingerprint.split(":");
   const groups = Array.from({ length: Math.ceil(pairs.length / PAIRS_IN_A_GROUP) }, (_, at) => at);

@@ -1,4 +1,4 @@
-/** Shutting somebody out: of the browsers they are signed in with, or altogether. */
+/** Revoke somebody's access: sign out all their browsers, or deactivate the account. */
 import { Button, Group, Stack, Text } from "@mantine/core";
 import { type Person, people } from "@shared/api/people";
 import { useMutation, useQueryClient } from "@tanstack/react-query";
@@ -23,7 +23,7 @@ export function Access({ person, isSelf }: AccessProps): JSX.Element {
   );
 }
 
-/** What follows from every act here: the table is read again, and so is one's own sign-in. */
+/** Run an action and reload the accounts and one's own sign-in, which it may have changed. */
 function useAct(act: () => Promise<unknown>) {
   const queries = useQueryClient();
   return useMutation({

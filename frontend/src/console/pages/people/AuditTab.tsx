@@ -1,4 +1,4 @@
-/** What was done, newest first, in words; and whether the trail is whole. */
+/** The audit trail, newest first, in words; and whether the chain is intact. */
 import { Button, Select } from "@mantine/core";
 import { type AuditEntry, type AuditFilter, audit } from "@shared/api/people";
 import { dateTime } from "@shared/format";

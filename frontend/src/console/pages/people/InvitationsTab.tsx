@@ -1,4 +1,4 @@
-/** Every invitation: who may still use one, and who has. */
+/** Every invitation: which are still open, and which were used. */
 import { Button, Table } from "@mantine/core";
 import { type Invitation, invitations } from "@shared/api/people";
 import { dateTime } from "@shared/format";

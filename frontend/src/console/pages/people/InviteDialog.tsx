@@ -1,4 +1,4 @@
-/** Inviting: role, studies, how long; then the link, once. */
+/** Invite somebody: choose role, studies and validity, then show the link, once. */
 import {
   Button,
   CopyButton,
@@ -112,7 +112,7 @@ interface InviteLinkProps {
   readonly onDone: () => void;
 }
 
-/** The link of a fresh invitation: nobody, not even the server, can show it again. */
+/** The link of a new invitation, which cannot be shown a second time, not even by the server. */
 function InviteLink({ made, onDone }: InviteLinkProps): JSX.Element {
   const { t, language } = useTexts();
   return (

@@ -1,4 +1,4 @@
-/** Who works here, who is invited, and what was done; for admins. */
+/** The accounts, the invitations and the audit trail; for admins. */
 import { Tabs, Text, Title } from "@mantine/core";
 import type { Account } from "@shared/api/types";
 import { Icon, type IconName } from "@shared/ui/Icon";

@@ -1,4 +1,4 @@
-/** Everybody who has or had an account. */
+/** Every current and former account. */
 import { Button, Table } from "@mantine/core";
 import type { Person, StudyKeys } from "@shared/api/people";
 import type { Account } from "@shared/api/types";

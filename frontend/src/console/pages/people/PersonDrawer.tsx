@@ -1,4 +1,4 @@
-/** One person: what they may do, which studies they see, and shutting them out. */
+/** One account: its role, its studies, and revoking its access. */
 import { Button, Drawer, Stack } from "@mantine/core";
 import { type Person, people } from "@shared/api/people";
 import { Notice } from "@shared/ui/Notice";
@@ -45,13 +45,13 @@ function Rights({ person }: { readonly person: Person }): JSX.Element {
   const [studies, setStudies] = useState(person.studies);
   const others = String(studies) !== String(person.studies);
   const another = role !== person.role;
-  // Only what is another now, so that the audit trail tells no more than was done.
+  // Send only what has changed, so that the audit trail records no more than that.
   const change = useMutation({
     mutationFn: () =>
       people.change(person.id, { ...(another && { role }), ...(others && { studies }) }),
     onSuccess: async () => {
       await queries.invalidateQueries({ queryKey: peopleQuery.queryKey });
-      // One's own role may be another now.
+      // One's own role may have changed.
       await queries.invalidateQueries({ queryKey: ["account"], exact: true });
     },
   });

@@ -1,4 +1,4 @@
-/** What somebody may do, and which studies they may see. */
+/** The role of an account, and which studies it may see. */
 import { Group, MultiSelect, Radio, Stack } from "@mantine/core";
 import type { Role, StudyKeys } from "@shared/api/people";
 import { Icon } from "@shared/ui/Icon";
@@ -14,7 +14,7 @@ interface RoleChoiceProps {
   readonly onChange: (role: Role) => void;
 }
 
-/** The four roles side by side, so that nobody gives away more than they mean to. */
+/** The four roles side by side, so that nobody grants more than intended. */
 export function RoleChoice({ role, onChange }: RoleChoiceProps): JSX.Element {
   const { t } = useTexts();
   return (
@@ -35,7 +35,7 @@ export function RoleChoice({ role, onChange }: RoleChoiceProps): JSX.Element {
   );
 }
 
-/** A role with what it may and what it may not, in plain words. */
+/** A role with what it may and may not do, in plain words. */
 export function RoleFacts({ role }: { readonly role: Role }): JSX.Element {
   const { t } = useTexts();
   return (
@@ -67,12 +67,12 @@ interface StudiesChoiceProps {
   readonly onChange: (studies: StudyKeys) => void;
 }
 
-/** Which studies somebody may see: all, also those to come, or these. */
+/** Which studies an account may see: all, including future ones, or only these. */
 export function StudiesChoice({ studies, onChange }: StudiesChoiceProps): JSX.Element {
   const { t } = useTexts();
   const known = useQuery(studiesQuery).data ?? [];
   const titles = new Map(known.map(({ key, title }) => [key, title]));
-  // Studies that were put away are not listed, but stay theirs.
+  // Archived studies are not listed, but stay assigned.
   const keys = [...new Set([...titles.keys(), ...(studies ?? [])])];
   return (
     <Radio.Group

@@ -1,4 +1,4 @@
-/** Every act that the server records has its sentence, and no placeholder is left open. */
+/** Check that every action that the server records has a sentence without open placeholders. */
 import { readdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import type { AuditEntry } from "@shared/api/people";
@@ -36,7 +36,7 @@ const ACTIONS = files.flatMap((name) => {
 });
 
 describe("the audit trail in words", () => {
-  it("finds the acts in the server's source", () => {
+  it("finds the actions in the server's source", () => {
     expect(ACTIONS).toContain("login.revoked");
     expect(ACTIONS).toContain("study.archived");
   });
@@ -47,13 +47,13 @@ describe("the audit trail in words", () => {
     expect(KINDS.some((kind) => action.startsWith(`${kind}.`))).toBe(true);
   });
 
-  it("tells how many sign-ins a row stands for", () => {
+  it("gives the number of sign-ins that an entry stands for", () => {
     expect(sentences(entry("login.refused", { address: "10.0.0.1", count: 59 }), t)).toEqual([
       "59 more sign-ins from 10.0.0.1 were refused",
     ]);
   });
 
-  it("tells every change of one act", () => {
+  it("describes every change of one action", () => {
     const changed = entry(
       "account.changed",
       { role: "analyst", studies: ["a", "b"] },
@@ -65,12 +65,12 @@ describe("the audit trail in words", () => {
     ]);
   });
 
-  it("tells how many sign-ins ended", () => {
+  it("gives the number of sign-ins that were ended", () => {
     const revoked = entry("login.revoked", { ended: 2 }, "account:bo");
     expect(sentences(revoked, t)).toEqual(["ended 2 sign-ins of bo"]);
   });
 
-  it("shows what it does not know as it is recorded", () => {
+  it("shows unknown actions as they are recorded", () => {
     const strange = entry("moon.landed", { at_m: 3 }, "moon:one");
     expect(sentences(strange, t)).toEqual(["moon.landed one", "at m: 3"]);
   });

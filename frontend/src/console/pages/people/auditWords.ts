@@ -1,17 +1,19 @@
-/** An entry of the audit trail as sentences. What is not known here is told as it is recorded. */
+/** An entry of the audit trail as sentences. Unknown actions are shown as they are recorded. */
 import type { AuditEntry, Role } from "@shared/api/people";
 import type { Translate } from "@shared/i18n/i18n";
 import type { Key } from "../../i18n";
 
 type Say = Translate<Key>;
 
-/** `account:ada` is ada; a device or the command line is called by its kind. */
+/**
+ * The name of an actor: `account:ada` is ada; a device or the command line is called by its kind.
+ */
 export const actorName = (actor: string): string =>
   actor.startsWith("account:") ? actor.slice("account:".length) : (actor.split(":")[0] ?? actor);
 
 export const subjectName = (subject: string): string => subject.slice(subject.indexOf(":") + 1);
 
-/** What was done; more than one sentence where one act changed several things. */
+/** What was done; more than one sentence if one action changed several things. */
 export function sentences(entry: AuditEntry, t: Say): readonly string[] {
   const subject = subjectName(entry.subject);
   const details = entry.details as Readonly<Record<string, unknown>>;
@@ -39,7 +41,7 @@ export function sentences(entry: AuditEntry, t: Say): readonly string[] {
   return [t(key, { ...texts(details, t), count, subject })];
 }
 
-/** The sentence of every act that needs no more than its own details. */
+/** The sentences of actions that need no more than their own details. */
 const SENTENCES: Readonly<Record<string, Key>> = {
   "login.opened": "act.login.opened",
   "login.refused": "act.login.refused",
@@ -82,7 +84,7 @@ const SENTENCES: Readonly<Record<string, Key>> = {
   "participant.erased_again": "act.participant.erased_again",
 };
 
-/** What can be asked for by kind: everything whose name begins so. */
+/** The kinds to filter by: each stands for all actions whose name starts with it. */
 export const KINDS = [
   "login",
   "account",

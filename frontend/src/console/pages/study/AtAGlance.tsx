@@ -1,4 +1,4 @@
-/** Every tested measure in a line for each task: what a reader looks for first. */
+/** A line for every tested measure and task: what readers look for first. */
 import { Title } from "@mantine/core";
 import type { Glance, Measure } from "@shared/api/analysis";
 import type { JSX } from "react";
@@ -33,7 +33,8 @@ export function AtAGlance({ measures, onChoose }: AtAGlanceProps): JSX.Element |
         {t("glance.title")}
       </Title>
       <p className={classes.about}>{t("glance.about")}</p>
-      {/* biome-ignore lint/a11y/noNoninteractiveTabindex: what scrolls is reached with the keyboard */}
+      {/* biome-ignore lint/a11y/noNoninteractiveTabindex: scrollable content must be reachable with
+         the keyboard */}
       <div className={`${classes.result} ${table.scroll}`} tabIndex={0}>
         <table className={`${table.table} ${classes.glance} numbers`}>
           <thead>

@@ -1,7 +1,7 @@
 /**
- * The study's figures, drawn by the server from the sessions of one kind that are chosen.
+ * The study's figures, drawn by the server from the selected sessions of one kind.
  *
- * One group is asked for after the other, from the top: the first is there long before all are.
+ * The groups are requested one after the other, from the top, so the first is shown early.
  */
 import { Title } from "@mantine/core";
 import {
@@ -91,11 +91,11 @@ interface GroupsProps {
   readonly studyKey: string;
   readonly asked: Asked;
   readonly groups: readonly FigureGroup[];
-  /** Whether those above are there, so that these may be asked for. */
+  /** Whether the groups above have loaded, so that these may be requested. */
   readonly turn: boolean;
 }
 
-/** The first of some groups, and below it the others. */
+/** The first of some groups of figures, followed by the others. */
 function Groups({ studyKey, asked, groups, turn }: GroupsProps): JSX.Element {
   const { t } = useTexts();
   const [group = FIRST, ...others] = groups;
@@ -125,7 +125,7 @@ interface FiguresProps {
 
 function Figures({ studyKey, dashboard }: FiguresProps): JSX.Element {
   const { t } = useTexts();
-  // What is on the page, which a moment after a choice is not yet what is asked for.
+  // What is shown, which right after a choice is not yet what is requested.
   const { kind, filter, figures } = dashboard;
   const drawn: Asked = {
     ...askedOf(new URLSearchParams({ kind })),
@@ -149,9 +149,9 @@ function Figures({ studyKey, dashboard }: FiguresProps): JSX.Element {
 }
 
 /**
- * What is drawn, kept in the page's address: whoever is sent it sees the same.
+ * The filter, kept in the page's address, so that a shared link shows the same figures.
  *
- * It stands before the `#` of the page's place, and is taken out when the page is left.
+ * It is stored before the `#` of the page's route, and removed when the page is left.
  */
 function useAsked(): readonly [Asked, (next: Asked) => void] {
   const [place, navigate] = useLocation();
@@ -163,7 +163,7 @@ function useAsked(): readonly [Asked, (next: Asked) => void] {
       if (hash !== own && left !== "") history.replaceState(null, "", pathname + hash);
     };
   }, []);
-  // In place: going back leaves the page, not the last choice of a filter.
+  // Replace the address: going back leaves the page instead of undoing a filter.
   const ask = (next: Asked): void => navigate(`${place}?${searchOf(next)}`, { replace: true });
   return [askedOf(new URLSearchParams(search)), ask];
 }

@@ -1,4 +1,4 @@
-/** Tidy CSV for analysis: what is in the archive, and the archive. */
+/** Tidy CSV for analysis: the contents of the archive, and its download. */
 import { Button, Paper, Stack, Text, Title } from "@mantine/core";
 import type { DataKind, StudyDetail } from "@shared/api/types";
 import { Icon } from "@shared/ui/Icon";

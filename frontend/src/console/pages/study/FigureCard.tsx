@@ -1,4 +1,4 @@
-/** One figure with its words, and the buttons that save it and its rows. */
+/** One figure with its caption, and the buttons that save it and its data. */
 import { Figure } from "@charts/Figure";
 import { savePicture } from "@charts/print";
 import { Button, Title } from "@mantine/core";
@@ -61,7 +61,7 @@ function SaveRow({ label, name, rowsUrl, onPicture }: SaveRowProps): JSX.Element
   const { t } = useTexts();
   const rows = useDownload();
   return (
-    // A group of buttons with a common name: each alone says only its format.
+    // A group of buttons with a common label: each alone names only its format.
     <fieldset className={classes.save} aria-label={label}>
       <Icon name="download" size={16} />
       {(["png", "svg"] as const).map((format) => (

@@ -1,4 +1,4 @@
-/** What is drawn, chosen in a row of fields; every choice is part of the page's address. */
+/** The filters of the dashboard in a row of fields; every choice is part of the page's address. */
 import { Button, MultiSelect, SegmentedControl, Select, TextInput } from "@mantine/core";
 import { type Asked, askedOf, type FilterChoices } from "@shared/api/analysis";
 import type { JSX } from "react";

@@ -47,7 +47,7 @@ export function LedgerTab({ study }: { readonly study: StudyDetail }): JSX.Eleme
   );
 }
 
-/** Where the experimenter may not know the orders, the slots stand in the order of their use. */
+/** The slots in the order of their use, for experimenters who may not know the orders. */
 function Blinded({ ledger }: { readonly ledger: Ledger }): JSX.Element {
   const { t } = useTexts();
   const next = nextFree(ledger.slots);
@@ -141,7 +141,7 @@ const CELLS = { completed: classes.cellDone, open: classes.cellOpen, free: "" } 
 /** The ledger as a grid: a row for every order, a column for every replicate. */
 interface LedgerRow {
   readonly sequence: readonly number[];
-  /** One slot for each column; undefined where a replicate has no such order (yet). */
+  /** One slot for each column; undefined if a replicate does not have such an order (yet). */
   readonly slots: readonly (Slot | undefined)[];
 }
 
@@ -150,7 +150,7 @@ interface LedgerGrid {
   readonly columns: readonly number[];
 }
 
-/** The grid; null where the orders are hidden or no slot exists yet. */
+/** The grid; null if the orders are hidden or no slot exists yet. */
 export function arrange(ledger: Ledger): LedgerGrid | null {
   const { sequences } = ledger;
   if (sequences === null || ledger.slots.length === 0) return null;
@@ -164,7 +164,7 @@ export function arrange(ledger: Ledger): LedgerGrid | null {
   return { rows, columns };
 }
 
-/** The index of the slot the next participant gets; null when every slot is taken. */
+/** The index of the slot the next participant gets; null if every slot is taken. */
 export function nextFree(slots: readonly Slot[]): number | null {
   const free = slots.filter((slot) => slot.state === "free").map((slot) => slot.index);
   return free.length === 0 ? null : Math.min(...free);

@@ -1,4 +1,4 @@
-/** Join: the next slot of the ledger goes to a participant. */
+/** Create a session: the next slot of the ledger goes to a participant. */
 import {
   Button,
   Group,
@@ -19,7 +19,7 @@ import { useTexts } from "../../i18n";
 import { sessionQuery } from "../../queries";
 import { KINDS } from "../../ui/KindFilter";
 
-/** As the server has it; what is longer is refused in words instead of being cut. */
+/** The server's limit; a longer code is rejected with a message instead of being cut. */
 const LONGEST_CODE = 40;
 
 interface NewSessionProps {

@@ -1,4 +1,6 @@
-/** What the study is: its question, its conditions, its orders, and the visit minute by minute. */
+/**
+ * What the study is: its question, its conditions, its orders, and the session minute by minute.
+ */
 import { Paper, Title } from "@mantine/core";
 import type { StudyDetail, StudyProtocol } from "@shared/api/types";
 import { latency } from "@shared/format";
@@ -18,7 +20,7 @@ export function Overview({ study }: { readonly study: StudyDetail }): JSX.Elemen
   );
 }
 
-/** What somebody may read who runs the study without knowing its conditions. */
+/** The overview for operators who run the study without knowing its conditions. */
 function Blinded({ study }: { readonly study: StudyDetail }): JSX.Element {
   const { t } = useTexts();
   return (
@@ -140,7 +142,7 @@ const DESIGNS: Readonly<Record<string, Key>> = {
   explicit: "design.explicit",
 };
 
-/** How many orders a study's design has: as many rows as one block of its ledger. */
+/** The number of orders in a study's design: as many as one block of its ledger has rows. */
 export function orderCount({ design, sequences }: StudyProtocol["orders"], n: number): number {
   if (design === "explicit") return sequences?.length ?? 0;
   if (design === "williams") return n % 2 === 0 || n === 1 ? n : 2 * n;

@@ -1,4 +1,7 @@
-/** The procedure of one visit from left to right; timed parts carry their seconds, phases to scale. */
+/**
+ * The procedure of one session from left to right; timed parts show their seconds, phases are to
+ * scale.
+ */
 import type { SetupStep, StudyDetail, StudyProtocol, TaskPhase } from "@shared/api/types";
 import { duration, number } from "@shared/format";
 import { Icon, type IconName } from "@shared/ui/Icon";
@@ -55,7 +58,7 @@ interface PartProps {
   readonly steps: readonly SetupStep[];
 }
 
-/** A step of the file as the plan would name it. */
+/** A step of the file in the form of a session's steps. */
 const named = ({ step, limb }: SetupStep) => ({ kind: step, limb: limb ?? null });
 
 const QUESTIONNAIRE = { kind: "questionnaire", limb: null } as const;

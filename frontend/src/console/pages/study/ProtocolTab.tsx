@@ -64,7 +64,7 @@ export function ProtocolTab({ study }: { readonly study: StudyDetail }): JSX.Ele
 
 function Yaml({ text, label }: { readonly text: string; readonly label: string }): JSX.Element {
   return (
-    // biome-ignore lint/a11y/noNoninteractiveTabindex: a region that scrolls has to take the focus
+    // biome-ignore lint/a11y/noNoninteractiveTabindex: a scrollable region has to be focusable
     // biome-ignore lint/a11y/useSemanticElements: a section may not be preformatted
     <pre className={classes.yaml} tabIndex={0} role="region" aria-label={label}>
       {text

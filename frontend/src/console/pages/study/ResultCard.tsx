@@ -1,4 +1,4 @@
-/** One answer: a sentence, its numbers, how it was found, and the line for a paper. */
+/** One result: a sentence, its numbers, its method, and the line for a paper. */
 import { Badge, Button, Title } from "@mantine/core";
 import type { Result } from "@shared/api/analysis";
 import { Icon } from "@shared/ui/Icon";
@@ -62,7 +62,9 @@ function CopyButton({ text }: { readonly text: string }): JSX.Element {
   );
 }
 
-/** Without https browsers have no clipboard of their own; marked text can be copied anywhere. */
+/**
+ * Copy a text. Pages without https have no clipboard API, so there it is copied from a selection.
+ */
 async function copyText(text: string): Promise<void> {
   if (navigator.clipboard !== undefined) return navigator.clipboard.writeText(text);
   const field = document.createElement("textarea");

@@ -128,7 +128,7 @@ function Row({ session }: { readonly session: SessionSummary }): JSX.Element {
   );
 }
 
-/** How long the visit took; null until it has ended. */
+/** How long the session took; null until it has ended. */
 function lengthOf({ started_at, ended_at }: SessionSummary): string | null {
   if (started_at === null || ended_at === null) return null;
   return duration(seconds((Date.parse(ended_at) - Date.parse(started_at)) / 1000));

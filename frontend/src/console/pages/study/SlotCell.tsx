@@ -1,4 +1,4 @@
-/** One slot of the ledger: its state, who holds it, and all attempts on demand. */
+/** One slot of the ledger: its state, its participant, and all attempts on request. */
 import { Popover } from "@mantine/core";
 import type { Attempt, Slot } from "@shared/api/types";
 import { dateTime } from "@shared/format";

@@ -86,7 +86,7 @@ function Contents({ measures }: { readonly measures: readonly Measure[] }): JSX.
   return (
     <nav className={classes.contents} aria-label={t("statistics.contents")}>
       {measures.map(({ key, title }) => (
-        // Buttons: the place of the page stands in the address behind its #.
+        // Buttons rather than links, because the part after # is the page's route.
         <button type="button" key={key} onClick={() => goTo(key)}>
           {title}
         </button>

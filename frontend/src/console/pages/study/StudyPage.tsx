@@ -1,4 +1,4 @@
-/** One study: its design, its ledger, its sessions, what they show, and its files. */
+/** One study: its design, its ledger, its sessions, their results, and its files. */
 import { Button, Tabs, Title } from "@mantine/core";
 import { versions } from "@shared/api/drafts";
 import type { StudyDetail } from "@shared/api/types";
@@ -72,7 +72,7 @@ const CONTENT: Readonly<Record<Tab, (props: { study: StudyDetail }) => JSX.Eleme
   suggestions: SuggestionsTab,
 };
 
-/** What somebody must be allowed to do to see a tab; the others are for everybody. */
+/** The permission required for a tab; all others are for everybody. */
 const NEEDS: Readonly<Partial<Record<Tab, Act>>> = {
   participants: "rights",
   dashboard: "compare",
@@ -172,7 +172,7 @@ function Head({ study }: { readonly study: StudyDetail }): JSX.Element {
   );
 }
 
-/** Says that a study was put away, and takes it out again. */
+/** A notice that a study is archived, with a button that restores it. */
 function Archived({ studyKey }: { readonly studyKey: string }): JSX.Element {
   const { t } = useTexts();
   const may = useMay();

@@ -1,4 +1,4 @@
-/** Everything that was advised about the study, by version, and what became of it. */
+/** All suggestions about the study, by version, and how they were decided. */
 import { Button, Group, Menu, Modal, NativeSelect, Stack, Textarea } from "@mantine/core";
 import { useDisclosure } from "@mantine/hooks";
 import { type Suggestion, suggestions } from "@shared/api/records";

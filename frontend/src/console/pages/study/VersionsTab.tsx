@@ -1,4 +1,6 @@
-/** Every version of a study, what differs between any two, and the study's own fate. */
+/**
+ * Every version of a study, the differences between any two, and archiving or deleting the study.
+ */
 import { Button, Group, Modal, NativeSelect, Stack, Text, TextInput } from "@mantine/core";
 import { versions } from "@shared/api/drafts";
 import type { StudyDetail } from "@shared/api/types";

@@ -33,7 +33,7 @@ const ledger: Ledger = {
 };
 
 describe("the ledger as a grid", () => {
-  it("puts every slot in the row of its order and the column of its replicate", () => {
+  it("has every slot in the row of its order and the column of its replicate", () => {
     const grid = arrange(ledger);
     expect(grid?.columns).toEqual([1, 2]);
     expect(grid?.rows.map((row) => row.slots.map((cell) => cell?.index))).toEqual([
@@ -42,12 +42,12 @@ describe("the ledger as a grid", () => {
     ]);
   });
 
-  it("does not exist where the orders are hidden or nothing is drawn yet", () => {
+  it("is null if the orders are hidden or nothing is drawn yet", () => {
     expect(arrange({ ...ledger, sequences: null })).toBeNull();
     expect(arrange({ ...ledger, slots: [] })).toBeNull();
   });
 
-  it("knows the slot that is given out next", () => {
+  it("knows the slot that is assigned next", () => {
     expect(nextFree(ledger.slots)).toBe(2);
     expect(nextFree(ledger.slots.slice(0, 2))).toBeNull();
   });
@@ -67,7 +67,7 @@ describe("the orders of a design", () => {
 });
 
 describe("problems of a study file", () => {
-  it("say where they are as path:line:column", () => {
+  it("give their position as path:line:column", () => {
     const problem = { path: "orders.replicates", line: 12, column: 15, message: "too few" };
     expect(place(problem)).toBe("orders.replicates:12:15");
     expect(place({ path: "", line: 3, column: null, message: "x" })).toBe("3");

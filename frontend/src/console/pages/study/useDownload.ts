@@ -1,4 +1,4 @@
-/** A download that shows how far it is and can be stopped. */
+/** A download that shows its progress and can be cancelled. */
 import { errorFromBody, Unreachable } from "@shared/api/request";
 import { useRef, useState } from "react";
 
@@ -62,6 +62,6 @@ function save(blob: Blob, name: string): void {
   link.href = URL.createObjectURL(blob);
   link.download = name;
   link.click();
-  // The browser reads the file after the click; taking the address away at once would cut it off.
+  // The browser reads the file after the click; revoking the URL immediately would cut it off.
   setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
 }

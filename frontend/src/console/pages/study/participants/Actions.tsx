@@ -1,4 +1,4 @@
-/** What participants may ask for: a copy of their data, a correction, and that their data go. */
+/** Participants' rights: a copy of their data, a correction, and erasure. */
 import { Button, Group, Menu } from "@mantine/core";
 import { type Participant, rights, type Visit } from "@shared/api/rights";
 import { dateTime } from "@shared/format";
@@ -17,7 +17,7 @@ export interface ActionsProps {
   readonly onDetails: (participant: Participant) => void;
 }
 
-/** What can be done for a participant; of one who was erased, what is left. */
+/** The actions for a participant; for an erased one, what remains. */
 export function Actions({ participant, studyKey, ...props }: ActionsProps): JSX.Element {
   const { t } = useTexts();
   const { state, start } = useDownload();
@@ -103,7 +103,7 @@ interface EndItProps {
   readonly onErase: (participant: Participant) => void;
 }
 
-/** Erasing waits for the end of a running session, so that one is offered in its place. */
+/** Erasing waits for the end of a running session, so ending it is offered instead. */
 function EndIt({ running, participant, onErase }: EndItProps): JSX.Element {
   const { t } = useTexts();
   const [, navigate] = useLocation();

@@ -1,6 +1,6 @@
 /**
- * One row for each participant; what was erased stays as a tombstone. A column is one entry of
- * `COLUMNS`, with its title in both languages and its cell.
+ * One row for each participant; erased ones stay as tombstones. Each entry of `COLUMNS` is a column
+ * with its title in both languages and its cell.
  */
 import { Table } from "@mantine/core";
 import type { Participant } from "@shared/api/rights";

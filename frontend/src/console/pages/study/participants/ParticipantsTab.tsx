@@ -1,4 +1,4 @@
-/** Who took part, and what they may ask for: a copy, a correction, and that their data go. */
+/** The study's participants, and their rights: a copy, a correction, and erasure. */
 import { Modal, TextInput } from "@mantine/core";
 import type { Participant } from "@shared/api/rights";
 import type { StudyDetail } from "@shared/api/types";
@@ -88,7 +88,7 @@ interface TombstoneDialogProps {
   readonly onClose: () => void;
 }
 
-/** What was erased of somebody. */
+/** What was erased of a participant. */
 function TombstoneDialog({ participant, onClose }: TombstoneDialogProps): JSX.Element {
   const { t } = useTexts();
   const erasure = participant?.erasure ?? null;
