@@ -114,7 +114,7 @@ class StepKindSpec:
 
 
 _TO_TRY = Words(
-    "A task to try out, which is not analysed. Let the participant ask questions.",
+    "A task to try out; it is not analysed. Let the participant ask questions.",
     "Eine Aufgabe zum Ausprobieren, die nicht ausgewertet wird. Ermuntern Sie zu Fragen.",
 )
 _BEGIN_PRACTICE = Words("Begin practice", "Übung beginnen")
@@ -127,10 +127,10 @@ _TABLE = (
         icon="check",
         screen="consent",
         guidance=Words(
-            "The participant reads and agrees on the tablet. Record it here only if consent was "
-            "given on paper.",
-            "Die Person liest und willigt am Tablet ein. Hier nur festhalten, wenn auf Papier "
-            "eingewilligt wurde.",
+            "The participant reads and agrees on the tablet. Record the consent here only if it "
+            "was given on paper.",
+            "Die Person liest und willigt am Tablet ein. Tragen Sie die Einwilligung hier nur "
+            "ein, wenn sie auf Papier gegeben wurde.",
         ),
     ),
     StepKindSpec(
@@ -148,7 +148,7 @@ _TABLE = (
         screen="instructions",
         done=Words("Instructions are clear", "Anleitung ist klar"),
         guidance=Words(
-            "The participant reads on the tablet. Invite questions before going on.",
+            "The participant reads on the tablet. Invite questions before you continue.",
             "Die Person liest am Tablet. Laden Sie zu Fragen ein, bevor es weitergeht.",
         ),
     ),
@@ -172,7 +172,7 @@ _TABLE = (
         guidance=Words(
             "The participant stands inside the transparent body in a T-pose and presses both "
             "grips.",
-            "Die Person steht in T-Haltung im durchsichtigen Körper und drückt beide Griffe.",
+            "Die Person steht in T-Pose im durchsichtigen Körper und drückt beide Griffe.",
         ),
     ),
     StepKindSpec(
@@ -187,7 +187,7 @@ _TABLE = (
                 in_a_sentence=Words("free movement", "freies Bewegen"),
                 begin=Words("Begin free movement", "Freies Bewegen beginnen"),
                 guidance=Words(
-                    "Let the participant look around, down at the body and into the mirror.",
+                    "Let the participant look around, down at their body and into the mirror.",
                     "Lassen Sie die Person umherschauen, an sich hinab und in den Spiegel.",
                 ),
             ),
@@ -230,7 +230,7 @@ _TABLE = (
                 guidance=Words(
                     "Make sure that the participant stands on the start square and uses the "
                     "writing hand, then begin.",
-                    "Achten Sie darauf, dass die Person auf dem Startfeld steht und die "
+                    "Achten Sie darauf, dass die Person auf dem Startquadrat steht und die "
                     "Schreibhand benutzt; dann beginnen Sie.",
                 ),
             ),
@@ -240,8 +240,8 @@ _TABLE = (
                 begin=Words("Begin foot task", "Fußaufgabe beginnen"),
                 guidance=Words(
                     "Make sure that the participant stands on the start square, then begin.",
-                    "Achten Sie darauf, dass die Person auf dem Startfeld steht; dann beginnen "
-                    "Sie.",
+                    "Achten Sie darauf, dass die Person auf dem Startquadrat steht; dann "
+                    "beginnen Sie.",
                 ),
             ),
         },
@@ -255,12 +255,13 @@ _TABLE = (
         guidance=Words(
             "The participant answers on the tablet, or you read the items aloud and enter the "
             "answers.",
-            "Die Person antwortet am Tablet, oder Sie lesen vor und geben die Antworten ein.",
+            "Die Person antwortet am Tablet, oder Sie lesen die Fragen vor und geben die "
+            "Antworten ein.",
         ),
     ),
     StepKindSpec(
         key="debrief",
-        name=Words("Debriefing", "Abschluss"),
+        name=Words("Debriefing", "Abschlussgespräch"),
         icon="flag",
         records_movement=False,
         done=Words("Finish session", "Sitzung abschließen"),

@@ -113,7 +113,7 @@ def test_a_walk_is_brought_in_and_moves_in_space(
     console.keyboard.press("Shift+ArrowRight")
     expect(console.get_by_text("frame 11 of 150")).to_be_visible()
     expect(canvas).to_have_attribute("data-frame", "11")
-    console.get_by_label("Time in the movement").focus()
+    console.get_by_label("Position in the movement").focus()
     console.keyboard.press("End")
     expect(console.get_by_text("5.00 s of 5.00 s · frame 150 of 150")).to_be_visible()
     console.wait_for_function(
@@ -141,13 +141,13 @@ def test_another_unit_reads_the_file_again(
     panel = console.get_by_label("How the file was read", exact=True)
     expect(panel.get_by_text("guessed", exact=True)).to_be_visible()
     height_m = size_m(panel)
-    panel.get_by_role("combobox", name="Length of the file's unit").click()
+    panel.get_by_role("combobox", name="Unit of length in the file").click()
     console.get_by_role("option", name="Inch").click()
     panel.get_by_role("button", name="Read again").click()
     expect(panel.get_by_text("Read again with inch")).to_be_visible(timeout=PATIENCE_MS)
     expect(panel.get_by_text("chosen here")).to_be_visible()
     expect(panel.get_by_text(f"{height_m * 2.54:.2f} m high")).to_be_visible(timeout=PATIENCE_MS)
-    panel.get_by_role("combobox", name="Length of the file's unit").click()
+    panel.get_by_role("combobox", name="Unit of length in the file").click()
     console.get_by_role("option", name="Automatic").click()
     panel.get_by_role("button", name="Read again").click()
     expect(panel.get_by_text("guessed", exact=True)).to_be_visible(timeout=PATIENCE_MS)
@@ -180,7 +180,7 @@ def test_a_joint_map_is_changed_undone_and_saved(
     expect(console.get_by_text("also plays")).to_have_count(0)
     hand.focus()
     console.keyboard.press("Escape")
-    console.get_by_role("button", name="No joint for: Left hand").press("Enter")
+    console.get_by_role("button", name="Clear the joint for: Left hand").press("Enter")
     console.get_by_role("button", name="Save map").click()
     expect(console.get_by_text("The map is saved")).to_be_visible()
     expect(console.get_by_text("Saved by admin")).to_be_visible()
@@ -194,7 +194,7 @@ def test_a_joint_map_is_changed_undone_and_saved(
     console.get_by_role("button", name="Back to proposal").click()
     console.get_by_role("button", name="Save map").click()
     expect(console.get_by_text("Someone else has saved another map")).to_be_visible()
-    console.get_by_role("button", name="Take theirs").click()
+    console.get_by_role("button", name="Use theirs").click()
     expect(hand).to_have_value("LeftHand")
 
 
@@ -251,7 +251,7 @@ def test_without_webgl_the_movement_is_seen_from_the_side(
     expect(console.get_by_text("This browser cannot show 3-D")).to_be_visible(timeout=PATIENCE_MS)
     hips = console.locator("[data-way=flat] circle").first
     before = hips.get_attribute("cx")
-    console.get_by_label("Time in the movement").focus()
+    console.get_by_label("Position in the movement").focus()
     console.keyboard.press("End")
     expect(hips).not_to_have_attribute("cx", before or "")
 

@@ -49,7 +49,7 @@ def shown_signature(page: Page) -> str:
 
 def sign(page: Page) -> None:
     """Draw two strokes with the mouse."""
-    surface = page.get_by_role("img", name="Surface to sign on by finger, pen or mouse")
+    surface = page.get_by_role("img", name="Area for signing with a finger, pen or mouse")
     surface.scroll_into_view_if_needed()
     box = surface.bounding_box()
     assert box is not None
@@ -74,11 +74,11 @@ def test_a_drawn_signature_is_filed_as_it_was_given(
     for line in (READ, TAKE_PART):
         tablet.get_by_label(line).check()
     tablet.get_by_role("button", name=GO).click()
-    expect(tablet.get_by_text("Please sign on the surface above.")).to_be_visible()
+    expect(tablet.get_by_text("Please sign in the area above.")).to_be_visible()
     sign(tablet)
     tablet.get_by_role("button", name="Clear").click()
     tablet.get_by_role("button", name=GO).click()
-    expect(tablet.get_by_text("Please sign on the surface above.")).to_be_visible()
+    expect(tablet.get_by_text("Please sign in the area above.")).to_be_visible()
     sign(tablet)
     drawn = shown_signature(tablet)
     # Until it is kept: a stroke changes it many times a second.

@@ -98,5 +98,5 @@ def _download(
     assert axe(page) == []
     screenshot(page, "downloads")
     drawer.get_by_role("button", name="Remove").click()
-    expect(drawer.get_by_role("heading", name="Nothing here")).to_be_visible()
+    expect(drawer.get_by_role("heading", name="No files yet")).to_be_visible()
     page.keyboard.press("Escape")

@@ -73,7 +73,7 @@ def test_a_full_disk_is_said_on_the_page_and_an_export_can_be_deleted(
         fill_up(disk / "ballast")
         wait_for(lambda: command(client, session, "note").status_code == 503)
         alarm = strip.get_by_role("alert")
-        expect(alarm).to_contain_text("Nothing can be stored", timeout=PATIENCE_MS)
+        expect(alarm).to_contain_text("Data cannot be stored", timeout=PATIENCE_MS)
         expect(alarm).to_contain_text("Disk full? Delete exports")
         assert axe(page) == []
         screenshot(page, "disk-full")
@@ -82,7 +82,7 @@ def test_a_full_disk_is_said_on_the_page_and_an_export_can_be_deleted(
         wait_for(lambda: client.get(f"/api/exports/{export}").status_code == 404)
         page.keyboard.press("Escape")
         (disk / "ballast").unlink()
-        expect(strip).not_to_contain_text("Nothing can be stored", timeout=PATIENCE_MS)
+        expect(strip).not_to_contain_text("Data cannot be stored", timeout=PATIENCE_MS)
         assert health(client)["storage"] == "ok"
         # Before the server ends: its feed would break off.
         page.close()

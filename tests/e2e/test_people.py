@@ -74,10 +74,10 @@ def test_a_login_that_is_ended_shuts_its_open_page_at_once(
     operator.get_by_label("New note").fill("half a sentence")
     expect(operator.get_by_text("Live", exact=True)).to_be_visible(timeout=PATIENCE_MS)
     admin.goto(f"{lab.server.url}/#/people")
-    admin.get_by_role("button", name="Change lost-laptop").click()
+    admin.get_by_role("button", name="Edit lost-laptop").click()
     admin.get_by_role("button", name="End sign-ins").click()
     ended_s = time.monotonic()
-    expect(operator.get_by_text("Your sign-in has ended")).to_be_visible(timeout=PATIENCE_MS)
+    expect(operator.get_by_text("You have been signed out")).to_be_visible(timeout=PATIENCE_MS)
     shut_s = time.monotonic() - ended_s
     note(31, "a login is ended", "seconds until its open page asks again", shut_s)
     expect(operator.get_by_text("P-LOST")).not_to_be_visible()
@@ -99,7 +99,7 @@ def test_showing_a_condition_asks_why_and_is_on_record(lab: BlindedLab, admin: P
     expect(admin.get_by_text("Order of latencies:")).to_be_attached()
     expect(admin.get_by_text("Order hidden (blinded)")).to_have_count(0)
     admin.get_by_role("button", name="Log").click()
-    expect(admin.get_by_text("condition revealed to the lab")).to_be_visible()
+    expect(admin.get_by_text("condition shown to the lab")).to_be_visible()
 
 
 def test_a_link_that_cannot_be_used_says_why(
@@ -135,7 +135,7 @@ def test_the_only_admin_cannot_be_closed(
     """The server's refusal stands in the confirmation, with what to do."""
     page_watch.allow(r"status of 409")
     admin.goto(f"{lab.server.url}/#/people")
-    admin.get_by_role("button", name="Change admin").click()
+    admin.get_by_role("button", name="Edit admin").click()
     admin.get_by_role("button", name="Close account").click()
     admin.get_by_role("button", name="Close account").click()
     expect(admin.get_by_text("Give somebody else the role admin first")).to_be_visible()

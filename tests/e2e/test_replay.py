@@ -63,7 +63,7 @@ def test_a_phase_is_replayed_in_step_with_what_happened(
     expect(page.get_by_role("button", name="Pause (space)")).to_be_visible()
     expect(times).not_to_have_attribute("data-time", "10.000")
     page.keyboard.press("Space")
-    page.get_by_role("tab", name="Answers after").click()
+    page.get_by_role("tab", name="Answers after this phase").click()
     expect(page.get_by_role("tabpanel").get_by_role("heading").first).to_be_visible()
     page.goto(
         f"{url}/#/sessions/{first.session_id}/replay?phase={first.phase_id}&t=3.5&with={second.phase_id}"

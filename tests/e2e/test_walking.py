@@ -53,7 +53,10 @@ def test_a_drawn_path_is_answered(
     answer = page.get_by_role("region", name="How long the walk takes")
     expect(answer.get_by_text("90 % of walks:")).to_be_visible(timeout=PATIENCE_MS)
     expect(answer.get_by_text("synthetic", exact=True)).to_be_visible()
-    for figure in ("Distribution of predicted durations", "What suits such a walk"):
+    for figure in (
+        "Distribution of predicted durations",
+        "Steering parameters that suit such a walk",
+    ):
         expect(page.get_by_label(figure).locator(".main-svg").first).to_be_visible(
             timeout=PATIENCE_MS
         )

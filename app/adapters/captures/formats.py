@@ -95,7 +95,7 @@ FORMATS: tuple[CaptureFormat, ...] = (
         name=Words(en="BVH", de="BVH"),
         source=Words(
             en="Skeleton. Exported by Motive, MVN, Rokoko Studio, Blender, MotionBuilder.",
-            de="Skelett. Aus Motive, MVN, Rokoko Studio, Blender, MotionBuilder.",
+            de="Skelett. Exportiert aus Motive, MVN, Rokoko Studio, Blender, MotionBuilder.",
         ),
     ),
     CaptureFormat(
@@ -118,8 +118,8 @@ FORMATS: tuple[CaptureFormat, ...] = (
         reader="asf_amc.read_asf_amc",
         name=Words(en="AMC and ASF", de="AMC und ASF"),
         source=Words(
-            en="Skeleton. Two files; the CMU motion capture database has them.",
-            de="Skelett. Zwei Dateien; die Bewegungsdatenbank der CMU hat sie.",
+            en="Skeleton. Two files, as in the CMU motion capture database.",
+            de="Skelett. Zwei Dateien, wie in der Bewegungsdatenbank der CMU.",
         ),
     ),
     CaptureFormat(
@@ -179,7 +179,7 @@ FORMATS: tuple[CaptureFormat, ...] = (
         name=Words(en="Quest log", de="Quest-Log"),
         source=Words(
             en="Headset and hands. Movement logs of Quest applications.",
-            de="Headset und Hände. Bewegungslogs von Quest-Anwendungen.",
+            de="Headset und Hände. Bewegungsprotokolle von Quest-Anwendungen.",
         ),
     ),
 )

@@ -72,7 +72,7 @@ PAGE_TREND = StatisticalTest(
     key="page_trend",
     name=Words(en="Page’s trend test", de="Trendtest nach Page"),
     phrase="Page's trend test",
-    question="Is there a trend along latency?",
+    question="Is there a trend with latency?",
     directions=("rises", "falls"),
     fewest_conditions=3,
     needs_reference=False,
@@ -103,8 +103,8 @@ RM_ANOVA = StatisticalTest(
 AGAINST_REFERENCE = StatisticalTest(
     key="against_reference",
     name=Words(
-        en="Exact Wilcoxon tests against a reference",
-        de="Exakte Wilcoxon-Tests gegen einen Bezug",
+        en="Exact Wilcoxon tests against a reference condition",
+        de="Exakte Wilcoxon-Tests gegen eine Bezugsbedingung",
     ),
     phrase="exact Wilcoxon signed-rank tests against the reference",
     question="Which latencies differ from the reference?",

@@ -43,14 +43,15 @@ ALARMS: tuple[AlarmKind, ...] = (
     AlarmKind(
         key="silent",
         severity="critical",
-        title=Words(en="Headset silent", de="Headset stumm"),
+        title=Words(en="Headset not responding", de="Headset meldet sich nicht"),
         remedy=Words(
             en="Wake the headset, or check that it is worn.",
-            de="Headset aufwecken oder prüfen, ob es getragen wird.",
+            de="Wecken Sie das Headset auf oder prüfen Sie, ob es getragen wird.",
         ),
         remedy_while_paused=Words(
-            en="The phase is paused. Wake the headset; then press Resume.",
-            de="Die Phase ist angehalten. Headset aufwecken, dann Fortsetzen drücken.",
+            en="The phase is paused. Wake the headset, then press Resume.",
+            de="Die Phase ist angehalten. Wecken Sie das Headset auf und drücken Sie dann "
+            "Fortsetzen.",
         ),
     ),
     AlarmKind(
@@ -59,30 +60,31 @@ ALARMS: tuple[AlarmKind, ...] = (
         title=Words(en="Headset disconnected", de="Headset getrennt"),
         remedy=Words(
             en="Check its battery and network. It reconnects automatically.",
-            de="Akku und Netz prüfen. Es verbindet sich von selbst wieder.",
+            de="Prüfen Sie Akku und Netz. Es verbindet sich automatisch wieder.",
         ),
         remedy_while_paused=Words(
-            en="The phase is paused. Check battery and network; once it is back, press Resume.",
-            de="Die Phase ist angehalten. Akku und Netz prüfen; sobald es wieder da ist, "
-            "Fortsetzen drücken.",
+            en="The phase is paused. Check its battery and network; press Resume once it is back.",
+            de="Die Phase ist angehalten. Prüfen Sie Akku und Netz; drücken Sie Fortsetzen, "
+            "sobald es wieder verbunden ist.",
         ),
     ),
     AlarmKind(
         key="backlog",
         severity="warning",
-        title=Words(en="Movement not stored", de="Bewegung ungesichert"),
+        title=Words(en="Movement not stored", de="Bewegung nicht gespeichert"),
         remedy=Words(
             en="The headset keeps it. Check the network and leave the headset on.",
-            de="Das Headset behält sie. Netz prüfen; Headset eingeschaltet lassen.",
+            de="Das Headset behält sie. Prüfen Sie das Netz und lassen Sie das Headset "
+            "eingeschaltet.",
         ),
     ),
     AlarmKind(
         key="bad_values",
         severity="warning",
-        title=Words(en="Broken values", de="Defekte Werte"),
+        title=Words(en="Invalid values", de="Ungültige Werte"),
         remedy=Words(
             en="They are stored and left out of summaries. Check the tracking.",
-            de="Gespeichert, aber nicht ausgewertet. Tracking prüfen.",
+            de="Sie werden gespeichert, aber nicht ausgewertet. Prüfen Sie das Tracking.",
         ),
     ),
     AlarmKind(
@@ -90,8 +92,8 @@ ALARMS: tuple[AlarmKind, ...] = (
         severity="warning",
         title=Words(en="Joint frozen", de="Gelenk eingefroren"),
         remedy=Words(
-            en="Check that sensor: battery, strap, view of the base stations.",
-            de="Sensor dort prüfen: Akku, Band, Sicht der Basisstationen.",
+            en="Check the sensor there: battery, strap, view of the base stations.",
+            de="Prüfen Sie den Sensor dort: Akku, Band, Sicht zu den Basisstationen.",
         ),
     ),
     AlarmKind(
@@ -100,7 +102,7 @@ ALARMS: tuple[AlarmKind, ...] = (
         title=Words(en="Low frame rate", de="Niedrige Bildrate"),
         remedy=Words(
             en="Close other programs; check the headset's cable and temperature.",
-            de="Andere Programme schließen; Kabel und Wärme des Headsets prüfen.",
+            de="Schließen Sie andere Programme; prüfen Sie Kabel und Temperatur des Headsets.",
         ),
     ),
     AlarmKind(
@@ -108,8 +110,8 @@ ALARMS: tuple[AlarmKind, ...] = (
         severity="warning",
         title=Words(en="Gap in the movement", de="Lücke in der Bewegung"),
         remedy=Words(
-            en="Nothing was recorded in it. Repeat the phase if it matters.",
-            de="Darin wurde nichts aufgezeichnet. Phase wiederholen, falls es stört.",
+            en="Nothing was recorded during it. Repeat the phase if necessary.",
+            de="Darin wurde nichts aufgezeichnet. Wiederholen Sie die Phase, falls nötig.",
         ),
     ),
     AlarmKind(
@@ -118,7 +120,7 @@ ALARMS: tuple[AlarmKind, ...] = (
         title=Words(en="Tracking jumped", de="Tracking gesprungen"),
         remedy=Words(
             en="Check the view of the base stations; look at the avatar.",
-            de="Sicht der Basisstationen prüfen; den Avatar ansehen.",
+            de="Prüfen Sie die Sicht zu den Basisstationen; sehen Sie sich den Avatar an.",
         ),
     ),
     AlarmKind(
@@ -126,8 +128,10 @@ ALARMS: tuple[AlarmKind, ...] = (
         severity="warning",
         title=Words(en="Headset's clock unknown", de="Uhr des Headsets unbekannt"),
         remedy=Words(
-            en="Check the network. Its times cannot be compared until then.",
-            de="Netz prüfen. Bis dahin sind seine Zeiten nicht vergleichbar.",
+            en="Check the network. The headset's times cannot be compared until its clock is "
+            "known.",
+            de="Prüfen Sie das Netz. Bis die Uhr bekannt ist, sind Zeiten des Headsets nicht "
+            "vergleichbar.",
         ),
     ),
     AlarmKind(
@@ -136,40 +140,40 @@ ALARMS: tuple[AlarmKind, ...] = (
         title=Words(en="Headset's clock uncertain", de="Uhr des Headsets ungenau"),
         remedy=Words(
             en="The network is slow. Durations are not affected.",
-            de="Das Netz ist langsam. Dauern sind nicht betroffen.",
+            de="Das Netz ist langsam. Zeitdauern sind nicht betroffen.",
         ),
     ),
     AlarmKind(
         key="storage",
         severity="critical",
-        title=Words(en="Nothing can be stored", de="Nichts kann gespeichert werden"),
+        title=Words(en="Data cannot be stored", de="Daten lassen sich nicht speichern"),
         remedy=Words(
-            en="Headsets and tablets keep what they have. Disk full? Delete exports, end sessions "
-            "or erase data.",
-            de="Headsets und Tablets behalten, was sie haben. Platte voll? Exporte löschen, "
-            "Sitzungen beenden oder Daten löschen.",
+            en="Headsets and tablets keep what they have. If the disk is full, delete exports, "
+            "end sessions or erase data.",
+            de="Headsets und Tablets behalten, was sie haben. Ist die Platte voll, löschen Sie "
+            "Exporte oder Daten, oder beenden Sie Sitzungen.",
         ),
     ),
     AlarmKind(
         key="low_disk",
         severity="warning",
         title=Words(
-            en="Little space on the server's disk", de="Wenig Platz auf der Platte des Servers"
+            en="The server's disk is nearly full", de="Die Platte des Servers ist fast voll"
         ),
         remedy=Words(
             en="Free some space before the next session. Everything is still being stored.",
-            de="Vor der nächsten Sitzung Platz schaffen. Noch wird alles gespeichert.",
+            de="Schaffen Sie vor der nächsten Sitzung Platz. Noch wird alles gespeichert.",
         ),
     ),
     AlarmKind(
         key="writer_failed",
         severity="critical",
-        title=Words(en="The server has a fault", de="Störung im Server"),
+        title=Words(en="Recording failed on the server", de="Aufzeichnung im Server gestört"),
         remedy=Words(
-            en="Recording is being restarted; headsets keep what they have. If this stays, "
+            en="Recording is being restarted; headsets keep what they have. If this persists, "
             "restart the server.",
             de="Die Aufzeichnung wird neu gestartet; Headsets behalten, was sie haben. Hält das "
-            "an, den Server neu starten.",
+            "an, starten Sie den Server neu.",
         ),
     ),
     AlarmKind(
@@ -177,8 +181,8 @@ ALARMS: tuple[AlarmKind, ...] = (
         severity="warning",
         title=Words(en="Part of the server has failed", de="Ein Teil des Servers ist ausgefallen"),
         remedy=Words(
-            en="Recording goes on. The server retries automatically; its log says what happened.",
-            de="Die Aufzeichnung läuft weiter. Der Server versucht es von selbst erneut; sein "
+            en="Recording continues. The server retries automatically; its log says what happened.",
+            de="Die Aufzeichnung läuft weiter. Der Server versucht es automatisch erneut; sein "
             "Protokoll nennt den Grund.",
         ),
     ),
@@ -187,8 +191,8 @@ ALARMS: tuple[AlarmKind, ...] = (
         severity="critical",
         title=Words(en="Stop rule met", de="Stoppregel erfüllt"),
         remedy=Words(
-            en="Check on the participant; then end the session or continue.",
-            de="Nach der Person sehen; dann die Sitzung beenden oder fortfahren.",
+            en="Check on the participant, then end the session or continue.",
+            de="Sehen Sie nach der Person; beenden Sie dann die Sitzung oder fahren Sie fort.",
         ),
         of_person=True,
     ),
@@ -198,7 +202,7 @@ ALARMS: tuple[AlarmKind, ...] = (
         title=Words(en="Sickness is rising", de="Übelkeit nimmt zu"),
         remedy=Words(
             en="Ask how the participant is, and offer a break.",
-            de="Fragen, wie es der Person geht, und eine Pause anbieten.",
+            de="Fragen Sie, wie es der Person geht, und bieten Sie eine Pause an.",
         ),
         of_person=True,
     ),
@@ -209,8 +213,8 @@ ALARMS: tuple[AlarmKind, ...] = (
             en="Stop rule not applied: score missing", de="Stoppregel nicht angewandt: Wert fehlt"
         ),
         remedy=Words(
-            en="An answer was left out. Ask the participant how they are.",
-            de="Eine Antwort fehlt. Fragen, wie es der Person geht.",
+            en="An answer is missing. Ask the participant how they are.",
+            de="Eine Antwort fehlt. Fragen Sie, wie es der Person geht.",
         ),
         of_person=True,
     ),
@@ -219,8 +223,10 @@ ALARMS: tuple[AlarmKind, ...] = (
         severity="critical",
         title=Words(en="The participant is calling you", de="Die Person ruft Sie"),
         remedy=Words(
-            en="Go to them. Press when you are there, so that the tablet can say so.",
-            de="Nachsehen. Drücken, wenn Sie da sind: Das Tablet zeigt es auch.",
+            en="Go to the participant, then press the button; the tablet then shows that you are "
+            "there.",
+            de="Gehen Sie zur Person und drücken Sie dann den Knopf; das Tablet zeigt dann, dass "
+            "Sie da sind.",
         ),
         of_person=True,
     ),
@@ -229,8 +235,9 @@ ALARMS: tuple[AlarmKind, ...] = (
         severity="critical",
         title=Words(en="The participant has a question", de="Die Person hat eine Frage"),
         remedy=Words(
-            en="Go and answer it. Press when you are there, so that the tablet can say so.",
-            de="Hingehen und antworten. Drücken, wenn Sie da sind: Das Tablet zeigt es auch.",
+            en="Go and answer it, then press the button; the tablet then shows that you are there.",
+            de="Gehen Sie hin und antworten Sie; drücken Sie dann den Knopf: Das Tablet zeigt, "
+            "dass Sie da sind.",
         ),
         of_person=True,
     ),
@@ -239,15 +246,16 @@ ALARMS: tuple[AlarmKind, ...] = (
         severity="critical",
         title=Words(en="Consent refused", de="Einwilligung abgelehnt"),
         remedy=Words(
-            en="Go to the participant; then end the session, or show the consent again.",
-            de="Zur Person gehen; dann die Sitzung beenden oder die Einwilligung erneut zeigen.",
+            en="Go to the participant, then end the session or show the consent again.",
+            de="Gehen Sie zur Person; beenden Sie dann die Sitzung oder zeigen Sie die "
+            "Einwilligung erneut.",
         ),
         of_person=True,
     ),
     AlarmKind(
         key="refusal_retracted",
         severity="warning",
-        title=Words(en="Refusal withdrawn", de="Ablehnung zurückgenommen"),
+        title=Words(en="Refusal taken back", de="Ablehnung zurückgenommen"),
         remedy=Words(
             en="The consent is on the tablet again. Make sure it is a free choice.",
             de="Die Einwilligung ist wieder auf dem Tablet. Vergewissern Sie sich, dass die Wahl "
@@ -258,11 +266,12 @@ ALARMS: tuple[AlarmKind, ...] = (
     AlarmKind(
         key="impossible",
         severity="warning",
-        title=Words(en="Headset data cannot be true", de="Daten des Headsets unmöglich"),
+        title=Words(en="Headset data cannot be true", de="Daten des Headsets können nicht stimmen"),
         remedy=Words(
             en="The session does not count. Check the headset's software before the next "
             "participant.",
-            de="Die Sitzung zählt nicht. Vor der nächsten Person die Software des Headsets prüfen.",
+            de="Die Sitzung zählt nicht. Prüfen Sie vor der nächsten Person die Software des "
+            "Headsets.",
         ),
     ),
     AlarmKind(
@@ -270,10 +279,10 @@ ALARMS: tuple[AlarmKind, ...] = (
         severity="warning",
         title=Words(en="The phase does not count", de="Die Phase zählt nicht"),
         remedy=Words(
-            en="Its data cannot be true; the list of alarms says why. Repeat it, or check the "
-            "headset's software.",
-            de="Ihre Daten können nicht stimmen; die Liste der Alarme sagt, warum. Wiederholen "
-            "oder die Software des Headsets prüfen.",
+            en="Its data cannot be true; the list of alarms says why. Repeat the phase, or check "
+            "the headset's software.",
+            de="Ihre Daten können nicht stimmen; die Liste der Alarme nennt den Grund. "
+            "Wiederholen Sie die Phase oder prüfen Sie die Software des Headsets.",
         ),
     ),
 )

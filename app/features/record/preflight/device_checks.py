@@ -22,7 +22,7 @@ UNPAIRED = Finding(
     "unpaired",
     "fail",
     Words(en="Not paired", de="Nicht gekoppelt"),
-    remedy=Words(en="Pair it under Devices.", de="Unter Geräte koppeln."),
+    remedy=Words(en="Pair it under Devices.", de="Koppeln Sie es unter Geräte."),
 )
 
 
@@ -53,10 +53,10 @@ TABLET = StateCheck(
         Finding(
             "away",
             "fail",
-            Words(en="Not heard of for {{value}}", de="Seit {{value}} nichts gehört"),
+            Words(en="Not seen for {{value}}", de="Seit {{value}} nicht gesehen"),
             remedy=Words(
                 en="Wake the tablet and check that its page is open.",
-                de="Tablet aufwecken; ist seine Seite offen?",
+                de="Wecken Sie das Tablet auf und prüfen Sie, ob seine Seite offen ist.",
             ),
         ),
         Finding(
@@ -88,7 +88,7 @@ HEADSET = StateCheck(
             Words(en="Paired, not connected", de="Gekoppelt, nicht verbunden"),
             remedy=Words(
                 en="Wake the headset and start its program.",
-                de="Headset aufwecken und sein Programm starten.",
+                de="Wecken Sie das Headset auf und starten Sie sein Programm.",
             ),
         ),
         Finding("ok", "ok", Words(en="Paired and connected", de="Gekoppelt und verbunden")),
@@ -142,7 +142,7 @@ FRAME_RATE = StateCheck(
         Finding(
             "measuring",
             "wait",
-            Words(en="{{value}}, still settling", de="{{value}}, pendelt sich noch ein"),
+            Words(en="{{value}}, still stabilising", de="{{value}}, pendelt sich noch ein"),
         ),
         Finding(
             "low",
@@ -150,7 +150,8 @@ FRAME_RATE = StateCheck(
             Words(en="{{value}}", de="{{value}}"),
             remedy=Words(
                 en="Close other programs on the headset's computer; check that it is plugged in.",
-                de="Andere Programme auf dem Rechner des Headsets schließen; steckt das Netzteil?",
+                de="Schließen Sie andere Programme auf dem Rechner des Headsets; prüfen Sie das "
+                "Netzteil.",
             ),
         ),
         Finding("ok", "ok", Words(en="{{value}}", de="{{value}}")),
@@ -188,10 +189,11 @@ CLOCK = StateCheck(
         Finding(
             "uncertain",
             "fail",
-            Words(en="Known to ± {{value}} only", de="Nur auf ± {{value}} bekannt"),
+            Words(en="Known only to ± {{value}}", de="Nur auf ± {{value}} bekannt"),
             remedy=Words(
                 en="The network is slow: use the 5 GHz band or a cable, and stop downloads.",
-                de="Das Netz ist langsam: 5-GHz-Band oder Kabel nehmen, Downloads anhalten.",
+                de="Das Netz ist langsam: Nehmen Sie das 5-GHz-Band oder ein Kabel und halten "
+                "Sie Downloads an.",
             ),
         ),
         Finding("ok", "ok", Words(en="Known to ± {{value}}", de="Auf ± {{value}} bekannt")),
@@ -219,29 +221,29 @@ TRACKERS = StateCheck(
             "no_movement",
             "wait",
             Words(
-                en="Judged once the avatar appears",
-                de="Wird beurteilt, sobald der Avatar erscheint",
+                en="Checked once the avatar appears",
+                de="Wird geprüft, sobald der Avatar erscheint",
             ),
         ),
         Finding(
             "frozen",
             "fail",
-            Words(en="Part of the body does not move", de="Ein Körperteil steht still"),
+            Words(en="Part of the body does not move", de="Ein Körperteil bewegt sich nicht"),
             remedy=Words(
                 en="Switch the trackers on, and check that the cameras see them.",
-                de="Tracker einschalten und nachsehen, ob die Kameras sie sehen.",
+                de="Schalten Sie die Tracker ein und prüfen Sie, ob die Kameras sie sehen.",
             ),
         ),
         Finding(
             "bad_values",
             "fail",
             Words(
-                en="Joints arrive with impossible values",
-                de="Gelenke kommen mit unmöglichen Werten an",
+                en="Invalid joint data received",
+                de="Ungültige Gelenkdaten empfangen",
             ),
             remedy=Words(
                 en="Restart the headset's program and calibrate again.",
-                de="Das Programm des Headsets neu starten und neu kalibrieren.",
+                de="Starten Sie das Programm des Headsets neu und kalibrieren Sie neu.",
             ),
         ),
         Finding(

@@ -70,16 +70,16 @@ LATENCY = StateCheck(
             "unmeasured",
             "wait",
             Words(
-                en="Not measured yet; the first phase measures it",
-                de="Noch nicht gemessen; das tut die erste Phase",
+                en="Not measured yet; measured in the first phase",
+                de="Noch nicht gemessen; wird in der ersten Phase gemessen",
             ),
         ),
         Finding(
             "calibrated",
             "wait",
             Words(
-                en="Equipment calibrated; the first phase measures",
-                de="Geräte kalibriert; die erste Phase misst",
+                en="Equipment calibrated; measured in the first phase",
+                de="Geräte kalibriert; wird in der ersten Phase gemessen",
             ),
         ),
         Finding(
@@ -90,8 +90,9 @@ LATENCY = StateCheck(
                 de="{{value}} von {{limit}} Phasen der letzten Sitzung innerhalb der Toleranz",
             ),
             remedy=Words(
-                en="Look at the last session's latencies, and measure the equipment again.",
-                de="Die Latenzen der letzten Sitzung ansehen und die Geräte neu vermessen.",
+                en="Check the latencies of the last session and measure the equipment again.",
+                de="Sehen Sie sich die Latenzen der letzten Sitzung an und vermessen Sie die "
+                "Geräte neu.",
             ),
         ),
         Finding(

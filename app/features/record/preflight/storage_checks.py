@@ -115,23 +115,23 @@ STORAGE = TrialCheck(
         Finding(
             "failing",
             "fail",
-            Words(en="Cannot be written", de="Kann nicht geschrieben werden"),
+            Words(en="Cannot write to the disk", de="Auf die Platte kann nicht geschrieben werden"),
             remedy=Words(
-                en="Free space, or plug the disk in again. Until then nothing is recorded.",
-                de="Platz schaffen oder die Platte wieder anschließen. Sonst wird nichts "
-                "aufgezeichnet.",
+                en="Free some space, or reconnect the disk. Until then, nothing can be recorded.",
+                de="Schaffen Sie Platz oder schließen Sie die Platte wieder an. Bis dahin kann "
+                "nichts aufgezeichnet werden.",
             ),
         ),
         Finding(
             "differs",
             "fail",
             Words(
-                en="What was read back differs from what was written",
-                de="Gelesen wurde etwas anderes als geschrieben",
+                en="The data read back differ from the data written",
+                de="Gelesene und geschriebene Daten unterscheiden sich",
             ),
             remedy=Words(
                 en="Do not start. Check the disk, then restart the server.",
-                de="Nicht starten. Platte prüfen, dann den Server neu starten.",
+                de="Starten Sie nicht. Prüfen Sie die Platte und starten Sie dann den Server neu.",
             ),
         ),
         Finding(
@@ -171,8 +171,8 @@ DISK = StateCheck(
             "fail",
             Words(en="{{value}} free", de="{{value}} frei"),
             remedy=Words(
-                en="Free some space before a session is recorded.",
-                de="Platz schaffen, bevor eine Sitzung aufgezeichnet wird.",
+                en="Free some space before you record a session.",
+                de="Schaffen Sie Platz, bevor Sie eine Sitzung aufzeichnen.",
             ),
         ),
         Finding(

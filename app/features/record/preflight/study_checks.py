@@ -18,7 +18,7 @@ SHORT = 12
 """Hexadecimal digits of a hash that people compare."""
 _RESTORE = Words(
     en="The database was changed by hand. Restore it from a backup.",
-    de="Die Datenbank wurde von Hand geändert. Aus einem Backup wiederherstellen.",
+    de="Die Datenbank wurde von Hand geändert. Stellen Sie sie aus einer Sicherung wieder her.",
 )
 
 
@@ -54,11 +54,11 @@ INSTRUMENTS = StateCheck(
         Finding(
             "damaged",
             "fail",
-            Words(en="{{value}} not as stored", de="{{value}} nicht wie gespeichert"),
+            Words(en="{{value}} changed since stored", de="{{value}} seit dem Speichern verändert"),
             remedy=_RESTORE,
         ),
         Finding("none", "ok", Words(en="The study has none", de="Die Studie hat keine")),
-        Finding("ok", "ok", Words(en="{{value}} as stored", de="{{value}} wie gespeichert")),
+        Finding("ok", "ok", Words(en="{{value}} unchanged", de="{{value}} unverändert")),
     ),
     look=_instruments,
 )
@@ -95,10 +95,10 @@ CONFIGURATION = StateCheck(
         Finding(
             "differs",
             "fail",
-            Words(en="Not as stored", de="Nicht wie gespeichert"),
+            Words(en="Changed since stored", de="Seit dem Speichern verändert"),
             remedy=_RESTORE,
         ),
-        Finding("ok", "ok", Words(en="As stored", de="Wie gespeichert")),
+        Finding("ok", "ok", Words(en="Unchanged", de="Unverändert")),
     ),
     look=_configuration,
 )
@@ -135,12 +135,12 @@ LANGUAGE = StateCheck(
             remedy=Words(
                 en="Add the texts in a new version of the study, or run the session in another "
                 "language.",
-                de="Die Texte in einer neuen Version der Studie ergänzen oder in anderer Sprache "
-                "durchführen.",
+                de="Ergänzen Sie die Texte in einer neuen Version der Studie oder führen Sie die "
+                "Sitzung in einer anderen Sprache durch.",
             ),
         ),
         Finding(
-            "ok", "ok", Words(en="All {{value}} texts there", de="Alle {{value}} Texte vorhanden")
+            "ok", "ok", Words(en="All {{value}} texts present", de="Alle {{value}} Texte vorhanden")
         ),
     ),
     look=_language,

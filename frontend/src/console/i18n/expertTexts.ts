@@ -5,7 +5,7 @@ export const expertEn = {
   "expert.session": "Expert session: never in figures or exports",
   "suggestions.tab": "Suggestions",
   "suggestions.lead":
-    "What experts and the lab advise. A suggestion belongs to the version it was made about; deciding on it changes nothing by itself.",
+    "What experts and the lab suggest. A suggestion belongs to the version it was made for; adopting or declining it does not change the study by itself.",
   "suggestions.version": "Version {{version}}",
   "suggestions.empty": "No suggestions yet",
   "suggestions.empty.body":
@@ -25,30 +25,30 @@ export const expertEn = {
   "suggest.write": "What does the expert advise?",
   "suggest.about": "About",
   "suggest.thisStep": "This step: {{step}}",
-  "suggest.save": "Keep the suggestion",
-  "suggest.none": "None written in this session yet.",
+  "suggest.save": "Save suggestion",
+  "suggest.none": "No suggestions in this session yet.",
   "suggest.add": "Write a suggestion",
 };
 
 export const expertDe: Readonly<Record<keyof typeof expertEn, string>> = {
   "kind.expert": "Fachperson",
-  "kind.expert.hint": "Sieht die Studie durch und berät. Nie in Abbildungen oder Exporten.",
+  "kind.expert.hint": "Begutachtet die Studie und berät. Nie in Abbildungen oder Exporten.",
   "expert.session": "Sitzung mit einer Fachperson: nie in Abbildungen oder Exporten",
   "suggestions.tab": "Vorschläge",
   "suggestions.lead":
-    "Was Fachpersonen und das Labor raten. Ein Vorschlag gehört zu der Version, für die er gemacht wurde; über ihn zu entscheiden ändert von selbst nichts.",
+    "Was Fachpersonen und das Labor vorschlagen. Ein Vorschlag gehört zu der Version, für die er gemacht wurde; ihn zu übernehmen oder abzulehnen ändert die Studie noch nicht.",
   "suggestions.version": "Version {{version}}",
   "suggestions.empty": "Noch keine Vorschläge",
   "suggestions.empty.body":
-    "Führen Sie eine Sitzung mit einer Fachperson durch: Schreiben Sie bei jedem Schritt auf, was sie rät.",
+    "Führen Sie eine Sitzung mit einer Fachperson durch und schreiben Sie bei jedem Schritt auf, was sie rät.",
   "suggestions.open": "Offen",
   "suggestions.adopted": "Übernommen",
   "suggestions.adoptedIn": "Übernommen in Version {{version}}",
   "suggestions.declined": "Abgelehnt",
   "suggestions.adopt": "Übernehmen",
   "suggestions.decline": "Ablehnen",
-  "suggestions.adoptIn": "In welcher Version steht es?",
-  "suggestions.later": "In einer künftigen",
+  "suggestions.adoptIn": "In welcher Version?",
+  "suggestions.later": "Eine künftige Version",
   "suggestions.whole": "Die ganze Studie",
   "suggestions.by": "{{who}}, {{when}}",
   "suggestions.fromSession": "in Sitzung {{code}}",
@@ -56,7 +56,7 @@ export const expertDe: Readonly<Record<keyof typeof expertEn, string>> = {
   "suggest.write": "Was rät die Fachperson?",
   "suggest.about": "Wozu",
   "suggest.thisStep": "Dieser Schritt: {{step}}",
-  "suggest.save": "Vorschlag festhalten",
-  "suggest.none": "In dieser Sitzung noch keiner.",
+  "suggest.save": "Vorschlag speichern",
+  "suggest.none": "In dieser Sitzung noch keine Vorschläge.",
   "suggest.add": "Vorschlag schreiben",
 };

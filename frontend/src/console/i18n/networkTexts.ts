@@ -26,7 +26,7 @@ export const networkEn = {
   "network.fingerprint.own": "This is your lab's own certificate.",
   "network.expires": "Valid until",
   "network.expires.authority":
-    "{{date}}. Renewed automatically; devices need nothing until {{authority}}.",
+    "{{date}}. Renewed automatically; there is nothing to do on the devices until {{authority}}.",
   "network.expires.own": "{{date}}. Replace it before then; no restart is needed.",
   "network.uncovered": "Not valid for some addresses of this computer",
   "network.uncovered.body":
@@ -36,15 +36,14 @@ export const networkEn = {
   "network.cable.body":
     "No network or certificate needed. Connect the headset, allow debugging on it, and run on this computer:",
   "network.cable.then": "Then open in the headset's browser:",
-  "network.none": "No address on a network",
-  "network.none.body":
-    "This computer is not on a network. Once it is, addresses appear here within a minute.",
+  "network.none": "This computer has no network address",
+  "network.none.body": "Once it is on a network, its addresses appear here within a minute.",
   "pairing.onlyHere": "Only this computer can reach the server",
   "pairing.onlyHere.body": "To let other devices in, stop the server and start it with:",
   "pairing.onlyHere.open": "Or open the tablet's page on this computer",
   "pairing.onlyHere.cable":
     "Or connect the headset with a USB cable, run the command and use the address:",
-  "pairing.first": "First time with this device? Install the certificate",
+  "pairing.first": "New device? Install the certificate",
   "pairing.first.qr": "QR code of the page that helps to install the certificate",
 };
 
@@ -53,46 +52,47 @@ export const networkDe: Readonly<Record<keyof typeof networkEn, string>> = {
   "network.lead": "Wie Tablets und Headsets diesen Server erreichen.",
   "network.mode.loopback": "Nur dieser Rechner",
   "network.mode.loopback.body":
-    "Niemand sonst erreicht den Server. Headsets können es über ein USB-Kabel. Für Tablets beenden und mit ./run --lan starten.",
+    "Außer Headsets am USB-Kabel erreicht kein anderes Gerät den Server. Für Tablets beenden Sie den Server und starten ihn mit ./run --lan.",
   "network.mode.lan": "Verschlüsselt im Netz des Labors",
   "network.mode.lan.body": "Tablets und Headsets im selben Netz erreichen ihn über https.",
   "network.mode.without_tls": "Im Netz ohne Verschlüsselung",
   "network.mode.without_tls.body":
-    "Jeder darin kann Kennwörter, Antworten und Bewegung lesen. Headsets gehen nicht in VR. Den Server stattdessen mit --lan starten.",
+    "Jeder im Netz kann Passwörter, Antworten und Bewegung lesen. Headsets wechseln nicht in die VR. Starten Sie den Server stattdessen mit --lan.",
   "network.addresses": "Adressen",
   "network.addresses.devices": "Tablets und Headsets",
   "network.addresses.tablet": "QR-Code der Seite für das Tablet, {{url}}",
   "network.addresses.scan": "Seite für das Tablet",
   "network.local": "Dieser Rechner",
-  "network.first": "Ein Gerät zum ersten Mal",
+  "network.first": "Ein neues Gerät einrichten",
   "network.first.body":
     "Jedes Gerät installiert das Zertifikat des Labors einmal. Diese Seite zeigt wie, für iPad, Android, Meta Quest, Windows, Mac und Linux.",
   "network.first.qr": "QR-Code der Seite, die zeigt, wie das Zertifikat installiert wird",
   "network.certificate": "Zertifikat",
   "network.fingerprint": "Fingerabdruck (SHA-256)",
   "network.fingerprint.compare":
-    "Die Hilfeseite auf dem Gerät muss dieselben Ziffern zeigen. Sonst nichts installieren.",
-  "network.fingerprint.own": "Des eigenen Zertifikats des Labors.",
+    "Die Hilfeseite auf dem Gerät muss dieselben Ziffern zeigen. Wenn nicht, installieren Sie nichts.",
+  "network.fingerprint.own": "Das ist das eigene Zertifikat Ihres Labors.",
   "network.expires": "Gültig bis",
   "network.expires.authority":
-    "{{date}}. Erneuert sich von selbst; Geräte merken nichts bis {{authority}}.",
-  "network.expires.own": "{{date}}. Vorher ein neues an seine Stelle legen; ohne Neustart.",
+    "{{date}}. Wird automatisch erneuert; an den Geräten ist bis {{authority}} nichts zu tun.",
+  "network.expires.own": "{{date}}. Ersetzen Sie es vorher; ein Neustart ist nicht nötig.",
   "network.uncovered": "Für manche Adressen dieses Rechners nicht gültig",
   "network.uncovered.body":
-    "{{addresses}}. Geräte werden dort gewarnt. „./run tls renew --new-authority“ ausführen; jedes Gerät installiert dann das neue Zertifikat.",
-  "network.uncovered.own": "{{addresses}}. Geräte, die sie benutzen, werden gewarnt.",
+    "{{addresses}}. Geräte, die sie benutzen, zeigen eine Warnung. Führen Sie „./run tls renew --new-authority“ aus; danach installiert jedes Gerät das neue Zertifikat.",
+  "network.uncovered.own": "{{addresses}}. Geräte, die sie benutzen, zeigen eine Warnung.",
   "network.cable": "Ein Headset am USB-Kabel",
   "network.cable.body":
-    "Braucht weder Netz noch Zertifikat. Headset verbinden, darin Debugging erlauben, und auf diesem Rechner ausführen:",
+    "Braucht weder Netz noch Zertifikat. Verbinden Sie das Headset, erlauben Sie darauf das Debugging und führen Sie auf diesem Rechner aus:",
   "network.cable.then": "Dann im Browser des Headsets öffnen:",
-  "network.none": "Keine Adresse in einem Netz",
+  "network.none": "Dieser Rechner hat keine Netzwerkadresse",
   "network.none.body":
-    "Dieser Rechner ist gerade in keinem Netz. Adressen erscheinen hier binnen einer Minute.",
+    "Sobald er in einem Netz ist, erscheinen seine Adressen hier binnen einer Minute.",
   "pairing.onlyHere": "Nur dieser Rechner erreicht den Server",
-  "pairing.onlyHere.body": "Damit andere Geräte ihn erreichen, den Server beenden und so starten:",
-  "pairing.onlyHere.open": "Oder die Seite für das Tablet auf diesem Rechner öffnen",
+  "pairing.onlyHere.body":
+    "Damit andere Geräte ihn erreichen, beenden Sie den Server und starten ihn so:",
+  "pairing.onlyHere.open": "Oder öffnen Sie die Seite für das Tablet auf diesem Rechner",
   "pairing.onlyHere.cable":
-    "Oder das Headset per USB-Kabel verbinden, den Befehl ausführen und die Adresse benutzen:",
-  "pairing.first": "Zum ersten Mal mit diesem Gerät? Zertifikat installieren",
+    "Oder verbinden Sie das Headset per USB-Kabel, führen den Befehl aus und benutzen die Adresse:",
+  "pairing.first": "Neues Gerät? Installieren Sie das Zertifikat",
   "pairing.first.qr": "QR-Code der Seite, die beim Installieren des Zertifikats hilft",
 };

@@ -30,7 +30,7 @@ export const safetyDe: Readonly<Record<keyof typeof safetyEn, string>> = {
   "held.score": "{{score}} liegt bei oder über der Grenze von {{limit}} in „{{instrument}}“.",
   "held.rise": "{{score}} ist um {{limit}} oder mehr gestiegen in „{{instrument}}“.",
   "held.body":
-    "Die Sitzung ist angehalten, und das Tablet bittet die Person, auf Sie zu warten. Bieten Sie einen Stuhl und Wasser an; nehmen Sie die Brille ab.",
+    "Die Sitzung ist angehalten, und das Tablet bittet die Person, auf Sie zu warten. Bieten Sie einen Stuhl und Wasser an; nehmen Sie das Headset ab.",
   "held.end": "Sitzung beenden",
   "held.withdraw": "Die Person möchte aufhören",
   "do.override_stop": "Mit Begründung fortfahren",
@@ -43,6 +43,6 @@ export const safetyDe: Readonly<Record<keyof typeof safetyEn, string>> = {
   "reason.stopRule": "Stoppregel: Übelkeit",
   "height.differs": "Stimmt das?",
   "height.differs.body":
-    "Angegebene und angepasste Größe unterscheiden sich um {{difference}} cm. Prüfen Sie beide; noch einmal drücken speichert sie so.",
+    "Angegebene und angeglichene Größe unterscheiden sich um {{difference}} cm. Prüfen Sie beide; drücken Sie noch einmal, um sie so zu speichern.",
   "height.differs.save": "Beide stimmen: speichern",
 };

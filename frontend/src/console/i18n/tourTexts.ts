@@ -7,7 +7,7 @@ export const tourEn = {
   "help.noStudy": "There is no study to try yet",
   "try.button": "Try it with a scripted participant",
   "try.explain":
-    "Nobody needed, no headset: a scripted participant goes through a whole session of this study while you watch. It is marked as simulated and never mixes with people's data.",
+    "No people and no headset needed: a scripted participant goes through a whole session of this study while you watch. It is marked as simulated and never mixed with participants' data.",
   "try.starting": "The scripted participant is getting ready",
   "try.starting.body": "It creates a simulated session and pairs its own tablet and headset.",
   "try.failed": "The scripted participant could not continue",
@@ -31,52 +31,52 @@ export const tourEn = {
   "tour.keys": "Arrow keys turn the pages, Esc ends the tour.",
   "tour.timeline.title": "The whole session",
   "tour.timeline.body":
-    "Every step from consent to the last question, with its length. The filled ring is where the participant is now; what was done shows what came out.",
+    "Every step from consent to the last question, with its length. The filled ring marks the current step; completed steps show their results.",
   "tour.clock.title": "Active time",
   "tour.clock.body":
-    "In a task a large clock stands here. It counts only while the participant is at it: a pause, a walk back and a lost headset stop it.",
+    "During a task, a large clock is shown here. It counts active time only: it stops during pauses and walks back, and when the headset disconnects.",
   "tour.next.title": "The next action",
   "tour.next.body":
-    "One large button, or Enter. Where there is none, somebody else is busy: a form on the tablet, a task in the headset. Just now the script presses it for you.",
+    "One large button, or Enter. If there is none, the participant is busy: with a form on the tablet or a task in the headset. With a scripted participant, the script presses it for you.",
   "tour.live.title": "What moves",
   "tour.live.body":
-    "From the moment the participant has a body you see it live among the boxes of the task, in first or third person. Colours tell each joint's error. Keys 1, 2 and 3 change the view.",
+    "Once the participant has a body, you see it live among the boxes of the task, in first or third person. Colours show the error of each joint. Keys 1, 2 and 3 change the view.",
   "tour.tablet.title": "Tablet and headset",
   "tour.tablet.body":
-    "Whether both are there. How far a form is stands with the step; a participant can also call you from the tablet. To pair one, press T or H and show the code.",
+    "Whether both are connected. The current step shows how much of a form is filled in; participants can also call you from the tablet. To pair a device, press T or H and show the code.",
   "tour.alarms.title": "What is wrong",
   "tour.alarms.body":
-    "This bar never moves. It fills with colour as soon as something is wrong, from lost frames to a call, and says what to do. The figures beside it tell how good the data are.",
+    "This bar is always in the same place. It turns coloured as soon as something is wrong, from lost frames to a call for help, and says what to do. The numbers beside it show how good the data are.",
   "tour.replay.title": "Replay",
   "tour.replay.body":
-    "After each task a replay shows it in space, in step with contacts, answers and notes. Replay is up here during a session, and beside every phase once it is over.",
+    "After each task, a replay shows the movement together with contacts, answers and notes. During a session, Replay is up here; afterwards it is beside every phase.",
   "tour.csv.title": "The data",
   "tour.csv.body":
-    "When the session is over it can be downloaded here as CSV with a codebook, and the whole study on its page Export. Simulated sessions stay apart. That is all: press Stop below, or watch on.",
+    "When the session is over, download its data here as CSV with a codebook, or the data of the whole study on its Export page. Simulated sessions are kept separate. That is all: press Stop below, or keep watching.",
 };
 
 export const tourDe: Readonly<Record<keyof typeof tourEn, string>> = {
   "help.title": "Hilfe",
-  "help.try": "Mit einer gespielten Person ausprobieren",
+  "help.try": "Mit einer simulierten Person ausprobieren",
   "help.try.hint": "Eine ganze Sitzung in etwa vier Minuten, als simuliert gekennzeichnet.",
   "help.tour": "Rundgang durch diese Seite",
   "help.noStudy": "Es gibt noch keine Studie zum Ausprobieren",
-  "try.button": "Mit einer gespielten Person ausprobieren",
+  "try.button": "Mit einer simulierten Person ausprobieren",
   "try.explain":
-    "Ohne Menschen und ohne Headset: Eine gespielte Person geht durch eine ganze Sitzung dieser Studie, und man sieht zu. Sie ist als simuliert gekennzeichnet und mischt sich nie mit Daten von Menschen.",
-  "try.starting": "Die gespielte Person macht sich bereit",
+    "Ohne Teilnehmende und ohne Headset: Eine simulierte Person durchläuft eine ganze Sitzung dieser Studie, und Sie sehen zu. Sie ist als simuliert gekennzeichnet und wird nie mit Daten von Teilnehmenden vermischt.",
+  "try.starting": "Die simulierte Person macht sich bereit",
   "try.starting.body":
     "Sie legt eine simulierte Sitzung an und koppelt ein eigenes Tablet und Headset.",
-  "try.failed": "Die gespielte Person konnte nicht weitermachen",
-  "try.failed.start": "Die gespielte Person konnte nicht anfangen",
-  "try.again": "Noch einmal anfangen",
-  "try.label": "Gespielte Person",
+  "try.failed": "Die simulierte Person konnte nicht weitermachen",
+  "try.failed.start": "Die simulierte Person konnte nicht beginnen",
+  "try.again": "Noch einmal beginnen",
+  "try.label": "Simulierte Person",
   "try.speed": "{{speed}}-mal so schnell wie ein Mensch",
   "try.watch": "Zusehen",
   "try.stop": "Anhalten",
   "try.stopping": "Hält an",
-  "try.done": "Die gespielte Person ist fertig",
-  "try.stopped": "Die gespielte Person wurde angehalten",
+  "try.done": "Die simulierte Person ist fertig",
+  "try.stopped": "Die simulierte Person wurde angehalten",
   "try.dismiss": "Schließen",
   "try.tour": "Rundgang",
   "tour.label": "Rundgang durch die Seite einer Sitzung",
@@ -88,26 +88,26 @@ export const tourDe: Readonly<Record<keyof typeof tourEn, string>> = {
   "tour.keys": "Pfeiltasten blättern, Esc beendet den Rundgang.",
   "tour.timeline.title": "Die ganze Sitzung",
   "tour.timeline.body":
-    "Jeder Schritt von der Einwilligung bis zur letzten Frage, mit seiner Dauer. Der gefüllte Ring zeigt, wo die Person gerade ist; bei Erledigtem steht, was herauskam.",
+    "Jeder Schritt von der Einwilligung bis zur letzten Frage, mit seiner Dauer. Der gefüllte Ring markiert den aktuellen Schritt; erledigte Schritte zeigen ihre Ergebnisse.",
   "tour.clock.title": "Aktive Zeit",
   "tour.clock.body":
-    "In einer Aufgabe steht hier eine große Uhr. Sie zählt nur, solange die Person dabei ist: Pause, Rückweg und verlorenes Headset halten sie an.",
+    "Während einer Aufgabe steht hier eine große Uhr. Sie zählt nur aktive Zeit: In Pausen, auf Rückwegen und bei getrenntem Headset hält sie an.",
   "tour.next.title": "Was als Nächstes zu tun ist",
   "tour.next.body":
-    "Ein großer Knopf, oder Enter. Wo keiner ist, ist jemand anderes dran: ein Fragebogen auf dem Tablet, eine Aufgabe im Headset. Jetzt gerade drückt das Skript ihn.",
+    "Ein großer Knopf, oder Enter. Gibt es keinen, ist die Person beschäftigt: mit einem Fragebogen auf dem Tablet oder einer Aufgabe im Headset. Bei einer simulierten Person drückt ihn das Skript für Sie.",
   "tour.live.title": "Was sich bewegt",
   "tour.live.body":
-    "Sobald die Person einen Körper hat, sieht man ihn hier live zwischen den Kästen der Aufgabe, aus eigener oder fremder Sicht. Farben zeigen den Fehler jedes Gelenks. Die Tasten 1, 2 und 3 wechseln die Ansicht.",
+    "Sobald die Person einen Körper hat, sehen Sie ihn hier live zwischen den Kästen der Aufgabe, aus eigener Sicht oder von außen. Farben zeigen den Fehler jedes Gelenks. Die Tasten 1, 2 und 3 wechseln die Ansicht.",
   "tour.tablet.title": "Tablet und Headset",
   "tour.tablet.body":
-    "Ob beide da sind. Wie weit ein Fragebogen ist, steht beim Schritt; die Person kann vom Tablet aus auch rufen. Zum Koppeln T oder H drücken und den Code zeigen.",
+    "Ob beide verbunden sind. Beim aktuellen Schritt steht, wie weit ein Fragebogen ausgefüllt ist; die Person kann Sie auch vom Tablet aus rufen. Zum Koppeln drücken Sie T oder H und zeigen den Code.",
   "tour.alarms.title": "Was nicht stimmt",
   "tour.alarms.body":
-    "Diese Leiste bewegt sich nie. Sie füllt sich mit Farbe, sobald etwas nicht stimmt, vom verlorenen Bild bis zum Ruf, und sagt, was zu tun ist. Die Zahlen daneben sagen, wie gut die Daten sind.",
-  "tour.replay.title": "Noch einmal ansehen",
+    "Diese Leiste ist immer an derselben Stelle. Sie wird farbig, sobald etwas nicht stimmt, von verlorenen Bildern bis zum Hilferuf, und sagt, was zu tun ist. Die Zahlen daneben zeigen, wie gut die Daten sind.",
+  "tour.replay.title": "Wiedergabe",
   "tour.replay.body":
-    "Nach jeder Aufgabe zeigt eine Wiedergabe sie im Raum, im Takt mit Kontakten, Antworten und Notizen. Während der Sitzung steht sie hier oben, danach neben jeder Phase.",
+    "Nach jeder Aufgabe zeigt die Wiedergabe die Bewegung zusammen mit Kontakten, Antworten und Notizen. Während der Sitzung ist sie hier oben, danach neben jeder Phase.",
   "tour.csv.title": "Die Daten",
   "tour.csv.body":
-    "Ist die Sitzung vorbei, lässt sie sich hier als CSV mit Codebuch herunterladen, und die ganze Studie auf ihrer Seite Export. Simulierte Sitzungen bleiben für sich. Das war alles: unten anhalten oder weiter zusehen.",
+    "Ist die Sitzung vorbei, laden Sie ihre Daten hier als CSV mit Codebuch herunter, die der ganzen Studie auf deren Seite Export. Simulierte Sitzungen bleiben getrennt. Das war alles: Drücken Sie unten auf Anhalten oder sehen Sie weiter zu.",
 };

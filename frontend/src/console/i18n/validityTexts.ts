@@ -2,7 +2,7 @@
 export const validityEn = {
   "section.validity": "What counts",
   "section.validity.lead":
-    "What a completed session needs in order to count. One that falls short is kept, is left out of every analysis, and its slot is free again.",
+    "What a completed session needs in order to count. A session that falls short is kept but left out of every analysis, and its slot is free again.",
   "field.valid_when": "A completed session counts when",
   "field.phase": "Phase",
   "field.min_active_s": "At least this much active time (s)",
@@ -10,10 +10,10 @@ export const validityEn = {
   "field.forms": "Every one of these questionnaires was answered",
   "field.achieved_latency": "Latency the avatar actually had",
   "field.reported": "It could be measured",
-  "field.tolerance_ms": "At most this far off the set latency (ms)",
+  "field.tolerance_ms": "At most this far from the set latency (ms)",
   "validity.title": "This session does not count",
   "validity.body":
-    "It lacks what the study asks for. Its data are kept and marked as not valid, and its slot is free for another participant.",
+    "It does not meet what the study requires. Its data are kept and marked as not valid, and its slot is free for another participant.",
   "validity.notValid": "Does not count",
   "validity.slotGiven": "It counts, but its slot had already been given to someone else.",
   "validity.excluded_one": "{{count}} completed session does not count",
@@ -33,7 +33,7 @@ export const validityEn = {
 export const validityDe: Readonly<Record<keyof typeof validityEn, string>> = {
   "section.validity": "Was zählt",
   "section.validity.lead":
-    "Was eine abgeschlossene Sitzung braucht, um zu zählen. Fehlt etwas, bleiben ihre Daten erhalten, sie geht in keine Auswertung ein, und ihr Platz ist wieder frei.",
+    "Was eine abgeschlossene Sitzung braucht, um zu zählen. Fehlt etwas, bleiben die Daten erhalten, gehen aber in keine Auswertung ein, und der Platz ist wieder frei.",
   "field.valid_when": "Eine abgeschlossene Sitzung zählt, wenn",
   "field.phase": "Phase",
   "field.min_active_s": "Mindestens so viel aktive Zeit (s)",
@@ -44,9 +44,9 @@ export const validityDe: Readonly<Record<keyof typeof validityEn, string>> = {
   "field.tolerance_ms": "Höchstens so weit von der eingestellten Latenz entfernt (ms)",
   "validity.title": "Diese Sitzung zählt nicht",
   "validity.body":
-    "Ihr fehlt, was die Studie verlangt. Ihre Daten bleiben erhalten und sind als ungültig markiert; ihr Platz ist frei für jemand anderen.",
+    "Sie erfüllt nicht, was die Studie verlangt. Ihre Daten bleiben erhalten und sind als ungültig markiert; ihr Platz ist frei für eine andere Person.",
   "validity.notValid": "Zählt nicht",
-  "validity.slotGiven": "Sie zählt, aber ihr Platz war da schon neu vergeben.",
+  "validity.slotGiven": "Sie zählt, aber ihr Platz war schon neu vergeben.",
   "validity.excluded_one": "{{count}} abgeschlossene Sitzung zählt nicht",
   "validity.excluded_other": "{{count}} abgeschlossene Sitzungen zählen nicht",
   "validity.block": "Block {{number}}",
@@ -57,6 +57,6 @@ export const validityDe: Readonly<Record<keyof typeof validityEn, string>> = {
   "validity.phase_doubtful": "die Angaben des Headsets dazu können nicht stimmen",
   "validity.headset_doubtful": "Die Angaben des Headsets zur ganzen Sitzung können nicht stimmen",
   "validity.latency_missing": "die erreichte Latenz ließ sich nicht messen",
-  "validity.latency_off": "erreichte Latenz um {{value}} ms daneben, erlaubt sind {{limit}} ms",
+  "validity.latency_off": "erreichte Latenz weicht um {{value}} ms ab, erlaubt sind {{limit}} ms",
   "outcome.invalid": "Abgeschlossen, zählt nicht",
 };

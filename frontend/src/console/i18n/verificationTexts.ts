@@ -1,25 +1,25 @@
 /** Texts of the verification: whether a walk keeps its character on avatars of several statures. */
 export const verificationEn = {
   "verify.lead":
-    "The movement on several avatars, as Degen et al. (2022) verify it: lifts of the feet as often and when the source's are, steps as much longer as the legs.",
+    "The movement on several avatars, checked as in Degen et al. (2022): feet lift as often and at the same times as the source's, and steps are longer or shorter in proportion to the legs.",
   "verify.avatars": "Avatars",
-  "verify.avatar.remove": "Without {{avatar}}",
+  "verify.avatar.remove": "Remove {{avatar}}",
   "verify.avatar.add": "Add an avatar",
   "verify.avatar.stature": "Stature (cm)",
   "verify.avatar.most": "Up to {{count}} avatars at once.",
   "verify.lock": "Lock feet",
-  "verify.lock.hint": "Feet on the ground are held in place by bending the legs.",
+  "verify.lock.hint": "Feet on the ground stay in place; the legs bend to allow it.",
   "verify.busy": "Retargeting the movement to the avatars",
   "verify.agree":
     "Every avatar lifts each foot as often as the source ({{left}} left, {{right}} right).",
   "verify.agree.timing":
-    "The same lift or contact of any two bodies is at most {{milliseconds}} ms apart.",
-  "verify.differ": "Lifts do not agree: {{told}}.",
+    "The same lift or contact differs by at most {{milliseconds}} ms between any two bodies.",
+  "verify.differ": "The number of lifts differs: {{told}}.",
   "verify.differ.one":
     "{{avatar}} {{left}} left and {{right}} right instead of {{wantedLeft}} and {{wantedRight}}",
   "verify.differ.remedy":
-    "Look at the lifts below: a foot that hardly leaves the ground may count on one body and not on another.",
-  "verify.noStep": "No step was taken",
+    "Look at the lifts below: a foot that barely leaves the ground may count on one body and not on another.",
+  "verify.noStep": "No steps found",
   "verify.noStep.body":
     "No foot leaves the ground and comes down again within the capture, so there are no steps to compare. Angles and paths are shown.",
   "verify.impossible": "There is nothing to verify",
@@ -46,7 +46,7 @@ export const verificationEn = {
   "verify.export": "{{avatar}} as {{format}}",
   "verify.angles": "Leg angles of the source",
   "verify.angles.caption":
-    "Forward and bent are positive; 0° is a straight hip, a straight knee, an ankle at right angles.",
+    "Forward and bent angles are positive; 0° is a straight hip, a straight knee and an ankle at a right angle.",
   "verify.angle.hip": "Hip (deg)",
   "verify.angle.knee": "Knee (deg)",
   "verify.angle.ankle": "Ankle (deg)",
@@ -60,34 +60,34 @@ export const verificationEn = {
   "verify.lifts.caption": "Above each line the left foot, below it the right.",
   "verify.lift": "{{side}} foot, {{from}} s to {{to}} s",
   "verify.drawing": "Drawing the figure",
-  "verify.notDrawn": "The figure could not be drawn. The table holds its numbers.",
+  "verify.notDrawn": "The figure could not be drawn. Its numbers are in the table.",
 } as const;
 
 export const verificationDe: Readonly<Record<keyof typeof verificationEn, string>> = {
   "verify.lead":
-    "Die Bewegung auf mehreren Avataren, überprüft wie bei Degen et al. (2022): Füße heben sich so oft und wann die der Quelle, Schritte sind so viel länger wie die Beine.",
+    "Die Bewegung auf mehreren Avataren, überprüft wie bei Degen et al. (2022): Die Füße heben sich so oft und zu denselben Zeiten wie die der Quelle, und die Schrittlänge ändert sich im Verhältnis der Beinlänge.",
   "verify.avatars": "Avatare",
-  "verify.avatar.remove": "Ohne {{avatar}}",
+  "verify.avatar.remove": "{{avatar}} entfernen",
   "verify.avatar.add": "Avatar hinzufügen",
   "verify.avatar.stature": "Körpergröße (cm)",
   "verify.avatar.most": "Bis zu {{count}} Avatare zugleich.",
   "verify.lock": "Füße festhalten",
-  "verify.lock.hint": "Füße am Boden bleiben, wo sie sind, indem die Beine sich beugen.",
-  "verify.busy": "Die Bewegung wird auf die Avatare gebracht",
+  "verify.lock.hint": "Füße am Boden bleiben an ihrem Platz; dazu beugen sich die Beine.",
+  "verify.busy": "Die Bewegung wird auf die Avatare übertragen",
   "verify.agree":
     "Jeder Avatar hebt jeden Fuß so oft wie die Quelle ({{left}} links, {{right}} rechts).",
   "verify.agree.timing":
-    "Dasselbe Heben oder Aufsetzen zweier Körper liegt höchstens {{milliseconds}} ms auseinander.",
-  "verify.differ": "Das Heben stimmt nicht überein: {{told}}.",
+    "Dasselbe Heben oder Aufsetzen weicht zwischen zwei Körpern um höchstens {{milliseconds}} ms ab.",
+  "verify.differ": "Die Zahl der Hebungen weicht ab: {{told}}.",
   "verify.differ.one":
     "{{avatar}} {{left}} links und {{right}} rechts statt {{wantedLeft}} und {{wantedRight}}",
   "verify.differ.remedy":
-    "Unten ansehen: Ein Fuß, der kaum den Boden verlässt, zählt vielleicht bei einem Körper und beim anderen nicht.",
-  "verify.noStep": "Kein Schritt wurde getan",
+    "Sehen Sie sich die Hebungen unten an: Ein Fuß, der den Boden kaum verlässt, zählt vielleicht bei einem Körper und beim anderen nicht.",
+  "verify.noStep": "Keine Schritte gefunden",
   "verify.noStep.body":
-    "Kein Fuß verlässt in der Aufnahme den Boden und setzt wieder auf; also sind keine Schritte zu vergleichen. Winkel und Wege sind gezeigt.",
+    "Kein Fuß verlässt in der Aufnahme den Boden und setzt wieder auf; deshalb gibt es keine Schritte zu vergleichen. Winkel und Wege werden gezeigt.",
   "verify.impossible": "Es gibt nichts zu überprüfen",
-  "verify.unmapped": "Ohne Gelenk, also auf jedem Avatar wie in der T-Pose: {{names}}",
+  "verify.unmapped": "Nicht zugeordnet, also auf jedem Avatar in der T-Pose: {{names}}",
   "verify.source": "Quelle",
   "verify.left": "links",
   "verify.right": "rechts",
@@ -99,7 +99,7 @@ export const verificationDe: Readonly<Record<keyof typeof verificationEn, string
   "verify.column.height": "Schritthöhe (m)",
   "verify.column.start": "Zehen am Anfang (m)",
   "verify.column.contact": "Zehen beim Aufsetzen (m)",
-  "verify.column.lifts": "Heben",
+  "verify.column.lifts": "Hebungen",
   "verify.column.slide": "Fußrutschen (m/s)",
   "verify.column.export": "Export",
   "verify.ratio": "× {{value}}",
@@ -107,11 +107,11 @@ export const verificationDe: Readonly<Record<keyof typeof verificationEn, string
   "verify.lowered": "Hüfte bis zu {{centimetres}} cm tiefer",
   "verify.reach": "in {{count}} Bildern außer Reichweite",
   "verify.table.caption":
-    "Mittel über ganze Schritte. Rutschen ist das mittlere Tempo von Füßen am Boden.",
+    "Mittelwerte über ganze Schritte. Rutschen ist die mittlere Geschwindigkeit der Füße am Boden.",
   "verify.export": "{{avatar}} als {{format}}",
   "verify.angles": "Beinwinkel der Quelle",
   "verify.angles.caption":
-    "Nach vorn und gebeugt ist positiv; 0° ist eine gestreckte Hüfte, ein gestrecktes Knie, ein Knöchel im rechten Winkel.",
+    "Winkel nach vorn und beim Beugen sind positiv; 0° ist eine gestreckte Hüfte, ein gestrecktes Knie und ein Knöchel im rechten Winkel.",
   "verify.angle.hip": "Hüfte (Grad)",
   "verify.angle.knee": "Knie (Grad)",
   "verify.angle.ankle": "Knöchel (Grad)",
@@ -125,5 +125,5 @@ export const verificationDe: Readonly<Record<keyof typeof verificationEn, string
   "verify.lifts.caption": "Über jeder Linie der linke Fuß, darunter der rechte.",
   "verify.lift": "Fuß {{side}}, {{from}} s bis {{to}} s",
   "verify.drawing": "Die Abbildung wird gezeichnet",
-  "verify.notDrawn": "Die Abbildung ließ sich nicht zeichnen. Die Tabelle hat ihre Zahlen.",
+  "verify.notDrawn": "Die Abbildung ließ sich nicht zeichnen. Ihre Zahlen stehen in der Tabelle.",
 };

@@ -12,7 +12,7 @@ export const versionsEn = {
   "diff.underWay_one":
     "One session is planned or running; it keeps the version it was created with.",
   "diff.underWay_other":
-    "{{count}} sessions are planned or running; they keep the version they were made with.",
+    "{{count}} sessions are planned or running; they keep the version they were created with.",
   "diff.instruments": "Instruments whose wording differs:",
   "diff.text": "Text, line by line",
   "diff.place": "Place",
@@ -22,27 +22,26 @@ export const versionsEn = {
   "diff.removed": "removed",
   "diff.changed": "changed",
   "versions.tab": "Versions",
-  "versions.lead":
-    "Every content the study ever had. Sessions keep the version they were made with.",
+  "versions.lead": "Every version of the study. Sessions keep the version they were created with.",
   "versions.number": "Version",
   "versions.made": "Created",
   "versions.state": "State",
   "versions.compare": "Compare",
   "versions.from": "From version",
   "versions.to": "to version",
-  "versions.one": "There is only one version so far, so nothing to compare it with.",
+  "versions.one": "There is only one version so far, so there is nothing to compare.",
   "versions.edit": "Edit the study",
   "versions.duplicate": "Duplicate",
   "versions.duplicate.key": "Key of the copy",
   "versions.duplicate.hint":
-    "Lower-case letters, digits, - and _. Ledger and sessions are its own.",
+    "Lower-case letters, digits, - and _. The copy has its own ledger and sessions.",
   "versions.archive": "Archive",
   "versions.archive.title": "Archive this study?",
   "versions.archive.body":
-    "It takes no new sessions and leaves the list. Nothing is deleted: data, ledger and versions stay, and it can be restored.",
+    "It accepts no new sessions and no longer appears in the list. Nothing is deleted: data, ledger and versions are kept, and you can restore the study.",
   "versions.restore": "Restore",
-  "versions.archived": "Archived: it takes no new sessions",
-  "versions.archived.body": "Data, ledger and versions are kept. Restore it to continue.",
+  "versions.archived": "Archived: no new sessions",
+  "versions.archived.body": "Data, ledger and versions are kept. Restore the study to continue.",
   "versions.show": "Archived studies",
   "versions.hide": "Current studies",
   "versions.noneArchived": "No archived studies",
@@ -50,9 +49,9 @@ export const versionsEn = {
 };
 
 export const versionsDe: Readonly<Record<keyof typeof versionsEn, string>> = {
-  "changes.broken": "Änderungen lassen sich nennen, sobald es keine Probleme gibt",
+  "changes.broken": "Änderungen werden gezeigt, sobald es keine Probleme mehr gibt",
   "diff.same": "Der Inhalt ist derselbe",
-  "diff.identical": "Kein Zeichen unterscheidet sich.",
+  "diff.identical": "Es gibt keine Unterschiede.",
   "diff.layout":
     "Nur Kommentare oder Anordnung unterscheiden sich; Speichern ergäbe keine neue Version.",
   "diff.newLedger": "Die Balance ist betroffen: Neue Sitzungen beginnen einen neuen Plan",
@@ -74,29 +73,29 @@ export const versionsDe: Readonly<Record<keyof typeof versionsEn, string>> = {
   "diff.changed": "geändert",
   "versions.tab": "Versionen",
   "versions.lead":
-    "Jeder Inhalt, den die Studie je hatte. Sitzungen behalten die Version, mit der sie angelegt wurden.",
+    "Alle Versionen der Studie. Sitzungen behalten die Version, mit der sie angelegt wurden.",
   "versions.number": "Version",
   "versions.made": "Angelegt",
   "versions.state": "Zustand",
   "versions.compare": "Vergleichen",
   "versions.from": "Von Version",
   "versions.to": "zu Version",
-  "versions.one": "Es gibt erst eine Version und nichts, womit sie zu vergleichen wäre.",
+  "versions.one": "Es gibt erst eine Version, also noch nichts zu vergleichen.",
   "versions.edit": "Studie bearbeiten",
   "versions.duplicate": "Duplizieren",
   "versions.duplicate.key": "Schlüssel der Kopie",
   "versions.duplicate.hint":
-    "Kleinbuchstaben, Ziffern, - und _. Plan und Sitzungen sind ihre eigenen.",
+    "Kleinbuchstaben, Ziffern, - und _. Die Kopie hat einen eigenen Plan und eigene Sitzungen.",
   "versions.archive": "Archivieren",
   "versions.archive.title": "Diese Studie archivieren?",
   "versions.archive.body":
-    "Sie nimmt keine neuen Sitzungen auf und verlässt die Liste. Nichts wird gelöscht: Daten, Plan und Versionen bleiben, und sie lässt sich wiederherstellen.",
+    "Sie nimmt keine neuen Sitzungen auf und erscheint nicht mehr in der Liste. Nichts wird gelöscht: Daten, Plan und Versionen bleiben erhalten, und Sie können die Studie wiederherstellen.",
   "versions.restore": "Wiederherstellen",
   "versions.archived": "Archiviert: keine neuen Sitzungen",
   "versions.archived.body":
-    "Daten, Plan und Versionen sind alle da. Stellen Sie sie wieder her, um weiterzumachen.",
+    "Daten, Plan und Versionen bleiben erhalten. Stellen Sie die Studie wieder her, um weiterzumachen.",
   "versions.show": "Archivierte Studien",
   "versions.hide": "Aktuelle Studien",
-  "versions.noneArchived": "Keine Studie ist archiviert",
-  "versions.noneArchived.body": "Eine Studie, die auf ihrer Seite abgelegt wird, erscheint hier.",
+  "versions.noneArchived": "Keine archivierten Studien",
+  "versions.noneArchived.body": "Studien, die Sie auf ihrer Seite archivieren, erscheinen hier.",
 };

@@ -1,7 +1,7 @@
 /** Texts of walking: querying a model. */
 export const walkingEn = {
   "walking.title": "Walking",
-  "walking.lead": "How long people take to walk a path: a distribution, not one number.",
+  "walking.lead": "How long people take to walk a path: a distribution, not a single number.",
   "walking.tab.ask": "Ask a model",
   "walking.tab.models": "Models and walks",
   "walking.tab.scenes": "Scenes",
@@ -55,8 +55,7 @@ export const walkingEn = {
   "walking.range": "{{from}} to {{to}}",
   "walking.ninety": "90 % of walks: {{from}} to {{to}} s",
   "walking.half": "50 %: {{from}} to {{to}} s",
-  "walking.planFor":
-    "Median. Planning a walk-back, allow {{to}} s: 95 of 100 walks are over by then.",
+  "walking.planFor": "Median. For a walk back, allow {{to}} s: 95 of 100 walks are over by then.",
   "walking.median": "median",
   "walking.band.half": "50 % of walks",
   "walking.band.ninety": "90 % of walks",
@@ -76,13 +75,13 @@ export const walkingEn = {
   "walking.parameter.velocity": "Maximum speed (m/s)",
   "walking.parameter.acceleration": "Acceleration (m/s²)",
   "walking.parameter.angular": "Largest curvature (1/m)",
-  "walking.slice": "What suits such a walk",
+  "walking.slice": "Steering parameters that suit such a walk",
   "walking.slice.lead":
     "How well pairs of steering parameters reproduce walks of this length, turning and stature; the third is held constant.",
   "walking.suitability": "Suitability",
   "walking.shown": "walks shown",
-  "walking.held": "Held parameter",
-  "walking.held.at": "Value at which this is held: {{what}}",
+  "walking.held": "Parameter held constant",
+  "walking.held.at": "Value at which it is held: {{what}}",
   "walking.held.is": "{{what}} held at {{value}}",
   "walking.seen":
     "{{count}} of the walks drawn; dots: where each is after {{value}} s, half of the median.",
@@ -90,7 +89,8 @@ export const walkingEn = {
 
 export const walkingDe: Readonly<Record<keyof typeof walkingEn, string>> = {
   "walking.title": "Gehen",
-  "walking.lead": "Wie lange Menschen für einen Weg brauchen: eine Verteilung, nicht eine Zahl.",
+  "walking.lead":
+    "Wie lange Menschen für einen Weg brauchen: eine Verteilung, nicht nur eine Zahl.",
   "walking.tab.ask": "Modell befragen",
   "walking.tab.models": "Modelle und Gänge",
   "walking.tab.scenes": "Szenen",
@@ -101,7 +101,7 @@ export const walkingDe: Readonly<Record<keyof typeof walkingEn, string>> = {
   "walking.scene": "Szene",
   "walking.computing": "Gänge werden gezogen …",
   "walking.draw.first":
-    "Zeichnen Sie einen Weg aus zwei oder mehr Punkten: Hier erscheint die Antwort.",
+    "Zeichnen Sie einen Weg aus mindestens zwei Punkten, um die Vorhersage zu sehen.",
   "walking.stature": "Körpergröße (m)",
   "walking.stature.mean": "das Mittel",
   "walking.count": "Gezogene Gänge",
@@ -119,12 +119,12 @@ export const walkingDe: Readonly<Record<keyof typeof walkingEn, string>> = {
   "walking.numbers": "Punkte als Zahlen",
   "walking.point": "Punkt",
   "walking.point.at":
-    "Punkt {{at}} bei {{x}} m, {{y}} m: Pfeiltasten bewegen ihn, Entf nimmt ihn weg",
+    "Punkt {{at}} bei {{x}} m, {{y}} m: Pfeiltasten bewegen ihn, Entf entfernt ihn",
   "walking.x": "x (m)",
   "walking.y": "y (m)",
   "walking.x.of": "x von Punkt {{at}} in Metern",
   "walking.y.of": "y von Punkt {{at}} in Metern",
-  "walking.remove": "Punkt {{at}} wegnehmen",
+  "walking.remove": "Punkt {{at}} entfernen",
   "walking.add": "Punkt hinzufügen",
   "walking.picture": "{{scene}}, von oben gesehen",
   "walking.axis.x": "Nach rechts, x (m)",
@@ -147,7 +147,7 @@ export const walkingDe: Readonly<Record<keyof typeof walkingEn, string>> = {
   "walking.ninety": "90 % der Gänge: {{from}} bis {{to}} s",
   "walking.half": "50 %: {{from}} bis {{to}} s",
   "walking.planFor":
-    "Median. Für einen Rückweg sind {{to}} s einzuplanen: 95 von 100 Gängen sind dann vorbei.",
+    "Median. Planen Sie für einen Rückweg {{to}} s ein: 95 von 100 Gängen sind dann vorbei.",
   "walking.median": "Median",
   "walking.band.half": "50 % der Gänge",
   "walking.band.ninety": "90 % der Gänge",
@@ -160,21 +160,21 @@ export const walkingDe: Readonly<Record<keyof typeof walkingEn, string>> = {
     "{{count}} Gänge mit Startwert {{seed}} gezogen; {{lost}} kamen nicht an und wurden neu gezogen.",
   "walking.assumed": "{{what}} (angenommen: das Mittel)",
   "walking.outside":
-    "{{what}}: außerhalb aller Gänge, an die das Modell angepasst ist. Dort ist die Antwort geraten.",
+    "{{what}}: außerhalb aller Gänge, an die das Modell angepasst wurde; die Vorhersage ist daher eine Extrapolation.",
   "walking.dependency.length_m": "Länge {{value}} m",
   "walking.dependency.turning_per_m": "Drehung {{value}} rad/m",
   "walking.dependency.stature_m": "Körpergröße {{value}} m",
   "walking.parameter.velocity": "Höchstgeschwindigkeit (m/s)",
   "walking.parameter.acceleration": "Beschleunigung (m/s²)",
   "walking.parameter.angular": "Größte Krümmung (1/m)",
-  "walking.slice": "Was zu einem solchen Gang passt",
+  "walking.slice": "Steuergrößen, die zu einem solchen Gang passen",
   "walking.slice.lead":
-    "Wie gut Paare von Steuergrößen Gänge dieser Länge, Drehung und Körpergröße nachbilden; die dritte wird festgehalten.",
+    "Wie gut Paare von Steuergrößen Gänge dieser Länge, Drehung und Körpergröße nachbilden; die dritte wird konstant gehalten.",
   "walking.suitability": "Eignung",
   "walking.shown": "gezeigte Gänge",
-  "walking.held": "Festgehaltene Größe",
-  "walking.held.at": "Wert, an dem sie festgehalten wird: {{what}}",
-  "walking.held.is": "{{what}} festgehalten bei {{value}}",
+  "walking.held": "Konstant gehaltene Größe",
+  "walking.held.at": "Wert, auf dem sie gehalten wird: {{what}}",
+  "walking.held.is": "{{what}} konstant bei {{value}}",
   "walking.seen":
     "{{count}} der gezogenen Gänge; Punkte: wo jeder nach {{value}} s ist, der Hälfte des Medians.",
 };

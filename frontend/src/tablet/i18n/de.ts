@@ -29,9 +29,9 @@ export const de: Record<keyof typeof en, string> = {
   "help.failed": "Der Ruf kann gerade nicht gesendet werden. Bitte sprechen Sie uns an.",
   "picture.equipment":
     "Ein Headset, ein Controller in jeder Hand, Tracker an der Taille und an beiden Unterschenkeln",
-  "picture.t_pose": "Aufrecht stehen, die Arme zur Seite gestreckt, die Füße zusammen",
+  "picture.t_pose": "Eine Person steht aufrecht, die Arme zur Seite gestreckt, die Füße zusammen",
   "picture.mirror":
-    "Der Spiegel vor Ihnen zeigt Ihren Körper, die übrige Zeit und die erledigten Aufgaben",
+    "Der Spiegel vor Ihnen zeigt Ihren Körper, die verbleibende Zeit und die erledigten Aufgaben",
   "picture.hand_boxes":
     "Vier offene Kästen in Brusthöhe; eine Hand berührt die Platte in einem; darüber ein Ziel",
   "picture.foot_boxes":
@@ -49,7 +49,7 @@ export const de: Record<keyof typeof en, string> = {
   "consent.type": "Stattdessen meinen Namen tippen",
   "consent.draw": "Stattdessen unterschreiben",
   "consent.name": "Vor- und Nachname",
-  "consent.missing.statements": "Bitte kreuzen Sie alles an, was nicht freiwillig ist.",
+  "consent.missing.statements": "Bitte kreuzen Sie alle Aussagen an, die nicht freiwillig sind.",
   "consent.missing.name": "Bitte schreiben Sie Ihren Namen.",
   "consent.missing.signature": "Bitte unterschreiben Sie auf der Fläche oben.",
   "held.wait.title": "Bitte warten, die Versuchsleitung kommt",
@@ -71,7 +71,7 @@ export const de: Record<keyof typeof en, string> = {
   "refused.telling": "Die Versuchsleitung wird benachrichtigt.",
   "refused.untold":
     "Dieses Tablet erreicht die Versuchsleitung gerade nicht. Bitte sagen Sie der Versuchsleitung, dass Sie nicht teilnehmen möchten.",
-  "refused.free": "Sie müssen keinen Grund nennen, und Sie haben keinen Nachteil.",
+  "refused.free": "Sie müssen keinen Grund nennen, und Ihnen entsteht kein Nachteil.",
   "refused.takeBack": "Ich habe es mir anders überlegt",
   "unit.years": "Jahre",
   "form.yes": "Ja",
@@ -83,15 +83,15 @@ export const de: Record<keyof typeof en, string> = {
   "form.submit": "Antworten senden",
   "form.page": "Seite {{number}} von {{total}}",
   "form.range": "{{low}} bis {{high}} {{unit}}",
-  "form.whole": "Bitte geben Sie eine ganze Zahl an.",
-  "form.atLeast": "Möglich ab {{low}} {{unit}}",
-  "form.atMost": "Möglich bis {{high}} {{unit}}",
+  "form.whole": "Bitte geben Sie eine ganze Zahl ein.",
+  "form.atLeast": "Mindestens {{low}} {{unit}}",
+  "form.atMost": "Höchstens {{high}} {{unit}}",
   "sending.title": "Ihre Antworten werden gesendet",
   "sending.body": "Einen Moment.",
   "sending.offline": "Ihre Antworten sind sicher",
   "sending.offlineBody":
-    "Gerade besteht keine Verbindung. Die Antworten bleiben auf diesem Tablet und werden gesendet, sobald sie wieder da ist. Bitte sagen Sie der Versuchsleitung Bescheid.",
-  "held.title": "Diese Antworten sind gerade nicht dran",
+    "Gerade besteht keine Verbindung. Ihre Antworten bleiben auf diesem Tablet und werden gesendet, sobald die Verbindung wieder da ist. Bitte sagen Sie der Versuchsleitung Bescheid.",
+  "held.title": "Diese Antworten werden gerade nicht gebraucht",
   "held.body": "Sie bleiben auf diesem Tablet. Bitte sagen Sie der Versuchsleitung Bescheid.",
   "sent.title": "Danke, Ihre Antworten sind gespeichert",
   "sent.body": "Gleich geht es weiter.",

@@ -61,7 +61,7 @@ describe("the audit trail in words", () => {
     );
     expect(sentences(changed, t)).toEqual([
       "gave bo the role Analyst",
-      "gave bo these studies only: a, b",
+      "limited bo to these studies: a, b",
     ]);
   });
 
