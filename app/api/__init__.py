@@ -1,1 +1,1 @@
-"""Putting the routes together: routers, the error handler, the guards in front."""
+"""Assemble the HTTP interface: routes, error handlers, guards."""

@@ -1,4 +1,4 @@
-"""One handler: every refusal reaches every client in the same shape."""
+"""Convert every error to the same JSON shape for every client."""
 
 import json
 import logging
@@ -36,20 +36,20 @@ MOST_ITEMS = 500
 MOST_CHARACTERS = 60_000
 DEEPEST = 8
 UNREADABLE = 400
-"""What the framework says of a body that Python's JSON reader gives up on."""
+"""The framework's status for a body that Python's JSON parser cannot read."""
 
 
 def error_response(error: ReembodyError) -> JSONResponse:
-    """The JSON of an error with its status: a few kilobytes, however much was sent."""
+    """Return the response to an error, a few kilobytes at most, however much was sent."""
     headers = None
     if error.retry_after_s is not None:
         headers = {"retry-after": str(max(1, math.ceil(error.retry_after_s)))}
-    told = _Bounded().jsonable(error.as_json())
-    return JSONResponse({"error": told}, status_code=error.status, headers=headers)
+    content = _Bounded().jsonable(error.as_json())
+    return JSONResponse({"error": content}, status_code=error.status, headers=headers)
 
 
 def install_error_handler(app: FastAPI) -> None:
-    """Translate every error of ours, and the framework's, into one shape."""
+    """Convert every error, ours and the framework's, to the same shape."""
 
     @app.exception_handler(ReembodyError)
     def ours(_: Request, error: ReembodyError) -> JSONResponse:
@@ -61,14 +61,15 @@ def install_error_handler(app: FastAPI) -> None:
         more = len(problems) - MOST_DETAILS
         return error_response(
             InvalidInput(
-                "the request does not fit",
-                remedy="Mend the fields named below; nothing was stored."
+                "the request is not valid",
+                remedy="Correct the fields listed below; nothing was stored."
                 + (f" {more} more problems are not listed." if more > 0 else ""),
                 details=[
                     {
                         "path": _path(problem["loc"], fields),
                         "message": problem["msg"],
-                        # A container would be the whole input; of a missing field it is all others.
+                        # A container could be the whole input; for a missing field it is all other
+                        # fields.
                         "value": None if fields else _scalar(problem.get("input")),
                     }
                     for problem in problems[:MOST_DETAILS]
@@ -80,7 +81,7 @@ def install_error_handler(app: FastAPI) -> None:
 
     @app.exception_handler(HTTPException)
     def framework(_: Request, error: HTTPException) -> JSONResponse:
-        # The framework wraps what goes wrong while a body is read, such as our limit on its size.
+        # The framework wraps errors raised while a body is read, such as our limit on its size.
         if isinstance(error.__cause__, ReembodyError):
             return error_response(error.__cause__)
         if error.status_code == UNREADABLE and isinstance(
@@ -100,7 +101,7 @@ def install_error_handler(app: FastAPI) -> None:
 
 
 def _install_database_handlers(app: FastAPI) -> None:
-    """What the database or the disk refuses, in our words: its own would tell of the inside."""
+    """Report errors of the database or the disk in our words: their own would disclose internals."""
 
     @app.exception_handler(OperationalError)
     def not_now(_: Request, error: OperationalError) -> JSONResponse:
@@ -112,7 +113,7 @@ def _install_database_handlers(app: FastAPI) -> None:
         _log_refusal(error)
         return _went_wrong() if explain(error) is None else _not_durable(error)
 
-    # What is in a request is checked where it comes in; text that cannot be read here was stored.
+    # Requests are checked on arrival, so text that cannot be decoded here comes from the database.
     @app.exception_handler(UnicodeDecodeError)
     @app.exception_handler(DamagedValue)
     @app.exception_handler(sqlite3.Error)
@@ -134,7 +135,7 @@ def _install_database_handlers(app: FastAPI) -> None:
         return error_response(
             Conflict(
                 "somebody else stored the same at the same moment; nothing was stored",
-                remedy="Look again, then decide.",
+                remedy="Reload, then decide.",
             )
         )
 
@@ -142,8 +143,8 @@ def _install_database_handlers(app: FastAPI) -> None:
     def unusable(_: Request, _error: DataError) -> JSONResponse:
         return error_response(
             InvalidInput(
-                "the request holds a value that cannot be stored; nothing was stored",
-                remedy="Leave out control characters and numbers beyond all measure.",
+                "the request contains a value that cannot be stored; nothing was stored",
+                remedy="Leave out control characters and excessively large numbers.",
             )
         )
 
@@ -153,7 +154,7 @@ def _log_refusal(error: Exception) -> None:
     if trouble is None:
         log.error("the database refused", exc_info=error)
     else:
-        # Where it came from was logged when it began; a full disk must not be filled by telling.
+        # Without a traceback: it was logged when the trouble began, and must not fill a full disk.
         log.error("a request was refused: %s (%s)", trouble.message, getattr(error, "orig", error))
 
 
@@ -167,7 +168,7 @@ def _went_wrong() -> JSONResponse:
     return error_response(
         ReembodyError(
             "something went wrong on the server; nothing was stored",
-            remedy="Try again. If it happens again, the server's log tells why.",
+            remedy="Try again. If it happens again, see the server's log for the reason.",
         )
     )
 
@@ -175,17 +176,17 @@ def _went_wrong() -> JSONResponse:
 def _unreadable_body() -> InvalidInput:
     return InvalidInput(
         "the request's body is JSON that cannot be read: a number in it has too many digits, or "
-        "its lists and objects stand too deep inside each other",
+        "its lists and objects are nested too deeply",
         valid="JSON with numbers of at most 4300 digits, nested a few hundred deep at most",
         remedy="Send it again without that; nothing was stored.",
     )
 
 
 def _fields_beside_secrets(route: object) -> frozenset[str]:
-    """The names in a route's body if one of them is marked as a secret (`writeOnly`), else none.
+    """Return the field names of a route's body if one of them is secret (`writeOnly`), else none.
 
-    Where there is one, no value is repeated, not even of other fields, and no name but these: a
-    password may stand in any place.
+    If one is, error messages repeat no value, not even of other fields, and no names but these: a
+    password may have been sent in any place.
     """
     field = getattr(route, "body_field", None)
     model = getattr(getattr(field, "field_info", None), "annotation", None)
@@ -202,10 +203,10 @@ def _names_beside_secrets(model: Any) -> frozenset[str]:
 
 
 def _path(place: Sequence[object], fields: frozenset[str]) -> str:
-    """Where in a request it is; beside secrets only what we call things ourselves."""
+    """Return the path of a problem in a request; next to secrets, only our own field names."""
     hidden = bool(fields) and place[:1] == ("body",)
     return ".".join(
-        "(a field that is not known)"
+        "(an unknown field)"
         if hidden and isinstance(part, str) and part not in fields
         else str(part)[:LONGEST_VALUE]
         for part in place[1:]
@@ -220,15 +221,15 @@ def _scalar(value: object) -> object:
 
 @dataclass
 class _Bounded:
-    """Values as JSON can carry them, and no more characters of them than a reader wants.
+    """Converts values to JSON, and limits the number of characters.
 
-    NaN and bytes become text, lone surrogates are written out, long lists and texts are cut.
+    NaN and bytes become text, lone surrogates are escaped, long lists and texts are cut.
     """
 
     left: int = MOST_CHARACTERS
 
     def jsonable(self, value: Any, depth: int = 0) -> Any:
-        """The value, cut where it is too long or too deep."""
+        """Return the value, cut if it is too long or too deeply nested."""
         if value is None or isinstance(value, bool):
             return value
         if isinstance(value, int) and abs(value) < 2**63:

@@ -1,16 +1,16 @@
-"""What stands before every route: who may send how much, the name asked for, the origin, headers.
+"""Check every request before its route: size, host name, origin, text; add security headers.
 
-Nothing of a body is read for a stranger beyond a few kilobytes, and strangers share a budget per
-address; whoever shows a valid token has neither limit (`app.platform.admission`). Text that no
-database can hold is refused here, once for every route (`app.platform.text`).
+For a stranger only a few kilobytes of a body are read, and strangers share a budget per address; a
+client with a valid token has neither limit (`app.platform.admission`). Text that no database can
+store is rejected here, once for every route (`app.platform.text`).
 
-Cookies are SameSite=Strict already; the origin check is the second lock for requests that change
-something, and the first for WebSockets, which no cookie rule of the browser covers.
+Cookies are SameSite=Strict already; the origin check is a second protection for requests that
+change something, and the first for WebSockets, which no cookie rule of the browser covers.
 
-The name is checked because no page of the internet may pass for this server: a hostile page can
-make its own name lead to an address inside the lab (DNS rebinding), and the browser then takes this
-server for that page's own. It cannot do so under a name that only a local network gives out, nor
-under an address.
+The host name is checked so that no page on the internet can reach this server as its own: a hostile
+page can make its own name resolve to an address inside the lab (DNS rebinding), and the browser
+then takes this server for that page's own. It cannot do so under a name that only a local network
+assigns, nor under an IP address.
 """
 
 import asyncio
@@ -40,14 +40,14 @@ from app.platform.text import require_text_in_head, require_text_in_json
 
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 STRANGERS_BODY_BYTES = 16 * 1024
-"""A login, a pairing or an invitation takes a few hundred bytes."""
+"""Most bytes of a stranger's body; a login, pairing or invitation takes a few hundred."""
 SOCKET_COST = 10.0
-"""A stranger's socket is closed at once, but may have brought a message with its handshake."""
+"""A stranger's socket is closed immediately, but its handshake may have included a message."""
 HELD_S, MOST_HELD = 1.0, 512
-"""A held request keeps what of its body came before it was looked at, 64 KiB at most."""
+"""Delay of refused requests, and how many may be delayed; each may keep 64 KiB of its body."""
 TOO_LARGE_COST = 10.0
 LARGE_BODY_BYTES = 64 * 1024
-"""Above this, looking for characters that cannot be stored is worth a thread."""
+"""Larger bodies are searched for invalid characters in a thread."""
 # No Strict-Transport-Security: a browser applies it to every port of a host and, once it has seen
 # it, lets nobody past a certificate that it does not trust. A device would then lose the help page,
 # which must be plain http, and a headset by USB cable its http://localhost.
@@ -78,8 +78,9 @@ class Guards:
         host_names: Callable[[], Iterable[str]],
         larger_bodies: Mapping[tuple[str, str], int] = MappingProxyType({}),
     ) -> None:
-        """`larger_bodies` by method and path: routes that read their bodies themselves, in pieces,
-        after they have let somebody in.
+        """Set the limits; `larger_bodies` has those of some routes, by method and path.
+
+        These routes read their bodies themselves, in pieces, after they have authorised the caller.
         """
         self._app = app
         self._admission, self._strangers = admission, strangers
@@ -90,7 +91,7 @@ class Guards:
         self._turnstile = asyncio.Lock()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Check, then pass on."""
+        """Check a request, then pass it on to the application."""
         if scope["type"] not in ("http", "websocket"):
             await self._app(scope, receive, send)
             return
@@ -111,10 +112,10 @@ class Guards:
         await self._app(scope, receive, send)
 
     async def _hold(self) -> None:
-        """Let a stranger who asks too much wait for a moment, where that costs next to nothing.
+        """Delay the response to a stranger who sends too many requests, at next to no cost.
 
-        Whoever asks again as soon as they are answered asks once a second then, and not as often as
-        this machine can refuse. Nothing more of a body is read meanwhile.
+        A client that retries as soon as it gets a response then does so once a second, and not as
+        fast as this machine can refuse. No more of a body is read meanwhile.
         """
         if self._held >= MOST_HELD:
             return
@@ -125,18 +126,19 @@ class Guards:
             self._held -= 1
 
     async def _known(self, scope: Scope) -> bool:
-        """Whether a valid token was shown; a stranger's request is counted, or one too many.
+        """Return whether a valid token was presented; otherwise charge the stranger's budget.
 
-        What looks like a token counts only once the database has seen it: else anybody could pass
-        for a device.
+        A token counts only after the database has confirmed it: otherwise anybody could pose as a
+        device. Raises TooManyAttempts if the budget is spent.
         """
         connection = HTTPConnection(scope)
         tokens = tokens_of(connection)
         if tokens and await self._admission.knows(tokens):
             return True
         scope[STRANGER] = True
-        # One at a time, with a turn of the event loop for each: what headsets and tablets sent is
-        # looked at between any two strangers, and not after a whole crowd of them.
+        # One at a time, with a turn of the event loop for each: messages of headsets and tablets
+        # are
+        # processed between any two strangers, and not after a whole crowd of them.
         async with self._turnstile:
             await asyncio.sleep(0)
         self._strangers.spend(_network(scope), SOCKET_COST if scope["type"] == "websocket" else 1.0)
@@ -162,7 +164,7 @@ class Guards:
     async def _read(
         self, scope: Scope, headers: Headers, receive: Receive, *, known: bool
     ) -> Receive:
-        """What the application reads the body from; raises TooLarge as soon as it is too much."""
+        """Return what the application reads the body from; raise TooLarge if it is too large."""
         declared = headers.get("content-length", "")
         if declared in ("", "0") and "transfer-encoding" not in headers:
             return receive
@@ -178,10 +180,10 @@ class Guards:
             body = await _whole(receive, limit)
         except TooLarge as error:
             if not known:
-                # It was read in part, and the connection is held for a moment.
+                # Part of it was read, and the response may be delayed.
                 self._strangers.charge(_network(scope), TOO_LARGE_COST)
             if not known and tokens_of(HTTPConnection(scope)):
-                # Somebody whose login has ended needs to hear that, not that they sent too much.
+                # Somebody whose login has expired needs to know that, not that they sent too much.
                 raise NotSignedIn(
                     "the login or pairing has ended", remedy="Log in again."
                 ) from error
@@ -199,7 +201,7 @@ def _network(scope: Scope) -> str:
 
 
 async def _whole(receive: Receive, limit: int) -> bytes:
-    """The body; raises TooLarge while it comes, ClientDisconnect where its sender goes away."""
+    """Read the body; raise TooLarge as it arrives, ClientDisconnect if the client disconnects."""
     pieces, size, more = [], 0, True
     while more:
         message = await receive()
@@ -214,7 +216,7 @@ async def _whole(receive: Receive, limit: int) -> bytes:
 
 
 class _Replayed:
-    """Hands on a body that was read before, then whatever comes after it."""
+    """Passes on a body that was already read, then whatever follows it."""
 
     def __init__(self, body: bytes, receive: Receive) -> None:
         self._body: bytes | None = body
@@ -228,7 +230,7 @@ class _Replayed:
 
 
 class _Limited:
-    """Counts a body that does not say its length."""
+    """Limits the size of a body that does not declare its length."""
 
     def __init__(self, receive: Receive, limit: int) -> None:
         self._receive, self._limit, self._seen = receive, limit, 0
@@ -249,7 +251,7 @@ async def _refuse(scope: Scope, receive: Receive, send: Send, error: ReembodyErr
     elif isinstance(error, TooManyAttempts) and "websocket.http.response" in scope.get(
         "extensions", {}
     ):
-        # Before the handshake is answered: a socket that was opened first would cost more.
+        # Before the handshake is accepted: opening the socket first would cost more.
         await response(scope, receive, send)
     else:
         await send({"type": "websocket.close", "code": 4403, "reason": error.message[:100]})
@@ -257,7 +259,7 @@ async def _refuse(scope: Scope, receive: Receive, send: Send, error: ReembodyErr
 
 def _too_large(size: int, limit: int) -> TooLarge:
     return TooLarge(
-        f"this is too large: {_readable(size)}, and at most {_readable(limit)} are taken",
+        f"this is too large: {_readable(size)}; at most {_readable(limit)} are accepted",
         value=size,
         valid=f"at most {limit} bytes",
         remedy="Choose a smaller file, or send less at once.",
@@ -285,14 +287,14 @@ def _headed(scope: Scope, send: Send) -> Send:
 
 
 def require_known_host(host: str, known: Iterable[str]) -> None:
-    """Raise NotAllowed where a request asks for this server under a name of somebody else's.
+    """Raise NotAllowed if a request addresses this server by somebody else's name.
 
     `host` is the Host header; `known` are the names that the lab gave to the server.
     """
     try:
         name = (urlsplit(f"//{host}").hostname or "").rstrip(".")
     except ValueError as error:
-        raise InvalidInput("the header Host is no host name", value=host[:100]) from error
+        raise InvalidInput("the header Host is not a host name", value=host[:100]) from error
     if "." not in name or name.endswith(LOCAL_ENDINGS) or _is_address(name):
         return
     if name not in {one.lower() for one in known}:

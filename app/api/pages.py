@@ -1,4 +1,4 @@
-"""Serving the built pages; their scripts and styles are kept by browsers for ever, and compressed.
+"""Serve the built pages, with compressed scripts and styles that browsers cache indefinitely.
 
 Tablets and headsets fetch them over the lab's wireless network, where a megabyte takes a while.
 """
@@ -16,12 +16,12 @@ from fastapi.staticfiles import StaticFiles
 from starlette.datastructures import Headers
 from starlette.types import Scope
 
-# Pictures and fonts are compressed already, and a small file gains nothing.
+# Pictures and fonts are already compressed, and a small file gains nothing.
 _WORTH_IT = ("text/javascript", "text/css", "image/svg+xml", "application/json")
 _SMALL_BYTES = 1024
 _LEVEL = 6
 PAGES = {"/": "console/index.html", "/tablet": "tablet/index.html"}
-# A service worker may look after addresses beside and below its own, and is known by its address.
+# A service worker controls the addresses next to and below its own, which identifies it.
 TABLET_WORKER = "/tablet-worker.js"
 _NOT_BUILT = """<!doctype html><html lang="en"><meta charset="utf-8"><title>Reembody</title>
 <h1>The pages are not built yet</h1><p>The interface under /api works. Start the server with
@@ -29,19 +29,19 @@ _NOT_BUILT = """<!doctype html><html lang="en"><meta charset="utf-8"><title>Reem
 
 
 class Assets(StaticFiles):
-    """File names carry a hash of the content, so a browser may keep them.
+    """Files whose names contain a hash of the content, so that browsers may cache them.
 
-    What is compressed once stays in memory: about a megabyte for all pages together.
+    A file is compressed once and stays in memory: about a megabyte for all pages together.
     """
 
     def file_response(self, *args: Any, **kwargs: Any) -> Response:
-        """A file that may be kept."""
+        """Return a file with headers that let browsers cache it indefinitely."""
         response = super().file_response(*args, **kwargs)
         response.headers["cache-control"] = "public, max-age=31536000, immutable"
         return response
 
     async def get_response(self, path: str, scope: Scope) -> Response:
-        """The file, compressed for whoever takes gzip."""
+        """Return the file, compressed if the client accepts gzip."""
         response = await super().get_response(path, scope)
         if not isinstance(response, FileResponse) or not _is_worth_it(response):
             return response
@@ -70,12 +70,12 @@ def _takes_gzip(headers: Headers) -> bool:
 
 @lru_cache(maxsize=256)
 def _compressed(path: str) -> bytes:
-    """The same bytes for the same file: no time of day in them."""
+    """Return the compressed file, without a timestamp: the same bytes for the same content."""
     return gzip.compress(Path(path).read_bytes(), _LEVEL, mtime=0)
 
 
 def install_pages(app: FastAPI, static: Path) -> None:
-    """Serve each page at its address and the hashed assets for ever."""
+    """Serve each page at its address, and the assets under their hashed names."""
     router = APIRouter(include_in_schema=False)
     for address, file in PAGES.items():
         router.add_api_route(address, _page(static / file), methods=["GET"])
@@ -99,7 +99,8 @@ def _worker(file: Path) -> Callable[[], Response]:
     def serve() -> Response:
         if not file.is_file():
             return Response(status_code=404)
-        # Asked for at every start of the tablet's page, so that a new build is noticed at once.
+        # Revalidated at every start of the tablet's page, so that a new build is noticed
+        # immediately.
         headers = {"cache-control": "no-cache"}
         return FileResponse(file, headers=headers, media_type="text/javascript")
 

@@ -1,4 +1,4 @@
-"""Every route of the application, in one place."""
+"""Define all routes of the application in one place."""
 
 from datetime import datetime
 from functools import lru_cache
@@ -48,10 +48,10 @@ from app.platform.dependencies import API_PREFIX, Context
 
 
 class Health(BaseModel):
-    """Whether the server and its database answer, and whether the record can be written.
+    """Whether the server and its database respond, and whether the record can be written.
 
-    `status` is degraded while something in the background fails, which `failing` names; `storage`
-    speaks for itself. `low_disk`: little space is left in the data folder.
+    `status` is degraded while something in the background fails, as listed in `failing`; failures
+    of storage are reported only in `storage`. `low_disk`: little space is left in the data folder.
     """
 
     status: Literal["ok", "degraded"]
@@ -65,9 +65,9 @@ class Health(BaseModel):
 
 
 class Refusal(BaseModel):
-    """Why something was refused (app.errors): what happened, the value, what is valid, the way on.
+    """The reason for an error (app.errors): what happened, the value, what is valid, what to do.
 
-    `details` lists single problems of a file or form, each with its place.
+    `details` lists the individual problems of a file or form, each with its place.
     """
 
     code: str
@@ -79,29 +79,31 @@ class Refusal(BaseModel):
 
 
 class ErrorBody(BaseModel):
-    """The body of every answer that is not a success."""
+    """The body of every error response."""
 
     error: Refusal
 
 
 REFUSALS: dict[int | str, dict[str, Any]] = {
-    "4XX": {"model": ErrorBody, "description": "Refused, with the reason and the way out."},
-    "503": {"model": ErrorBody, "description": "Cannot be stored now, so nothing was promised."},
+    "4XX": {"model": ErrorBody, "description": "Refused, with the reason and the remedy."},
+    "503": {"model": ErrorBody, "description": "Cannot be stored now; nothing was stored."},
 }
 
 
 def add_routes(app: FastAPI) -> None:
-    """The routes under /api. They belong to no application: whichever serves them is in a request's
-    scope, so one process builds them once, however many applications it makes.
+    """Add the routes under /api to an application.
+
+    They belong to no application: the one that serves them is in a request's scope, so a process
+    builds them once, however many applications it makes.
     """
     app.router.routes.extend(_routes())
 
 
 @lru_cache(maxsize=1)
 def _routes() -> tuple[BaseRoute, ...]:
-    """Each part at once, since all routes of a level are built anew."""
+    """Build all routes once per process, since including a router rebuilds its routes."""
     parts = (
-        # Looked through in this order: what comes in crowds first.
+        # Matched in this order: the most frequent requests first.
         *(tablet, sessions, watching),
         *(accounts, people, audit, studies, instruments, participants),
         *(devices, calls, headset, alarms, suggestions, calibrations),
@@ -127,7 +129,7 @@ def _routes() -> tuple[BaseRoute, ...]:
 
 
 def get_health(context: Context) -> Health:
-    """Whether the server and its database answer."""
+    """Report whether the server and its database respond."""
     with context.database.reading() as db:
         db.execute(text("SELECT 1"))
     storage, failing = context.storage.state(), context.background.failing()

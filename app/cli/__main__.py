@@ -1,4 +1,4 @@
-"""`python -m app.cli` is the `reembody` command."""
+"""Run the `reembody` command as `python -m app.cli`."""
 
 from app.cli import main
 

@@ -1,4 +1,4 @@
-"""Backing up and restoring from the command line, whether or not the server runs."""
+"""Back up and restore from the command line, whether or not the server runs."""
 
 import json
 import sqlite3
@@ -52,9 +52,9 @@ from app.settings import Settings, read_settings
 
 
 def back_up_to(to: Path, activity: Activity, *, as_json: bool) -> str:
-    """Write the backup and say what is in it; raises ReembodyError with nothing left of the file.
+    """Write a backup and return its summary; raise ReembodyError, leaving no file, if that fails.
 
-    `activity` says which table it is at.
+    `activity` reports the table that is being copied.
     """
     settings = read_settings()
     with told_plainly():
@@ -70,7 +70,7 @@ def back_up_to(to: Path, activity: Activity, *, as_json: bool) -> str:
 
 
 def _put_on_record(database: Database, done: BackedUp) -> None:
-    """A copy left the database; a backup is whole even where that cannot be written down."""
+    """Record that a copy left the database, or warn: the backup is complete even if that fails."""
     if done.revision != newest_revision():
         return
     try:
@@ -85,18 +85,18 @@ def _put_on_record(database: Database, done: BackedUp) -> None:
             )
     except (DBAPIError, sqlite3.Error) as error:
         warn(
-            f"the backup is whole, but could not be put on record ({getattr(error, 'orig', error)})"
-            ": keep its place in mind when a participant's data are erased"
+            f"the backup is complete but could not be recorded ({getattr(error, 'orig', error)}):"
+            " remember where it is when a participant's data are erased"
         )
 
 
 def told_plainly() -> AbstractContextManager[None]:
-    """Turn what a database or a disk says into NotDurable, which has a remedy."""
-    return plainly("nothing was changed, because the database or the disk did not take part")
+    """Convert errors of the database or the disk to NotDurable, which has a remedy."""
+    return plainly("nothing was changed, because the database or the disk reported an error")
 
 
 def as_text(done: object) -> str:
-    """A summary as JSON."""
+    """Return a summary as JSON."""
     return json.dumps(vars(done), default=str, indent=2)
 
 
@@ -120,13 +120,13 @@ def restore_from(
     erasures: Path | None,
     as_json: bool,
 ) -> str:
-    """Put a backup in the place of what is there; raises ReembodyError with nothing changed.
+    """Replace the database by a backup; raise ReembodyError with nothing changed if that fails.
 
-    Phases whose clock ran when the backup was made are paused afterwards, as after a crash. A
-    damaged database is put into quarantine first. `erasures` is the list of an earlier data folder,
-    whose erasures are made here, too; where there is no list at all it is asked for on a terminal,
-    and elsewhere standard error says what that may mean. Nobody else may work with the data from
-    the first look at them until all of that is done.
+    Phases whose clock was running when the backup was made are paused afterwards, as after a crash.
+    A damaged database is quarantined first. `erasures` is the list of erasures of an earlier data
+    folder, which are repeated here; if there is no list at all, it is requested on a terminal, and
+    elsewhere standard error reports what that may mean. The data are locked against other processes
+    from the first check until everything is done.
     """
     settings = read_settings()
     with own_data(settings, "restore"), told_plainly():
@@ -153,7 +153,7 @@ def _restored(
     erasures: Path | None,
     as_json: bool,
 ) -> str:
-    from app.main import create_app  # a backup needs no application
+    from app.main import create_app  # not needed to back up
 
     clock, kept = Clock(), backups_of(settings)
     lifetimes = Lifetimes(
@@ -165,13 +165,13 @@ def _restored(
         _no_folder_left(kept),
         checked_backup(path, kept, activity.rows(f"checking {path}")) as backup,
     ):
-        activity.now("looking at the database that is there")
+        activity.now("checking the existing database")
         try:
             put_away_if_damaged(settings, clock, every_row=True)
         except Damaged as error:
             warn(error.message)
         with begun_if_missing(settings, clock):
-            # Complete, but not started: what is done to sessions needs its parts.
+            # The application is not started, but changing sessions needs its parts.
             context: AppContext = create_app(settings, clock=clock).state.context
             with _undone_if_refused(context) as expected:
                 outliving = ErasureReplay(
@@ -198,7 +198,7 @@ def _restored(
 
 @contextmanager
 def _no_folder_left(kept: Path) -> Iterator[None]:
-    """Folders that were not there before are not there after a restore that failed."""
+    """Remove the folders that a failed restore has created."""
     missing = [folder for folder in (kept, *kept.parents) if not folder.exists()]
     try:
         yield
@@ -211,7 +211,7 @@ def _no_folder_left(kept: Path) -> Iterator[None]:
 
 @contextmanager
 def _undone_if_refused(context: AppContext) -> Iterator[bool]:
-    """Leave neither a connection nor the mark of an erasure behind a restore that failed.
+    """Close the database and remove the mark of a pending erasure if the restore fails.
 
     Yields whether the mark was made for this restore.
     """
@@ -228,7 +228,10 @@ def _undone_if_refused(context: AppContext) -> Iterator[bool]:
 def _earlier_erasures(
     context: AppContext, backup: Backup, given: Path | None, activity: Activity
 ) -> tuple[Tombstone, ...]:
-    """The erasures of a list that was given, or named on the terminal; raises ReembodyError."""
+    """Return the erasures of the list given as an option or on the terminal.
+
+    Raises ReembodyError if the list cannot be read.
+    """
     if given is not None:
         return read_list(given)
     if knows_erasures(context) or not holds_people(backup):
@@ -238,13 +241,13 @@ def _earlier_erasures(
     if sys.stdin.isatty() and sys.stderr.isatty():
         with activity.silent():
             sys.stderr.write(
-                f"{home} has no list of erasures. Whoever was erased after the backup was made "
-                f"({made}) comes back with it.\nFile erasures.jsonl of the earlier data folder "
+                f"{home} has no list of erasures. Participants erased after the backup was made "
+                f"({made}) are restored with it.\nFile erasures.jsonl of the earlier data folder "
                 "(Enter if nobody was erased since): "
             )
             sys.stderr.flush()
-            named = sys.stdin.readline().strip()
-        return read_list(Path(named)) if named else ()
+            entered = sys.stdin.readline().strip()
+        return read_list(Path(entered)) if entered else ()
     warn(
         f"{home} has no list of erasures: participants who were erased after the backup was made "
         f"({made}) are back. If there are any, restore again with --replace --erasures FILE, the "
@@ -255,20 +258,26 @@ def _earlier_erasures(
 
 
 def _overwrite(context: AppContext, given: Sequence[Tombstone]) -> None:
-    """What was erased again was in the file for a moment; the next start does the same."""
+    """Overwrite the rows that were restored and then erased again.
+
+    If that fails, the next start of the server does it.
+    """
     try:
         tombstone_file(context.settings).add(given)
         finish_erasures(context)
     except (DBAPIError, sqlite3.Error, ReembodyError, OSError) as error:
         warn(
-            f"restored, but erased rows are still to be overwritten ({error}): "
+            f"restored, but erased rows could not yet be overwritten ({error}): "
             "start the server again"
         )
 
 
 def _stop_clocks(context: AppContext) -> None:
-    """Nobody wears the headsets of those phases now; the next start of a server does the same."""
-    from app.features.record.telemetry import stop_running_clocks  # nor any session
+    """Pause the phases that were running when the backup was made: their headsets are off now.
+
+    If that fails, the next start of the server does it.
+    """
+    from app.features.record.telemetry import stop_running_clocks  # not needed to back up
 
     try:
         stop_running_clocks(context)
@@ -288,12 +297,12 @@ def _sentences(done: Restored) -> str:
         f"sha256 of the content {done.sha256}",
     ]
     if done.before is not None:
-        lines.append(f"What was there before: {done.before}")
+        lines.append(f"The replaced data: {done.before}")
     if done.erasures_reapplied:
         lines.append(
-            f"{done.erasures_reapplied} participant(s) in it had been erased since, and were "
+            f"{done.erasures_reapplied} participant(s) in it had been erased since then, and were "
             "erased again"
         )
     if done.unpaired:
-        lines.append(f"{done.unpaired} headset(s) of sessions that are not over: pair them again")
+        lines.append(f"{done.unpaired} headset(s) of unfinished sessions: pair them again")
     return "\n".join(lines)

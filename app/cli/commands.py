@@ -1,4 +1,4 @@
-"""All commands of `reembody`: the small ones here, each a few lines that parse, call and print."""
+"""Define all commands of `reembody`, the small ones here: parse the options, call, print."""
 
 import json
 import os
@@ -30,8 +30,8 @@ app.command()(analyse)
 app.command()(serve)
 
 
-def _print_version(asked: bool) -> None:
-    if asked:
+def _print_version(requested: bool) -> None:
+    if requested:
         print(f"reembody {__version__}")
         raise typer.Exit
 
@@ -42,8 +42,9 @@ def reembody(
         bool, typer.Option("--version", callback=_print_version, help="Print the version.")
     ] = False,
 ) -> None:
-    """Runs, watches and analyses VR re-embodiment studies."""
-    # Whatever a command writes may be about people: it is for whoever runs the command alone.
+    """Run, watch and analyse VR re-embodiment studies."""
+    # Files that a command writes may contain personal data: only the user who runs it may read
+    # them.
     os.umask(0o077)
 
 
@@ -52,7 +53,7 @@ def score(
     answers: Annotated[Path, typer.Argument(help="CSV with item columns; others are ids.")],
     instrument: Annotated[str, typer.Option(help="Key of the instrument.")],
 ) -> None:
-    """Score a table of answers; writes ids and scores as CSV to standard output."""
+    """Score a table of answers; write ids and scores as CSV to standard output."""
     from app.cli.scoring import score_file
 
     with reported(ValueError, OSError):
@@ -87,7 +88,7 @@ def verify(
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the findings as JSON.")] = False,
 ) -> None:
-    """Prove what of a session is there, or that the audit trail is whole; exit code 1 if not."""
+    """Verify that a session or the audit trail is complete and unaltered; exit code 1 if not."""
     with reported():
         from app.cli.record import heads_of, verify_record
 
@@ -101,7 +102,7 @@ def verify(
 
 @app.command()
 def openapi() -> None:
-    """Print the interface as OpenAPI JSON."""
+    """Print the HTTP interface as OpenAPI JSON."""
     from app.main import create_app
     from app.settings import Settings
 
@@ -138,7 +139,7 @@ def rehearse(
     capture: Annotated[Path | None, typer.Option(help="Capture to move by.")] = None,
     speed: Annotated[float, typer.Option(help="Seconds of study time per second.")] = 1.0,
     seed: Annotated[
-        int, typer.Option(help="Of all that is drawn; the next participant has the next.")
+        int, typer.Option(help="Random seed of the first participant; each next one adds 1.")
     ] = 1,
     study: Annotated[str, typer.Option(help="Key of the study.")] = "reembodiment-latency",
     data: Annotated[
@@ -146,16 +147,16 @@ def rehearse(
     ] = None,
     physics: Annotated[
         bool,
-        typer.Option("--physics", help="By forces, also where the study has a delayed copy."),
+        typer.Option("--physics", help="Use a physics avatar even if the study does not."),
     ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the reports as JSON.")] = False,
 ) -> None:
     """Take simulated participants through whole sessions.
 
     A session takes the time of its phases, divided by --speed: 9 minutes
-    with the study that ships. Where physics moves the avatar, two cores
-    reach a speed of about 6, so 2 minutes at best. A PHASE is its number
-    in the visit, from 1; practice and free movement count.
+    with the study that ships. With a physics avatar, two cores reach a
+    speed of about 6, so 2 minutes at best. A PHASE is its number in the
+    visit, from 1; practice and free movement count.
     """
     from app.cli.rehearsing import run_rehearsal
     from app.rehearsal.rehearse import RehearsalPlan
@@ -183,7 +184,7 @@ def backup(
     file: Annotated[Path, typer.Argument(help="New file to write.")],
     as_json: Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")] = False,
 ) -> None:
-    """Copy everything into one file, while the server runs or not."""
+    """Copy all data into one file; the server may run meanwhile."""
     with reported(), Activity(f"backing up to {file}: opening the database") as now:
         from app.cli.backups import back_up_to
 
@@ -195,21 +196,22 @@ def backup(
 def restore(
     file: Annotated[Path, typer.Argument(help="A file that `backup` wrote.")],
     replace: Annotated[
-        bool, typer.Option("--replace", help="Replace what is there; it is backed up first.")
+        bool, typer.Option("--replace", help="Replace existing data, after backing them up.")
     ] = False,
     even_though_active: Annotated[
-        bool, typer.Option("--even-though-active", help="Also while sessions are active.")
+        bool, typer.Option("--even-though-active", help="Restore even while sessions are active.")
     ] = False,
     even_though_altered: Annotated[
-        bool, typer.Option("--even-though-altered", help="Also where its record was altered.")
+        bool,
+        typer.Option("--even-though-altered", help="Restore even if the backup was altered."),
     ] = False,
     erasures: Annotated[
         Path | None,
-        typer.Option(help="erasures.jsonl of the earlier data folder, whose erasures hold here."),
+        typer.Option(help="erasures.jsonl of the earlier data folder, to repeat its erasures."),
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")] = False,
 ) -> None:
-    """Put a backup in the place of everything that is there."""
+    """Replace all data by those of a backup."""
     with reported(), Activity(f"restoring {file}: opening it") as now:
         from app.cli.backups import restore_from
 

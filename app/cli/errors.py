@@ -1,8 +1,8 @@
-"""How a command says that it cannot go on: why on standard error, and the exit code.
+"""Report errors of commands: the reason on standard error, and the exit code.
 
-A command takes what it calls into `reported`, so that no other place puts an error into words.
-Ctrl+C is Typer's ("Aborted!"), but where it ends a command well: a server stops, and a tuning says
-that nothing was kept.
+Every command wraps its calls in `reported`, so that errors are worded only here. Typer handles
+Ctrl+C ("Aborted!"), except where it ends a command normally: a server stops, and a tuning reports
+that nothing was stored.
 """
 
 import sys
@@ -17,33 +17,33 @@ INCOMPLETE, UNUSABLE = 1, 2
 """Exit codes: something of a session is missing; the input or the installation cannot be used."""
 
 ERASE_LINE = "\r\033[K"
-"""Takes back what stands on the present line of a terminal."""
+"""Control sequence that erases the current line of a terminal."""
 
 
 def fail(message: str) -> NoReturn:
-    """Say what is wrong and leave with the status for unusable input."""
+    """Print what is wrong and exit with the status for unusable input."""
     warn(message)
     raise SystemExit(UNUSABLE)
 
 
 def warn(message: str) -> None:
-    """Say what went wrong where the command can go on all the same."""
-    # Behind what a long command says of itself on the same line of a terminal.
+    """Print a warning of a command that continues."""
+    # Replaces the progress line of a long command on a terminal.
     print(f"{ERASE_LINE if sys.stderr.isatty() else ''}reembody: {message}", file=sys.stderr)
 
 
 def require_folder_of(out: Path | None) -> None:
-    """Refuse a file to write whose folder is missing, before the work; raises ValueError."""
+    """Raise ValueError if the folder of an output file is missing, before any work is done."""
     if out is not None and not out.absolute().parent.is_dir():
         raise ValueError(f"--out {out}: there is no folder {out.absolute().parent}")
 
 
 @contextmanager
 def reported(*expected: type[Exception], with_valid: bool = False) -> Iterator[None]:
-    """Fail with the words of an error of the product, and of those `expected` of the input.
+    """Exit with the message of a ReembodyError, of a database error, or of an `expected` error.
 
-    `with_valid` adds what would be valid, where an error lists it. Any other error is a fault of
-    the program, whose trace is wanted.
+    `with_valid` adds the valid values, if the error lists them. Any other error is a fault of the
+    program and keeps its traceback.
     """
     try:
         yield
@@ -62,11 +62,11 @@ def reported(*expected: type[Exception], with_valid: bool = False) -> Iterator[N
 
 
 def _refused_by_storage(error: Exception) -> ReembodyError | None:
-    """What a database refuses, in words; None for any other error, a fault of the program."""
+    """Return the explanation of a database error; None for any other error."""
     if not type(error).__module__.startswith(("sqlite3", "sqlalchemy")):
-        return None  # without loading what a command may never need
+        return None  # avoids loading SQLAlchemy, which a command may never need
     from app.platform.trouble import explain, in_plain_words, proves_damage
 
     if explain(error) is None and not proves_damage(error):
         return None
-    return in_plain_words("the database did not take part", error)
+    return in_plain_words("the database reported an error", error)

@@ -1,4 +1,4 @@
-"""This installation, for commands that work beside the server or without it: database, tokens."""
+"""Open this installation's database for commands that run with or without the server."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -15,10 +15,10 @@ from app.settings import read_settings
 
 @contextmanager
 def opened_database(command: str) -> Iterator[Database]:
-    """The database, brought up to date as a starting server does; closed behind the block.
+    """Open the database, migrated as a starting server does, and close it after the block.
 
-    For a `command` that reads, or adds rows of its own: beside a running server, too. Raises
-    ReembodyError for a database that cannot be worked with, saying what to do.
+    For a `command` that only reads, or adds rows of its own: a server may run meanwhile. Raises
+    ReembodyError, with a remedy, if the database cannot be used.
     """
     settings = read_settings()
 
@@ -35,8 +35,9 @@ def opened_database(command: str) -> Iterator[Database]:
 
 @contextmanager
 def owned_database(command: str) -> Iterator[Database]:
-    """The same for a `command` that changes what a running server knows: nobody else has the data
-    meanwhile. Raises Owned where somebody has.
+    """Open the database for a `command` that changes what a running server relies on.
+
+    No other process may use the data meanwhile. Raises Owned if one does.
     """
     settings = read_settings()
     with own_data(settings, command):
@@ -49,14 +50,14 @@ def owned_database(command: str) -> Iterator[Database]:
 
 
 def new_token(username: str, hours: float) -> str:
-    """A bearer token for an account of this installation; raises LookupError if there is none."""
-    from app.features.people.accounts import issue_token  # only tokens need accounts
+    """Issue a bearer token for an account; raise LookupError if there is no such account."""
+    from app.features.people.accounts import issue_token  # only needed here
 
     with opened_database("token") as database, database.writing() as db:
         account = db.scalar(select(Account).where(Account.username == username))
         if account is None:
-            known = db.scalars(select(Account.username).order_by(Account.username)).all()
-            way_on = f"there are {', '.join(known)}" if known else "start the server for the first"
-            raise LookupError(f"there is no account {username!r}; {way_on}")
+            names = db.scalars(select(Account.username).order_by(Account.username)).all()
+            remedy = f"there are {', '.join(names)}" if names else "start the server for the first"
+            raise LookupError(f"there is no account {username!r}; {remedy}")
         now = Clock().utc_now()
         return issue_token(db, account, purpose="script", now=now, hours=hours).token

@@ -1,8 +1,8 @@
-"""What a long command is doing, on standard error: within a second, and then as it goes on.
+"""Show the progress of a long command on standard error, starting within a second.
 
-On a terminal it is one line that is written over. Elsewhere (a log, a pipe, a service) it is a line
-now and then, and none for a command that is done within a second. A thread of its own writes them,
-so that they also come while one step takes minutes and reports nothing.
+On a terminal it is one line that is overwritten. Elsewhere (a log, a pipe, a service) it is an
+occasional line, and none for a command that finishes within a second. A separate thread writes
+them, so that they also appear while one step takes minutes and reports nothing.
 """
 
 import sys
@@ -15,11 +15,11 @@ from app.cli.errors import ERASE_LINE
 
 SAID_AFTER_S = 0.7
 SAID_EVERY_S, DRAWN_EVERY_S = 5.0, 0.2
-"""How often there may be news: in a log, and on a terminal."""
+"""Shortest time between updates: in a log, and on a terminal."""
 
 
 class Activity:
-    """Says what a command does, while the block lasts.
+    """Show what a command is doing, for the duration of the block.
 
     with Activity("backing up: opening the database") as activity:
         activity.now("backing up: copying")
@@ -32,11 +32,11 @@ class Activity:
         self._live = sys.stderr.isatty()
 
     def now(self, what: str) -> None:
-        """What it does from now on."""
+        """Set the description of the current step."""
         self._what = what
 
     def rows(self, what: str) -> Callable[[str, int], None]:
-        """Takes how many more rows of a table are done, and says how many that makes."""
+        """Return a callback that counts a table's completed rows and shows the total."""
         done: Counter[str] = Counter()
 
         def count(table: str, rows: int) -> None:
@@ -47,7 +47,7 @@ class Activity:
 
     @contextmanager
     def silent(self) -> Iterator[None]:
-        """Say nothing while somebody is asked a question."""
+        """Show no progress while the user answers a question."""
         with self._speaking:
             self._erase()
             yield

@@ -1,4 +1,4 @@
-"""What leaves the record from the command line: a study as a folder, and proofs of wholeness."""
+"""Export a study to a folder, and verify sessions and the audit trail, from the command line."""
 
 import json
 import sqlite3
@@ -37,11 +37,11 @@ from app.settings import read_settings
 
 
 def export_to_folder(study: str, to: Path, activity: Activity, kind: str | None = None) -> str:
-    """Export a study of this installation to a folder; one sentence on what was written.
+    """Export a study of this installation to a folder; return a summary.
 
-    Without a `kind`: people's sessions, or what there is if there are none of people. `activity`
-    says which file it is at. Raises ValueError for an unknown kind, ReembodyError for an
-    unknown study or a folder that is not ours to replace, and for what cannot be written.
+    Without a `kind`: people's sessions, or those of another kind if there are none. `activity`
+    shows the file that is being written. Raises ValueError for an unknown kind; ReembodyError for
+    an unknown study, a folder that is not an earlier export, or a write error.
     """
     notes = Notes.of(read_settings())
     with opened_database("export") as database, database.reading() as db:
@@ -66,7 +66,7 @@ def export_to_folder(study: str, to: Path, activity: Activity, kind: str | None 
 
 
 def _put_on_record(database: Database, study: str, done: Exported) -> None:
-    """A copy left the database; it is whole even where that cannot be written down."""
+    """Record that a copy left the database, or warn: the export is complete even if that fails."""
     try:
         with database.writing() as db:
             record_copy(
@@ -90,30 +90,34 @@ def _put_on_record(database: Database, study: str, done: Exported) -> None:
                 )
     except (DBAPIError, sqlite3.Error) as error:
         warn(
-            f"the export is whole, but could not be put on record ({getattr(error, 'orig', error)})"
-            ": keep its place in mind when a participant's data are erased"
+            f"the export is complete but could not be recorded ({getattr(error, 'orig', error)}):"
+            " remember where it is when a participant's data are erased"
         )
 
 
 def _known(kind: str) -> Kind:
-    for known in KINDS:
-        if kind == known:
-            return known
+    for valid in KINDS:
+        if kind == valid:
+            return valid
     raise ValueError(f"unknown kind {kind!r}; valid are {', '.join(KINDS)}")
 
 
 def heads_of(texts: Sequence[str]) -> tuple[TrailHead, ...]:
-    """Heads as backups and exports print them, SEQ:HASH; raises InvalidInput for what is none."""
+    """Parse heads of the audit trail, SEQ:HASH, as backups and exports print them.
+
+    Raises InvalidInput for an invalid head.
+    """
     return tuple(TrailHead.parse(text) for text in texts)
 
 
 def verify_record(
     session_id: str | None, heads: Sequence[TrailHead], activity: Activity, *, as_json: bool
 ) -> tuple[str, bool]:
-    """Check a session, the audit trail or both; the findings as text or JSON, and whether all hold.
+    """Verify a session, the audit trail or both; return the findings and whether all is well.
 
-    The trail is checked if no session is named, or if there are `heads`: each must still be
-    in it. Reads beside a running server. Raises ReembodyError for an unknown session.
+    The findings are text or JSON. The trail is verified if no session is named, or if there are
+    `heads`: each must still be in it. A server may run meanwhile. Raises ReembodyError for an
+    unknown session.
     """
     parts: list[str] = []
     found: dict[str, Any] = {}
@@ -134,7 +138,7 @@ def verify_record(
 
 
 def _receipt(db: Session, session_id: str) -> SessionReceipt:
-    """Without latencies while the session's condition must not be known."""
+    """Return a session's receipt, without latencies while its condition is blinded."""
     try:
         receipt = receipt_of(db, session_id)
         study = db.get_one(Study, session_by_id(db, session_id).study_id)
@@ -143,13 +147,13 @@ def _receipt(db: Session, session_id: str) -> SessionReceipt:
         raise NotFound(
             f"there is no session {session_id!r}",
             value=session_id,
-            remedy="Its id stands at the end of the address of its page, and in sessions.csv.",
+            remedy="Its id is at the end of the address of its page, and in sessions.csv.",
         ) from error
 
 
 @dataclass(frozen=True)
 class _Trail:
-    """What was found of the audit trail: its chain, and which heads are still in it."""
+    """The result of verifying the audit trail: its chain, and which heads are still in it."""
 
     check: AuditCheck
     heads: tuple[tuple[TrailHead, bool], ...]
@@ -161,16 +165,16 @@ class _Trail:
     def text(self) -> str:
         check = self.check
         lines = [
-            f"The audit trail verifies: {check.entries} entries, each as it was written."
+            f"The audit trail verifies: {check.entries} entries, none of which was changed."
             if check.ok
-            else f"The audit trail does not verify: entry {check.broken_at} was changed or is gone."
+            else f"The audit trail does not verify: entry {check.broken_at} was changed or removed."
         ]
         for head, there in self.heads:
             lines.append(
-                f"Head {head} is in it: nothing up to that entry was changed or cut off."
+                f"Head {head} is in it: nothing up to that entry was changed or removed."
                 if there
-                else f"Head {head} is not in it: entries were cut off or written anew, or a backup "
-                "from before that moment was restored."
+                else f"Head {head} is not in it: entries were removed or rewritten, or an older "
+                "backup was restored."
             )
         return "\n".join([*lines, f"audit head {check.head}"])
 

@@ -1,4 +1,4 @@
-"""The rehearsal from the command line, with a server of its own where none is given."""
+"""Run a rehearsal from the command line, with a temporary server if no URL is given."""
 
 import asyncio
 import json
@@ -28,12 +28,12 @@ from app.rehearsal.rehearse import RehearsalPlan, RehearsalReport, Visit, rehear
 T = TypeVar("T")
 START_TIMEOUT_S = 60.0
 PHYSICS_AT_MOST = 6.0
-"""Seconds of study time per second that two cores simulate a body moved by physics, server and all:
-the study that ships took 102 s at --speed 20, on a machine that was busy besides."""
+"""Seconds of study time per second at which two cores simulate a physics avatar and run the server:
+the study that ships took 102 s at --speed 20, on a machine that was also doing other work."""
 MOST_PARTICIPANTS = 500
 BESIDES_S, BESIDES_STUDY_S = 3.0, 25.0
-"""What a participant takes besides the phases: forms and looks in real time, and what the headset
-does between the phases in the time of the study."""
+"""The time of a participant outside the phases: of forms and requests in real time, and of the
+headset between phases in study time."""
 
 
 def run_rehearsal(
@@ -44,15 +44,15 @@ def run_rehearsal(
     data: Path | None,
     as_json: bool,
 ) -> bool:
-    """Rehearse with one participant after the other; whether every session went as planned.
+    """Rehearse one participant after the other; return whether every session ended as planned.
 
-    `plan` is the first participant's, its `url` empty where a server is to be started for it, with
-    its data in `data`. Those who follow have the seeds that follow and are not interrupted. `show`
-    gets each report as text once it is there, or all as JSON at the end. Raises ValueError or
-    RuntimeError.
+    `plan` is the first participant's; if its `url` is empty, a server is started for it, with its
+    data in `data`. The following participants have the following seeds and are not interrupted.
+    `show` gets each report as text when it is ready, or all as JSON at the end. Raises ValueError
+    or RuntimeError.
     """
     _check(plan, participants)
-    # A capture that nobody can move by is refused before a server is started.
+    # Reject an unusable capture before a server is started.
     make_person(np.random.default_rng(plan.seed), plan.capture)
     reports: list[RehearsalReport] = []
     with _server_for(plan, data) as reachable:
@@ -89,7 +89,7 @@ def _check(plan: RehearsalPlan, participants: int) -> None:
             raise ValueError(f"{option} {phase}: phases count from 1, in the order of the visit")
     if plan.redo and plan.withdraw_during and plan.redo > plan.withdraw_during:
         raise ValueError(
-            f"--redo {plan.redo} never comes: the participant withdraws during phase"
+            f"--redo {plan.redo} is never reached: the participant withdraws during phase"
             f" {plan.withdraw_during}. Repeat that phase or an earlier one"
         )
 
@@ -117,18 +117,18 @@ def _say(words: str) -> None:
 
 
 def _expected(visit: Visit, speed: float, participants: int) -> str:
-    """How long it will take, before it begins."""
+    """Describe how long the rehearsal will take."""
     reached = min(speed, PHYSICS_AT_MOST) if visit.physics else speed
     each_s = (visit.planned_s + BESIDES_STUDY_S) / reached + BESIDES_S
     who = "" if participants == 1 else f" for {participants} participants"
     limited = (
         ""
         if reached == speed
-        else f"; a simulated body is not faster on two cores than {reached:g}x"
+        else f"; two cores simulate a physics avatar at no more than {reached:g}x"
     )
     return (
-        f"This takes about {_length(participants * each_s)}{who}: {visit.phases} phases of together"
-        f" {_length(visit.planned_s)} at {reached:g}x{limited}"
+        f"This takes about {_length(participants * each_s)}{who}: {visit.phases} phases, together"
+        f" {_length(visit.planned_s)}, at {reached:g}x{limited}"
     )
 
 
@@ -141,7 +141,7 @@ def _length(time_s: float) -> str:
 
 @contextmanager
 def _server_for(plan: RehearsalPlan, data: Path | None) -> Iterator[RehearsalPlan]:
-    """The plan with a server that answers: the one that it names, or one of its own."""
+    """Yield the plan with a running server: the one it names, or a temporary one."""
     if plan.url:
         yield plan
         return
@@ -151,7 +151,7 @@ def _server_for(plan: RehearsalPlan, data: Path | None) -> Iterator[RehearsalPla
 
 @contextmanager
 def _own_server(data: Path | None) -> Iterator[tuple[str, str]]:
-    """A server on a scratch folder (or `data`): its address and the admin's password."""
+    """Run a server on a scratch folder (or `data`); yield its address and the admin's password."""
     with tempfile.TemporaryDirectory(prefix="reembody-") as scratch:
         port, password = _free_port(), secrets.token_urlsafe(12)
         inherited = {k: v for k, v in os.environ.items() if k.upper() != "REEMBODY_DATABASE_URL"}
@@ -159,14 +159,15 @@ def _own_server(data: Path | None) -> Iterator[tuple[str, str]]:
             **inherited,
             "REEMBODY_DATA_DIR": str(data or scratch),
             "REEMBODY_ADMIN_PASSWORD": password,
-            # Whatever the installation opens, this one is for the rehearsal alone.
+            # Whatever addresses the installation serves, this server is only for the rehearsal.
             "REEMBODY_LAN": "false",
             "REEMBODY_HOST": "127.0.0.1",
         }
         with subprocess.Popen(  # noqa: S603 - our own command
             [sys.executable, "-m", "app.cli", "serve", "--port", str(port), "--until-input-ends"],
             env=environment,
-            # This process holds the other end, so the server ends with it, also if it is killed.
+            # This process has the pipe's other end, so the server ends with it, even if it is
+            # killed.
             stdin=subprocess.PIPE,
             stdout=subprocess.DEVNULL,
         ) as process:
@@ -201,7 +202,7 @@ def _free_port() -> int:
 
 
 def report_text(report: RehearsalReport) -> str:
-    """What came of one participant's session, a line for each task phase."""
+    """Describe one participant's session, with a line for each task phase."""
     phases = [phase for phase in report.phases if phase["kind"] in COUNTED_KINDS]
     voided = sum(phase["status"] == "voided" for phase in phases)
     kinds = Counter(phase["kind"] for phase in report.phases)
@@ -236,7 +237,7 @@ def _ended(report: RehearsalReport) -> list[str]:
 
 
 def summary_text(reports: Sequence[RehearsalReport], wanted: int) -> str:
-    """All participants together, on a line or two."""
+    """Summarise all participants on two lines."""
     statuses = Counter(report.status for report in reports)
     ended = ", ".join(f"{count} {status}" for status, count in statuses.items())
     missing = wanted - len(reports)
@@ -251,14 +252,14 @@ def summary_text(reports: Sequence[RehearsalReport], wanted: int) -> str:
 
 
 def _as_json(reports: Sequence[RehearsalReport], wanted: int) -> str:
-    """One report as it is; those of several participants in a list, with how they ended."""
+    """Return a single report as an object, or several in a list with the number of each status."""
     if wanted == 1:
         return json.dumps(asdict(reports[0]), indent=2)
     statuses = dict(Counter(report.status for report in reports))
-    told = {"wanted": wanted, "statuses": statuses, "participants": list(map(asdict, reports))}
-    return json.dumps(told, indent=2)
+    result = {"wanted": wanted, "statuses": statuses, "participants": list(map(asdict, reports))}
+    return json.dumps(result, indent=2)
 
 
 def _latency(latency_ms: float | None) -> str:
-    """As wide as a number with its unit; a blinded operator is not told which it was."""
+    """Format a latency in a fixed width; None means hidden from a blinded operator."""
     return f"{'hidden':>8}" if latency_ms is None else f"{latency_ms:5.0f} ms"

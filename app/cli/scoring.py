@@ -1,4 +1,4 @@
-"""Scoring a table from the command line."""
+"""Score a table of answers from the command line."""
 
 from pathlib import Path
 
@@ -8,14 +8,14 @@ from app.science.instruments.table import score_csv
 
 
 def score_file(answers: Path, instrument_key: str) -> str:
-    """The scored table as CSV; raises ValueError or OSError with what is wrong with the input."""
+    """Return the scored table as CSV; raise ValueError or OSError if the input is unusable."""
     folder = study_configs_dir() / "instruments"
-    known = {path.stem: path for path in sorted(folder.glob("*.yaml"))}
-    if instrument_key not in known:
+    by_key = {path.stem: path for path in sorted(folder.glob("*.yaml"))}
+    if instrument_key not in by_key:
         raise ValueError(
-            f"there is no instrument {instrument_key!r}; there are: {', '.join(known)}"
+            f"there is no instrument {instrument_key!r}; there are: {', '.join(by_key)}"
         )
-    loaded = load_instrument(known[instrument_key].read_text(encoding="utf-8"))
+    loaded = load_instrument(by_key[instrument_key].read_text(encoding="utf-8"))
     try:
         text = answers.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError as error:

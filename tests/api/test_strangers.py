@@ -124,7 +124,7 @@ def test_no_answer_to_a_secret_repeats_the_name_of_a_field(
     told = error(lab.operator.request(method, path, json={SECRET: 1}), 422, "invalid_input")
     assert SECRET not in json.dumps(told)
     paths = [one["path"] for one in told["details"]]
-    assert "(a field that is not known)" in paths
+    assert "(an unknown field)" in paths
     assert len(set(paths)) > 1
 
 

@@ -1,1 +1,1 @@
-"""`reembody analyse`: tests of any tidy table."""
+"""The command `reembody analyse`: statistical tests on any tidy table."""

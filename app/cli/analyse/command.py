@@ -1,4 +1,4 @@
-"""The command `analyse`: parse, call, print."""
+"""Define the command `analyse`: parse the options, call, print."""
 
 import json
 from pathlib import Path
@@ -10,7 +10,7 @@ from app.cli.errors import reported
 
 
 def analyse(
-    table: Annotated[Path, typer.Argument(help="Tidy CSV: one row an observation.")],
+    table: Annotated[Path, typer.Argument(help="Tidy CSV: one row per observation.")],
     subject: Annotated[str, typer.Option(help="Column that names the subject.")],
     within: Annotated[
         list[str], typer.Option(help="Column of a within-subject factor; once or twice.")
@@ -28,10 +28,10 @@ def analyse(
 ) -> None:
     """Compare within-subject conditions: Friedman, Wilcoxon with Holm, Page, repeated ANOVA."""
     from app.cli.analyse import output as texts
-    from app.cli.analyse.output_json import as_json as told
+    from app.cli.analyse.output_json import as_json as to_json
     from app.cli.analyse.run import AnalyseOrder, carry_out
 
     order = AnalyseOrder(table, subject, within, measure, reference, seed, art)
     with reported(ValueError, OSError):
         done = carry_out(order)
-    print(json.dumps(told(done), allow_nan=False) if as_json else texts.as_text(done))
+    print(json.dumps(to_json(done), allow_nan=False) if as_json else texts.as_text(done))

@@ -1,4 +1,7 @@
-"""The families of tests of `reembody analyse`: each factor, and one at the levels of another."""
+"""Compute the test families of `reembody analyse`, one for each comparison of a factor's levels.
+
+There is one family per factor, and one per level of the second factor.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -30,18 +33,18 @@ from app.science.statistics import (
 
 T = TypeVar("T")
 OWN_OUTPUT = frozenset({"friedman", "page_trend", "rm_anova", "against_reference"})
-"""Tests of the registry that have figures of their own in the output."""
+"""Registered tests that have their own fields in the output."""
 _MOST_FACTORS = 2
 _TWO = 2
 
 
 @dataclass(frozen=True)
 class Question:
-    """What is compared: the levels of one factor, over or at a level of the other.
+    """A comparison of the levels of one factor, averaged over the other or at one of its levels.
 
     Attributes:
         averaged_over: factors that each subject's values are averaged over.
-        at: levels of the other factors that the values are of.
+        at: the level of each other factor at which the values are compared.
     """
 
     factor: str
@@ -52,13 +55,13 @@ class Question:
 
 @dataclass(frozen=True)
 class Family:
-    """Tests that belong together; Holm's rule goes over its pairs.
+    """A family of tests; Holm's correction is over its pairs.
 
     Attributes:
-        page: of three levels or more.
+        page: Page's trend test, for three levels or more.
         intervals: of each pair's mean difference, in the order of `pairs`.
-        planned: each level against the reference, if one was named; its own use of Holm's rule.
-        further: by key, what the tests of the registry gave that have no place above.
+        planned: each level against the reference, if one was named; Holm-corrected separately.
+        further: by key, the outcomes of the registry's other tests.
     """
 
     question: Question
@@ -73,9 +76,9 @@ class Family:
 def families_of(
     cells: Cells, reference: str | None, rng: np.random.Generator, warnings: list[str]
 ) -> list[Family]:
-    """Each factor averaged over the other; then the first at each level of the second.
+    """Test each factor averaged over the other, then the first at each level of the second.
 
-    A reference is a level of the first factor, and raises StatisticsError if it is none.
+    The reference must be a level of the first factor; otherwise StatisticsError is raised.
     """
     names = cells.factors
     if reference is not None:
@@ -101,7 +104,11 @@ def _family_of(
     rng: np.random.Generator,
     warnings: list[str],
 ) -> Family:
-    """Pairs take who has both levels, the others who has all."""
+    """Compute one family of tests.
+
+    Pairwise tests use all subjects that have both levels, the other tests those that have all
+    levels.
+    """
     at = "".join(f" at {factor} {level}" for factor, level in question.at.items())
     where = f"{question.factor}{at}: "
     levels = question.levels
@@ -129,7 +136,7 @@ def _family_of(
 def _further(
     whole: FloatArray, levels: tuple[str, ...], warnings: list[str], where: str
 ) -> dict[str, Outcome]:
-    """Every other test that compares levels as they are, by its key."""
+    """Run every other registered test that needs no reference, and return the outcomes by key."""
     found = {}
     for test in TESTS:
         if test.key in OWN_OUTPUT or test.needs_reference or len(levels) < test.fewest_conditions:
@@ -142,7 +149,7 @@ def _further(
 
 
 def tried(compute: Callable[[], T], warnings: list[str], where: str = "") -> T | None:
-    """What can be computed; what cannot is said among the warnings."""
+    """Return the result of `compute`; if it fails, add a warning and return None."""
     try:
         return compute()
     except StatisticsError as error:
@@ -151,5 +158,5 @@ def tried(compute: Callable[[], T], warnings: list[str], where: str = "") -> T |
 
 
 def mean_interval(values: FloatArray, rng: np.random.Generator) -> Interval | None:
-    """Of the mean; none for fewer than two values."""
+    """Return the bootstrap interval of the mean; None for fewer than two values."""
     return bootstrap_interval(values, mean_of, rng=rng) if values.size > 1 else None

@@ -1,7 +1,7 @@
-"""A CSV file as rows of a tidy table, each with the line it stands in.
+"""Read a CSV file as rows of a tidy table, each with its line number.
 
-Separators are commas, semicolons or tabs, found by the header; where ; separates, numbers may have
-a decimal comma. What cannot be understood is refused with its line and column.
+Separators are commas, semicolons or tabs, detected in the header; with semicolons, numbers may have
+a decimal comma. Invalid input is rejected with its line and column.
 """
 
 import csv
@@ -21,13 +21,13 @@ _SHOWN = 60
 
 @dataclass(frozen=True)
 class TidyInput:
-    """Columns by name, as text, and the line of each row.
+    """The requested columns by name, as text, and the line of each row.
 
     Attributes:
-        subjects, measure: one entry a row.
-        within: each factor's column, in the order asked for.
-        lines: of the file, from 1; the header is line 1.
-        replicates: whole rows that stand there more than once, where cells have several rows.
+        subjects, measure: one entry per row.
+        within: each factor's column, in the requested order.
+        lines: line numbers in the file, from 1; the header is line 1.
+        replicates: how many rows duplicate an earlier one, in tables with several rows per cell.
     """
 
     subjects: list[str]
@@ -44,16 +44,16 @@ class _Row:
 
 
 def read_tidy(path: Path, subject: str, within: list[str], measure: str) -> TidyInput:
-    """Read the columns named.
+    """Read the named columns.
 
-    Raises OSError where the file cannot be read, UnusableTable for what is not a table, lacks a
-    column, or has a row twice where every other cell has one row.
+    Raises OSError if the file cannot be read, UnusableTable if it is not a table, lacks a column,
+    or has a duplicate row although all other cells have one row.
     """
     separator, header, rows = _table(path)
-    asked = [subject, *within, measure]
-    if len(set(asked)) != len(asked):
-        raise UnusableTable(f"The columns asked for must all be different: {', '.join(asked)}.")
-    for name in asked:
+    requested = [subject, *within, measure]
+    if len(set(requested)) != len(requested):
+        raise UnusableTable(f"The columns asked for must all be different: {', '.join(requested)}.")
+    for name in requested:
         _check_column(name, header)
     for row in rows:
         if len(row.cells) != len(header):
@@ -62,7 +62,8 @@ def read_tidy(path: Path, subject: str, within: list[str], measure: str) -> Tidy
                 " Give every row one cell for each column, and put text with separators in quotes."
             )
     columns = {
-        name: [_pointed(row.cells[header.index(name)], separator) for row in rows] for name in asked
+        name: [_pointed(row.cells[header.index(name)], separator) for row in rows]
+        for name in requested
     }
     keys = list(zip(*(columns[name] for name in [subject, *within]), strict=True))
     return TidyInput(
@@ -105,7 +106,7 @@ def _check_column(name: str, header: list[str]) -> None:
     if times == 0:
         raise UnusableTable(f"There is no column {name!r}; there are: {', '.join(header)}.")
     if times > 1:
-        raise UnusableTable(f"Column {name!r} stands {times} times in the header; rename one.")
+        raise UnusableTable(f"Column {name!r} occurs {times} times in the header; rename one.")
 
 
 def _pointed(cell: str, separator: str) -> str:
@@ -115,7 +116,10 @@ def _pointed(cell: str, separator: str) -> str:
 
 
 def _repeated(rows: list[_Row], keys: list[tuple[str, ...]]) -> int:
-    """How many rows repeat an earlier one whole; refused unless cells usually have several rows."""
+    """Count the rows that duplicate an earlier one.
+
+    Raises UnusableTable for a duplicate if cells usually have one row.
+    """
     seen: dict[tuple[str, ...], int] = {}
     repeated = 0
     usual = mode(Counter(keys).values()) if keys else 1
@@ -123,8 +127,8 @@ def _repeated(rows: list[_Row], keys: list[tuple[str, ...]]) -> int:
         cells = tuple(row.cells)
         if cells in seen:
             if usual == 1:
-                told = ", ".join(cells)
-                shown = told if len(told) <= _SHOWN else told[:_SHOWN] + " ..."
+                content = ", ".join(cells)
+                shown = content if len(content) <= _SHOWN else content[:_SHOWN] + " ..."
                 raise UnusableTable(
                     f"Line {row.line} repeats line {seen[cells]} in every column ({shown}). Remove"
                     " one, or add a column that tells the two observations apart."

@@ -1,4 +1,4 @@
-"""What `reembody analyse` says to people: tables of figures, then what to mind."""
+"""Format the results of `reembody analyse` for people: tables of figures, then notes."""
 
 import math
 from collections.abc import Iterator
@@ -20,7 +20,7 @@ _MANY = 30
 
 
 def as_text(done: Analysis) -> str:
-    """The result for people; rounded, see --json for every digit."""
+    """Format the result for people, rounded; --json has every digit."""
     order, cells = done.order, done.cells
     factors = " x ".join(
         f"{name} ({', '.join(levels)})"
@@ -58,10 +58,10 @@ def _means(done: Analysis) -> Iterator[str]:
 
 
 def _family(family: Family) -> Iterator[str]:
-    asked = family.question
-    over = f", averaged over {', '.join(asked.averaged_over)}" if asked.averaged_over else ""
-    at = "".join(f", {factor} {level}" for factor, level in asked.at.items())
-    yield f"{asked.factor}{over}{at}"
+    question = family.question
+    over = f", averaged over {', '.join(question.averaged_over)}" if question.averaged_over else ""
+    at = "".join(f", {factor} {level}" for factor, level in question.at.items())
+    yield f"{question.factor}{over}{at}"
     friedman, page = family.friedman, family.page
     if friedman is not None:
         exact = f"{_p(friedman.p)} exact, " if friedman.method == "exact" else ""
@@ -99,9 +99,9 @@ def _pairs(family: Family) -> Iterator[str]:
 
 
 def _planned(found: AgainstReference) -> Iterator[str]:
-    told = ", ".join(f"{one.a} {_p(one.p_holm)}" for one in found.comparisons)
+    listed = ", ".join(f"{one.a} {_p(one.p_holm)}" for one in found.comparisons)
     first = found.first_that_differs
-    yield f"  Against {found.reference}, Holm over these: {told}"
+    yield f"  Against {found.reference}, Holm over these: {listed}"
     yield (
         f"  First level that differs from {found.reference}: {first}"
         if first

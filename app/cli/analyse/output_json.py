@@ -1,4 +1,4 @@
-"""What `reembody analyse --json` says; what could not be computed is null."""
+"""Convert the results of `reembody analyse` to JSON; what could not be computed is null."""
 
 import math
 from typing import Any
@@ -16,14 +16,14 @@ from app.science.statistics import (
 
 
 def as_json(done: Analysis) -> dict[str, Any]:
-    """The result for scripts; p values and effects unrounded.
+    """Return the result for scripts, with unrounded p values and effects.
 
-    `friedman`, `pairwise` and `page` are those of the first factor, averaged over the second where
+    `friedman`, `pairwise` and `page` are those of the first factor, averaged over the second if
     there is one; `families` has them for every factor, and at each level of the second.
     """
     first = _family_json(done.families[0])
     art = done.aligned
-    told: dict[str, Any] = {
+    result: dict[str, Any] = {
         "n": len(done.complete.subjects),
         "design": _design(done),
         "means": [_mean(one) for one in done.means],
@@ -46,7 +46,7 @@ def as_json(done: Analysis) -> dict[str, Any]:
         "warnings": done.warnings,
         "seed": done.order.seed,
     }
-    return {key: _finite(one) for key, one in told.items()}
+    return {key: _finite(one) for key, one in result.items()}
 
 
 def _design(done: Analysis) -> dict[str, Any]:
@@ -153,12 +153,12 @@ def _interval(one: Interval | None) -> dict[str, Any] | None:
 
 
 def _values(one: object, *names: str) -> dict[str, Any]:
-    """Some values of a result, under their own names."""
+    """Return the named attributes of a result under their own names."""
     return {name: getattr(one, name) for name in names}
 
 
 def _finite(value: object) -> object:
-    """JSON has no NaN."""
+    """Replace numbers that are not finite by None, because JSON has no NaN."""
     if isinstance(value, dict):
         return {key: _finite(one) for key, one in value.items()}
     if isinstance(value, list):

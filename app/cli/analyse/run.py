@@ -1,4 +1,4 @@
-"""What `reembody analyse` does: a tidy table in, every usual test out."""
+"""Run `reembody analyse`: apply all usual tests to a tidy table."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -28,7 +28,7 @@ _SHOWN = 8
 
 @dataclass(frozen=True)
 class AnalyseOrder:
-    """What was asked for; see the options of the command."""
+    """The options of the command `analyse`."""
 
     table: Path
     subject: str
@@ -41,7 +41,7 @@ class AnalyseOrder:
 
 @dataclass(frozen=True)
 class CellMean:
-    """One cell: its levels by factor, and its values over the subjects who have it."""
+    """One cell: its levels by factor, and statistics over the subjects that have a value in it."""
 
     levels: dict[str, str]
     n: int
@@ -53,7 +53,7 @@ class CellMean:
 
 @dataclass(frozen=True)
 class Analysis:
-    """Everything that was computed, and what was left out on the way."""
+    """All results of an analysis, and which subjects were left out."""
 
     order: AnalyseOrder
     cells: Cells
@@ -68,8 +68,8 @@ class Analysis:
 def carry_out(order: AnalyseOrder) -> Analysis:
     """Analyse a file.
 
-    Raises StatisticsError (a ValueError) for what cannot be analysed, OSError for what cannot be
-    read.
+    Raises StatisticsError (a ValueError) if the data cannot be analysed, OSError if the file cannot
+    be read.
     """
     if not 1 <= len(order.within) <= _MOST_FACTORS:
         raise StatisticsError(
@@ -103,7 +103,7 @@ def carry_out(order: AnalyseOrder) -> Analysis:
 
 
 def missing_cells(cells: Cells, subject: str) -> str:
-    """Which cells a subject lacks, in words."""
+    """Describe the cells in which a subject has no value."""
     row = cells.rows[cells.subjects.index(subject)]
     lacking = [
         ", ".join(
@@ -132,19 +132,19 @@ def _check_usable(order: AnalyseOrder, cells: Cells, complete: Complete) -> None
 
 
 def _warnings(cells: Cells, complete: Complete, replicates: int) -> list[str]:
-    told = [
+    warnings = [
         f"left out of Friedman, Page and ANOVA (listwise): {name} lacks"
         f" {missing_cells(cells, name)}"
         for name in complete.left_out
     ]
     if cells.n_averaged:
-        told.append(
+        warnings.append(
             f"{cells.n_averaged} of {cells.rows.size} cells have several values, at most"
             f" {int(cells.rows.max())}; their mean was taken"
         )
     if replicates:
-        told.append(f"{replicates} rows repeat an earlier one whole, and were taken as replicates")
-    return told
+        warnings.append(f"{replicates} rows duplicate an earlier one; they count as replicates")
+    return warnings
 
 
 def _means(cells: Cells, rng: np.random.Generator) -> list[CellMean]:

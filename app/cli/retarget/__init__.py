@@ -1,1 +1,1 @@
-"""`reembody retarget`: a capture onto an avatar."""
+"""The command `reembody retarget`: transfer a capture to an avatar."""

@@ -1,4 +1,4 @@
-"""The command `retarget`: parse, call, print."""
+"""Define the command `retarget`: parse the options, call, print."""
 
 import json
 from pathlib import Path
@@ -21,25 +21,25 @@ def retarget(
         Path | None, typer.Option(help="File to write; its ending, such as .bvh, is its format.")
     ] = None,
     lock_feet: Annotated[
-        bool, typer.Option("--lock-feet", help="Hold feet at their places while they stand.")
+        bool, typer.Option("--lock-feet", help="Keep feet in place while they are on the ground.")
     ] = False,
     ground: Annotated[
         str, typer.Option(help="flat, kerb:HEIGHT@DISTANCE or ramp:HEIGHT/LENGTH@DISTANCE in m.")
     ] = "flat",
     joint_map: Annotated[
-        Path | None, typer.Option(help="JSON: body joint to joint of the clip; else by names.")
+        Path | None, typer.Option(help="JSON: body joint to clip joint; else matched by name.")
     ] = None,
     skeleton: Annotated[
-        Path | None, typer.Option(help="ASF of an AMC; else the one beside it.")
+        Path | None, typer.Option(help="ASF of an AMC; else the one in the same folder.")
     ] = None,
     unit: Annotated[float | None, typer.Option(help="Metres per unit of the clip.")] = None,
     up: Annotated[str | None, typer.Option(help="Upward axis of the clip: x, y or z.")] = None,
     check: Annotated[
-        str | None, typer.Option(help="table1: compute the paper's Table 1 again instead.")
+        str | None, typer.Option(help="table1: recompute the paper's Table 1 instead.")
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
 ) -> None:
-    """Bring a capture onto an avatar of any size, and measure its steps."""
+    """Retarget a capture to an avatar of any size, and measure its steps."""
     if check is not None:
         _check(check, as_json=as_json)
         return
@@ -65,7 +65,7 @@ def retarget(
 
 
 def _check(what: str, *, as_json: bool) -> None:
-    """Compute a published table again."""
+    """Recompute a published table and print it."""
     if what != "table1":
         fail(f"--check {what!r}: table1 is valid")
     from app.cli.retarget import output as texts

@@ -1,13 +1,13 @@
-"""What `reembody retarget` reads: a clip, an avatar, joint maps for them, and the ground.
+"""Read the inputs of `reembody retarget`: a clip, an avatar, joint maps, and the ground.
 
-The ground an avatar is led over is one word on the command line:
+The ground that the avatar walks on is one word on the command line:
 
-    flat               level, which is usual
-    kerb:H@D           a step of H metres after D metres of the way
-    ramp:H/L@D         H metres up over L metres, beginning after D metres of the way
+    flat               level, the default
+    kerb:H@D           a step of H metres after D metres of the path
+    ramp:H/L@D         H metres up over L metres, starting after D metres of the path
 
-Heights below zero go down. The way is the straight line from where the avatar's hips begin to where
-they end.
+Negative heights go down. The path is the straight line from the start to the end of the movement of
+the avatar's hips.
 """
 
 import json
@@ -47,9 +47,9 @@ class Clip:
     """A capture as a skeleton's movement, and how it was read.
 
     Attributes:
-        capture: as the file says.
-        motion: its skeleton's, or that of the one fitted to its markers or bodies.
-        notes: what a reader should know, each a sentence.
+        capture: as read from the file.
+        motion: of the capture's skeleton, or of the one fitted to its markers or bodies.
+        notes: what a user should know, each a sentence.
     """
 
     capture: Capture
@@ -58,7 +58,7 @@ class Clip:
 
 
 def read_clip(path: Path, reading: Reading) -> Clip:
-    """Read a capture, and fit a skeleton where it holds none.
+    """Read a capture, and fit a skeleton if it contains none.
 
     Raises:
         ValueError: the file cannot be used, with line and reason.
@@ -70,7 +70,7 @@ def read_clip(path: Path, reading: Reading) -> Clip:
         raise ValueError(f"{path}: {error}") from error
     if isinstance(capture.motion, RigMotion):
         return Clip(capture, capture.motion, capture.notes)
-    from app.science.fitting import FitError, fit_skeleton  # only markers need it
+    from app.science.fitting import FitError, fit_skeleton  # only needed for markers
 
     try:
         fitted = fit_skeleton(capture.motion)
@@ -80,7 +80,7 @@ def read_clip(path: Path, reading: Reading) -> Clip:
 
 
 def read_avatar(key: str) -> tuple[Rig, JointMap]:
-    """The avatar a key or a file names, and its joint map.
+    """Return the avatar that a key or a file names, and its joint map.
 
     Raises:
         ValueError: neither a stature nor a file with a skeleton.
@@ -94,20 +94,20 @@ def read_avatar(key: str) -> tuple[Rig, JointMap]:
 
 
 def named_avatar_or_file(key: str) -> Rig:
-    """The reference avatar of this key; raises ValueError that also tells of files."""
+    """Return the reference avatar of this key; raise ValueError, which also mentions files."""
     try:
         return named_avatar(key)
     except ValueError as error:
         raise ValueError(
-            f"{error} A file with a skeleton is taken too, but {missing_file(Path(key))}."
+            f"{error} A file with a skeleton is valid, too, but {missing_file(Path(key))}."
         ) from error
 
 
 def reading_of(skeleton: Path | None, unit: float | None, up: str | None) -> Reading:
-    """What the options say about the clip.
+    """Return the options of the command that say how to read the clip.
 
     Raises:
-        ValueError: the axis is none of x, y and z.
+        ValueError: the axis is not x, y or z.
         OSError: the skeleton cannot be opened.
     """
     if up is not None and up.lower() not in _UPS:
@@ -120,10 +120,10 @@ def reading_of(skeleton: Path | None, unit: float | None, up: str | None) -> Rea
 
 
 def joint_map_of(rig: Rig, path: Path | None) -> JointMap:
-    """The joint map in a file, body joint to the clip's joint, or the one the names propose.
+    """Read the joint map (body joint to clip joint) from a file, or propose one by joint names.
 
     Raises:
-        ValueError: the file is no object of names.
+        ValueError: the file is not a JSON object of names.
         OSError: it cannot be opened.
     """
     if path is None:
@@ -131,45 +131,47 @@ def joint_map_of(rig: Rig, path: Path | None) -> JointMap:
     if path.stat().st_size > _LONGEST_MAP:
         raise ValueError(f"{path}: {_LONGEST_MAP} bytes are the most a joint map may have")
     try:
-        told: object = json.loads(path.read_text(encoding="utf-8-sig"))
+        content: object = json.loads(path.read_text(encoding="utf-8-sig"))
     except (json.JSONDecodeError, UnicodeDecodeError) as error:
-        raise ValueError(f"{path}: no JSON ({error})") from error
-    if not isinstance(told, Mapping) or not all(isinstance(name, str) for name in told.values()):
+        raise ValueError(f"{path}: not valid JSON ({error})") from error
+    if not isinstance(content, Mapping) or not all(
+        isinstance(name, str) for name in content.values()
+    ):
         raise ValueError(
             f'{path}: a joint map is one object, body joint to joint of the clip, as {{"Hips":'
             ' "pelvis"}'
         )
-    return {str(joint): str(name) for joint, name in told.items()}
+    return {str(joint): str(name) for joint, name in content.items()}
 
 
-def ground_along(told: str) -> GroundAlong | None:
-    """What makes the ground a word names, once the way of the hips (N, 3) is known; None for flat.
+def ground_along(word: str) -> GroundAlong | None:
+    """Return a function from the positions of the hips (N, 3) to the ground; None for flat.
 
     Raises:
-        ValueError: the word names no ground. What is returned raises it too, where hips that go
-            nowhere give the ground no direction.
+        ValueError: the word describes no ground. The returned function raises it, too, if the hips
+            do not move, so that the ground has no direction.
     """
-    if told == "flat":
+    if word == "flat":
         return None
-    kerb, ramp = _KERB.fullmatch(told), _RAMP.fullmatch(told)
+    kerb, ramp = _KERB.fullmatch(word), _RAMP.fullmatch(word)
     if kerb is not None:
         height, distance = (float(number) for number in kerb.groups())
-        return lambda hips_m: Steps(*_way(told, hips_m), (distance,), (height,))
+        return lambda hips_m: Steps(*_way(word, hips_m), (distance,), (height,))
     if ramp is not None and float(ramp[2]) > 0.0:
-        return lambda hips_m: _ramp(told, hips_m, *(float(number) for number in ramp.groups()))
-    raise ValueError(f"--ground {told!r}: {_GROUNDS}, such as kerb:0.12@1.5")
+        return lambda hips_m: _ramp(word, hips_m, *(float(number) for number in ramp.groups()))
+    raise ValueError(f"--ground {word!r}: {_GROUNDS}, such as kerb:0.12@1.5")
 
 
-def _ramp(told: str, hips_m: FloatArray, height: float, length: float, distance: float) -> Ramp:
-    (x, z), (along_x, along_z) = _way(told, hips_m)
+def _ramp(word: str, hips_m: FloatArray, height: float, length: float, distance: float) -> Ramp:
+    (x, z), (along_x, along_z) = _way(word, hips_m)
     foot = (x + distance * along_x, z + distance * along_z)
     return Ramp(foot, (along_x, along_z), run_m=length, rise_m=height)
 
 
-def _way(told: str, hips_m: FloatArray) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Where the hips begin, (x, z), and the unit direction to where they end."""
+def _way(word: str, hips_m: FloatArray) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return the start of the hips' path (x, z), and the unit direction to its end."""
     x, _, z = (hips_m[-1] - hips_m[0]).tolist()
     length = math.hypot(x, z)
     if length < 1e-3:
-        raise ValueError(f"--ground {told}: this clip goes nowhere, so only flat is possible")
+        raise ValueError(f"--ground {word}: the hips do not move, so only flat is possible")
     return (float(hips_m[0, 0]), float(hips_m[0, 2])), (x / length, z / length)

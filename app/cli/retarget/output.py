@@ -1,4 +1,4 @@
-"""What `reembody retarget` says: JSON for scripts, a table for people."""
+"""Format the results of `reembody retarget`: JSON for scripts, a table for people."""
 
 from app.cli.retarget.run import Done
 from app.science.retargeting import TOLERANCE_DEG, Table1Row, Walk, Walks
@@ -7,7 +7,7 @@ _NONE = "-"
 
 
 def as_json(done: Done) -> dict[str, object]:
-    """The result for scripts; step i is the same step of source and avatar."""
+    """Return the result for scripts; step i is the same step of source and avatar."""
     result, walks = done.result, done.result.walks
     source = walks.source.steps if walks else ()
     avatar = walks.avatar.steps if walks else ()
@@ -29,9 +29,9 @@ def as_json(done: Done) -> dict[str, object]:
 
 
 def as_text(done: Done) -> str:
-    """The result for people, with units."""
+    """Format the result for people, with units."""
     motion, conventions = done.result.motion, done.clip.capture.conventions
-    said = [
+    rows = [
         (name, f"{convention.value} ({convention.origin})")
         for name, convention in (
             ("unit", conventions.length),
@@ -46,7 +46,7 @@ def as_text(done: Done) -> str:
     )
     lines = [
         title,
-        *(f"  {name:<20}{value}" for name, value in said),
+        *(f"  {name:<20}{value}" for name, value in rows),
         *(f"  note: {note}" for note in done.clip.notes),
         "",
         *_figures(done),
@@ -59,7 +59,7 @@ def as_text(done: Done) -> str:
 
 
 def table1_json(rows: tuple[Table1Row, ...]) -> dict[str, object]:
-    """Roll, pitch and yaw in degrees, as printed and as computed, and the turn between them."""
+    """Return roll, pitch and yaw in degrees, as printed and as computed, and their difference."""
     return {
         "rows": [
             {
@@ -74,7 +74,7 @@ def table1_json(rows: tuple[Table1Row, ...]) -> dict[str, object]:
 
 
 def table1_text(rows: tuple[Table1Row, ...]) -> str:
-    """The same as a table, the source's own inconsistency marked."""
+    """Format the comparison as a table that marks the source's own inconsistency."""
     lines = [f"{'joint':<12}{'printed (roll, pitch, yaw)':<30}{'computed':<30}{'apart':>7}  deg"]
     for row in rows:
         mark = "  the source contradicts itself here" if row.inconsistent_in_source else ""
@@ -110,10 +110,10 @@ def _slide(walks: Walks) -> list[str]:
     if walks.locked is None:
         return [before]
     after = _row("  with feet held", None, walks.slide_m_s, "m/s")
-    told = f"  hips lowered by at most {walks.locked.lowered_m * 100.0:.1f} cm"
+    lowered = f"  hips lowered by at most {walks.locked.lowered_m * 100.0:.1f} cm"
     if walks.locked.out_of_reach:
-        told += f"; {walks.locked.out_of_reach} frame(s) with a foot out of reach"
-    return [before, after, told]
+        lowered += f"; {walks.locked.out_of_reach} frame(s) with a foot out of reach"
+    return [before, after, lowered]
 
 
 def _steps(source: Walk, avatar: Walk) -> list[str]:
@@ -134,10 +134,10 @@ def _steps(source: Walk, avatar: Walk) -> list[str]:
 def _row(
     name: str, source: float | None, avatar: float | None, unit: str, *, ratio: bool = True
 ) -> str:
-    told = _NONE
+    shown = _NONE
     if ratio and source and avatar is not None:
-        told = f"{avatar / source:.3f}"
-    return f"  {name:<20}{_number(source):>10}{_number(avatar):>10}{told:>10}  {unit}".rstrip()
+        shown = f"{avatar / source:.3f}"
+    return f"  {name:<20}{_number(source):>10}{_number(avatar):>10}{shown:>10}  {unit}".rstrip()
 
 
 def _number(value: float | None) -> str:

@@ -1,4 +1,4 @@
-"""Bringing a capture onto an avatar from the command line."""
+"""Retarget a capture to an avatar from the command line."""
 
 import os
 from dataclasses import dataclass
@@ -29,18 +29,18 @@ _WRITERS = {one.suffix: one for one in WRITERS}
 
 @dataclass(frozen=True, kw_only=True)
 class RetargetOrder:
-    """What is asked for.
+    """The options of the command `retarget`.
 
     Attributes:
         clip: the capture.
         to: `165cm` and the like, or a file with a skeleton.
-        out: file to write, its ending one of a writer's; None to only measure.
+        out: file to write, its ending that of a writer's format; None to only measure.
         ground: see `app.cli.retarget.inputs`.
-        lock_feet: hold the feet while they stand.
-        joint_map: JSON file for the clip; None to go by its joints' names.
-        skeleton: ASF of an AMC; None to take the one beside it.
-        unit: metres per unit of the clip; None to go by the file.
-        up: the clip's upward axis; None to go by the file.
+        lock_feet: keep the feet in place while they are on the ground.
+        joint_map: JSON file for the clip; None to match joints by name.
+        skeleton: ASF of an AMC; None to take the one in the same folder.
+        unit: metres per unit of the clip; None to determine it from the file.
+        up: the clip's upward axis; None to determine it from the file.
     """
 
     clip: Path
@@ -56,7 +56,7 @@ class RetargetOrder:
 
 @dataclass(frozen=True, eq=False)
 class Done:
-    """What came of it."""
+    """The result of a retargeting, with its options and the clip."""
 
     order: RetargetOrder
     clip: Clip
@@ -64,11 +64,11 @@ class Done:
 
 
 def carry_out(order: RetargetOrder) -> Done:
-    """Retarget a clip and write what is asked for.
+    """Retarget a clip, and write the result if an output file is given.
 
     Raises:
-        ValueError: something of the input cannot be used; nothing is written.
-        OSError: a file cannot be opened or written; nothing is left half-written.
+        ValueError: some input cannot be used; nothing is written.
+        OSError: a file cannot be opened or written; no incomplete file is left.
     """
     _check_out(order)
     along = ground_along(order.ground)
@@ -90,7 +90,7 @@ def carry_out(order: RetargetOrder) -> Done:
 
 
 def write_motion(path: Path, motion: RigMotion) -> None:
-    """Write in the format that the name ends with, whole or not at all; raises OSError."""
+    """Write a motion atomically in the format of the file's ending; raise OSError."""
     pieces = _WRITERS[path.suffix.lower()].write(motion)
     part = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:

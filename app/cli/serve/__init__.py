@@ -1,1 +1,1 @@
-"""`reembody serve` and `reembody tls`."""
+"""The commands `reembody serve` and `reembody tls`."""

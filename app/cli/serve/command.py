@@ -1,4 +1,4 @@
-"""The commands `serve`, `tls show` and `tls renew`: parse, call, print."""
+"""Define the commands `serve`, `tls show` and `tls renew`: parse the options, call, print."""
 
 from pathlib import Path
 from typing import Annotated
@@ -8,7 +8,7 @@ import typer
 from app.cli.errors import reported
 
 MOST = 65_535
-"""No port has a higher number."""
+"""The highest port number."""
 tls = typer.Typer(help="The certificate of the lab's network.", no_args_is_help=True)
 
 
@@ -45,7 +45,7 @@ def serve(
     ] = False,
     until_input_ends: Annotated[bool, typer.Option("--until-input-ends", hidden=True)] = False,
 ) -> None:
-    """Serve the product on this machine, with --lan also on the lab's network."""
+    """Serve Reembody on this machine, with --lan also on the lab's network."""
     from app.cli.serve.run import serve_forever
 
     given = {
@@ -77,11 +77,11 @@ def tls_show(
 def tls_renew(
     new_authority: Annotated[
         bool,
-        typer.Option("--new-authority", help="Also a new authority, for each device to install."),
+        typer.Option("--new-authority", help="Also make a new authority, to install on devices."),
     ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print it as JSON.")] = False,
 ) -> None:
-    """Make a new certificate; devices notice nothing, and stay paired."""
+    """Make a new certificate; devices stay paired and need no change."""
     from app.cli.serve.run import renew_certificate
 
     with reported():

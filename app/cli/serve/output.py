@@ -1,4 +1,4 @@
-"""What the terminal says about a server that is about to listen, and about its certificate."""
+"""Format what the terminal shows about a starting server and its certificate."""
 
 import json
 import sys
@@ -16,13 +16,13 @@ WITHOUT_TLS = """
 
 _NO_TABLET: Mapping[Mode, str] = {
     "loopback": "only this computer can reach the server; for tablets start it with --lan",
-    "lan": "this computer is on no network now",
-    "without_tls": "this computer is on no network now",
+    "lan": "this computer is not connected to a network",
+    "without_tls": "this computer is not connected to a network",
 }
 
 
 def addresses(reach: Reach, data: str) -> str:
-    """Where to go, line by line."""
+    """Return the addresses of the server, one per line."""
     lines = [
         f"Reembody   {reach.local_url}",
         f"Tablet     {reach.for_tablets or _NO_TABLET[reach.mode]}",
@@ -40,7 +40,7 @@ def addresses(reach: Reach, data: str) -> str:
 def _certificate(reach: Reach) -> list[str]:
     shown = reach.certificate
     assert shown is not None  # noqa: S101 - asked for above
-    lines = [f"Valid      until {shown.expires_at:%Y-%m-%d}, then renewed by itself"]
+    lines = [f"Valid      until {shown.expires_at:%Y-%m-%d}, then renewed automatically"]
     if shown.source == "files":
         lines = [f"Valid      until {shown.expires_at:%Y-%m-%d} (your own certificate)"]
     if shown.uncovered:
@@ -63,7 +63,7 @@ def _halves(fingerprint: str) -> list[str]:
 
 
 def certificate_text(identity: Identity, *, as_json: bool) -> str:
-    """What a certificate says, line by line or as JSON."""
+    """Describe a certificate, line by line or as JSON."""
     facts = {
         "source": identity.source,
         "hosts": [str(one) for one in identity.hosts],

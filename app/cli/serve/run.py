@@ -1,6 +1,6 @@
-"""What `reembody serve` and `reembody tls` do: the server, and the certificate it shows.
+"""Run `reembody serve` and `reembody tls`: the server and its certificate.
 
-The server listens on this machine, and on the lab's network if asked to.
+The server listens on this machine, and on the lab's network if requested.
 """
 
 import logging
@@ -47,28 +47,29 @@ from app.settings import Settings, read_settings
 
 ENDS_WITHIN_S = 15.0
 CERTIFICATE = "certificate"
-"""The name of its watch among what runs in the background."""
+"""The name of the certificate's watch among the background tasks."""
 SWITCH_INTERVAL_S = 0.0005
-"""The event loop and the telemetry writer let go of the interpreter at every call into the network
-or the database. With Python's own 5 ms, each then waits that long for a thread that computes."""
+"""The switch interval. The event loop and the telemetry writer release the interpreter
+lock at every call of the network or the database. With Python's default of 5 ms, each then waits
+that long for a thread that computes."""
 
 
 def serve_forever(
     given: Mapping[str, object], *, new_database: bool = False, until_input_ends: bool = False
 ) -> None:
-    """Serve until interrupted; says where, and on the first start the admin's password.
+    """Serve until interrupted; print the address and, at the first start, the admin's password.
 
-    `given` are settings from the command line, None where nothing was said. A database that cannot
-    be worked with, a port that is taken or an address that may not be opened ends it before it
-    listens, saying why and what to do; `new_database` begins an empty one in the place of one in
-    quarantine. With `until_input_ends` it ends when its standard input is closed: then whoever
-    holds the other end is gone, also where they were killed and could end nobody.
+    `given` are settings from the command line, None if not given. If the database cannot be used, a
+    port is taken or an address may not be opened, it exits before listening, with the reason and a
+    remedy; `new_database` creates an empty database in place of a quarantined one. With
+    `until_input_ends` the server ends when its standard input is closed: then the process with the
+    other end has ended, even if it was killed and could not stop the server.
     """
     if until_input_ends:
         threading.Thread(target=_end_with_the_input, daemon=True).start()
     with reported():
         settings = settings_with(given)
-        # Before anything else: even a certificate is a file of somebody's folder.
+        # Before anything else, because even a certificate is a file in the data folder.
         own = own_data(settings, port=settings.port)
     with own:
         _serve(settings, own, new_database=new_database)
@@ -89,7 +90,8 @@ def _serve(settings: Settings, own: Ownership, *, new_database: bool) -> None:
         network=watch.network,
         on_first_password=_tell_password,
         ownership=own,
-        # As a service manager would: sessions' phases are paused by whoever has the data now.
+        # Stop like on a signal of a service manager; the new owner of the data pauses running
+        # phases.
         on_taken_over=lambda: os.kill(os.getpid(), signal.SIGTERM),
     )
     background: Background = app.state.context.background
@@ -116,9 +118,9 @@ def _serve(settings: Settings, own: Ownership, *, new_database: bool) -> None:
 
 
 def settings_with(given: Mapping[str, object]) -> Settings:
-    """The settings of the environment, with those that were `given` in their place.
+    """Return the settings of the environment, overridden by those that were `given`.
 
-    Raises InvalidInput where a variable cannot be one.
+    Raises InvalidInput if a variable is invalid.
     """
     return read_settings().model_copy(
         update={name: value for name, value in given.items() if value is not None}
@@ -126,23 +128,23 @@ def settings_with(given: Mapping[str, object]) -> Settings:
 
 
 def show_certificate(*, as_json: bool) -> str:
-    """The certificate that `serve --lan` shows; the built-in one is made if there is none."""
+    """Describe the certificate of `serve --lan`; the built-in one is created if necessary."""
     plan = make_plan(settings_with({"lan": True, "without_tls": False}), Clock())
     assert plan.certificates is not None  # noqa: S101 - asked for with lan
     return certificate_text(plan.certificates.current(look_around()), as_json=as_json)
 
 
 def renew_certificate(*, new_authority: bool, as_json: bool) -> str:
-    """A new certificate of the built-in authority; a running server takes it within a minute.
+    """Renew the certificate of the built-in authority; a running server uses it within a minute.
 
-    With `new_authority` also a new authority: every device then has to install it.
+    With `new_authority`, a new authority is created, too: every device then has to install it.
     """
     plan = make_plan(settings_with({"lan": True, "without_tls": False}), Clock())
     source, machine = plan.certificates, look_around()
     if not isinstance(source, LabAuthority):
         raise InvalidInput(
             "the certificate is your own file, which only you can renew",
-            remedy="Put the new one in its place; a running server takes it within a minute",
+            remedy="Replace the file; a running server uses the new one within a minute",
         )
     if new_authority:
         source.replace_authority(machine)
@@ -150,7 +152,7 @@ def renew_certificate(*, new_authority: bool, as_json: bool) -> str:
 
 
 class _Bound:
-    """The ports, taken before the database is looked at."""
+    """The server's sockets, bound before the database is opened."""
 
     def __init__(self, plan: Plan) -> None:
         self.local = bind(plan.local_hosts, plan.local_port, "--port")
@@ -162,7 +164,7 @@ class _Bound:
         )
 
     def doors(self, app: FastAPI, watch: CertificateWatch, settings: Settings) -> list[Door]:
-        """What is served behind each of them."""
+        """Return what is served on each group of sockets."""
         config = _config(app, settings)
         doors = [Door(self.local, config)]
         if self.lan:
@@ -201,15 +203,18 @@ def _prepare(settings: Settings, *, new_database: bool) -> None:
 
 
 def _is_no_trace(record: logging.LogRecord) -> bool:
-    """uvicorn's own account of an application that did not start; `why_not` has a better."""
+    """Return whether a log record is not uvicorn's traceback of a failed start.
+
+    `why_not` reports that failure in better words.
+    """
     return not record.getMessage().startswith("Traceback (most recent call last)")
 
 
 def why_not(error: Exception, settings: Settings) -> Exception:
-    """Why the application did not start, after the first look at its database found it whole.
+    """Return the error to report for an application that did not start.
 
-    What that look leaves out in a large file may be damaged; any error that is neither that nor the
-    disk's or the database's is a fault of the program.
+    The first check of a large database file skips rows, which are all checked here. An error that
+    is neither damage nor caused by the disk or the database is a fault of the program.
     """
     try:
         put_away_if_damaged(settings, Clock(), every_row=True)
@@ -219,7 +224,7 @@ def why_not(error: Exception, settings: Settings) -> Exception:
 
 
 def _end_with_the_input() -> None:
-    # Not through `sys.stdin`: a thread that waits there is in the way of Python's own end.
+    # Not through `sys.stdin`: a thread that waits there blocks Python's own exit.
     while os.read(0, 1024):
         pass
     os.kill(os.getpid(), signal.SIGTERM)
@@ -236,6 +241,6 @@ def _where(settings: Settings) -> str:
 def _tell_password(password: str) -> None:
     sys.stdout.write(
         f"\nFirst start: log in as  admin  with the password  {password}\n"
-        "It is shown this once. Keep it.\n\n"
+        "It is shown only once. Keep it.\n\n"
     )
     sys.stdout.flush()

@@ -1,1 +1,1 @@
-"""`reembody tune`: the avatar's motors, axis by axis."""
+"""The command `reembody tune`: tune the avatar's motors, axis by axis."""

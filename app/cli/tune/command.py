@@ -1,4 +1,4 @@
-"""The command `tune`: parse, call, print."""
+"""Define the command `tune`: parse the options, call, print."""
 
 import json
 from pathlib import Path
@@ -27,7 +27,7 @@ def tune(
     ] = False,
     evaluate: Annotated[
         bool,
-        typer.Option("--evaluate", help="Try the gains that are there, and change nothing."),
+        typer.Option("--evaluate", help="Test the existing gains without changing them."),
     ] = False,
     attempts: Annotated[int, typer.Option(help="Experiments per axis at most.")] = 3,
     workers: Annotated[int, typer.Option(help="Threads.")] = 2,
@@ -39,11 +39,11 @@ def tune(
     ] = None,
     save: Annotated[
         str | None,
-        typer.Option(help="Store it in the lab's database: a new key, or one to add a version to."),
+        typer.Option(help="Store it in the database under a new key, or as a new version of one."),
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
 ) -> None:
-    """Find gains for every axis of the avatar by relay experiments, and try them."""
+    """Find gains for every axis of the avatar by relay experiments, and test them."""
     from app.cli.tune import output as texts
     from app.cli.tune.run import TuneOrder, carry_out
     from app.science.avatar.tuning import TuningCancelled

@@ -1,4 +1,4 @@
-"""What `reembody tune` says: JSON for scripts, a table for people."""
+"""Format the results of `reembody tune`: JSON for scripts, a table for people."""
 
 from collections.abc import Iterator
 from itertools import islice
@@ -22,13 +22,13 @@ _HEAD = (
 
 
 def as_json(done: Tuned) -> dict[str, Any]:
-    """The result for scripts; `axes` in the order of the body."""
-    told = report_json(done.report, done.tracking)
-    return {**told, "cpu_s": round(done.cpu_s, 3), "saved": done.saved}
+    """Return the result for scripts; `axes` are in the order of the body."""
+    report = report_json(done.report, done.tracking)
+    return {**report, "cpu_s": round(done.cpu_s, 3), "saved": done.saved}
 
 
 def as_text(done: Tuned) -> str:
-    """The result for people."""
+    """Format the result for people."""
     report, figures = done.report, summary_json(done.report)
     lines = [_HEAD, *(_row(one) for one in report.axes), ""]
     if figures["tried"]:

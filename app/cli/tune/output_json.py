@@ -1,4 +1,4 @@
-"""A tuning as JSON: what scripts get, and what is kept beside a tuned configuration."""
+"""Convert a tuning to JSON, for scripts and for storage with the tuned configuration."""
 
 from dataclasses import asdict
 from math import degrees, isnan
@@ -16,7 +16,7 @@ from app.science.avatar.tuning import (
 
 
 def report_json(report: TuningReport | Assessment, tracking: Followed | None) -> dict[str, Any]:
-    """What is kept beside a tuned configuration: figures and the settings that led to them."""
+    """Return the report stored with a tuned configuration: figures, and the options used."""
     return {
         "axes": [_axis_json(one, tracking) for one in report.axes],
         "summary": summary_json(report),
@@ -53,7 +53,10 @@ def _followed_json(followed: Followed) -> dict[str, Any]:
 
 
 def _tracking_json(tracking: Tracking) -> dict[str, Any]:
-    """`mean_error_deg` and `p95_error_deg` are of all samples against the clamped targets."""
+    """Return one tracking's figures.
+
+    `mean_error_deg` and `p95_error_deg` are of all samples against the clamped targets.
+    """
     return {
         "mean_error_deg": tracking.mean_deg,
         "p95_error_deg": tracking.p95_deg,
@@ -96,7 +99,7 @@ def _relay_json(one: AxisTuning) -> dict[str, Any] | None:
 
 
 def summary_json(report: TuningReport | Assessment) -> dict[str, Any]:
-    """How many axes became what, and the figures over all that were tried."""
+    """Return the number of axes per status, and statistics over all tested axes."""
     statuses = [one.status.partition(":")[0] for one in report.axes]
     overshoots = [one.step.overshoot_percent for one in report.axes if one.step is not None]
     settled = [one.step.settling_s for one in report.axes if one.step is not None]

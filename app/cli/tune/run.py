@@ -1,4 +1,4 @@
-"""What `reembody tune` does: a configuration in, a better one out."""
+"""Run `reembody tune`: find better gains for a configuration."""
 
 import signal
 import sys
@@ -29,13 +29,13 @@ from app.science.avatar.tuning import tune as tune_avatar
 from app.science.skeleton import Movement, build_skeleton, resample
 
 _RATE_HZ = 90.0
-"""Of a headset."""
+"""The frame rate of a headset."""
 _PHASES = {"relay": "relay experiment", "steps": "step on the whole body"}
 
 
 @dataclass(frozen=True)
 class TuneOrder:
-    """What was asked for; see the options of the command."""
+    """The options of the command `tune`."""
 
     avatar: str | None
     stature_m: float
@@ -52,11 +52,11 @@ class TuneOrder:
 
 @dataclass(frozen=True)
 class Tuned:
-    """What came of it.
+    """The result of the command `tune`.
 
     Attributes:
-        order: what was asked for.
-        report: of the tuning, or of the gains as they were.
+        order: the options.
+        report: of the tuning, or of the unchanged gains with --evaluate.
         tracking: of the capture, if there was one.
         cpu_s: processor time of the tuning.
         saved: the version that was stored, as `key, version n`.
@@ -70,10 +70,10 @@ class Tuned:
 
 
 def carry_out(order: TuneOrder) -> Tuned:
-    """Tune, write and store.
+    """Tune a configuration, then write and store it as requested.
 
-    Raises ValueError for what cannot be tuned so, ReembodyError for an unknown avatar or a database
-    that cannot be worked with, OSError where the file cannot be written, TuningCancelled.
+    Raises ValueError if the options do not allow a tuning, ReembodyError for an unknown avatar or
+    an unusable database, OSError if the file cannot be written, TuningCancelled.
     """
     options = TuningOptions(
         heuristic=order.heuristic,
@@ -94,7 +94,7 @@ def carry_out(order: TuneOrder) -> Tuned:
 
 def _carried_out(order: TuneOrder, options: TuningOptions, database: Database | None) -> Tuned:
     configuration, figure = _avatar(order, database)
-    # A capture that cannot be read is said before the tuning.
+    # Read the capture first, so that an error is reported before the tuning.
     movement = None if order.capture is None else _movement(order.capture, order.stature_m)
     started_s = time.process_time()
     with _interruptible() as interrupted, tell_progress() as progress:
@@ -137,34 +137,34 @@ def _movement(capture: Path, stature_m: float) -> Movement:
 
 @contextmanager
 def _interruptible() -> Iterator[Callable[[], bool]]:
-    """Ctrl-C asks the experiments to end, instead of cutting one off."""
-    asked = threading.Event()
+    """Make Ctrl-C ask the experiments to end, instead of interrupting one."""
+    requested = threading.Event()
     if threading.current_thread() is not threading.main_thread():
-        yield asked.is_set
+        yield requested.is_set
         return
-    before = signal.signal(signal.SIGINT, lambda *_: asked.set())
+    before = signal.signal(signal.SIGINT, lambda *_: requested.set())
     try:
-        yield asked.is_set
+        yield requested.is_set
     finally:
         signal.signal(signal.SIGINT, before)
 
 
 @contextmanager
 def tell_progress() -> Iterator[Callable[[TuningProgress], None]]:
-    """One line that is written over, on a terminal; elsewhere a line a phase."""
+    """Show progress: on a terminal one line that is overwritten, elsewhere a line per phase."""
     live = sys.stderr.isatty()
-    yield _tell_live if live else _tell_phases
+    yield _show_live if live else _show_phases
     if live:
         sys.stderr.write("\r\033[K")
         sys.stderr.flush()
 
 
-def _tell_live(at: TuningProgress) -> None:
+def _show_live(at: TuningProgress) -> None:
     sys.stderr.write(f"\r\033[K{_line(at)}  {at.axis}")
     sys.stderr.flush()
 
 
-def _tell_phases(at: TuningProgress) -> None:
+def _show_phases(at: TuningProgress) -> None:
     if at.done == at.total:
         sys.stderr.write(f"{_line(at)}\n")
 

@@ -1,4 +1,4 @@
-"""Configurations of avatars in the lab's database, for the command `tune`."""
+"""Load and store configurations of avatars in the lab's database, for the command `tune`."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -35,32 +35,33 @@ _KEY: TypeAdapter[str] = TypeAdapter(AvatarKey)
 
 
 def check_key(key: str) -> None:
-    """Say before the tuning that a key cannot be one; raises ValueError."""
+    """Raise ValueError for an invalid key, so that it is reported before the tuning."""
     try:
         _KEY.validate_python(key)
     except ValidationError:
         raise ValueError(
-            f"--save {key!r}: a key begins with a small letter and has small letters, digits,"
-            " - and _, 80 at most"
+            f"--save {key!r}: a key begins with a lower-case letter and has lower-case letters,"
+            " digits, - and _, 80 at most"
         ) from None
 
 
 @contextmanager
 def lab_database(*, saves: bool) -> Iterator[Database]:
-    """The lab's database. Where the tuning `saves` into it, nobody else has it from now until then:
-    that is said before the tuning takes minutes.
+    """Open the lab's database, owning it if the tuning `saves` into it.
+
+    Ownership is taken before the tuning, which takes minutes, so that a conflict is reported early.
     """
     with owned_database("tune") if saves else opened_database("tune") as database:
         yield database
 
 
 def stored_avatar(database: Database, key: str) -> tuple[Configuration, Figure | None]:
-    """The newest version of an avatar, without parts that its model lacks, and the model.
+    """Return the newest version of an avatar, without parts that its model lacks, and the model.
 
-    Raises NotFound with the keys there are.
+    Raises NotFound with the existing keys.
     """
     with database.writing() as db:
-        # A server that was never started has not put the product's own there yet.
+        # Before the first start of a server, the shipped avatar is not yet stored.
         if SHIPPED not in newest_numbers(db):
             add_shipped_avatar(db, Clock().utc_now())
         configuration = typed(newest_version(db, avatar_by_key(db, key)))
@@ -73,7 +74,7 @@ def stored_avatar(database: Database, key: str) -> tuple[Configuration, Figure |
 def save_tuned(
     database: Database, key: str, report: TuningReport, tracking: Followed | None
 ) -> str:
-    """Store it under a new key, or as the next version of one; return `key, version n`."""
+    """Store the report under a new key, or as the next version; return `key, version n`."""
     with database.writing() as db:
         row = _appended(db, key, report, tracking)
         return f"{row.key}, version {row.number}"
@@ -82,12 +83,12 @@ def save_tuned(
 def _appended(
     db: Session, key: str, report: TuningReport, tracking: Followed | None
 ) -> AvatarVersion:
-    now, told = Clock().utc_now(), report_json(report, tracking)
+    now, stored = Clock().utc_now(), report_json(report, tracking)
     content = file_of(report.configuration)
     note = f"tuned by {report.options.heuristic} on a body of {report.stature_m:g} m"
     newest = newest_numbers(db).get(key)
     if newest is None:
         new = NewAvatar(key=key, title=key, origin="tuned", note=note, configuration=content)
-        return create_avatar(db, COMMAND_LINE, new, now, report=told)
+        return create_avatar(db, COMMAND_LINE, new, now, report=stored)
     more = NewAvatarVersion(based_on=newest, origin="tuned", note=note, configuration=content)
-    return add_avatar_version(db, COMMAND_LINE, key, more, now, report=told)
+    return add_avatar_version(db, COMMAND_LINE, key, more, now, report=stored)

@@ -1,1 +1,1 @@
-"""`reembody walk`: how people walk."""
+"""The command `reembody walk`: models of how people walk."""

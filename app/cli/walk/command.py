@@ -1,4 +1,4 @@
-"""The commands `walk fit`, `walk sample` and `walk evaluate`: parse, call, print."""
+"""Define the commands `walk fit`, `walk sample` and `walk evaluate`: parse, call, print."""
 
 import json
 import sys
@@ -19,9 +19,9 @@ _Scene = Annotated[
     str | None, typer.Option(help="Scene file, or the key of a shipped scene; else open floor.")
 ]
 _People = Annotated[
-    Path | None, typer.Option(help="CSV: subject, stature_m, and file where it does not say.")
+    Path | None, typer.Option(help="CSV: subject, stature_m, and file if files name no subject.")
 ]
-_Seed = Annotated[int, typer.Option(help="Seed of everything that is drawn.", min=0)]
+_Seed = Annotated[int, typer.Option(help="Seed of all random draws.", min=0)]
 
 
 @walk.command()
@@ -31,22 +31,22 @@ def fit(
     scene: _Scene = None,
     people: _People = None,
     seed: _Seed = 1,
-    k: Annotated[int, typer.Option(help="Neighbours that answer a question.", min=1)] = 100,
+    k: Annotated[int, typer.Option(help="Neighbours used for a prediction.", min=1)] = 100,
     entries: Annotated[
         int, typer.Option(help="Walks and blends of them in the space.", min=1, max=50_000)
     ] = 5000,
     reading: Annotated[
-        str, typer.Option(help="Of maps as suitability: chosen, paper or time-aware.")
+        str, typer.Option(help="How maps become suitability: chosen, paper or time-aware.")
     ] = "chosen",
     as_json: _Json = False,
 ) -> None:
-    """Fit a model of how people walk on walks of two people or more."""
+    """Fit a model of how people walk to walks of two people or more."""
     from app.cli.walk import output as texts
     from app.cli.walk.run import FitOrder, WalksOrder, carry_out_fit
 
     order = FitOrder(WalksOrder(tuple(walks), scene, people), out, seed, k, entries, reading)
     with reported(ValueError, OSError):
-        done = carry_out_fit(order, _tell if sys.stderr.isatty() else None)
+        done = carry_out_fit(order, _show_progress if sys.stderr.isatty() else None)
     print(json.dumps(texts.fit_json(done)) if as_json else texts.fit_text(done))
 
 
@@ -89,7 +89,7 @@ def evaluate(
     draws: Annotated[int, typer.Option(help="Draws for each walk.")] = 200,
     seed: _Seed = 1,
     even_fitted: Annotated[
-        bool, typer.Option("--even-fitted", help="Also on people the model was fitted on.")
+        bool, typer.Option("--even-fitted", help="Allow people that the model was fitted on.")
     ] = False,
     as_json: _Json = False,
 ) -> None:
@@ -109,6 +109,6 @@ def evaluate(
     )
 
 
-def _tell(done: int, total: int) -> None:
+def _show_progress(done: int, total: int) -> None:
     sys.stderr.write(f"\rmaps: {done} of {total}" + ("\n" if done == total else ""))
     sys.stderr.flush()

@@ -1,4 +1,4 @@
-"""What `reembody walk` reads: walks out of tracks and captures, people, scenes."""
+"""Read the inputs of `reembody walk`: walks from tracks and captures, people, scenes."""
 
 import csv
 import io
@@ -24,11 +24,11 @@ _TRACK_COLUMNS = ({"x", "x_m", "x_cm", "x_mm"}, {"y", "y_m", "y_cm", "y_mm"})
 
 @dataclass(frozen=True)
 class People:
-    """Who walked.
+    """The people who walked.
 
     Attributes:
-        statures_m: subject to height.
-        subjects: file name to subject, for files that do not say.
+        statures_m: stature by subject.
+        subjects: subject by file name, for files that do not name one.
     """
 
     statures_m: dict[str, float] = field(default_factory=dict)
@@ -36,10 +36,10 @@ class People:
 
 
 def read_people(path: Path | None) -> People:
-    """Read a CSV with the columns subject, stature_m, and if wanted file.
+    """Read a CSV with the columns subject, stature_m, and optionally file.
 
     Raises:
-        ValueError: a column is missing, or a height is no number.
+        ValueError: a column is missing, or a stature is not a number.
         OSError: it cannot be opened.
     """
     people = People()
@@ -47,15 +47,15 @@ def read_people(path: Path | None) -> People:
         return people
     reader = csv.DictReader(io.StringIO(path.read_text(encoding="utf-8-sig")))
     if "subject" not in (reader.fieldnames or ()):
-        raise ValueError(f"{path}: needs the columns subject, stature_m and, if wanted, file.")
+        raise ValueError(f"{path}: needs the columns subject, stature_m and, optionally, file.")
     for row in reader:
-        subject, told = (row["subject"] or "").strip(), (row.get("stature_m") or "").strip()
-        if told:
+        subject, stature = (row["subject"] or "").strip(), (row.get("stature_m") or "").strip()
+        if stature:
             try:
-                people.statures_m[subject] = float(told)
+                people.statures_m[subject] = float(stature)
             except ValueError:
                 raise ValueError(
-                    f"{path}, line {reader.line_num}: stature_m is {told!r}, no number."
+                    f"{path}, line {reader.line_num}: stature_m is {stature!r}, not a number."
                 ) from None
         if name := (row.get("file") or "").strip():
             people.subjects[name] = subject
@@ -63,10 +63,10 @@ def read_people(path: Path | None) -> People:
 
 
 def read_scene(key: str | None) -> Scene | None:
-    """A scene that is shipped, by its key, or a scene file; None for the open floor.
+    """Read a shipped scene by its key, or a scene file; None stands for open floor.
 
     Raises:
-        ValueError: the file is no scene; all its problems, each with its line.
+        ValueError: the file is not a valid scene; lists all its problems, each with its line.
         OSError: it cannot be opened.
     """
     if key is None:
@@ -75,22 +75,22 @@ def read_scene(key: str | None) -> Scene | None:
         return load_shipped(key)
     path = Path(key)
     if not path.exists():
-        known = ", ".join(shipped_scenes())
-        raise ValueError(f"--scene: {missing_file(path)}; shipped with the product are {known}.")
+        shipped = ", ".join(shipped_scenes())
+        raise ValueError(f"--scene: {missing_file(path)}; shipped with the product are {shipped}.")
     try:
         return load_scene(path.read_text(encoding="utf-8-sig"))
     except ConfigError as error:
-        told = "; ".join(f"line {one.line}: {one.message}" for one in error.problems)
-        raise ValueError(f"{path}: {told}") from error
+        problems = "; ".join(f"line {one.line}: {one.message}" for one in error.problems)
+        raise ValueError(f"{path}: {problems}") from error
     except UnicodeDecodeError as error:
-        raise ValueError(f"{path}: no text in UTF-8 ({error})") from error
+        raise ValueError(f"{path}: not UTF-8 text ({error})") from error
 
 
 def read_walks(files: Sequence[Path], people: People) -> list[Walk]:
-    """All walks of some files, in their order.
+    """Read all walks of some files, in their order.
 
     Raises:
-        ValueError: a file cannot be used, or nobody walks in it.
+        ValueError: a file cannot be used, or contains no walk.
         OSError: one cannot be opened.
     """
     walks = []
@@ -105,10 +105,10 @@ def read_walks(files: Sequence[Path], people: People) -> list[Walk]:
 
 
 def planned(walks: Sequence[Walk], scene: Scene | None) -> list[PlannedWalk]:
-    """Plan each walk's path; on the open floor where there is no scene.
+    """Plan each walk's path, on open floor if there is no scene.
 
     Raises:
-        ValueError: the scene is closed between a walk's ends, or one of them is in an obstacle.
+        ValueError: no path connects a walk's ends, or one of them is in an obstacle.
     """
     planner = None if scene is None else LazyThetaPlanner(scene)
     entries = []
@@ -136,7 +136,7 @@ def _tracks(path: Path, people: People) -> list[Track]:
 
 
 def _header(path: Path) -> set[str]:
-    """Cells of a file's first line, small letters."""
+    """Return the cells of a file's first line in lower case."""
     if path.stat().st_size > MOST_BYTES:
         raise CaptureError(f"larger than {MOST_BYTES} bytes, which is the limit.")
     with path.open("rb") as file:
@@ -149,6 +149,6 @@ def _table(path: Path, header: set[str], people: People) -> list[Track]:
     tracks = read_tracks(path.read_bytes(), name=path.name, reading=reading)
     if path.suffix.lower() == ".txt" or header & _PERSON_COLUMNS:
         return tracks
-    # Nobody is named in it: it is about one person, who has the file's name.
+    # Without a column of people, the file is about one person, named after the file.
     subject = people.subjects.get(path.name, path.stem)
     return [replace(tracks[0], subject=subject, stature_m=people.statures_m.get(subject))]

@@ -1,4 +1,4 @@
-"""What `reembody walk` says: JSON for scripts, tables for people."""
+"""Format the results of `reembody walk`: JSON for scripts, tables for people."""
 
 from dataclasses import asdict
 
@@ -11,7 +11,7 @@ from app.science.walking.models import FittedWalking
 
 
 def fit_json(done: Fitted) -> dict[str, object]:
-    """The model for scripts."""
+    """Return a fitted model for scripts."""
     fit = done.fit
     return {
         "model": str(done.order.out),
@@ -33,7 +33,7 @@ def fit_json(done: Fitted) -> dict[str, object]:
 
 
 def fit_text(done: Fitted) -> str:
-    """The model for people."""
+    """Describe a fitted model for people."""
     fit = done.fit
     base = fit.database
     kinds = ", ".join(sorted(set(base.kinds)))
@@ -46,7 +46,7 @@ def fit_text(done: Fitted) -> str:
         f"  {'depends on':<14}{', '.join(base.names)}",
     ]
     if done.left_out:
-        lines.append(f"  {'left out':<14}{', '.join(done.left_out)}: not known of all walks")
+        lines.append(f"  {'left out':<14}{', '.join(done.left_out)}: not known for all walks")
     if done.cut:
         lines.append(
             f"  {'note':<14}{done.cut} walk(s) begin or end with the recording, amid walking; they"
@@ -58,26 +58,26 @@ def fit_text(done: Fitted) -> str:
         f"  {'':<14}CRPS {score.crps_s:.3f} s  {reading_text(score.options)}"
         for score in fit.scores[:3]
     ]
-    told = ", ".join(
+    parameters = ", ".join(
         f"{name} {value:.2f}"
         for name, value in zip(_parameters(fit), fit.static.vector, strict=True)
     )
-    lines += [f"  {'static':<14}{told}", "", f"written: {done.order.out}"]
+    lines += [f"  {'static':<14}{parameters}", "", f"written: {done.order.out}"]
     return "\n".join(lines)
 
 
 def reading_text(options: SuitabilityOptions) -> str:
-    """A reading in words."""
-    told = [f"by {options.normalisation}", f"power {options.power:g}"]
+    """Describe a reading: the options that turn error maps into suitability."""
+    parts = [f"by {options.normalisation}", f"power {options.power:g}"]
     if options.threshold:
-        told.append(f"from {options.threshold:g}")
+        parts.append(f"from {options.threshold:g}")
     if options.time_constant_s is not None:
-        told.append(f"time-aware, tau {options.time_constant_s:g} s")
-    return ", ".join(told)
+        parts.append(f"time-aware, tau {options.time_constant_s:g} s")
+    return ", ".join(parts)
 
 
 def sample_json(done: Sampled) -> dict[str, object]:
-    """Draws for scripts."""
+    """Return draws for scripts."""
     prediction = done.prediction
     return {
         "length_m": done.path.length_m,
@@ -93,7 +93,7 @@ def sample_json(done: Sampled) -> dict[str, object]:
 
 
 def sample_text(done: Sampled) -> str:
-    """Draws for people."""
+    """Format draws for people."""
     found, names = done.prediction, _parameters(done.fit)
     count = len(found.durations_s)
     lines = [
@@ -113,7 +113,7 @@ def sample_text(done: Sampled) -> str:
 
 
 def evaluation_json(fit: FittedWalking, result: Evaluation) -> dict[str, object]:
-    """Scores for scripts."""
+    """Return scores for scripts."""
     models = {
         name: {
             "crps_s": outcome.mean_crps_s,
@@ -136,7 +136,7 @@ def evaluation_json(fit: FittedWalking, result: Evaluation) -> dict[str, object]
 
 
 def evaluation_text(fit: FittedWalking, result: Evaluation) -> str:
-    """Scores for people."""
+    """Format scores for people."""
     lines = [
         (
             f"{len(result.truth_s)} walks of {len(set(result.subjects))} people, model fitted on"
@@ -169,7 +169,7 @@ def _parameters(fit: FittedWalking) -> list[str]:
 
 
 def _finite(value: object) -> object:
-    """JSON has no NaN: null stands for it."""
+    """Replace numbers that are not finite by None, because JSON has no NaN."""
     if isinstance(value, dict):
         return {key: _finite(own) for key, own in value.items()}
     if isinstance(value, list | tuple):

@@ -1,4 +1,4 @@
-"""What `reembody walk` does: fit a model, draw walks from it, compare it with walks."""
+"""Run `reembody walk`: fit a model, draw walks from it, compare it with recorded walks."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -46,7 +46,7 @@ MODELS = ("stat", "adapt", "prob")
 
 @dataclass(frozen=True)
 class WalksOrder:
-    """Where walks are."""
+    """The files of recorded walks, with their scene and people."""
 
     files: tuple[Path, ...]
     scene: str | None = None
@@ -55,7 +55,7 @@ class WalksOrder:
 
 @dataclass(frozen=True)
 class FitOrder:
-    """How to fit, and where to."""
+    """The options of the command `walk fit`."""
 
     walks: WalksOrder
     out: Path
@@ -67,7 +67,7 @@ class FitOrder:
 
 @dataclass(frozen=True)
 class SampleOrder:
-    """What to ask a model for; see the options of the command."""
+    """The options of the command `walk sample`."""
 
     model: Path
     length_m: float | None = None
@@ -83,12 +83,12 @@ class SampleOrder:
 
 @dataclass(frozen=True, eq=False)
 class Fitted:
-    """A model that was written.
+    """A model that was fitted and written.
 
     Attributes:
         content_hash: of the file's content.
-        left_out: dependencies that are not known of all walks.
-        cut: walks that begin or end amid walking, with the recording.
+        left_out: dependencies that are not known for all walks.
+        cut: number of walks that the recording cuts off at their start or end.
     """
 
     order: FitOrder
@@ -110,7 +110,7 @@ class Sampled:
 
 
 def carry_out_fit(order: FitOrder, progress: Callable[[int, int], None] | None = None) -> Fitted:
-    """Fit a model and write it; raises ValueError or OSError, with nothing written."""
+    """Fit a model and write it; raise ValueError or OSError, with nothing written."""
     if order.reading not in READINGS:
         raise ValueError(f"--reading {order.reading!r}: {', '.join(READINGS)} are valid")
     require_folder_of(order.out)
@@ -118,7 +118,7 @@ def carry_out_fit(order: FitOrder, progress: Callable[[int, int], None] | None =
     names, left_out = _names(entries)
     people = {entry.walk.subject for entry in entries}
     if len(people) < 2:
-        # Said before the maps are made, which takes the time.
+        # Reported before the maps are made, which takes most of the time.
         _one_person(entries[0].walk, len(entries))
     follower = SteeringFollower()
     maker = MapMaker(follower=follower)
@@ -133,7 +133,7 @@ def carry_out_fit(order: FitOrder, progress: Callable[[int, int], None] | None =
 
 
 def carry_out_sample(order: SampleOrder) -> Sampled:
-    """Draw from a model; raises ValueError or OSError."""
+    """Draw from a model; raise ValueError or OSError."""
     if order.which not in MODELS:
         raise ValueError(f"--model {order.which!r}: {', '.join(MODELS)} are valid")
     if not 1 <= order.count <= 100_000:
@@ -152,15 +152,15 @@ def carry_out_sample(order: SampleOrder) -> Sampled:
 def carry_out_evaluation(
     model: Path, walks: WalksOrder, *, draws: int, seed: int, even_fitted: bool
 ) -> tuple[FittedWalking, Evaluation]:
-    """Compare a model with walks; raises ValueError or OSError."""
+    """Compare a model with recorded walks; raise ValueError or OSError."""
     if not 1 <= draws <= 10_000:
         raise ValueError(f"--draws {draws}: 1 to 10000 are valid")
     fit, rules, _ = read_model(model)
     entries = _entries(walks)
-    known = {entry.walk.subject for entry in entries} & set(fit.database.subjects)
-    if known and not even_fitted:
+    fitted_on = {entry.walk.subject for entry in entries} & set(fit.database.subjects)
+    if fitted_on and not even_fitted:
         raise ValueError(
-            f"the model was fitted on {', '.join(sorted(known))}: its errors on them say nothing"
+            f"the model was fitted on {', '.join(sorted(fitted_on))}: its errors there say nothing"
             " about others. Give other people's walks, or --even-fitted"
         )
     rng = np.random.default_rng(seed)
@@ -171,7 +171,7 @@ def carry_out_evaluation(
 
 
 def _course(entry: PlannedWalk) -> str:
-    """Walks alike to a quarter of a metre are repetitions."""
+    """Return the walk's length, rounded: walks of the same rounded length are repetitions."""
     return f"{round(4.0 * entry.path.length_m) / 4.0:g} m"
 
 
@@ -182,7 +182,7 @@ def _entries(order: WalksOrder) -> list[PlannedWalk]:
 
 
 def _names(entries: list[PlannedWalk]) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Dependencies that all walks have, and those that only some have."""
+    """Return the dependencies known for all walks, and the remaining ones."""
     usual = (LENGTH, TURNING, STATURE)
     everywhere = tuple(n for n in usual if all(n in entry.dependencies for entry in entries))
     return everywhere, tuple(name for name in usual if name not in everywhere)
@@ -217,8 +217,8 @@ def _place(scene: Scene, text: str, option: str) -> Point:
     try:
         return _point(text, option)
     except ValueError as error:
-        known = ", ".join(scene.places) or "none"
-        raise ValueError(f"{error}; places of scene {scene.name!r} are {known}") from None
+        places = ", ".join(scene.places) or "none"
+        raise ValueError(f"{error}; places of scene {scene.name!r} are {places}") from None
 
 
 def _point(text: str, option: str) -> Point:
