@@ -3,7 +3,8 @@
 With paths: format and lint of these, types and import contracts of everything, and the tests that
 mirror them; `tests/` has the folders of `app/`, and a folder without a mirror has its parent's
 tests. Without: everything. Either way no server, no PostgreSQL and no browser is started: tests
-that need one are left to `./run test` (`tests.support.unit_tests`).
+that need one are left to `./run test` (`tests.support.unit_tests`), and so are the tests of faults,
+unless their path is given.
 """
 
 import argparse
@@ -32,6 +33,8 @@ USAGE_ERROR = 2
 TESTS = Path("tests")
 BIOME = FRONTEND / "node_modules" / "@biomejs" / "biome" / "bin" / "biome"
 SOURCES = FRONTEND / "src"
+FAULT_TESTS = TESTS / "faults"
+"""Killed processes, failing disks and damaged files take minutes: `./run test` has them."""
 
 
 class NoSuchPath(ValueError):
@@ -135,7 +138,9 @@ def _units(tests: Sequence[Path]) -> Stage:
     if TESTS not in tests:
         return pytest_stage("unit tests", *options, *map(str, tests))
     spread = ["-n", str(CORES), "--dist", "worksteal"]
-    ignored = [f"--ignore={folder}" for folder in (ARCHITECTURE_TESTS, BROWSER_TESTS)]
+    ignored = [
+        f"--ignore={folder}" for folder in (ARCHITECTURE_TESTS, BROWSER_TESTS, FAULT_TESTS)
+    ]
     return pytest_stage(
         "unit tests", *options, *spread, *ignored, str(TESTS), alone=True, aloud=True
     )
