@@ -1,1 +1,1 @@
-"""One folder per capability. A feature may call another feature's service, nothing else of it."""
+"""The product's features, one package each; a feature only uses the services of other features."""

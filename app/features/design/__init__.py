@@ -1,1 +1,1 @@
-"""What a study is made of: its versions and its instruments."""
+"""What a study consists of: its versions and its instruments."""

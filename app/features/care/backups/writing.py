@@ -1,7 +1,7 @@
-"""Making a backup: streamed beside its place, checked, then moved in whole.
+"""Write a backup to a temporary file, check it, and rename it to its final name.
 
-Whoever looks at the place sees no file or a whole one. Rows are read inside the transaction that
-the caller gives, which must see one moment only.
+Other processes see either no file or a complete one. Rows are read inside the transaction of the
+caller, which must be a snapshot of one moment.
 """
 
 import os
@@ -38,11 +38,11 @@ def write_backup(
     notes: Notes | None = None,
     progress: Progress = silent,
 ) -> Manifest:
-    """Copy everything that `source` sees into the file `to`; nobody else can read the file.
+    """Copy everything that `source` sees to the file `to`, readable by its owner only.
 
-    `notes` keep a note of it while it is made, for a place outside of the data folder.
-    Raises Conflict where there is a file already, NotFound where the folder or a database of ours
-    is missing, NotDurable where it cannot be written. Then nothing is left of it.
+    `notes` record the temporary file while it is written, for a place outside of the data folder.
+    Raises Conflict if the file exists already, NotFound if the folder or a Reembody database is
+    missing, NotDurable if the file cannot be written. Then nothing is left of it.
     """
     check_place(to)
     revision = _known(revision_of(source))
@@ -56,7 +56,7 @@ def write_backup(
 
 
 def check_place(to: Path) -> None:
-    """Refuse to write over anything, and into a folder that is not there."""
+    """Raise Conflict if the file `to` exists, NotFound if its folder does not."""
     if to.exists() or to.is_symlink():
         raise Conflict(
             f"there is a file {to} already; nothing was written",
@@ -116,7 +116,7 @@ def _mb(size: int) -> str:
 
 @contextmanager
 def _beside(to: Path, now: datetime, notes: Notes | None) -> Iterator[Path]:
-    """A folder beside the place, that only we can look into and that is gone afterwards."""
+    """Yield a file in a private temporary folder beside `to`, which is removed afterwards."""
     with made_beside("backup", to, now=now, notes=notes) as folder:
         yield folder / to.name
 
@@ -138,7 +138,7 @@ def _why(error: Exception) -> str:
 
 
 def _make_tables(file: Path, revision: str) -> None:
-    """The product's own schema, as the database that is copied has it."""
+    """Create the product's tables in a new file, in the schema of the database that is copied."""
     try:
         make_file(file, revision)
     except sqlite3.Error as error:
@@ -146,7 +146,7 @@ def _make_tables(file: Path, revision: str) -> None:
 
 
 def shapes_at(revision: str) -> tuple[TableShape, ...]:
-    """The product's tables in the schema of a revision, those that are referred to first."""
+    """Return the product's tables in the schema of a revision, referenced ones first."""
     if revision == newest_revision():
         return shapes_of_models()
     with tempfile.TemporaryDirectory(prefix="reembody-schema-") as folder:
@@ -181,9 +181,9 @@ def _copy(
 
 
 def _move(partial: Path, to: Path) -> None:
-    """Onto the disk first, then under its name; the name too must be on the disk.
+    """Flush the file to the disk, rename it, and flush its folder.
 
-    Where that cannot be made sure of, it is gone again: whoever was told so must find no file.
+    If that fails, the file is deleted, because the caller reports that there is no backup.
     """
     with partial.open("rb+") as file:
         os.fsync(file.fileno())

@@ -1,1 +1,1 @@
-"""How devices reach this server, for the console."""
+"""The network view of the console: how devices reach this server."""

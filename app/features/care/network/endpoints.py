@@ -1,4 +1,4 @@
-"""How devices reach this server, over HTTP."""
+"""The HTTP endpoint of the network view."""
 
 from fastapi import APIRouter
 
@@ -17,7 +17,7 @@ router = APIRouter(tags=["network"])
 
 @router.get("/network")
 def get_network(context: Context, _: SignedIn) -> NetworkView:
-    """Addresses, certificate and help page, as they are now."""
+    """Return the server's current addresses, its certificate and the help page for devices."""
     reach = context.network.reach
     return NetworkView(
         mode=reach.mode,
@@ -50,6 +50,6 @@ def _certificate(shown: ShownCertificate) -> CertificateView:
 
 
 def _cable(reach: Reach) -> CableView:
-    # The headset's own port of that number then leads here; `localhost` counts as secure there.
+    # The headset's port of this number is forwarded here; browsers treat `localhost` as secure.
     port = reach.port
     return CableView(command=f"adb reverse tcp:{port} tcp:{port}", url=f"http://localhost:{port}")

@@ -1,4 +1,4 @@
-"""The lab's network over HTTP."""
+"""Response models of the lab's network."""
 
 from datetime import datetime
 from typing import Literal
@@ -7,7 +7,7 @@ from pydantic import BaseModel
 
 
 class AddressView(BaseModel):
-    """An address for devices, and the QR code of the tablet's page there."""
+    """An address for devices, with the QR code of the tablet's page at this address."""
 
     url: str
     tablet_url: str
@@ -15,11 +15,11 @@ class AddressView(BaseModel):
 
 
 class CertificateView(BaseModel):
-    """The certificate behind https.
+    """The certificate of the HTTPS server.
 
     `source` is `authority` (the built-in one, which devices install) or `files` (the lab's own).
     `fingerprint` is the SHA-256 that a device shows: of the authority, or of the lab's certificate.
-    `uncovered` are addresses of this machine that it is not valid for.
+    `uncovered` are addresses of this machine that the certificate is not valid for.
     """
 
     source: Literal["authority", "files"]
@@ -31,23 +31,23 @@ class CertificateView(BaseModel):
 
 
 class HelpView(BaseModel):
-    """The page, over plain http, on which a device gets the lab's certificate."""
+    """The help page, over plain HTTP, from which a device installs the lab's certificate."""
 
     url: str
     qr_svg: str
 
 
 class CableView(BaseModel):
-    """A headset on this machine's USB cable: run `command`, then open `url` in the headset."""
+    """How to connect a headset by USB: run `command` here, then open `url` in the headset."""
 
     command: str
     url: str
 
 
 class NetworkView(BaseModel):
-    """How devices reach the server now.
+    """How devices currently reach the server.
 
-    `mode` is `loopback` (this machine only), `lan` (also https) or `without_tls` (unencrypted).
+    `mode` is `loopback` (this machine only), `lan` (with HTTPS) or `without_tls` (unencrypted).
     """
 
     mode: Literal["loopback", "lan", "without_tls"]

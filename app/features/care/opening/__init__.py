@@ -1,9 +1,9 @@
-"""Makes sure that the database can be worked with before anything works with it.
+"""Open the database safely at every start: inspect, quarantine, create, back up, migrate.
 
-wal          whether SQLite's log lost transactions that had been committed
-inspection   what is wrong with a SQLite file
-quarantine   putting a damaged database away, never deleting it
-service      what happens at every start: inspect, put away, create, back up, migrate
+wal          detect committed transactions that SQLite's write-ahead log lost
+inspection   detect damage of a SQLite file
+quarantine   move a damaged database away without deleting it
+service      the steps of every start: inspect, quarantine, create, back up, migrate
 """
 
 from app.features.care.opening.service import (

@@ -1,10 +1,10 @@
-"""What is wrong with a SQLite file, found out without changing it.
+"""Detect damage of a SQLite file without changing it.
 
-Only what the bytes of the file prove counts as damage. Whatever keeps this program from reading it
-(permissions, a disk that does not answer, somebody who holds it) raises NotDurable instead: then
-nothing is known of the database, and it stays where it is.
+Only what the bytes of the file prove counts as damage. Anything else that prevents reading the
+file (permissions, a disk that does not respond, a lock) raises NotDurable instead: then
+nothing is known about the database, and it stays where it is.
 
-Use it only in a process that has not opened the file with SQLite: on POSIX, closing any handle on a
+Use it only in a process that has not opened the file with SQLite: on POSIX, closing any handle of a
 file drops the locks that SQLite's own handles hold.
 """
 
@@ -41,29 +41,29 @@ _ERROR_CODE = re.compile(r"error code=(\d+)")
 
 
 def log_of(file: Path) -> Path:
-    """The write-ahead log that belongs to a database file."""
+    """Return the path of a database file's write-ahead log."""
     return file.with_name(file.name + "-wal")
 
 
 def index_of(file: Path) -> Path:
-    """The index of that log, which a process that was killed leaves behind."""
+    """Return the path of the log's index, which a killed process leaves behind."""
     return file.with_name(file.name + "-shm")
 
 
 def is_open_elsewhere(file: Path) -> bool:
-    """Whether another process has the database open; False where the system cannot tell."""
+    """Return whether another process has the database open; False if the system cannot say."""
     try:
         import fcntl
     except ImportError:
         return False
     try:
         handle = file.open("rb+")
-    except OSError:  # not ours to write: working with it will say so
+    except OSError:  # not writable: using it will report that
         return False
     with handle:
         try:
             fcntl.lockf(handle, fcntl.LOCK_EX | fcntl.LOCK_NB, _SHARED_SIZE, _SHARED_FIRST)
-        except (BlockingIOError, PermissionError):  # POSIX has both for a lock that is taken
+        except (BlockingIOError, PermissionError):  # either, for a taken lock
             return True
         except OSError:  # a file system without locks
             return False
@@ -71,11 +71,13 @@ def is_open_elsewhere(file: Path) -> bool:
 
 
 def damage_of(file: Path, *, every_row: bool = False) -> str | None:
-    """What is wrong with the file in a few words; None if it can be worked with.
+    """Return a short description of the file's damage, or None if it can be used.
 
-    A log left behind, whose end may be torn, is what a power failure leaves and no damage. Rows
-    are read in a small file, and with `every_row` in any. Raises NotDurable where it cannot be
-    told, because the file cannot be read.
+    A log that was left behind, perhaps with a torn end, is what a power failure leaves and not
+    damage.
+    Rows are read in a small file, and with `every_row` in any. Raises NotDurable if the file cannot
+    be
+    read, so that its state is unknown.
     """
     with _unless_hindered(file):
         start = _beginning(file)
@@ -107,9 +109,9 @@ def damage_of(file: Path, *, every_row: bool = False) -> str | None:
 
 
 def foreign_tables(file: Path) -> list[str]:
-    """The tables of a database that is somebody else's; none if it is ours, or new.
+    """Return the tables of another program's database; none if it is Reembody's, or new.
 
-    Raises NotDurable where it cannot be read.
+    Raises NotDurable if it cannot be read.
     """
     with _unless_hindered(file), closing(_read_only(file)) as connection:
         query = "SELECT name FROM sqlite_master WHERE type = 'table' ORDER BY name"
@@ -127,10 +129,11 @@ def _unless_hindered(file: Path) -> Iterator[None]:
 
 
 def _said(error: Exception) -> str | None:
-    """The damage that an error of SQLite's shows; None if it shows none.
+    """Return the damage that an error of SQLite proves; None if it proves none.
 
-    Nothing but a few plain questions was asked, so that SQLite misunderstands them
-    (SQLITE_ERROR: an unknown file format, a definition that is no SQL) is damage as well.
+    Only a few simple queries are made, so SQLite's failure to understand them (SQLITE_ERROR: an
+    unknown
+    file format, a definition that is not valid SQL) is damage as well.
     """
     if isinstance(error, UnicodeDecodeError):
         return UNREADABLE
@@ -142,7 +145,7 @@ def _said(error: Exception) -> str | None:
 
 
 def _plain(said: str) -> str:
-    """One line without what a terminal would not show: damage gets into SQLite's messages."""
+    """Return one line without unprintable characters, which damage brings into SQLite's messages."""
     return "".join(letter if letter.isprintable() else "?" for letter in said)[:200]
 
 
@@ -157,7 +160,7 @@ def _header_damage(start: bytes) -> str | None:
     if len(start) < _HEADER:
         return "it was cut off"
     numbers = [int.from_bytes(start[at : at + 4], "big") for at in (44, 56)]
-    # https://www.sqlite.org/fileformat2.html, 1.3: what no SQLite writes, and it does not refuse.
+    # https://www.sqlite.org/fileformat2.html, 1.3: values that SQLite never writes but accepts.
     fits = (
         _page_size(start).bit_count() == 1
         and start[18] in (1, 2)
@@ -178,9 +181,9 @@ def _checked(file: Path, *, pages: bool, rows: bool) -> str | None:
     if pages:
         _read_through(file)
     with closing(_read_only(file)) as connection:
-        # Damage gets into the words of SQLite's findings.
+        # Messages of SQLite may include damaged bytes.
         connection.text_factory = _as_readable
-        # Reading the tables' definitions fails where the file is no database at all.
+        # Reading the tables' definitions fails if the file is not a database at all.
         connection.execute("SELECT count(*) FROM sqlite_master").fetchone()
         if not pages:
             return None
@@ -193,7 +196,7 @@ def _checked(file: Path, *, pages: bool, rows: bool) -> str | None:
 
 
 def _require_read(file: Path, finding: str) -> None:
-    """Raise OSError for a finding that shows a disk that could not be read, and no damage."""
+    """Raise OSError if a finding of SQLite shows a read error of the disk instead of damage."""
     code = _ERROR_CODE.search(finding)
     if code is not None and int(code[1]) & 0xFF == sqlite3.SQLITE_IOERR:
         raise OSError(errno.EIO, os.strerror(errno.EIO), str(file))
@@ -204,10 +207,10 @@ def _as_readable(text: bytes) -> str:
 
 
 def _wrong_content(connection: sqlite3.Connection) -> str | None:
-    """What is not as this program writes it, if the database is ours."""
+    """Return what this program cannot have written, if the database is Reembody's."""
     found = columns_in(connection)
     if VERSION_TABLE not in found:
-        # Another program's, or new; with many tables of ours it has lost the name of that one.
+        # Another program's, or new; but with many Reembody tables, the version table was lost.
         ours = {shape.name for shape in shapes_at(newest_revision())}
         return UNNAMED if len(ours & found.keys()) > len(ours) / 4 else None
     names = [one for (one,) in connection.execute(f"SELECT version_num FROM {VERSION_TABLE}")]  # noqa: S608 - our own table
@@ -221,7 +224,7 @@ def _wrong_content(connection: sqlite3.Connection) -> str | None:
 
 
 def _too_new(found: Mapping[str, set[str]], shapes: Iterable[TableShape]) -> list[str]:
-    """What only later schemas than that of these shapes have: a migration would meet it."""
+    """Return tables and columns that only later schemas have; a migration would clash with them."""
     there = {shape.name: {one.name for one in shape.columns} for shape in shapes}
     return [
         f"it has {shape.name}.{column.name} of a later schema than it names"
@@ -232,8 +235,8 @@ def _too_new(found: Mapping[str, set[str]], shapes: Iterable[TableShape]) -> lis
 
 
 def _read_through(file: Path) -> None:
-    """In one go, from the first byte to the last: checking jumps, and a disk is slow at that."""
-    with suppress(OSError):  # checking itself will say where it cannot be read
+    """Read the file sequentially into the cache, because SQLite's check reads it at random places."""
+    with suppress(OSError):  # the check itself will report read errors
         handle = os.open(file, os.O_RDONLY)
         try:
             while os.read(handle, _BLOCK):
@@ -243,5 +246,5 @@ def _read_through(file: Path) -> None:
 
 
 def _read_only(file: Path) -> sqlite3.Connection:
-    # A reader that cannot write leaves the log where it is when it closes.
+    # A read-only connection does not remove the log when it closes.
     return sqlite3.connect(f"{file.absolute().as_uri()}?mode=ro", uri=True, timeout=BUSY_TIMEOUT_S)

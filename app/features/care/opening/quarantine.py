@@ -1,8 +1,8 @@
-"""Putting a damaged database away, never deleting it.
+"""Move a damaged database into quarantine, never deleting it.
 
-Each goes into a folder of its own, `quarantine/UTC/`, with its log and a note. The note's name says
-how far things are: `moving` while files are moved (a start that finds it goes on with that),
-`unresolved` until somebody has decided what to work with instead, `resolved` from then on.
+Each gets a folder of its own, `quarantine/UTC/`, with its log and a note. The note's name is the
+state: `moving` while files are moved (the next start continues if interrupted), `unresolved` until
+somebody has decided what to use instead, `resolved` from then on.
 """
 
 import os
@@ -20,19 +20,19 @@ SUFFIXES = DATABASE_SUFFIXES
 
 @dataclass(frozen=True)
 class Quarantine:
-    """The quarantine beside the database `file`."""
+    """The quarantine folder beside the database `file`."""
 
     file: Path
 
     @property
     def folder(self) -> Path:
-        """Where everything is that was ever put away."""
+        """Return the folder of all databases in quarantine."""
         return self.file.absolute().parent / "quarantine"
 
     def put_away(self, why: str, now: datetime) -> Path:
-        """Move the database with all that belongs to it, unchanged; the folder it is in now.
+        """Move the database with its log and index, unchanged, and return their new folder.
 
-        Raises OSError; what had been moved by then is followed by the rest at the next start.
+        Raises OSError; if some files had been moved by then, the next start moves the others.
         """
         place = self.folder / f"{now:%Y%m%dT%H%M%S.%fZ}"
         place.mkdir(mode=0o700, parents=True)
@@ -47,7 +47,7 @@ class Quarantine:
             )
             flush_to_disk(place, self.folder)
         except OSError:
-            # Nothing was moved yet, and nothing is left of the attempt.
+            # Nothing was moved yet, so the attempt is undone completely.
             shutil.rmtree(place, ignore_errors=True)
             with suppress(OSError):
                 self.folder.rmdir()
@@ -56,23 +56,23 @@ class Quarantine:
         return place
 
     def finish(self) -> None:
-        """Move what an interrupted start left behind."""
+        """Complete a move that was interrupted."""
         for note in sorted(self.folder.glob(f"*/{MOVING}")):
             self._move(note.parent)
 
     def unresolved(self) -> list[Path]:
-        """The folders that nobody has decided about yet, newest last."""
+        """Return the folders that nobody has decided about yet, newest last."""
         return sorted(note.parent for note in self.folder.glob(f"*/{UNRESOLVED}"))
 
     def resolve(self, *places: Path) -> None:
-        """Somebody has decided about these, or all: notes stay, and hold nobody up any more."""
+        """Mark these folders, or all, as decided, so that they no longer prevent a start."""
         for place in places or self.unresolved():
             (place / UNRESOLVED).rename(place / RESOLVED)
 
     def _move(self, place: Path) -> None:
         for suffix in SUFFIXES:
             part = self.file.with_name(self.file.name + suffix)
-            # A part that is there already was moved before the interruption.
+            # A file that is already in the folder was moved before the interruption.
             if part.exists() and not (place / part.name).exists():
                 part.rename(place / part.name)
         flush_to_disk(place, self.file.absolute().parent)
@@ -81,7 +81,7 @@ class Quarantine:
 
 
 def flush_to_disk(*paths: Path) -> None:
-    """Wait until these files and folders are as safe as the disk makes them."""
+    """Flush these files and folders to the disk."""
     for path in paths:
         handle = os.open(path, os.O_RDONLY)
         try:

@@ -1,4 +1,4 @@
-"""What happens to the database at every start, before anything works with it."""
+"""The steps that open the database at every start, before anything uses it."""
 
 import tempfile
 from collections.abc import Iterator
@@ -40,12 +40,14 @@ class Damaged(Conflict):
 
 
 def put_away_if_damaged(settings: Settings, clock: Clock, *, every_row: bool = False) -> None:
-    """Look at the embedded database; one that is damaged goes into quarantine, with its log.
+    """Inspect the embedded database, and move a damaged one into quarantine, with its log.
 
-    Raises Damaged if that happened, Conflict if the file is another program's, and NotDurable where
-    nothing can be told of it, because it cannot be read: these are left alone.
-    Call it in a process that has not opened the database yet. While another process works with it
-    nothing is looked at: that process did so when it started. `every_row`: also in a large file.
+    Raises Damaged if that happened, Conflict if the file is another program's, and NotDurable if it
+    cannot be read, so that its state is unknown; in the last two cases it is left alone.
+
+    Call it in a process that has not opened the database yet. While another process uses the
+    database,
+    it is not inspected: that process did so when it started. `every_row`: also in a large file.
     """
     file = database_file(settings)
     if file is None:
@@ -62,11 +64,13 @@ def put_away_if_damaged(settings: Settings, clock: Clock, *, every_row: bool = F
 
 
 def refuse_to_begin_unasked(settings: Settings, *, new_database: bool) -> None:
-    """An empty database is begun where there was one before only if somebody says so.
+    """Raise Conflict instead of creating an empty database where there was one before.
 
-    There was one if one is in quarantine, or if the data folder holds what belongs to one: backups,
-    the list of erasures and the like. Raises Conflict as long as nobody has decided: neither with
-    `new_database`, nor by a restored backup, nor by a file put in its place.
+    There was one if one is in quarantine, or if the data folder has what belongs to one: backups,
+    the
+    list of erasures and the like. Creating one is allowed once somebody has decided: by
+    `new_database`,
+    by a restored backup, or by a file put in its place.
     """
     file = database_file(settings)
     if file is not None:
@@ -92,11 +96,12 @@ def refuse_to_begin_unasked(settings: Settings, *, new_database: bool) -> None:
 
 
 def bring_up_to_date(settings: Settings, clock: Clock) -> Path | None:
-    """Begin a database where there is none; migrate an older one, after backing it up.
+    """Create a database if there is none; migrate an older one, after backing it up.
 
-    Returns where the backup is, if one was made. Raises Conflict for the database of a newer
-    program or of another one, which is left as it is, and NotDurable where the database cannot be
-    worked with or the backup cannot be written: nothing is migrated then.
+    Returns the path of the backup, if one was made. Raises Conflict for the database of a newer
+    program or of another one, which is left as it is, and NotDurable if the database cannot be used
+    or
+    the backup cannot be written: nothing is migrated then.
     """
     url, file = settings.resolved_database_url, database_file(settings)
     if file is not None and not is_there(file):
@@ -118,7 +123,7 @@ def bring_up_to_date(settings: Settings, clock: Clock) -> Path | None:
 
 @contextmanager
 def begun_if_missing(settings: Settings, clock: Clock) -> Iterator[None]:
-    """A database of the newest schema for the block; one begun for it goes if the block fails."""
+    """Prepare the database for the block; if it was created for it and the block fails, delete it."""
     file = database_file(settings)
     begun = file is not None and not is_there(file)
     bring_up_to_date(settings, clock)
@@ -134,9 +139,10 @@ def begun_if_missing(settings: Settings, clock: Clock) -> Iterator[None]:
 def prepare_database(
     settings: Settings, clock: Clock, *, new_database: bool = False, to_write: bool = False
 ) -> Path | None:
-    """All of the above, in this order, as a command that works with the database needs it.
+    """Inspect, create, back up and migrate the database, for a command that uses it.
 
-    `to_write`: also make sure that it takes what is written, as a server does. Raises NotDurable.
+    `to_write`: also check that it can be written, as a server does. Raises NotDurable, or what the
+    single steps raise.
     """
     put_away_if_damaged(settings, clock)
     refuse_to_begin_unasked(settings, new_database=new_database)
@@ -153,8 +159,9 @@ def prepare_database(
 
 
 def existing_database(settings: Settings) -> Database:
-    """The database as it is, to read from; raises NotFound where there is none, and Conflict where
-    it has a second name.
+    """Open the existing database for reading, without preparing it.
+
+    Raises NotFound if there is none, and Conflict if it has a second name.
     """
     file = database_file(settings)
     if file is not None and not is_there(file):
@@ -168,7 +175,7 @@ def existing_database(settings: Settings) -> Database:
 
 
 def _revision(connection: Connection) -> str | None:
-    """The revision, None for a database without tables; raises Conflict for one of no use to us."""
+    """Return the revision, or None for a database without tables; raise Conflict if it is unusable."""
     found = revision_of(connection)
     if found is None:
         _refuse_foreign(inspect(connection).get_table_names(), str(connection.engine.url.database))
@@ -191,7 +198,7 @@ def _keep(database: Database, revision: str, settings: Settings, clock: Clock) -
 
 
 def _was_used(settings: Settings) -> bool:
-    """Whether anybody has an account: an empty database that a failed restore left has none."""
+    """Return whether there is an account; an empty database after a failed restore has none."""
     database = open_database(settings.resolved_database_url)
     try:
         with database.reading() as db:
@@ -214,7 +221,7 @@ def _refuse_foreign(tables: list[str], name: str) -> None:
 
 
 def _put_away(file: Path, damage: str, settings: Settings, clock: Clock) -> ReembodyError:
-    """Move a damaged database into quarantine; what there is to say."""
+    """Move a damaged database into quarantine and return the error to raise."""
     try:
         place = Quarantine(file).put_away(damage, clock.utc_now())
     except OSError as error:
@@ -233,20 +240,20 @@ def _damaged(what: str, place: Path, settings: Settings) -> Damaged:
 
 
 def _newest_backup(settings: Settings) -> str:
-    """A sentence on the newest that was made on our own account, if there is any."""
+    """Return a sentence on the newest automatic backup, if there is any."""
     folder = backups_of(settings)
     newest = max(folder.glob(f"*{ENDING}"), key=lambda path: path.stat().st_mtime, default=None)
     return "" if newest is None else f" The newest in {folder} is {newest.name}."
 
 
 def _name_of(settings: Settings) -> str:
-    """The database in a message: its file, or its name on the server, never its password."""
+    """Return the database's name for a message: its file, or its name on the server, no password."""
     file = database_file(settings)
     return str(file or make_url(settings.resolved_database_url).database)
 
 
 def _is_missing(settings: Settings) -> bool:
-    """Whether there is nothing yet that could hold data of ours."""
+    """Return whether there is no database yet."""
     file = database_file(settings)
     if file is not None:
         return not is_there(file)
@@ -260,10 +267,10 @@ def _is_missing(settings: Settings) -> bool:
 
 
 def begin(file: Path, clock: Clock) -> None:
-    """Make an empty database with the newest schema at `file`, where there is none.
+    """Create an empty database with the newest schema at `file`, atomically.
 
-    A log that lies there without its database is put into quarantine: SQLite would take it for the
-    new one's. Raises NotDurable where it cannot be made; nothing is left of it then.
+    A log that is there without its database is put into quarantine: SQLite would use it for the new
+    one. Raises NotDurable if the database cannot be created; nothing is left of it then.
     """
     folder = file.absolute().parent
     with plainly(f"a new database cannot be begun in {folder}"):

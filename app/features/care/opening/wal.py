@@ -1,13 +1,13 @@
-"""Whether SQLite's write-ahead log has lost transactions that had been committed.
+"""Detect committed transactions that SQLite's write-ahead log has lost.
 
-SQLite reads the log up to the first frame whose checksum does not fit, and takes that for the place
-where the power failed. If the disk damaged a frame further back, everything behind it is dropped
-just the same, without a word. The difference can be seen: a commit ends with a flush before the
-next one begins, so a power failure leaves at most one unfinished transaction behind that place.
+SQLite reads the log up to the first frame whose checksum does not match, and assumes that the power
+failed there. If the disk damaged a frame further back, everything after it is dropped in the same
+way, without an error. The difference can be detected: a commit ends with a flush before the
+next one begins, so a power failure leaves at most one unfinished transaction after that place.
 Damage leaves all the others. Only a frame whose checksum follows from that of the frame before it
-counts there: a file may have grown over sectors that were never written and hold anything.
+counts there: a file may have grown over sectors that were never written and contain anything.
 
-A log that lost its end is seen where its index is left (`-shm`, after a killed process): SQLite
+A log that lost its end is detected if its index is left (`-shm`, after a killed process): SQLite
 notes there how many frames were committed, and with synchronous FULL only after they were flushed.
 
 Format: https://www.sqlite.org/fileformat2.html, section 4, "The Write-Ahead Log".
@@ -32,9 +32,9 @@ Words = NDArray[np.uint32]
 
 @dataclass(frozen=True)
 class LogReport:
-    """What is in a log. `usable`: frames of whole transactions before the first that does not fit.
+    """The state of a log; `usable`: frames of complete transactions before the first invalid frame.
 
-    `commits_behind`: transactions of this log's own that ended behind that place.
+    `commits_behind`: transactions of this log that ended after the first invalid frame.
     """
 
     header_fits: bool
@@ -43,12 +43,12 @@ class LogReport:
 
     @property
     def damaged(self) -> bool:
-        """Whether transactions are lost that a power failure alone would not have lost."""
+        """Return whether transactions are lost that a power failure alone would not have lost."""
         return not self.header_fits or self.commits_behind > 1
 
 
 def inspect_log(path: Path) -> LogReport:
-    """Read a log without SQLite; one that is missing or empty is in order."""
+    """Inspect a log without SQLite; a missing or empty log is valid."""
     if not path.is_file() or path.stat().st_size <= HEADER:
         return LogReport(header_fits=True, usable=0, commits_behind=0)
     with path.open("rb") as file:
@@ -62,9 +62,10 @@ def inspect_log(path: Path) -> LogReport:
 
 
 def frames_noted(log: Path, index: Path) -> int:
-    """How many frames of this log were committed and not copied yet, as its index has it.
+    """Return how many frames of this log, by its index, were committed and not copied yet.
 
-    0 where the index is missing, torn or another log's. A log too short to say which it is counts
+    0 if the index is missing, torn or another log's. A log that is too short to be identified
+    counts
     as the index's own.
     """
     if not (log.is_file() and index.is_file()):
@@ -102,8 +103,9 @@ def _frames(
         frames = frames[: len(block) // length * length].reshape(-1, length)
         heads = np.ascontiguousarray(frames[:, :FRAME_HEADER]).view(">u4").astype(np.uint32)
         own = (heads[:, 2] == salts[0]) & (heads[:, 3] == salts[1])
-        # Follow each from the sum that the frame before it holds, right or not: as long as all are
-        # right that is the sum which SQLite keeps.
+        # Compute each from the stored checksum of the frame before, valid or not: as long as all
+        # are
+        # valid, that is the running checksum of SQLite.
         sums_before = np.concatenate([last_sum, heads[:, 4:6]])
         covered = np.concatenate([frames[:, :8], frames[:, FRAME_HEADER:]], axis=1)
         sums = checksum.each(_words(covered.tobytes(), order, len(frames)), sums_before[:-1])
@@ -136,14 +138,14 @@ class _Checksum:
         power = ((1, 0), (0, 1))
         weights = []
         for _ in range(pairs):
-            # What the words of a pair with so many pairs behind it add: M^k times ((1, 0), (1, 1)).
+            # The weights of a pair followed by k pairs: M^k times ((1, 0), (1, 1)).
             weights.append(_times(power, ((1, 0), (1, 1))))
             power = _times(power, step)
         self._power: Words = np.array(power, dtype=np.uint32)
         self._weights: Words = np.array(weights[::-1], dtype=np.uint32)
 
     def each(self, blocks: Words, before: Words) -> Words:
-        """The state (n, 2) after each of n blocks (n, pairs, 2) from the state (n, 2) before it."""
+        """Return the states (n, 2) after n blocks (n, pairs, 2) from the states before them (n, 2)."""
         added = np.einsum("npx,psx->ns", blocks, self._weights)
         return np.asarray(before @ self._power.T + added, np.uint32)
 

@@ -1,9 +1,9 @@
-"""One owner for the data: the server, or a command that changes more than a row of its own.
+"""One owner for the data: the server, or a command that changes more than single rows.
 
-owner           who that is, as text that others read
+owner           the description of an owner, as text for other processes
 folder_lock     the operating system's lock on a folder
 database_lock   the lock of a PostgreSQL database
-service         taking both, noticing a loss, and what else may work beside an owner
+service         take both locks, detect a loss, and allow commands beside an owner
 """
 
 from app.features.care.ownership.owner import Owned

@@ -1,9 +1,9 @@
-"""The lock of a PostgreSQL database: an advisory lock of a session, on a connection of its own.
+"""The lock of a PostgreSQL database: a session's advisory lock, on a connection of its own.
 
-The connection belongs to no pool, so nothing recycles it, and the server lets go of the lock when
-the connection ends, however that happens. Who holds it stands in the connection's name. It has to
-reach the server itself: behind a pooler that hands connections round (PgBouncer's transaction mode)
-a session's lock is worth nothing, which `is_held` notices.
+The connection belongs to no pool, so nothing recycles it, and the server releases the lock when
+the connection ends for any reason. The connection's name says who holds the lock. It has to
+reach the server itself: behind a pooler that shares connections (PgBouncer's transaction mode)
+a session's lock has no effect, which `is_held` detects.
 """
 
 import contextlib
@@ -34,7 +34,7 @@ _ENDED_NOTICED_BY_SERVER = (
 
 
 class DatabaseLock:
-    """The lock on the database at `url`, held from its making on.
+    """The lock on the database at `url`, taken on construction.
 
     Raises Owned, and what `connected` raises.
     """
@@ -44,26 +44,26 @@ class DatabaseLock:
         self._connection = self._taken()
 
     def announce(self, owner: Owner) -> None:
-        """Name the connection after who holds it."""
+        """Set the connection's name to the owner's description."""
         self._owner = owner
         with contextlib.suppress(SQLAlchemyError):
             _name(self._connection, owner)
 
     def is_held(self) -> bool:
-        """Whether this connection still holds it; asks the server."""
+        """Query the server whether this connection still holds the lock."""
         query = f"SELECT count(*) FROM pg_locks WHERE pid = pg_backend_pid() AND {_MINE}"  # noqa: S608 - constants
         try:
             return bool(self._connection.execute(text(query), _KEYS).scalar())
-        except SQLAlchemyError:  # also that of a connection which is closed already
+        except SQLAlchemyError:  # including the error of a closed connection
             return False
 
     def take_again(self) -> None:
-        """Connect anew and take it; raises as the first time."""
+        """Reconnect and take the lock; raise as on construction."""
         disconnect(self._connection)
         self._connection = self._taken()
 
     def release(self) -> None:
-        """Let go."""
+        """Release the lock by closing the connection."""
         disconnect(self._connection)
 
     def _taken(self) -> Connection:
@@ -96,7 +96,7 @@ def _name(connection: Connection, owner: Owner) -> None:
 
 
 def _holder(connection: Connection) -> Owner | None:
-    """Who holds it; None where this role may not read another one's connections."""
+    """Return who holds the lock; None if this role may not read other connections."""
     found = connection.execute(
         text(
             "SELECT application_name, backend_start FROM pg_stat_activity WHERE pid IN "  # noqa: S608 - constants

@@ -1,11 +1,11 @@
-"""The operating system's lock on a folder: held by an open file, gone with its process.
+"""The operating system's lock on a folder: held by an open file, released with its process.
 
 The lock is on the file `owner.lock` in the folder, so every path that leads to the folder leads to
-the same lock. The file stays there, but in a folder that the lock itself has made and nobody has
-used. Its text says who holds it, and means nothing by itself: what counts is the lock. It is
-`flock`, which belongs to the open file. No process that this one starts inherits the file, and a
-plain fork closes it again, so that a worker which outlives its server holds nothing; and closing
-some other handle, as with POSIX record locks, loses nothing.
+the same lock. The file stays, except in a folder that the lock itself created and nobody used. Its
+text says who holds the lock, but only the lock itself counts. It is `flock`, which belongs to the
+open file. No process that this one starts inherits the file, and a plain fork closes it,
+so a worker that outlives its server holds no lock; and closing some other handle, unlike with POSIX
+record locks, does not release it.
 """
 
 import errno
@@ -27,8 +27,9 @@ _HELD = (errno.EACCES, errno.EAGAIN, errno.EDEADLK)
 
 
 class FolderLock:
-    """The lock on a folder, held from its making on. Raises Owned, and NotDurable where the folder
-    cannot be written or its file system has no locks.
+    """The lock on a folder, taken on construction.
+
+    Raises Owned, and NotDurable if the folder cannot be written or its file system has no locks.
     """
 
     def __init__(self, folder: Path, owner: Owner) -> None:
@@ -49,12 +50,12 @@ class FolderLock:
         self.announce(owner)
 
     def announce(self, owner: Owner) -> None:
-        """Write down who holds it; a full disk keeps nobody from holding it."""
+        """Write the owner's description to the lock file; ignore a full disk."""
         self._owner = owner
         text = owner.as_text().encode()
         if self._handle is not None:
             try:
-                # In place first: the block is there already, and a full disk gives no other.
+                # Overwrite in place: the block is allocated already, and a full disk has no other.
                 os.lseek(self._handle, 0, os.SEEK_SET)
                 os.write(self._handle, text)
                 os.ftruncate(self._handle, len(text))
@@ -62,22 +63,23 @@ class FolderLock:
                 return
 
     def is_held(self) -> bool:
-        """Whether others still meet this lock: not where somebody removed or replaced its file."""
+        """Return whether the lock is still effective: not if its file was removed or replaced."""
         return self._handle is not None and _is_at(self._handle, self._file)
 
     def take_again(self) -> None:
-        """Lock the file that is there now; raises as the first time."""
+        """Lock the file that is there now; raise as on construction."""
         before, self._handle = self._handle, self._taken()
         if before is not None:
             os.close(before)
         self.announce(self._owner)
 
     def release(self) -> None:
-        """Let go. A folder that was made for the lock and has nothing else in it goes, too."""
+        """Release the lock, and remove a folder that was created for it and has nothing else in it."""
         unused = self._handle is not None and bool(self._made) and self._is_empty()
         with suppress(OSError):
             if unused:
-                # While it is held: who opened it meanwhile finds that it is not there any more.
+                # Unlink while the lock is held: a process that opened the file meanwhile notices
+                # that.
                 self._file.unlink()
         self.forget()
         with suppress(OSError):
@@ -86,14 +88,14 @@ class FolderLock:
                     folder.rmdir()
 
     def forget(self) -> None:
-        """Close the file. In a fork the lock is the parent's, and ends with the parent."""
+        """Close the file; in a fork, the lock stays with the parent process."""
         handle, self._handle = self._handle, None
         _HOLDING.discard(self)
         if handle is not None:
             os.close(handle)
 
     def _is_empty(self) -> bool:
-        """Whether there is nothing in the folder but the lock."""
+        """Return whether there is only the lock file in the folder."""
         try:
             return [one.name for one in self.folder.iterdir()] == [NAME]
         except OSError:
@@ -111,12 +113,12 @@ class FolderLock:
                 raise
             if _is_at(handle, self._file):
                 return handle
-            # Somebody replaced the file in between.
+            # The file was replaced in the meantime.
             os.close(handle)
         raise OSError(errno.EAGAIN, "its lock file is replaced again and again")
 
     def _holder(self) -> Owner | None:
-        # Whoever has just taken it may not have replaced the text of the owner before.
+        # A new holder may not have replaced the text of the previous owner yet.
         time.sleep(_SETTLES_S)
         try:
             return Owner.from_text(self._file.read_text(encoding="utf-8"))

@@ -1,4 +1,4 @@
-"""Who owns the data of an installation, as text that another process can read and print."""
+"""The owner of an installation's data, as text that another process can read and print."""
 
 import json
 import os
@@ -20,12 +20,12 @@ class Owner:
     """A process that owns data.
 
     Attributes:
-        pid: its id, as it sees itself; in a container that is another one than outside.
-        port: where a server is reached on this machine; None for a command.
-        host: the name of its machine.
-        since: when it took the data, ISO 8601 in UTC.
-        command: what it does, as typed behind `reembody`.
-        namespace: which process ids it knows; empty where nobody says.
+        pid: Its id, as it sees itself; in a container that differs from the id outside.
+        port: Where a server is reached on this machine; None for a command.
+        host: The name of its machine.
+        since: When it took the data, ISO 8601 in UTC.
+        command: The command, as typed after `reembody`.
+        namespace: The namespace of its process id; empty if unknown.
     """
 
     pid: int
@@ -37,21 +37,21 @@ class Owner:
 
     @classmethod
     def myself(cls, command: str, port: int | None = None) -> Self:
-        """This process, from now on."""
+        """Return this process as an owner, from now on."""
         now = datetime.now(UTC).isoformat(timespec="seconds")
         return cls(os.getpid(), port, socket.gethostname(), now, command, _namespace())
 
     def at(self, port: int) -> "Owner":
-        """The same with the port that it was given."""
+        """Return a copy with another port."""
         return replace(self, port=port)
 
     def as_text(self) -> str:
-        """The lines that stand in the lock's file."""
+        """Return the text of the lock file."""
         return json.dumps(asdict(self), indent=2) + "\n"
 
     @classmethod
     def from_text(cls, text: str) -> Self | None:
-        """What `as_text` wrote; None for anything else."""
+        """Parse the text of `as_text`; return None for any other text."""
         try:
             return cls(**json.loads(text))
         except (ValueError, TypeError):
@@ -59,11 +59,11 @@ class Owner:
 
     @property
     def ends_by_itself(self) -> bool:
-        """Whether it is worth to wait: a command, or a server that has just died."""
+        """Return whether to wait for this owner: it is a command, or a server that has just died."""
         return self.command != SERVER or self._is_dead()
 
     def __str__(self) -> str:
-        """Process id, port, machine and time, for a sentence."""
+        """Return process id, port, machine and time, for a sentence."""
         what = "server" if self.command == SERVER else f"command `{self.command}`"
         port = "" if self.port is None else f" on port {self.port}"
         where = "" if self._is_here else " of another container or machine"
@@ -89,7 +89,7 @@ class Owner:
 
 
 class Owned(Conflict):
-    """The data have another owner; `owner` is None where it could not be read who that is."""
+    """The data have another owner; `owner` is None if it could not be identified."""
 
     code = "owned"
 

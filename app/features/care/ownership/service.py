@@ -1,4 +1,4 @@
-"""Taking the data, keeping hold of them, and working beside whoever owns them.
+"""Take ownership of the data, keep it, and allow some commands beside an owner.
 
 The data of an installation are the folder of its settings, the folder of its embedded database
 (often the same one), and its PostgreSQL database. An owner holds the locks of all of them, and
@@ -40,7 +40,7 @@ class _Lock(Protocol):
 
 
 class Ownership:
-    """The locks of one owner; they end with `release`, or with the process."""
+    """The locks of one owner, held until `release` or the end of the process."""
 
     def __init__(self, owner: Owner, locks: list[_Lock]) -> None:
         self.owner = owner
@@ -48,15 +48,16 @@ class Ownership:
         self._mutex = threading.Lock()
 
     def announce(self, port: int) -> None:
-        """Say which port it is."""
+        """Add the server's port to the owner's description."""
         with self._mutex:
             self.owner = self.owner.at(port)
             for lock in self._locks:
                 lock.announce(self.owner)
 
     def hold(self) -> bool:
-        """Take again what was lost; whether anything was. Raises Owned where somebody else was
-        quicker, and NotDurable where it cannot be had at the moment.
+        """Take locks again that were lost; return whether there were any.
+
+        Raises Owned if another process has taken them, and NotDurable if they cannot be taken now.
         """
         with self._mutex:
             lost = [lock for lock in self._locks if not lock.is_held()]
@@ -65,7 +66,7 @@ class Ownership:
             return bool(lost)
 
     def release(self) -> None:
-        """Let go of everything."""
+        """Release all locks."""
         with self._mutex:
             while self._locks:
                 self._locks.pop().release()
@@ -80,9 +81,9 @@ class Ownership:
 def own_data(settings: Settings, command: str = SERVER, *, port: int | None = None) -> Ownership:
     """Become the owner of the data, before anything is done with them.
 
-    Raises Owned, naming the owner there is; a command, which ends by itself, is waited for a
-    little. Raises NotDurable, InvalidInput or Conflict where data cannot be locked or could not be
-    worked with at all.
+    Raises Owned, naming the current owner; if that is a command, which ends by itself, waits for a
+    short time first. Raises NotDurable, InvalidInput or Conflict if data cannot be locked or are
+    unusable.
     """
     owner, give_up_s = Owner.myself(command, port), time.monotonic() + WAIT_S
     while True:
@@ -96,15 +97,17 @@ def own_data(settings: Settings, command: str = SERVER, *, port: int | None = No
 
 
 def _locks(settings: Settings, owner: Owner) -> list[_Lock]:
-    """All locks or none, always in the same order: of two that start, one gets them.
+    """Take all locks or none, always in the same order, so that one of two processes gets them.
 
-    They are locks on folders, which hold nobody off who has the database by another name.
+    Locks on folders have no effect on processes that open the database by another name, so it must
+    have
+    only one.
     """
     require_one_name(settings)
     folders = {settings.data_dir.resolve()}
     file = database_file(settings)
     if file is not None:
-        # SQLite keeps its log beside the file itself, wherever a link to it stands.
+        # SQLite keeps its log beside the file itself, not beside a link to it.
         folders |= {home_of(settings).resolve(), file.resolve().parent}
     with ExitStack() as otherwise:
         taken: list[_Lock] = []
@@ -125,11 +128,13 @@ def _locks(settings: Settings, owner: Owner) -> list[_Lock]:
 def prepared_beside_owner(
     settings: Settings, command: str, prepare: Callable[[], object]
 ) -> Iterator[None]:
-    """For a command that reads, or adds rows in transactions of its own.
+    """Allow a command that reads, or adds rows in transactions of its own, beside an owner.
 
-    Without an owner the data are its own while it prepares them (`prepare`), as a server would.
-    Beside an owner, who has done that, nothing is prepared; raises NotNow while the owner is still
-    at it, or where the database is not that of this version.
+    Without an owner, the command owns the data while it prepares them (`prepare`), as a server
+    does.
+    Beside an owner, which has prepared them, it does not; raises NotNow if the owner is still
+    preparing
+    them, or if the database is of another version.
     """
     try:
         own = own_data(settings, command)
@@ -162,9 +167,10 @@ def _require_prepared(settings: Settings, owned: Owned) -> None:
 
 
 class OwnerWatch(Part):
-    """Looks now and then whether the data are still ours, and takes them again where it can.
+    """Check regularly whether this server still owns the data, and take lost locks again.
 
-    Where somebody else has them, `taken_over` is called: two servers on the same data are worse
+    If another process has taken them, `taken_over` is called: two servers on the same data are
+    worse
     than none.
     """
 
@@ -176,11 +182,11 @@ class OwnerWatch(Part):
         self._thread: threading.Thread | None = None
 
     def start(self) -> None:
-        """Begin to look."""
+        """Start the thread that checks the locks."""
         self._thread = self._background.thread(OWNER, self._watch, critical=True)
 
     def stop(self) -> None:
-        """Look no more."""
+        """Stop checking the locks."""
         self._stop.set()
         if self._thread is not None:
             self._thread.join(timeout=10.0)
@@ -190,7 +196,7 @@ class OwnerWatch(Part):
             self.look()
 
     def look(self) -> None:
-        """Once."""
+        """Check the locks once, and take lost ones again."""
         try:
             lost = self._own.hold()
         except Owned as error:
@@ -199,7 +205,7 @@ class OwnerWatch(Part):
             self._taken_over()
             self._stop.set()
         except ReembodyError as error:
-            # Nobody else has them, as far as anybody can tell: tried again at the next look.
+            # No other owner is known, so the next check tries again.
             self._background.failed(OWNER, error)
         else:
             if lost:

@@ -1,11 +1,11 @@
-"""What participants may ask for afterwards: a copy, a correction, and that their data go.
+"""Participants' rights after a session: a copy of their data, corrections and erasure.
 
-An erasure that was promised stays made: a database from an older backup is erased again at the
-start (`finish_erasures`) and within a restore (`ErasureReplay`).
+An erasure is permanent: in a database from an older backup it is repeated at the start
+(`finish_erasures`) and within a restore (`ErasureReplay`).
 
 erasing       one erasure, in one transaction
 tombstones    the list of erasures beside the database, which outlives a restored backup
-service       erasures that stay made, whatever database comes back
+service       repeat erasures in databases from older backups
 copies        exports, access copies and backups that left the database
 corrections   later values of answers, with their reasons
 participants  the participants of a study

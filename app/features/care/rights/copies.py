@@ -1,4 +1,4 @@
-"""Copies of data that left the database: an erasure cannot reach them, so it lists them."""
+"""List copies of data that left the database, because an erasure cannot reach them."""
 
 from collections.abc import Mapping, Sequence
 from datetime import datetime
@@ -19,7 +19,7 @@ FOUND_BY = "system"
 
 
 def copies_of_study(db: Session, study_id: str) -> list[CopyMade]:
-    """Exports and access copies of a study, and backups, which hold every study; newest first."""
+    """Return exports and access copies of a study, and all backups, newest first."""
     of_study = or_(CopyMade.study_id == study_id, CopyMade.study_id.is_(None))
     return list(db.scalars(select(CopyMade).where(of_study).order_by(CopyMade.at.desc())))
 
@@ -27,9 +27,10 @@ def copies_of_study(db: Session, study_id: str) -> list[CopyMade]:
 def copies_by_participant(
     db: Session, study: Study, people: Sequence[Participant], began: Mapping[str, datetime]
 ) -> dict[str, list[CopyMade]]:
-    """For each of a study's participants, whose first session `began`: copies that may hold them.
+    """Return the copies that may contain each of a study's participants.
 
-    The same as `copies_holding` for each, with one look at the table.
+    `began` maps each participant to the start of their first session. The result is that of
+    `copies_holding` for each of them, from one query.
     """
     of_study = (CopyMade.study_id == study.id) | (CopyMade.kind == "backup")
     query = select(CopyMade).where(CopyMade.destroyed_at.is_(None), of_study)
@@ -42,14 +43,14 @@ def copies_by_participant(
 
 
 def _holds(copy: CopyMade, participant: Participant) -> bool:
-    """The rule of `_may_hold` for a copy of the participant's study, or a backup."""
+    """Apply the rule of `_may_hold` to a copy of the participant's study, or to a backup."""
     if copy.kind == "export":
         return copy.session_kind in (participant.kind, "all")
     return copy.kind == "backup" or copy.participant_id == participant.id
 
 
 def copies_holding(db: Session, participant: Participant) -> list[CopyMade]:
-    """Copies not destroyed yet that were made since the participant's first session began."""
+    """Return copies made since the participant's first session began, unless destroyed."""
     began = db.scalar(
         select(StudySession.created_at)
         .where(StudySession.participant_id == participant.id)
@@ -75,11 +76,12 @@ def _may_hold(participant: Participant) -> ColumnElement[bool]:
 
 
 def register_found(db: Session, settings: Settings, now: datetime) -> Sequence[CopyMade]:
-    """Put copies of the database on record that the product made without being asked.
+    """Record copies of the database that the product made automatically, and return their rows.
 
-    Backups before a migration or a restore, and databases in quarantine, in the data folder; and
-    what is not whole yet: a backup or an export that is being made now sees the data as they were,
-    and one that a crash left is removed, or on a disk that is not there.
+    They are backups before a migration or a restore, and databases in quarantine, in the data
+    folder.
+    Unfinished ones are recorded, too: a backup or an export in progress may see the data before an
+    erasure, and one that a crash left is removed, or is on a disk that is not connected.
     """
     known = set(db.scalars(select(CopyMade.place).where(CopyMade.kind == "backup")))
     found = []
@@ -118,7 +120,7 @@ def _files(backups: Path) -> list[Path]:
 
 
 def mark_destroyed(db: Session, copy_id: str, *, actor: str, now: datetime) -> CopyMade:
-    """Somebody says that a copy is gone; saying it twice changes nothing. Raises NotFound."""
+    """Record that a copy was destroyed, once; raise NotFound if there is no such copy."""
     row = db.get(CopyMade, copy_id)
     if row is None:
         raise NotFound("there is no such copy", value=copy_id)

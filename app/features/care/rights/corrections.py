@@ -1,7 +1,7 @@
-"""Correcting an answer: a new value beside the first one, with its reason, on the session's log.
+"""Correct an answer: add a new value to the first one, with its reason, and log it.
 
-The log holds a salted hash of the values and the reason; the words stand beside it, so that they
-can be erased.
+The event log has a salted hash of the values and the reason; the texts are stored separately, so
+that they can be erased.
 """
 
 from sqlalchemy.orm import Session
@@ -27,10 +27,10 @@ def correct(
     reason: str,
     actor: str,
 ) -> AnswerCorrection:
-    """Let `value` count in the place of the answer to `item`; None leaves it out.
+    """Replace the valid answer to `item` by `value`, or by no answer for None.
 
     `session` must be locked. Raises NotFound for a form that is not of this session, InvalidInput
-    for an answer that is not possible or without a reason, NotNow where the data were erased.
+    for an impossible answer or without a reason, NotNow if the data were erased.
     """
     submission = db.get(Submission, submission_id)
     if submission is None or submission.session_id != session.id:

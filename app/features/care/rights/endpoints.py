@@ -1,4 +1,4 @@
-"""Participants' rights over HTTP: who took part, their copy, corrections, erasure, copies made."""
+"""HTTP endpoints of participants' rights: access copies, corrections and erasure."""
 
 from fastapi import APIRouter
 from fastapi.responses import StreamingResponse
@@ -34,7 +34,7 @@ router = APIRouter(tags=["rights"])
 
 @router.get("/studies/{key}/participants")
 def get_participants(key: str, db: Reading, context: Context, _: SignedIn) -> list[ParticipantView]:
-    """Who took part, newest first, with their sessions; erased ones as tombstones."""
+    """Return the participants, newest first, with their sessions; erased ones as tombstones."""
     return participants_of(db, context.settings, study_by_key(db, key))
 
 
@@ -46,7 +46,7 @@ def get_participants(key: str, db: Reading, context: Context, _: SignedIn) -> li
 async def post_erasure(
     key: str, participant_id: str, request: ErasureRequest, context: Context, caller: SignedIn
 ) -> ErasureView:
-    """Erase everything about a participant; what stays is that there were sessions."""
+    """Erase everything about a participant, except that there were sessions."""
     await run_in_threadpool(_expect, context, key, participant_id, request.confirm)
     async with context.database.writing_async() as db:
 
@@ -62,13 +62,13 @@ async def post_erasure(
             )
 
         await run_in_threadpool(in_transaction)
-    # Files that wait to be fetched may hold what was erased.
+    # Exported files that were not downloaded yet may contain what was erased.
     await run_in_threadpool(context.part(ExportDesk).forget_study, key)
     return await run_in_threadpool(_finished, context, participant_id)
 
 
 def _expect(context: AppContext, key: str, participant_id: str, confirm: str) -> None:
-    """Refuse before anything is done, then remember that bytes will have to be overwritten."""
+    """Check that the erasure is allowed, then note that bytes will have to be overwritten."""
     with context.database.reading() as db:
         participant = participant_of(db, study_by_key(db, key), participant_id)
         require_erasable(db, participant, confirm)
@@ -76,7 +76,7 @@ def _expect(context: AppContext, key: str, participant_id: str, confirm: str) ->
 
 
 def _finished(context: AppContext, participant_id: str) -> ErasureView:
-    """What follows once the rows are gone: the list beside the database, and the bytes."""
+    """Complete the list of erasures and overwrite the bytes, after the rows were deleted."""
     try:
         keep_tombstones(context)
     finally:
@@ -95,8 +95,8 @@ def _finished(context: AppContext, participant_id: str) -> ErasureView:
 def get_access(
     key: str, participant_id: str, db: Writing, context: Context, caller: SignedIn
 ) -> StreamingResponse:
-    """Everything about one participant as a ZIP: a page to read, and the data."""
-    # Loads pandas, which the start of the server need not wait for.
+    """Download everything about one participant as a ZIP: a page to read, and the data."""
+    # Imported here because it loads pandas, which would slow down the server's start.
     from app.features.care.rights.access.archive import access_archive, access_name
 
     study = study_by_key(db, key)
@@ -130,7 +130,7 @@ def get_access(
 
 
 def _revealed(db: Session, study: Study, participant_id: str) -> dict[str, list[str]]:
-    """The participant's sessions that tell their condition in the copy although not completed."""
+    """Return the participant's open sessions whose condition the copy reveals."""
     own = select(StudySession.id).where(StudySession.participant_id == participant_id)
     revealed = revealed_sessions(db, study) & frozenset(db.scalars(own))
     return {"revealed": sorted(revealed)} if revealed else {}
@@ -145,7 +145,7 @@ def post_correction(
     context: Context,
     caller: SignedIn,
 ) -> StoredAnswers:
-    """Correct an answer: the first one is kept, the scores are computed anew."""
+    """Correct an answer: the first value is kept, and the scores are computed again."""
     session = session_by_id(db, session_id, lock=True)
     correct(
         db,
@@ -162,12 +162,12 @@ def post_correction(
 
 @router.get("/studies/{key}/copies")
 def get_copies(key: str, db: Reading, _: SignedIn) -> list[CopyView]:
-    """Copies of the study's data that left the database, newest first, and all backups."""
+    """Return copies of the study's data that left the database, and all backups, newest first."""
     return [copy_view(db, row) for row in copies_of_study(db, study_by_key(db, key).id)]
 
 
 @router.post("/copies/{copy_id}/destroyed")
 def post_destroyed(copy_id: str, db: Writing, context: Context, caller: SignedIn) -> CopyView:
-    """Put on record that a copy was destroyed; saying it again changes nothing."""
+    """Record that a copy was destroyed; repeating it changes nothing."""
     now = context.clock.utc_now()
     return copy_view(db, mark_destroyed(db, copy_id, actor=caller.actor, now=now))

@@ -1,4 +1,4 @@
-"""Erasing a participant: one transaction, after which only the skeleton of the record is left."""
+"""Erase a participant in one transaction, leaving only the skeleton of the record."""
 
 from collections.abc import Sequence
 from datetime import datetime
@@ -18,7 +18,7 @@ from app.platform.context import AppContext
 
 
 def participant_of(db: Session, study: Study, participant_id: str) -> Participant:
-    """A participant of a study; raises NotFound."""
+    """Return a participant of a study; raise NotFound if there is none with this id."""
     row = db.get(Participant, participant_id)
     if row is None or row.study_id != study.id:
         raise NotFound("there is no such participant", value=participant_id)
@@ -26,7 +26,7 @@ def participant_of(db: Session, study: Study, participant_id: str) -> Participan
 
 
 def erasure_of(db: Session, participant_id: str) -> Erasure | None:
-    """The tombstone of a participant whose data were erased."""
+    """Return the tombstone of a participant, or None if their data were not erased."""
     return db.scalar(select(Erasure).where(Erasure.participant_id == participant_id))
 
 
@@ -41,7 +41,7 @@ def erase(
 ) -> Erasure:
     """Erase everything about a participant; `confirm` is their code, typed again.
 
-    Raises InvalidInput where the code is another one, Conflict where it was done before, and NotNow
+    Raises InvalidInput if the code is a different one, Conflict if it was done before, and NotNow
     while a session of theirs is active.
     """
     sessions = locked_sessions(db, participant)
@@ -68,7 +68,7 @@ def erase(
 
 
 def require_erasable(db: Session, participant: Participant, confirm: str) -> None:
-    """Raise Conflict, InvalidInput or NotNow where `erase` would."""
+    """Raise Conflict, InvalidInput or NotNow if `erase` would."""
     if erasure_of(db, participant.id) is not None:
         raise Conflict(
             "the data of this participant were erased before",
@@ -107,7 +107,7 @@ def erase_now(
     at: datetime,
     why: str,
 ) -> Erasure:
-    """The erasure itself: rows, events, the code, the tombstone.
+    """Delete rows and texts, log the erasure, replace the code and add a tombstone.
 
     `sessions`: all of the participant's, from `locked_sessions`; those still running are ended.
     """
@@ -117,10 +117,10 @@ def erase_now(
         command = EraseData(erasure_id=erasure_id, reason_code=why, even_though_active=True)
         apply_command(db, context, session, command, actor=by)
     if participant.kind == "people":
-        # What a file said of the same person, known by the same code.
+        # Answers from imported files with the same code are of the same person.
         imported = forget_participant(db, participant.study_id, participant.code)
         removed |= {ImportedForm.__tablename__: imported} if imported else {}
-    # Nothing of the old code is in the new one.
+    # The new code contains nothing of the old one.
     participant.code = f"erased-{erasure_id[:8].upper()}"
     register_found(db, context.settings, now)
     erasure = Erasure(
@@ -139,7 +139,7 @@ def erase_now(
 
 
 def locked_sessions(db: Session, participant: Participant) -> list[StudySession]:
-    """Every session of a participant, oldest first; what is being stored of them is waited for."""
+    """Lock and return every session of a participant, oldest first, after pending writes."""
     query = (
         select(StudySession)
         .where(StudySession.participant_id == participant.id)
@@ -151,5 +151,5 @@ def locked_sessions(db: Session, participant: Participant) -> list[StudySession]
 
 
 def copy_left(row: CopyMade) -> dict[str, Any]:
-    """A copy outside the database, as a tombstone lists it."""
+    """Return a copy outside the database as an entry of a tombstone."""
     return {"id": row.id, "kind": row.kind, "place": row.place, "at": row.at.isoformat()}

@@ -1,4 +1,4 @@
-"""The participants of a study with their sessions, and what became of their data."""
+"""List the participants of a study with their sessions, copies and erasures."""
 
 import json
 from collections import defaultdict
@@ -24,14 +24,14 @@ CopyKind = Literal["export", "access", "backup"]
 
 
 def participants_of(db: Session, settings: Settings, study: Study) -> list[ParticipantView]:
-    """Every participant of a study, newest first, those that were erased among them."""
+    """Return every participant of a study, newest first, including erased ones."""
     rows = db.scalars(
         select(Participant)
         .where(Participant.study_id == study.id)
         .order_by(Participant.created_at.desc(), Participant.code.desc())
     ).all()
     sessions: dict[str, list[ParticipantSession]] = defaultdict(list)
-    # Just what is shown: a thousand whole sessions would be most of the work.
+    # Only the columns shown: loading a thousand complete sessions would take most of the time.
     own = select(
         StudySession.participant_id,
         StudySession.id,
@@ -81,7 +81,7 @@ def _participant(
 
 
 def erasure_view(db: Session, settings: Settings, row: Erasure) -> ErasureView:
-    """A tombstone, with what became of the copies it lists."""
+    """Return a tombstone with the current state of the copies that it lists."""
     ids = [str(one["id"]) for one in row.remaining]
     known = {one.id: one for one in db.scalars(select(CopyMade).where(CopyMade.id.in_(ids)))}
     return ErasureView(
@@ -98,7 +98,7 @@ def erasure_view(db: Session, settings: Settings, row: Erasure) -> ErasureView:
 
 
 def copy_view(db: Session, row: CopyMade) -> CopyView:
-    """A copy as the page lists it."""
+    """Return a copy as a response model."""
     study = None if row.study_id is None else db.get(Study, row.study_id)
     return CopyView(
         **_left(row).model_dump(),
@@ -122,12 +122,12 @@ def _left(row: CopyMade) -> CopyLeft:
 
 
 def _told(one: Mapping[str, str]) -> CopyLeft:
-    """A copy that only the tombstone knows: the database is that of an older backup."""
+    """Return a copy that is only in the tombstone, because the database is from an older backup."""
     return CopyLeft.model_validate({**one, "destroyed_at": None, "destroyed_by": None})
 
 
 def _reason(db: Session, row: Erasure) -> str:
-    """Why: the sessions' logs say it."""
+    """Return the reason code of an erasure from the sessions' event logs."""
     event = db.scalar(
         select(SessionEvent).where(
             SessionEvent.session_id.in_([str(one) for one in row.sessions]),

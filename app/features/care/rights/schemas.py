@@ -1,4 +1,4 @@
-"""Participants' rights as they travel to a page."""
+"""Request and response models of participants' rights."""
 
 from datetime import datetime
 from typing import Annotated, Literal
@@ -10,7 +10,7 @@ Answered = Annotated[str, Field(max_length=20_000)] | bool | float | None
 
 
 class NewCorrection(BaseModel):
-    """Another value for one answer, and how one knows; null leaves it out."""
+    """A corrected value of one answer with its reason; null removes the answer."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -20,7 +20,7 @@ class NewCorrection(BaseModel):
 
 
 class ErasureRequest(BaseModel):
-    """Erase everything about a participant. `confirm` is their code, typed again."""
+    """A request to erase everything about a participant; `confirm` is their code, typed again."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -29,7 +29,7 @@ class ErasureRequest(BaseModel):
 
 
 class CopyLeft(BaseModel):
-    """A copy outside the database that may hold what was erased."""
+    """A copy outside the database that may contain erased data."""
 
     id: str
     kind: Literal["export", "access", "backup"]
@@ -40,9 +40,10 @@ class CopyLeft(BaseModel):
 
 
 class ErasureView(BaseModel):
-    """A tombstone. `removed`: rows by table.
+    """A tombstone; `removed` is the number of deleted rows by table.
 
-    `overwritten`: no byte of them is left in the database. Else the next start overwrites them.
+    `overwritten`: no byte of them is left in the database; otherwise the next start overwrites
+    them.
     """
 
     id: str
@@ -55,7 +56,7 @@ class ErasureView(BaseModel):
 
 
 class ParticipantSession(BaseModel):
-    """One visit."""
+    """One session of a participant."""
 
     id: str
     status: str
@@ -65,7 +66,7 @@ class ParticipantSession(BaseModel):
 
 
 class ParticipantView(BaseModel):
-    """Somebody who took part, by pseudonym. `copies`: those that may hold their data."""
+    """A participant by pseudonym; `copies` are those that may contain their data."""
 
     id: str
     code: str
@@ -79,7 +80,7 @@ class ParticipantView(BaseModel):
 class CopyView(CopyLeft):
     """A copy that left the database: an export, an access copy or a backup.
 
-    `place`: a file, or who downloaded it. `bytes` where it is known.
+    `place`: a file, or who downloaded it. `bytes` is null if the size is unknown.
     """
 
     study_key: str | None

@@ -1,4 +1,4 @@
-"""Erasures that stay made: a database that came out of an older backup does not know of them."""
+"""Repeat erasures in a database from an older backup, which still has the erased data."""
 
 import logging
 from collections.abc import Sequence
@@ -22,9 +22,10 @@ log = logging.getLogger(__name__)
 
 @dataclass
 class ErasureReplay:
-    """What a restore must not undo: `snapshot` before it, `reapply` after it, in one transaction.
+    """Repeat, in a restore's transaction, the erasures that the restore undoes.
 
-    `given`: erasures of an earlier installation, which hold here, too.
+    `snapshot` is called before the rows are replaced, `reapply` after it. `given`: erasures of an
+    earlier installation, which apply here, too.
     """
 
     context: AppContext
@@ -32,18 +33,18 @@ class ErasureReplay:
     _known: dict[str, Tombstone] = field(default_factory=dict)
 
     def snapshot(self, db: Session) -> None:
-        """Remember every erasure that the table or the list beside it knows."""
+        """Remember every erasure in the table or in the list beside the database."""
         listed = tombstone_file(self.context.settings).read()
         known = (*self.given, *listed, *tombstones_of(db))
         self._known = {one.erasure_id: one for one in known}
 
     def reapply(self, db: Session) -> int:
-        """Make those again that the restored rows undid; how many there were."""
+        """Repeat the erasures that the restored rows undid; return how many there were."""
         return erase_again(db, self.context, list(self._known.values()))
 
 
 def erase_again(db: Session, context: AppContext, known: Sequence[Tombstone]) -> int:
-    """Erase every participant whose sessions are here although they were erased once."""
+    """Erase every participant whose sessions are in the database although they were erased before."""
     done = 0
     for one in known:
         owners = db.scalars(
@@ -83,9 +84,9 @@ def _erase_again(db: Session, context: AppContext, one: Tombstone, participant_i
 
 
 def finish_erasures(context: AppContext) -> int:
-    """At a start: complete the list, erase again what came back, overwrite what was left.
+    """Complete the list, repeat undone erasures, and overwrite remaining bytes, at a start.
 
-    Returns how many erasures were made again: somebody put an older file in the database's place.
+    Returns how many erasures were repeated: somebody put an older file in the database's place.
     """
     database, settings = context.database, context.settings
     listed = tombstone_file(settings).read()
@@ -105,7 +106,7 @@ def finish_erasures(context: AppContext) -> int:
 
 
 def knows_erasures(context: AppContext) -> bool:
-    """Whether the table or the list beside it knows which erasures there were, even if none."""
+    """Return whether the table or the list of erasures exists, even if the list is empty."""
     if tombstone_file(context.settings).path.exists():
         return True
     with context.database.reading() as db:
@@ -113,7 +114,7 @@ def knows_erasures(context: AppContext) -> bool:
 
 
 def keep_tombstones(context: AppContext) -> None:
-    """Complete the list beside the database from its table; raises NotDurable."""
+    """Complete the list beside the database from its table; raise NotDurable."""
     with context.database.reading() as db:
         known = tombstones_of(db)
     tombstone_file(context.settings).add(known)

@@ -1,8 +1,8 @@
 """The erasures of an installation, one JSON line each, beside the database.
 
-A backup that is older than an erasure still holds the data. Whoever restores it takes the table of
-erasures back to that moment, too; this file stays as it is, and says what has to be erased again.
-It holds ids only. It is completed from the table at every start.
+A backup that is older than an erasure still has the data. Restoring it also restores the table of
+erasures of that moment; this file stays as it is, and says what has to be erased again.
+It has only ids. It is completed from the table at every start.
 """
 
 import json
@@ -28,7 +28,7 @@ NAME = "erasures.jsonl"
 
 @dataclass(frozen=True)
 class Tombstone:
-    """An erasure by the ids of what was erased. `at`: ISO 8601, UTC."""
+    """An erasure, with the ids of what was erased; `at`: ISO 8601, UTC."""
 
     erasure_id: str
     study_id: str
@@ -40,19 +40,20 @@ class Tombstone:
 
 @dataclass(frozen=True)
 class TombstoneFile:
-    """The list in the folder of this installation's data."""
+    """The list of erasures in the data folder of this installation."""
 
     folder: Path
 
     @property
     def path(self) -> Path:
-        """Where it is."""
+        """Return the path of the list."""
         return self.folder / NAME
 
     def read(self) -> list[Tombstone]:
-        """Every erasure that it knows; a line that a crash cut off is left out.
+        """Return every erasure in the list, without a line that a crash truncated.
 
-        Raises NotDurable where it cannot be read: whoever was erased must not come back for that.
+        Raises NotDurable if it cannot be read, because erased data must not reappear for that
+        reason.
         """
         with plainly(f"the list of erasures {self.path} cannot be read"):
             if not self.path.exists():
@@ -65,12 +66,12 @@ class TombstoneFile:
         return found
 
     def add(self, tombstones: Iterable[Tombstone]) -> None:
-        """Append those that it does not know yet, onto the disk; raises NotDurable."""
+        """Append new erasures, flushed to the disk; raise NotDurable."""
         known = {one.erasure_id for one in self.read()}
         new = [one for one in tombstones if one.erasure_id not in known]
         if not new:
             return
-        # A line that was cut off must not swallow the next one.
+        # Start on a new line if the last one was truncated.
         lines = "\n" + "".join(json.dumps(asdict(one)) + "\n" for one in new)
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
@@ -89,9 +90,10 @@ class TombstoneFile:
 
 
 def read_list(path: Path) -> tuple[Tombstone, ...]:
-    """The list of an earlier data folder; raises NotFound, NotDurable, and InvalidInput for others.
+    """Return the erasures in the list of an earlier data folder.
 
-    Unlike our own list it is completed from no table: a line that cannot be read is refused.
+    Unlike the list of this installation, it is not completed from a table, so an invalid line is an
+    error. Raises NotFound, NotDurable, and InvalidInput for a file that is not a list of erasures.
     """
     if not path.is_file():
         raise NotFound(
@@ -113,7 +115,7 @@ def read_list(path: Path) -> tuple[Tombstone, ...]:
 
 
 def _parsed(data: bytes) -> tuple[list[Tombstone], int]:
-    """The erasures of a list, and how many lines are none."""
+    """Return the erasures of a list, and the number of invalid lines."""
     found, unreadable = [], 0
     for line in data.splitlines():
         try:
@@ -130,17 +132,17 @@ def _parsed(data: bytes) -> tuple[list[Tombstone], int]:
 
 
 def tombstone_file(settings: Settings) -> TombstoneFile:
-    """The list of this installation, where its own backups are made, too."""
+    """Return the list of this installation, in the folder of its automatic backups."""
     return TombstoneFile(home_of(settings))
 
 
 def tombstones_of(db: Session) -> list[Tombstone]:
-    """Every erasure in the table, oldest first."""
+    """Return every erasure in the table, oldest first."""
     return [tombstone(row) for row in db.scalars(select(Erasure).order_by(Erasure.at, Erasure.id))]
 
 
 def tombstone(row: Erasure) -> Tombstone:
-    """An erasure as the list has it."""
+    """Return an erasure as an entry of the list."""
     return Tombstone(
         erasure_id=row.id,
         study_id=row.study_id,
@@ -152,5 +154,5 @@ def tombstone(row: Erasure) -> Tombstone:
 
 
 def moment(one: Tombstone) -> datetime:
-    """When it was erased first."""
+    """Return when the data were first erased."""
     return datetime.fromisoformat(one.at)

@@ -1,6 +1,6 @@
-"""What takes how much room, and for how many more sessions there is some.
+"""Report what uses disk space, and for how many more sessions there is enough.
 
-Looking takes seconds, so one `StorageDesk` looks for everybody and keeps what it saw.
+Measuring takes seconds, so one `StorageDesk` measures for all requests and caches the result.
 """
 
 from app.features.care.storage.measuring import StorageDesk

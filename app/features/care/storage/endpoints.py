@@ -1,4 +1,4 @@
-"""What takes how much room, over HTTP."""
+"""The HTTP endpoint of the use of disk space."""
 
 from fastapi import APIRouter
 
@@ -13,5 +13,8 @@ router = APIRouter(tags=["storage"])
 def get_storage(
     db: Reading, context: Context, caller: SignedIn, *, anew: bool = False
 ) -> StorageView:
-    """Tables, folders, disk, studies and the largest sessions; `anew` measures once more."""
+    """Return the sizes of tables, folders, disk, studies and the largest sessions.
+
+    Sizes are cached for a minute; `anew` measures again.
+    """
     return storage_view(db, context, caller, anew=anew)

@@ -1,6 +1,6 @@
-"""The tables of the database by what is in them, as people think of it.
+"""The tables of the database, grouped by their content in people's terms.
 
-A table of a later migration has to be put here; a test compares.
+A table of a later migration has to be added here; a test checks that.
 """
 
 from typing import Literal
@@ -16,7 +16,7 @@ FAMILIES: dict[Family, tuple[str, ...]] = {
         "client_reports",
         "clock_probes",
     ),
-    # What was told from it, phase by phase.
+    # Results computed from it, phase by phase.
     "results": (
         "completions",
         "contacts",

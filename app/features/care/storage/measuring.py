@@ -1,4 +1,4 @@
-"""Looking at database and disk, which may take seconds: once for everybody who asks, then kept."""
+"""Measure database and disk, which may take seconds, once for all requests, and cache the result."""
 
 import shutil
 import threading
@@ -29,8 +29,8 @@ OPTIONAL: tuple[Place, ...] = ("unused", "log", "database", "backups", "scratch"
 class MeasuredSession:
     """A session with its size.
 
-    `is_typical`: the next may take as much, since it was completed, lacks nothing that its study
-    asks for, and has movement, which is nearly all of a session's size.
+    `is_typical`: the next session may be as large, since this one was completed, is valid by its
+    study's rules, and has movement, which is nearly all of a session's size.
     """
 
     room: SessionRoom
@@ -39,7 +39,7 @@ class MeasuredSession:
 
 @dataclass(frozen=True)
 class Measured:
-    """What was seen at one moment; `total_bytes`: of the disk of the data folder."""
+    """The sizes measured at one moment; `total_bytes`: of the disk of the data folder."""
 
     at: datetime
     sizes: TableSizes
@@ -50,7 +50,7 @@ class Measured:
 
 @dataclass(eq=False)
 class StorageDesk(Part):
-    """Safe from any thread: one measures, the others wait for what it finds."""
+    """The cached measurement of database and disk; thread-safe, one thread measures for all."""
 
     database: Database
     settings: Settings
@@ -61,11 +61,11 @@ class StorageDesk(Part):
 
     @classmethod
     def of(cls, context: AppContext) -> Self:
-        """The measure of a server's database and disk."""
+        """Create the measurement of a server's database and disk."""
         return cls(context.database, context.settings, context.clock)
 
     def measured(self, *, anew: bool = False) -> Measured:
-        """What takes how much room; `anew` does not take what was seen a moment ago."""
+        """Return the sizes, measured at most a minute ago; `anew` measures again."""
         with self._lock:
             now_ns = self.clock.monotonic_ns()
             known = self._measured
@@ -136,11 +136,11 @@ def _file_sizes(folder: Path) -> Iterator[int]:
                 if path.is_file():
                     yield path.stat().st_size
             except OSError:
-                # It went away while it was looked at.
+                # The file was deleted in the meantime.
                 continue
 
 
 def _there(folder: Path) -> Path:
-    """The folder, or the nearest above it that exists: with PostgreSQL there may be none."""
+    """Return the folder or its nearest existing parent; with PostgreSQL it may not exist."""
     folder = folder.resolve()
     return folder if folder.exists() else _there(folder.parent)

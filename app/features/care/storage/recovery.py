@@ -1,7 +1,7 @@
-"""Noticing that storing works again, also where nobody stores anything.
+"""Detect that the database can be written again, even if no data arrive.
 
-A headset's movement finds that out within a second. Without one, health would say for ever that
-nothing can be stored, and the next who wants to start something would have to try twice.
+With a headset's movement, that is detected within a second. Otherwise the server would report
+forever that nothing can be stored, and the next person to start something would have to try twice.
 """
 
 import threading
@@ -22,19 +22,19 @@ _CHANGES_NOTHING = text("UPDATE alembic_version SET version_num = version_num")
 
 @dataclass(eq=False)
 class StorageRecovery(Part):
-    """Keeps the reserve of the disk, and tries to write while nothing can be stored."""
+    """Keep the reserve of the disk, and test writing while nothing can be stored."""
 
     context: AppContext
     _stop: threading.Event = field(default_factory=threading.Event)
     _thread: threading.Thread | None = None
 
     def start(self) -> None:
-        """Begin; the reserve is there before anything is recorded."""
+        """Allocate the disk reserve before anything is recorded, and start the thread."""
         self.context.storage.reserve.keep()
         self._thread = self.context.background.thread(THREAD, self._run)
 
     def stop(self) -> None:
-        """End."""
+        """Stop the thread."""
         self._stop.set()
         if self._thread is not None:
             self._thread.join(timeout=10.0)
@@ -46,7 +46,7 @@ class StorageRecovery(Part):
             self.context.background.well(THREAD)
 
     def try_to_write(self) -> None:
-        """Once; what comes of it the database tells to the storage's health."""
+        """Write once; the database reports the result to the storage's health."""
         if self.context.storage.must_wait():
             return
         try:

@@ -1,4 +1,4 @@
-"""How full the disk is, as it travels to a page."""
+"""Response models of the use of disk space."""
 
 from datetime import datetime
 from typing import Literal
@@ -13,7 +13,7 @@ SessionKind = Literal["people", "simulated", "test", "expert"]
 
 
 class PartView(BaseModel):
-    """Something that takes room; `files`: how many, of a folder."""
+    """The size of one part of the stored data; `files`: number of files, for a folder."""
 
     place: Place
     bytes: int
@@ -21,9 +21,9 @@ class PartView(BaseModel):
 
 
 class DiskView(BaseModel):
-    """The disk of the data folder; `warn_below_bytes` as the pre-flight has it.
+    """The disk of the data folder; `warn_below_bytes` is the threshold of the pre-flight check.
 
-    `holds_database` is false where the database is on a server of its own, whose disk nobody sees
+    `holds_database` is false if the database is on a database server, whose disk cannot be measured
     from here.
     """
 
@@ -35,11 +35,11 @@ class DiskView(BaseModel):
 
 
 class StudyRoom(BaseModel):
-    """What a study takes.
+    """The size of a study's data.
 
     `mean_bytes`: of its `measured` completed sessions with movement, of the kind `measured_kind`:
-    people's where there are any, since others may be shorter. `room_for`: how many more of these
-    fit before the disk warns; None where nothing was measured, or the database is elsewhere.
+    people's if there are any, since others may be shorter. `room_for`: how many more of these
+    fit before the disk warning; None if there are none, or the database is elsewhere.
     """
 
     key: str
@@ -53,7 +53,7 @@ class StudyRoom(BaseModel):
 
 
 class SessionRoom(BaseModel):
-    """What one session takes."""
+    """The size of one session's data."""
 
     id: str
     study_key: str
@@ -64,10 +64,10 @@ class SessionRoom(BaseModel):
 
 
 class HalfMadeView(BaseModel):
-    """A file or folder that is not whole: of what kind, where, since when.
+    """An unfinished file or folder: its kind, place and start time.
 
-    `going_on`: a command is making it now; else a crash left it, and the next start of the server
-    removes it, unless its disk is not there.
+    `going_on`: a command is writing it now; otherwise a crash left it, and the next start of the
+    server removes it, unless its disk is not connected.
     """
 
     kind: Literal["backup", "export", "restore", "database"]
@@ -77,11 +77,12 @@ class HalfMadeView(BaseModel):
 
 
 class StorageView(BaseModel):
-    """What takes how much room, measured at `measured_at`, in whole bytes.
+    """The use of disk space, measured at `measured_at`, in bytes.
 
-    Sizes of studies and sessions are their tables' own sizes, shared out by the length of their
-    rows, so they hold indexes and half-full pages. `sessions` are the largest of `sessions_total`.
-    `half_made` leaves out what this server itself is making.
+    Sizes of studies and sessions are shares of their tables' sizes by the length of their rows, so
+    they
+    include indexes and half-full pages. `sessions` are the largest of `sessions_total`.
+    `half_made` leaves out what this server itself is writing.
     """
 
     measured_at: datetime

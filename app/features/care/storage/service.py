@@ -1,4 +1,4 @@
-"""What a person sees of the room that is taken, and for how many more sessions there is some."""
+"""Report the use of disk space for a person, and for how many more sessions there is enough."""
 
 from collections.abc import Sequence
 
@@ -27,7 +27,7 @@ MEASURED_BY: tuple[SessionKind, ...] = ("people", "test", "simulated")
 
 
 def storage_view(db: Session, context: AppContext, caller: Caller, *, anew: bool) -> StorageView:
-    """Everything, with the studies and sessions that are the caller's to see."""
+    """Return all sizes, with only those studies and sessions that the caller may see."""
     measured = context.part(StorageDesk).measured(anew=anew)
     disk = _disk(context, measured)
     studies = db.scalars(select(Study).where(is_theirs(caller)).order_by(Study.key)).all()
@@ -54,7 +54,8 @@ def storage_view(db: Session, context: AppContext, caller: Caller, *, anew: bool
         half_made=[
             HalfMadeView(kind=one.kind, place=str(one.path), since=one.since, going_on=one.going_on)
             for one in half_made(context.settings)
-            # What lies in the server's own scratch folder is being made, and goes by itself.
+            # Files in the server's own scratch folder are in progress, and are removed
+            # automatically.
             if one.kind != "upload"
             and one.kind != "check"
             and (one.kind != "export" or one.study_key in own)
@@ -67,7 +68,7 @@ def _disk(context: AppContext, measured: Measured) -> DiskView:
     try:
         free = storage.free_bytes(storage.folder)
     except OSError:
-        # No such folder: nothing was ever stored on this machine.
+        # Without the folder, nothing was ever stored on this machine.
         free = measured.total_bytes
     return DiskView(
         free_bytes=free,
@@ -99,7 +100,7 @@ def _study(
 
 
 def _typical(typical: Sequence[SessionRoom]) -> tuple[SessionKind | None, list[SessionRoom]]:
-    """The sessions that tell how large the next will be."""
+    """Return the sessions that predict the size of the next ones, and their kind."""
     for kind in MEASURED_BY:
         found = [room for room in typical if room.kind == kind]
         if found:

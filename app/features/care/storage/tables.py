@@ -1,9 +1,8 @@
-"""How large each table is, and what each session takes of it.
+"""Measure the size of each table, and the share of each session.
 
-The engine itself tells the size of a table, indexes included, but not how much of it belongs to
-whom. A row counts for what its long columns hold (which both engines tell without reading them)
-and a little more, so that of a table of a thousand bytes a session with a tenth of the length gets
-a hundred.
+The engine itself reports the size of a table, indexes included, but not the shares of sessions. A
+row counts by the length of its long columns (which both engines report without reading them)
+plus a constant; a session with a tenth of a table's total length gets a tenth of its size.
 """
 
 import logging
@@ -33,7 +32,7 @@ from app.features.care.storage.schemas import Method
 from app.models import Answer, ScoreValue, Submission
 
 log = logging.getLogger(__name__)
-# A walk over the inner pages of every tree; what a page holds is not read.
+# This visits the inner pages of every tree; the content of pages is not read.
 _DBSTAT = text(
     "SELECT coalesce(m.tbl_name, s.name), sum(s.pgsize) FROM dbstat AS s "
     "LEFT JOIN sqlite_master AS m ON m.name = s.name WHERE s.aggregate = 1 GROUP BY 1"
@@ -50,10 +49,11 @@ OF_SUBMISSIONS = (Answer.__table__, ScoreValue.__table__)
 
 @dataclass(frozen=True)
 class TableSizes:
-    """Bytes of each table, told by `method`; without `dbstat` only `whole_bytes` are known.
+    """Bytes of each table, measured by `method`; without `dbstat` only `whole_bytes` are known.
 
-    `unused_bytes`: pages in the file that hold nothing and are used again. `log_bytes`: of the
-    write-ahead log beside it.
+    `unused_bytes`: free pages in the file, which will be reused. `log_bytes`: of the write-ahead
+    log
+    beside it.
     """
 
     method: Method
@@ -64,7 +64,7 @@ class TableSizes:
 
 
 def table_sizes(db: Session) -> TableSizes:
-    """Ask the engine behind `db`."""
+    """Query the sizes of all tables from the engine."""
     if db.get_bind().dialect.name == "sqlite":
         return _of_sqlite(db)
     sizes = {str(name): int(size) for name, size in db.execute(_RELATIONS)}
@@ -93,7 +93,7 @@ def _log_bytes(db: Session) -> int:
 
 
 def bytes_by_session(db: Session, sizes: Mapping[str, int]) -> dict[str, float]:
-    """Bytes of each session (id -> bytes) in tables of these `sizes`."""
+    """Return the bytes of each session (id -> bytes) in tables of these `sizes`."""
     shared: defaultdict[str, float] = defaultdict(float)
     for table in Base.metadata.sorted_tables:
         if sizes.get(table.name):

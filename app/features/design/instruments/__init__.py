@@ -1,6 +1,6 @@
-"""The library of instruments: every version that was ever stored, and trying one out.
+"""The library of instruments: every stored version, and scoring answers on trial.
 
-A version is named by the hash of its content and never changes.
+A version is identified by the hash of its content and never changes.
 """
 
 from app.features.design.instruments.service import (

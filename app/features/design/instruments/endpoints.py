@@ -1,4 +1,4 @@
-"""The library of instruments over HTTP: listing, checking files, storing versions, trying one."""
+"""HTTP endpoints of the instrument library: list, check files, store versions, score on trial."""
 
 from itertools import groupby
 
@@ -34,7 +34,7 @@ router = APIRouter(tags=["instruments"])
 
 @router.get("/instruments")
 def get_instruments(db: Reading, caller: SignedIn) -> list[InstrumentSummary]:
-    """The newest version of every instrument."""
+    """Return the newest version of every instrument."""
     rows = db.scalars(
         select(InstrumentVersion).order_by(
             InstrumentVersion.key, InstrumentVersion.created_at, InstrumentVersion.id
@@ -49,7 +49,7 @@ def get_instruments(db: Reading, caller: SignedIn) -> list[InstrumentSummary]:
 def post_instrument(
     file: InstrumentFile, db: Writing, context: Context, caller: SignedIn
 ) -> InstrumentDetail:
-    """Store a version. Studies that exist keep the wording they were made with."""
+    """Store a version; existing studies keep the wording that they were made with."""
     row = save_instrument(db, file.yaml, context.clock.utc_now())
     return detail_of(db, row.key, is_theirs(caller))
 
@@ -77,7 +77,7 @@ def post_instrument_check(file: InstrumentFile, db: Reading, _: SignedIn) -> Ins
 
 @router.post("/instruments/score")
 def post_score(request: TryRequest, db: Reading, _: SignedIn) -> TryResult:
-    """Score answers without storing them, with every step."""
+    """Score answers without storing them, and return every step."""
     if (request.yaml is None) == (request.key is None):
         raise InvalidInput(
             "either a file or a key says which instrument is meant",
@@ -93,5 +93,5 @@ def post_score(request: TryRequest, db: Reading, _: SignedIn) -> TryResult:
 
 @router.get("/instruments/{key}")
 def get_instrument(key: str, db: Reading, caller: SignedIn) -> InstrumentDetail:
-    """One instrument in full, with all its versions."""
+    """Return one instrument in full, with all its versions."""
     return detail_of(db, key, is_theirs(caller))

@@ -1,4 +1,4 @@
-"""Instruments as pages see them."""
+"""Request and response models of instruments."""
 
 from datetime import datetime
 from typing import Annotated, Any
@@ -13,7 +13,7 @@ TriedAnswer = bool | Whole | FiniteFloat | Annotated[str, Field(max_length=10_00
 
 
 class InstrumentFile(BaseModel):
-    """An instrument as YAML text."""
+    """The text of an instrument file, in YAML."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -21,7 +21,7 @@ class InstrumentFile(BaseModel):
 
 
 class TryRequest(BaseModel):
-    """Answers to score, by the instrument in a text or by the newest stored one of that key."""
+    """Answers to score, by the instrument in `yaml` or by the newest stored one with `key`."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -42,7 +42,7 @@ class FormulaView(BaseModel):
 
 
 class ProvenanceView(BaseModel):
-    """Where an instrument comes from, and how far that was checked."""
+    """The origin of an instrument, and how far it was verified."""
 
     source: str
     licence: str
@@ -54,8 +54,8 @@ class InstrumentSummary(BaseModel):
     """The newest version of an instrument in the library.
 
     `version` is the number in the file; `stored_versions` counts the contents stored under the key.
-    `minutes` is how long filling it in takes by our rough rule. `used_by`: keys of studies whose
-    newest version asks this wording; `used_by_older`: those that ask an older one.
+    `minutes` is an estimate of how long filling it in takes. `used_by`: keys of studies whose
+    newest version uses this wording; `used_by_older`: those that use an older one.
     """
 
     key: str
@@ -75,7 +75,7 @@ class InstrumentSummary(BaseModel):
 
 
 class InstrumentVersionView(BaseModel):
-    """One stored content of an instrument, with the studies that ask it."""
+    """One stored content of an instrument, with the studies that use it."""
 
     version: int
     content_hash: str
@@ -85,9 +85,9 @@ class InstrumentVersionView(BaseModel):
 
 
 class InstrumentDetail(InstrumentSummary):
-    """An instrument in full; `versions` from the oldest to the newest.
+    """A complete instrument; `versions` from the oldest to the newest.
 
-    `preview`: a form of it to draw, in the shape in which tablets get their forms.
+    `preview`: a form of it, in the format in which tablets get their forms.
     """
 
     yaml: str
@@ -96,7 +96,7 @@ class InstrumentDetail(InstrumentSummary):
 
 
 class Preview(BaseModel):
-    """An instrument as a form: its content, and the items in one possible order."""
+    """An instrument as a form: its content, and one possible order of its items."""
 
     instrument: dict[str, Any]
     item_order: list[str]
@@ -108,9 +108,9 @@ class Preview(BaseModel):
 
 
 class InstrumentCheck(BaseModel):
-    """Whether a file can be used: every problem with its place, else what it becomes.
+    """The check of a file: every problem with its place, or a preview if it is valid.
 
-    `known`: the very content is stored already. `replaces`: there are other contents of this key.
+    `known`: the same content is stored already. `replaces`: other contents of this key are stored.
     """
 
     ok: bool
@@ -123,7 +123,7 @@ class InstrumentCheck(BaseModel):
 
 
 class ItemStep(BaseModel):
-    """An item on its way into the scores: as answered, and as the formulas get it."""
+    """The value of an item in the scoring: as answered, and as the formulas use it."""
 
     item: str
     raw: float | None
@@ -132,9 +132,9 @@ class ItemStep(BaseModel):
 
 
 class ScoreStep(BaseModel):
-    """A score: its formula, the same with the values put in, and what comes out.
+    """A score: its formula, the formula with the values inserted, and the result.
 
-    `missing`: items without an answer that leave it without a value.
+    `missing`: unanswered items because of which the score has no value.
     """
 
     key: str
@@ -148,7 +148,7 @@ class ScoreStep(BaseModel):
 
 
 class TryResult(BaseModel):
-    """The scoring of one filled-in form, step by step; `problems` are answers that do not fit."""
+    """The scoring of one completed form, step by step; `problems` are invalid answers."""
 
     recode: str | None
     items: list[ItemStep]
@@ -157,7 +157,7 @@ class TryResult(BaseModel):
 
 
 class AnswerProblemView(BaseModel):
-    """Why an answer cannot be taken."""
+    """The reason why an answer is invalid."""
 
     item: str
     message: str

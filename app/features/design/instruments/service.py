@@ -1,4 +1,4 @@
-"""Instruments: a file becomes a content-hashed version; a version that was stored never changes."""
+"""Store instrument files as content-hashed versions, which never change."""
 
 from datetime import datetime
 from functools import lru_cache
@@ -14,7 +14,7 @@ from app.science.instruments import Instrument
 
 
 def instrument_of(version: InstrumentVersion) -> Instrument:
-    """The typed instrument of a version."""
+    """Return the parsed instrument of a version."""
     return _parse_instrument(version.content_hash, version.canonical_json)
 
 
@@ -25,7 +25,7 @@ def _parse_instrument(content_hash: str, canonical_json: str) -> Instrument:
 
 
 def newest_instruments(db: Session) -> dict[str, InstrumentVersion]:
-    """The newest version of every instrument, by key."""
+    """Return the newest version of every instrument, by key."""
     rows = db.scalars(
         select(InstrumentVersion).order_by(InstrumentVersion.created_at, InstrumentVersion.id)
     )
@@ -33,12 +33,12 @@ def newest_instruments(db: Session) -> dict[str, InstrumentVersion]:
 
 
 def parsed_instruments(db: Session) -> dict[str, Instrument]:
-    """The newest instruments, typed, by key."""
+    """Return the newest version of every instrument, parsed, by key."""
     return {key: instrument_of(row) for key, row in newest_instruments(db).items()}
 
 
 def versions_of_instrument(db: Session, key: str) -> list[InstrumentVersion]:
-    """All stored versions, oldest first. Raises NotFound."""
+    """Return all stored versions, oldest first; raise NotFound if there are none."""
     rows = db.scalars(
         select(InstrumentVersion)
         .where(InstrumentVersion.key == key)
@@ -51,7 +51,7 @@ def versions_of_instrument(db: Session, key: str) -> list[InstrumentVersion]:
 
 
 def checked_instrument(text: str) -> LoadedInstrument:
-    """Load an instrument file; InvalidConfig has every problem."""
+    """Load an instrument file; raise InvalidConfig with every problem."""
     try:
         return load_instrument(text)
     except ConfigError as error:
@@ -59,7 +59,7 @@ def checked_instrument(text: str) -> LoadedInstrument:
 
 
 def save_instrument(db: Session, text: str, now: datetime) -> InstrumentVersion:
-    """Store an instrument file as a version, or find the version with that content."""
+    """Store an instrument file as a version, or return the version with the same content."""
     loaded = checked_instrument(text)
     known = db.scalar(
         select(InstrumentVersion).where(
@@ -82,10 +82,10 @@ def save_instrument(db: Session, text: str, now: datetime) -> InstrumentVersion:
 
 
 def uses(db: Session, seen: ColumnElement[bool]) -> dict[tuple[str, str], list[str]]:
-    """Which studies ask which wording: (instrument key, content hash) -> study keys.
+    """Return which studies use which wording: (instrument key, content hash) -> study keys.
 
-    Counted are the newest versions, of studies that are not archived: those that new sessions take.
-    `seen`: the condition under which the reader may know of a study.
+    Only the newest versions of studies that are not archived count: those of new sessions.
+    `seen`: the condition under which the reader may see a study.
     """
     found: dict[tuple[str, str], list[str]] = {}
     rows = db.execute(

@@ -1,4 +1,4 @@
-"""Filling in an instrument that is only looked at: scores with every step, nothing stored."""
+"""Score answers to an instrument on trial, with every step, without storing anything."""
 
 from app.errors import InvalidInput
 from app.features.design.instruments.schemas import (
@@ -12,7 +12,7 @@ from app.science.instruments import ExplainedScore, Instrument, explain_scoring,
 
 
 def try_answers(instrument: Instrument, answers: dict[str, TriedAnswer]) -> TryResult:
-    """The scoring step by step. Answers that do not fit are told and left out of the scores.
+    """Return the scoring step by step; invalid answers are reported and left out of the scores.
 
     Raises InvalidInput for an answer to an item that the instrument does not have.
     """

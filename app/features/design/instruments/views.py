@@ -1,4 +1,4 @@
-"""From stored instruments to what pages show."""
+"""Convert stored instruments to response models."""
 
 from collections.abc import Sequence
 
@@ -22,7 +22,7 @@ Uses = dict[tuple[str, str], list[str]]
 
 
 def summary_of(versions: Sequence[InstrumentVersion], used: Uses) -> InstrumentSummary:
-    """The newest of an instrument's `versions` (oldest first) as a row of the library."""
+    """Return the newest of an instrument's `versions` (oldest first) as an entry of the library."""
     row = versions[-1]
     instrument = instrument_of(row)
     older = {
@@ -54,7 +54,7 @@ def summary_of(versions: Sequence[InstrumentVersion], used: Uses) -> InstrumentS
 
 
 def detail_of(db: Session, key: str, seen: ColumnElement[bool]) -> InstrumentDetail:
-    """An instrument in full; `seen` as for `uses`. Raises NotFound."""
+    """Return a complete instrument; `seen` as for `uses`. Raises NotFound."""
     versions = versions_of_instrument(db, key)
     used = uses(db, seen)
     newest = versions[-1]
@@ -76,7 +76,7 @@ def detail_of(db: Session, key: str, seen: ColumnElement[bool]) -> InstrumentDet
 
 
 def preview_of(instrument: Instrument) -> Preview:
-    """The instrument as a form; the order is that of seed 0, one of those a tablet could get."""
+    """Return the instrument as a form, in the order of seed 0, one that a tablet could get."""
     seed = 0
     return Preview(
         instrument=instrument_as_json(instrument),
@@ -90,7 +90,7 @@ def preview_of(instrument: Instrument) -> Preview:
 
 
 def formula_view(score: Score) -> FormulaView:
-    """A score with its formula."""
+    """Return a score with its formula."""
     return FormulaView(
         key=score.key,
         label=dict(score.label),

@@ -1,7 +1,7 @@
-"""Studies and their versions: checked files, named by the hash of their content.
+"""Studies and their versions: validated files, identified by the hash of their content.
 
-A version that a session has started on is frozen; an edit makes a new one. What a stored version
-asks for is unpacked once and kept.
+A version that a session has started with is frozen; an edit makes a new one. The content of a
+stored version is parsed once and cached.
 """
 
 from app.features.design.studies.service import (

@@ -1,4 +1,4 @@
-"""What differs between two versions of a study, as content and as text."""
+"""Compare two versions of a study, as content and as text."""
 
 import difflib
 import json
@@ -17,7 +17,7 @@ from app.protocol import differences, path_text
 
 @dataclass(frozen=True)
 class _Side:
-    """A version or a draft, as far as it is compared."""
+    """One of the two sides of a comparison: a version or a draft."""
 
     number: int | None
     content_hash: str
@@ -28,13 +28,13 @@ class _Side:
 
 
 def compare_versions(db: Session, study: Study, source: int, target: int) -> StudyDiff:
-    """What changed from version `source` to version `target`. Raises NotFound."""
+    """Return the differences from version `source` to version `target`; raise NotFound."""
     sides = (version_by_number(db, study, number) for number in (source, target))
     return _diff(db, study, *map(_stored, sides))
 
 
 def compare_draft(db: Session, study: Study, text: str) -> StudyDiff:
-    """What a draft would change in the newest version. Raises InvalidConfig for an unusable one."""
+    """Return the differences of a draft from the newest version; raise InvalidConfig."""
     loaded = check_study(db, text)
     newest = newest_instruments(db)
     draft = _Side(

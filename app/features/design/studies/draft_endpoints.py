@@ -1,4 +1,4 @@
-"""Writing a study over HTTP: templates, checks, changes of a form, dry runs. Nothing is stored."""
+"""HTTP endpoints for editing a study without storing it: templates, checks, edits, dry runs."""
 
 from typing import Any
 
@@ -26,35 +26,35 @@ router = APIRouter(tags=["studies"])
 
 @router.get("/templates")
 def get_templates(_: SignedIn) -> list[TemplateView]:
-    """Studies to begin with."""
+    """Return studies that can be used as templates."""
     return list(templates())
 
 
 @router.get("/study-schema")
 def get_schema(_: SignedIn) -> dict[str, Any]:
-    """The JSON schema of study files, from which the editor makes its form."""
+    """Return the JSON schema of study files, from which the editor builds its form."""
     return dict(study_schema())
 
 
 @router.post("/studies/check")
 def post_check(file: StudyFile, db: Reading, _: SignedIn) -> CheckResult:
-    """Check a file without storing it."""
+    """Check a study file without storing it."""
     return check(db, file.yaml)
 
 
 @router.post("/studies/edit")
 def post_edit(request: EditRequest, _: SignedIn) -> EditedFile:
-    """Change values of a text by their paths; comments and layout of the rest stay."""
+    """Change values of a text by their paths, keeping comments and layout of the rest."""
     return EditedFile(yaml=edit(request.yaml, request.changes))
 
 
 @router.post("/studies/timeline")
 def post_timeline(request: TimelineRequest, db: Reading, _: SignedIn) -> TimelineView:
-    """A dry run of one participant."""
+    """Return a dry run of one participant's visit."""
     return dry_run(db, request)
 
 
 @router.post("/studies/{key}/diff")
 def post_diff(key: str, draft: DraftFile, db: Reading, _: SignedIn) -> StudyDiff:
-    """What a draft would change in the newest version."""
+    """Return the differences of a draft from the newest version."""
     return compare_draft(db, study_by_key(db, key), draft.yaml)

@@ -1,4 +1,4 @@
-"""Working on a file that is not stored yet: beginning, checking, changing, walking through it."""
+"""Work on a study file that is not stored yet: templates, checks, edits and dry runs."""
 
 from collections.abc import Sequence
 from functools import lru_cache
@@ -54,7 +54,7 @@ RULE = EstimateRule(
 
 
 def template_files() -> tuple[Path, ...]:
-    """The templates first, from small to large, then the shipped studies."""
+    """Return the shipped studies, followed by the templates from the smallest to the largest."""
     root = study_configs_dir()
     templates = sorted((root / "templates").glob("*.yaml"), key=lambda file: file.stat().st_size)
     return (*sorted(root.glob("*.yaml")), *templates)
@@ -62,7 +62,7 @@ def template_files() -> tuple[Path, ...]:
 
 @lru_cache(maxsize=1)
 def templates() -> tuple[TemplateView, ...]:
-    """Each file with its name in all its languages."""
+    """Return each template with its title in all its languages."""
     return tuple(_view(file) for file in template_files())
 
 
@@ -83,7 +83,10 @@ def _texts(value: Plain) -> dict[str, str]:
 
 
 def check(db: Session, text: str) -> CheckResult:
-    """Every problem of a file, or what it asks for; and its values where it can be read."""
+    """Return every problem of a file, or a summary of a valid study.
+
+    The result has the file's values whenever the file can be parsed.
+    """
     instruments = parsed_instruments(db)
     tree, lines = _tree(text)
     try:
@@ -116,7 +119,7 @@ def check(db: Session, text: str) -> CheckResult:
 
 
 def edit(text: str, changes: Sequence[ChangeRequest]) -> str:
-    """The text after the changes. Raises InvalidConfig where it cannot be read or changed."""
+    """Return the text after the changes; raise InvalidConfig if it cannot be parsed or changed."""
     wanted = [Change(tuple(one.path), one.action, one.value, one.to) for one in changes]
     try:
         return edit_text(text, wanted)
@@ -125,7 +128,7 @@ def edit(text: str, changes: Sequence[ChangeRequest]) -> str:
 
 
 def dry_run(db: Session, request: TimelineRequest) -> TimelineView:
-    """One participant's visit, step by step. Raises InvalidConfig and InvalidInput."""
+    """Return one participant's visit, step by step; raise InvalidConfig or InvalidInput."""
     protocol = check_study(db, request.yaml).protocol
     orders = sequences(protocol)
     slot, row = _row(protocol, orders, request)
@@ -152,7 +155,7 @@ def dry_run(db: Session, request: TimelineRequest) -> TimelineView:
 def _row(
     protocol: StudyProtocol, orders: Sequence[tuple[str, ...]], request: TimelineRequest
 ) -> tuple[int, LedgerRow]:
-    """The slot and its row of the ledger; for an order by its place, the first slot that has it."""
+    """Return the requested slot and its ledger row, or the first slot with the requested order."""
     if request.sequence_index is not None:
         if request.sequence_index >= len(orders):
             raise InvalidInput(
@@ -193,7 +196,7 @@ def _step(protocol: StudyProtocol, timed: TimedStep, language: str) -> TimelineS
 
 
 def _tree(text: str) -> tuple[dict[str, Plain] | None, dict[str, int]]:
-    """The values of a file and their lines; nothing where it cannot be read."""
+    """Return the values of a file and their lines; nothing if it cannot be parsed."""
     try:
         source = read_source(text)
     except ConfigError:

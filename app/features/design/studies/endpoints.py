@@ -1,4 +1,4 @@
-"""Studies over HTTP: listing, making versions and comparing them, copying and putting away."""
+"""HTTP endpoints of studies: list, create, make and compare versions, duplicate and archive."""
 
 import json
 from collections.abc import Mapping
@@ -47,7 +47,7 @@ VersionNumber = Annotated[int, Query(ge=1, lt=1_000_000)]
 
 @router.get("/studies")
 def get_studies(db: Reading, caller: SignedIn, *, archived: bool = False) -> list[StudySummary]:
-    """Every study of the caller with its newest version; `archived`: those put away instead."""
+    """Return the caller's studies in their newest version; `archived`: only archived ones."""
     wanted = Study.archived_at.is_not(None) if archived else Study.archived_at.is_(None)
     studies = db.scalars(select(Study).where(wanted, is_theirs(caller)).order_by(Study.key))
     return [_summary(db, study, newest_version(db, study)) for study in studies]
@@ -63,7 +63,7 @@ def post_study(file: StudyFile, db: Writing, context: Context, caller: SignedIn)
 
 @router.get("/studies/{key}")
 def get_study(key: str, db: Reading, caller: SignedIn) -> StudyView:
-    """One study in full; an operator of a blinded study does not get its protocol."""
+    """Return one study in full; operators of a blinded study do not get its protocol."""
     return _view(db, study_by_key(db, key), caller)
 
 
@@ -71,7 +71,7 @@ def get_study(key: str, db: Reading, caller: SignedIn) -> StudyView:
 def post_version(
     key: str, file: StudyFile, db: Writing, context: Context, caller: SignedIn
 ) -> StudyView:
-    """Make a version of a study; the same content gives the version that has it."""
+    """Add a version to a study, unless one with the same content exists."""
     study = study_by_key(db, key)
     now = context.clock.utc_now()
     version = add_version(db, study, file.yaml, now)
@@ -82,7 +82,7 @@ def post_version(
 
 @router.get("/studies/{key}/versions/{number}")
 def get_version(key: str, number: int, db: Reading, _: SignedIn) -> VersionDetail:
-    """One version in full."""
+    """Return one version in full."""
     version = version_by_number(db, study_by_key(db, key), number)
     return VersionDetail(
         number=version.number,
@@ -102,7 +102,7 @@ def get_diff(
     source: Annotated[VersionNumber, Query(alias="from")],
     target: Annotated[VersionNumber, Query(alias="to")],
 ) -> StudyDiff:
-    """What changed from one version to another."""
+    """Return the differences from one version to another."""
     return compare_versions(db, study_by_key(db, key), source, target)
 
 
@@ -110,7 +110,7 @@ def get_diff(
 def post_duplicate(
     key: str, request: DuplicateRequest, db: Writing, context: Context, caller: SignedIn
 ) -> StudyView:
-    """A copy under another key, with a ledger of its own."""
+    """Copy a study under another key, with a ledger of its own."""
     source = study_by_key(db, key)
     now = context.clock.utc_now()
     version = duplicate(db, source, key=request.key, title=request.title, now=now)
@@ -119,7 +119,7 @@ def post_duplicate(
 
 @router.post("/studies/{key}/archive")
 def post_archive(key: str, db: Writing, context: Context, caller: SignedIn) -> StudyView:
-    """Put a study away: it takes no new sessions until it is restored."""
+    """Archive a study: it takes no new sessions until it is restored."""
     study = study_by_key(db, key)
     now = context.clock.utc_now()
     archive(db, study, now)
@@ -129,7 +129,7 @@ def post_archive(key: str, db: Writing, context: Context, caller: SignedIn) -> S
 
 @router.post("/studies/{key}/restore")
 def post_restore(key: str, db: Writing, context: Context, caller: SignedIn) -> StudyView:
-    """Take a study out again."""
+    """Restore an archived study."""
     study = study_by_key(db, key)
     restore(db, study)
     _note(db, caller, "study.restored", study, context.clock.utc_now())
@@ -144,7 +144,7 @@ def _begun(
     now: datetime,
     details: Mapping[str, object] | None = None,
 ) -> StudyView:
-    """A study that has just been made is its maker's to see."""
+    """Give the creator of a new study access to it, record its creation and return it."""
     study = kept_row(db, Study, version.study_id)
     add_member(db, caller, study)
     _note(db, caller, action, study, now, details)

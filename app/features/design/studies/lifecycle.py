@@ -1,4 +1,4 @@
-"""Copying a study, putting it away and taking it out again. Nothing is ever deleted."""
+"""Duplicate, archive and restore studies; nothing is ever deleted."""
 
 from collections.abc import Mapping
 from datetime import datetime
@@ -20,10 +20,10 @@ UNDER_WAY = ("planned", "active")
 def duplicate(
     db: Session, study: Study, *, key: str, title: Mapping[str, str] | None, now: datetime
 ) -> StudyVersion:
-    """A new study from the newest file of `study`, comments included, under another key.
+    """Create a study from the newest file of `study`, comments included, under another key.
 
     It has a ledger and sessions of its own. Raises Conflict for a key that is taken, and
-    InvalidConfig where key or title cannot be used.
+    InvalidConfig if key or title is invalid.
     """
     version = newest_version(db, study)
     languages = protocol_of(version).languages
@@ -42,14 +42,15 @@ def duplicate(
 
 
 def archive(db: Session, study: Study, now: datetime) -> None:
-    """Put the study away: it takes no new sessions. Repeating it changes nothing.
+    """Archive the study, so that it takes no new sessions; repeating it changes nothing.
 
-    A session that was made before and not started yet keeps its slot and may still be run. Raises
-    NotNow while one is running.
+    A session that was created before and not started yet keeps its slot and may still be run.
+    Raises
+    NotNow while a session is running.
     """
     if study.archived_at is not None:
         return
-    # The row is locked so that it is decided once, whoever asks at the same moment.
+    # The row is locked so that concurrent requests are decided one after the other.
     db.execute(select(Study.id).where(Study.id == study.id).with_for_update(key_share=True))
     running = db.scalar(
         select(func.count())
@@ -68,6 +69,6 @@ def archive(db: Session, study: Study, now: datetime) -> None:
 
 
 def restore(db: Session, study: Study) -> None:
-    """Take the study out again; its ledger goes on where it was."""
+    """Restore an archived study; its ledger continues."""
     study.archived_at = None
     db.flush()

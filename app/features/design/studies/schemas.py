@@ -1,4 +1,4 @@
-"""Studies as pages see them, and those that are being written, of which nothing is stored."""
+"""Request and response models of studies and of drafts, which are not stored."""
 
 from datetime import datetime
 from typing import Annotated, Any, Literal
@@ -14,7 +14,7 @@ Part = Annotated[str, Field(max_length=200)] | Annotated[int, Field(ge=0, lt=100
 
 
 class StudyFile(BaseModel):
-    """A study as YAML text."""
+    """The text of a study file, in YAML."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -31,7 +31,7 @@ class VersionView(BaseModel):
 
 
 class StudySummary(BaseModel):
-    """A study in the list."""
+    """A study in a list."""
 
     key: str
     title: str
@@ -45,11 +45,12 @@ class StudySummary(BaseModel):
 
 
 class StudyView(StudySummary):
-    """A study with its newest version in full; an operator of a blinded one gets no protocol.
+    """A study with its complete newest version; operators of a blinded one get no protocol.
 
     `phases`: how many timed phases a visit has: practice, free movement and tasks.
-    `planned_minutes` is what the protocol sets for each visit; `minutes` adds our rough estimate of
-    forms and texts.
+    `planned_minutes` is what the protocol sets for each visit; `minutes` adds an estimate for forms
+    and
+    texts.
     """
 
     languages: list[str]
@@ -62,7 +63,7 @@ class StudyView(StudySummary):
 
 
 class TemplateView(BaseModel):
-    """A study to begin with. `key` names the file, not the study in it."""
+    """A study to use as a template; `key` names the file, not the study in it."""
 
     key: str
     title: dict[str, str]
@@ -71,7 +72,7 @@ class TemplateView(BaseModel):
 
 
 class ChangeRequest(BaseModel):
-    """One change; see `app.protocol.editing.Change`."""
+    """One change of a file; see `app.protocol.editing.Change`."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -82,7 +83,7 @@ class ChangeRequest(BaseModel):
 
 
 class EditRequest(BaseModel):
-    """Changes of a form to a file's text, done one after the other."""
+    """Changes of a file's text from the editor's form, applied one after the other."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -91,16 +92,16 @@ class EditRequest(BaseModel):
 
 
 class EditedFile(BaseModel):
-    """The text after the changes, comments and layout kept."""
+    """The text after the changes, with comments and layout kept."""
 
     yaml: str
 
 
 class StudyFigures(BaseModel):
-    """What a study asks for: the size of its design and the length of a visit.
+    """The summary of a study: the size of its design and the length of a visit.
 
     `slots`: participants until the initial ledger is full. `planned_minutes` is what the protocol
-    sets for each visit; `minutes` adds our rough estimate of forms and texts.
+    sets for each visit; `minutes` adds an estimate for forms and texts.
     """
 
     conditions: int
@@ -115,10 +116,11 @@ class StudyFigures(BaseModel):
 
 
 class CheckResult(BaseModel):
-    """Whether a file can be used, with every problem and its place.
+    """The check of a file: whether it is valid, with every problem and its place.
 
-    `tree`: the values of the file as they stand, whenever it can be read at all, so that a form can
-    show them while there are problems. `lines`: where each value stands, by its path.
+    `tree`: the values of the file, whenever it can be parsed, so that a form can show them while
+    there
+    are problems. `lines`: the line of each value, by its path.
     """
 
     ok: bool
@@ -132,7 +134,7 @@ class CheckResult(BaseModel):
 
 
 class TimelineRequest(BaseModel):
-    """A dry run of one participant: by slot of the ledger, or by the order's place in the list."""
+    """A dry run of one participant: by slot of the ledger, or by the index of the order."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -143,9 +145,9 @@ class TimelineRequest(BaseModel):
 
 
 class TimelineStep(BaseModel):
-    """A step of the visit; times in seconds from its begin. `estimated`: by a rule of ours.
+    """A step of the visit; times in seconds from its start, `estimated` if the study sets none.
 
-    `text` and `title` are in the language asked for. `condition_label` is that of the study.
+    `text` and `title` are in the requested language. `condition_label` is that of the study.
     """
 
     index: int
@@ -177,7 +179,7 @@ class EstimateRule(BaseModel):
 
 
 class TimelineView(BaseModel):
-    """One participant's visit. `replicate` counts from 1."""
+    """The dry run of one participant's visit; `replicate` counts from 1."""
 
     slot: int
     slots: int
@@ -193,7 +195,7 @@ class TimelineView(BaseModel):
 
 
 class DifferenceView(BaseModel):
-    """One place that differs; `before` or `after` is null where it was not there."""
+    """One difference; `before` or `after` is null if the value did not exist."""
 
     path: str
     kind: Literal["added", "removed", "changed"]
@@ -202,7 +204,7 @@ class DifferenceView(BaseModel):
 
 
 class InstrumentChange(BaseModel):
-    """An instrument whose wording differs: content hashes, null where it is not asked."""
+    """An instrument whose wording differs: content hashes, null if it is not used."""
 
     key: str
     before: str | None
@@ -210,7 +212,7 @@ class InstrumentChange(BaseModel):
 
 
 class StudyDiff(BaseModel):
-    """What differs between two versions, or between one and a draft (`to` is then null).
+    """The differences between two versions, or between one and a draft (`target` is then null).
 
     `same`: the content is the same, whatever the layout. `new_ledger`: conditions or orders differ,
     so that new sessions begin a ledger of their own. `under_way`: sessions that are planned or
@@ -228,7 +230,7 @@ class StudyDiff(BaseModel):
 
 
 class DraftFile(BaseModel):
-    """A draft to compare with the newest version."""
+    """The text of a draft, to compare with the newest version."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -236,7 +238,7 @@ class DraftFile(BaseModel):
 
 
 class DuplicateRequest(BaseModel):
-    """A copy of a study under another key, with another title if wished, by language."""
+    """The key of a copy of a study, and optionally its title by language."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -247,7 +249,7 @@ class DuplicateRequest(BaseModel):
 
 
 class VersionDetail(BaseModel):
-    """One version in full."""
+    """One complete version of a study."""
 
     number: int
     content_hash: str

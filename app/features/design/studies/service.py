@@ -1,4 +1,4 @@
-"""Studies: checked files become content-hashed versions; a version in use never changes."""
+"""Store study files as content-hashed versions; a version in use never changes."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -26,7 +26,7 @@ class ShippedFiles:
 
 
 def shipped_files() -> ShippedFiles:
-    """The files under study_configs."""
+    """Return the files under study_configs."""
     root = study_configs_dir()
     return ShippedFiles(
         tuple(sorted(root.glob("*.yaml"))), tuple(sorted((root / "instruments").glob("*.yaml")))
@@ -34,7 +34,7 @@ def shipped_files() -> ShippedFiles:
 
 
 def protocol_of(version: StudyVersion) -> StudyProtocol:
-    """The typed protocol of a version."""
+    """Return the parsed protocol of a version."""
     return _parse_study(version.content_hash, version.canonical_json)
 
 
@@ -45,9 +45,9 @@ def _parse_study(content_hash: str, canonical_json: str) -> StudyProtocol:
 
 
 def instrument_for(db: Session, version: StudyVersion, key: str) -> InstrumentVersion:
-    """The wording of instrument `key` that this study version uses.
+    """Return the wording of instrument `key` that this study version uses.
 
-    Kept as long as the transaction: versions are never edited.
+    It is cached for the duration of the transaction, because versions are never edited.
     """
     content_hash = version.instruments.get(key)
     known = db.info.get(("instrument", key, content_hash))
@@ -67,7 +67,10 @@ def instrument_for(db: Session, version: StudyVersion, key: str) -> InstrumentVe
 
 
 def check_study(db: Session, text: str) -> LoadedStudy:
-    """Load a study file against what the lab has; InvalidConfig has every problem."""
+    """Load a study file, using the lab's instruments and avatars.
+
+    Raises InvalidConfig with every problem.
+    """
     try:
         return load_study(text, instruments=parsed_instruments(db), avatars=newest_numbers(db))
     except ConfigError as error:
@@ -75,7 +78,7 @@ def check_study(db: Session, text: str) -> LoadedStudy:
 
 
 def create_study(db: Session, text: str, now: datetime) -> StudyVersion:
-    """A new study from its file; raises Conflict where the key exists."""
+    """Create a study from its file; raise Conflict if the key exists."""
     loaded = check_study(db, text)
     key = loaded.protocol.key
     if db.scalar(select(Study).where(Study.key == key)):
@@ -91,7 +94,7 @@ def create_study(db: Session, text: str, now: datetime) -> StudyVersion:
 
 
 def add_version(db: Session, study: Study, text: str, now: datetime) -> StudyVersion:
-    """The version with this content, made if it is new. Frozen versions stay as they are."""
+    """Return the version with this content, and create it if it is new; frozen versions stay."""
     loaded = check_study(db, text)
     if loaded.protocol.key != study.key:
         raise Conflict(
@@ -127,7 +130,7 @@ def _add_version(
 
 
 def study_by_key(db: Session, key: str) -> Study:
-    """The study of that key; raises NotFound."""
+    """Return the study with this key; raise NotFound if there is none."""
     study = db.scalar(select(Study).where(Study.key == key))
     if study is None:
         known = list(db.scalars(select(Study.key).order_by(Study.key)))
@@ -136,7 +139,7 @@ def study_by_key(db: Session, key: str) -> Study:
 
 
 def versions_of(db: Session, study: Study) -> list[StudyVersion]:
-    """All versions, oldest first."""
+    """Return all versions of a study, oldest first."""
     return list(
         db.scalars(
             select(StudyVersion)
@@ -147,7 +150,7 @@ def versions_of(db: Session, study: Study) -> list[StudyVersion]:
 
 
 def version_by_number(db: Session, study: Study, number: int) -> StudyVersion:
-    """The version of that number; raises NotFound."""
+    """Return the version with this number; raise NotFound if there is none."""
     versions = versions_of(db, study)
     for version in versions:
         if version.number == number:
@@ -160,7 +163,7 @@ def version_by_number(db: Session, study: Study, number: int) -> StudyVersion:
 
 
 def require_open(study: Study) -> None:
-    """Refuse new sessions of a study that was put away; raises NotNow."""
+    """Raise NotNow if the study is archived, because it takes no new sessions."""
     if study.archived_at is not None:
         raise NotNow(
             f"the study {study.key!r} is archived and takes no new sessions",
@@ -170,17 +173,17 @@ def require_open(study: Study) -> None:
 
 
 def newest_version(db: Session, study: Study) -> StudyVersion:
-    """The version that new sessions take."""
+    """Return the newest version, which new sessions use."""
     return versions_of(db, study)[-1]
 
 
 def freeze(version: StudyVersion, now: datetime) -> None:
-    """From the first started session on, a version cannot change."""
+    """Freeze a version, because a session has started with it; it cannot change any more."""
     version.frozen_at = version.frozen_at or now
 
 
 def session_counts(db: Session, study: Study) -> dict[str, int]:
-    """How many sessions of each kind the study has."""
+    """Return the number of sessions of each kind."""
     rows = db.execute(
         select(StudySession.kind, func.count())
         .where(StudySession.study_id == study.id)
@@ -190,7 +193,7 @@ def session_counts(db: Session, study: Study) -> dict[str, int]:
 
 
 def add_shipped(db: Session, now: datetime) -> None:
-    """Store the instruments that ship with this release, and its studies where there are none."""
+    """Store the instruments of this release, and its studies if there are none yet."""
     files = shipped_files()
     for path in files.instruments:
         save_instrument(db, path.read_text(encoding="utf-8"), now)

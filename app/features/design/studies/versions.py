@@ -1,4 +1,4 @@
-"""What a stored version of a study asks for, unpacked once: see `unchanging`."""
+"""Parse and cache the content of stored study versions, which never change."""
 
 import json
 from collections.abc import Mapping
@@ -22,7 +22,7 @@ _VERSIONS, _INSTRUMENTS = 64, 512
 
 @dataclass(frozen=True)
 class VersionContent:
-    """A study version without its files. `instruments`: key -> hash of the wording it uses."""
+    """The content of a study version; `instruments`: key -> hash of the wording it uses."""
 
     protocol: StudyProtocol
     instruments: Mapping[str, str]
@@ -30,7 +30,7 @@ class VersionContent:
 
 @dataclass(frozen=True)
 class UsedInstrument:
-    """The wording that a study version uses: its row's id, typed, and as it travels to a page."""
+    """The wording that a study version uses: its row's id, parsed, and as JSON for a page."""
 
     version_id: str
     instrument: Instrument
@@ -42,12 +42,12 @@ _used: Unchanging[tuple[str, str], UsedInstrument] = Unchanging(_INSTRUMENTS)
 
 
 def version_content(db: Session, version_id: str) -> VersionContent:
-    """The content of a study version that exists."""
+    """Return the content of a study version that exists."""
     return _contents.get(db, version_id, lambda: _read_content(db, version_id))
 
 
 def used_instrument(db: Session, version_id: str, key: str) -> UsedInstrument:
-    """The wording of instrument `key` in a study version; raises NotFound if it uses none."""
+    """Return the wording of instrument `key` in a study version; raise NotFound if it uses none."""
     return _used.get(db, (version_id, key), lambda: _read_used(db, version_id, key))
 
 

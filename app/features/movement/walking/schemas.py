@@ -136,7 +136,10 @@ class PopulationOrigin(_Asked):
 
 
 class CapturedPerson(_Asked):
-    """A capture, who walks in it, and where it leaves a choice, which tracked body is followed."""
+    """A capture with the person who walks in it.
+
+    `body`: which tracked body is followed, if the capture has several.
+    """
 
     capture_id: RecordId
     subject: Name

@@ -101,7 +101,10 @@ def order_model(db: Session, context: AppContext, caller: Caller, wish: NewModel
 
 
 def order_of(db: Session, model_id: str) -> FitOrder:
-    """What the process is told to fit; raises NotFound, Conflict where the scene has changed."""
+    """Return a model's order for the worker process.
+
+    Raises NotFound, or Conflict if the scene has changed since the order.
+    """
     row = model_by_id(db, model_id)
     if row.walk_set_id is None:
         raise Conflict("the walks of this model were deleted", value=row.walk_set["title"])

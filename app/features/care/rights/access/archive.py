@@ -1,4 +1,4 @@
-"""Everything about one participant as one ZIP: a page to read first, then words and tables."""
+"""Write everything about one participant as one ZIP: a page to read first, then texts and tables."""
 
 import json
 from collections.abc import Generator, Iterator
@@ -21,20 +21,20 @@ PAGE, WORDS, IMPORTED = "your-data.html", "words.json", "imported.json"
 
 
 def access_name(code: str) -> str:
-    """The file name of a participant's own copy."""
+    """Return the file name of a participant's own copy."""
     return f"reembody_access_{safe_name(code)}.zip"
 
 
 def access_archive(
     database: Database, study_key: str, participant_id: str, *, now: datetime
 ) -> Generator[bytes]:
-    """The ZIP file in pieces, from one look at the database; close the iterator to stop early."""
+    """Yield the ZIP file in pieces, from one snapshot; close the iterator to stop early."""
     with database.reading() as db:
         participant = db.get_one(Participant, participant_id)
         own = select(StudySession.id).where(StudySession.participant_id == participant_id)
         sessions = frozenset(db.scalars(own.order_by(StudySession.created_at)))
         more = _members(db, participant, now)
-        # `all`: whatever kind of session it was, it is theirs.
+        # `all`: sessions of every kind belong to the participant.
         yield from person_archive(db, study_key, "all", sessions, more, now=now)
 
 
@@ -44,13 +44,13 @@ def _members(db: Session, participant: Participant, now: datetime) -> Iterator[M
     yield Member(WORDS, iter([_words(db, participant).encode()]))
     imported = told_of(db, participant.study_id, participant.code)
     if imported and participant.kind == "people":
-        # Answers from another tool under the same code.
+        # Answers that were imported from another tool, with the same code.
         text = json.dumps(imported, ensure_ascii=False, indent=2) + "\n"
         yield Member(IMPORTED, iter([text.encode()]))
 
 
 def _words(db: Session, participant: Participant) -> str:
-    """Notes, reasons, heights and corrections as they are stored beside the log."""
+    """Return notes, reasons, heights and corrections as they are stored, as JSON."""
     sessions = db.scalars(
         select(StudySession.id)
         .where(StudySession.participant_id == participant.id)

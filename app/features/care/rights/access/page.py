@@ -1,4 +1,4 @@
-"""A participant's page: plain HTML that any browser shows, without scripts or a network."""
+"""A participant's page as plain HTML that any browser shows, without scripts or a network."""
 
 from collections.abc import Iterable, Mapping
 from datetime import UTC, datetime
@@ -28,7 +28,7 @@ def answer_text(
     language: str,
     words: Mapping[str, str],
 ) -> str:
-    """The answer in words, with its number where there is one."""
+    """Return the answer in words, with its number if it has one."""
     if value is None:
         return words["left_out"]
     if item.type == "choice":
@@ -45,7 +45,7 @@ def answer_text(
 
 
 def _scale_label(instrument: Instrument, item: Item, number: float, language: str) -> str:
-    """The words at this step of a scale, where it has words for every step or at its ends."""
+    """Return the label of this step of a scale, if the scale labels every step or its ends."""
     scale = instrument.scale_of(item)
     if scale is None or not scale.labels:
         return ""
@@ -59,7 +59,7 @@ def _scale_label(instrument: Instrument, item: Item, number: float, language: st
 
 
 def page_of(code: str, visits: Iterable[Visit], now: datetime) -> str:
-    """The page; everything that anybody wrote is escaped."""
+    """Return the page; all texts from people are escaped."""
     shown = list(visits)
     language = shown[-1].session.language if shown else "en"
     words = words_of(language)

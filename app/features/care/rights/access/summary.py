@@ -1,4 +1,4 @@
-"""What a participant's page holds, gathered from the record."""
+"""Collect the content of a participant's page from the record."""
 
 import json
 from collections.abc import Sequence
@@ -36,7 +36,7 @@ WORDS_KEPT = ("note", "reason", "refused_form")
 
 @dataclass(frozen=True)
 class Consent:
-    """That somebody agreed, to which text, and when; `at` is None where it was not recorded."""
+    """A text that the participant consented to, and when; `at` is None if it was not recorded."""
 
     text: str
     at: datetime | None
@@ -44,7 +44,7 @@ class Consent:
 
 @dataclass(frozen=True)
 class Written:
-    """Words that the lab wrote down, or that came too late. `kind`: note, reason, refused_form."""
+    """A text that the lab wrote, or a form that came too late; `kind`: note, reason, refused_form."""
 
     kind: str
     text: str
@@ -53,7 +53,7 @@ class Written:
 
 @dataclass(frozen=True)
 class Visit:
-    """One session as its participant may read it. `heights` in m: stated and matched."""
+    """One session as shown to its participant; `heights` in m: stated and matched."""
 
     session: StudySession
     study_title: str
@@ -67,7 +67,7 @@ class Visit:
 
 
 def visits_of(db: Session, participant: Participant) -> list[Visit]:
-    """Every visit of a participant, oldest first."""
+    """Return every visit of a participant, oldest first."""
     sessions = db.scalars(
         select(StudySession)
         .where(StudySession.participant_id == participant.id)
@@ -98,7 +98,7 @@ def _instrument(db: Session, form: StoredAnswers) -> Instrument:
 
 
 def _consents(db: Session, session: StudySession) -> list[Consent]:
-    """The text of each step of consent, with when it was completed."""
+    """Return the text of each consent step, with the time when it was completed."""
     texts = protocol_of_session(db, session).texts
     done = {
         json.loads(event.payload)["step"]: event.recorded_at

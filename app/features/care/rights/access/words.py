@@ -1,4 +1,4 @@
-"""What a participant's own copy says around their answers; English where a language is missing."""
+"""The fixed texts of a participant's own copy; English if a language is missing."""
 
 from collections.abc import Mapping
 
@@ -90,10 +90,10 @@ WORDS: Mapping[str, Mapping[str, str]] = {"en": EN, "de": DE}
 
 
 def words_of(language: str) -> Mapping[str, str]:
-    """The words in a language."""
+    """Return the texts in a language, or in English."""
     return WORDS.get(language, EN)
 
 
 def in_language(text: Mapping[str, str], language: str) -> str:
-    """A text of the study in a language, or in the first one it has."""
+    """Return a text of the study in a language, or in the first one that it has."""
     return text.get(language) or next(iter(text.values()), "")
