@@ -138,7 +138,7 @@ class RestoredContent:
     lifetimes: Lifetimes | None = None
 
     def __call__(self, db: Session) -> None:
-        """Raise InvalidInput for rows that cannot be read later, and for chains that do not verify."""
+        """Raise InvalidInput for rows that cannot be read, and for chains that do not verify."""
         if not self.even_though_altered:
             _require_chains(db)
         require_readable(db, even_though_altered=self.even_though_altered)

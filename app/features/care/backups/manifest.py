@@ -65,7 +65,7 @@ def write_manifest(connection: sqlite3.Connection, manifest: Manifest) -> None:
 
 
 def read_manifest(connection: sqlite3.Connection) -> Manifest:
-    """Return the manifest of a backup; raise ManifestError, or sqlite3.Error if it is unreadable."""
+    """Return the manifest of a backup; raise ManifestError, or sqlite3.Error if unreadable."""
     try:
         rows = connection.execute(f"SELECT entry, value FROM {MANIFEST_TABLE}").fetchall()  # noqa: S608 - our own table
     except sqlite3.OperationalError as error:

@@ -76,7 +76,7 @@ LONGEST_INVITATION = timedelta(days=30)
 _SHOWN = 60
 _AT_ONCE = 500
 _UNBOUNDED = {(Ledger.__tablename__, "seed")}
-"""A study's file may name any seed, and SQLite keeps it."""
+"""Integer columns of any size: a study file may have any seed, and SQLite stores it."""
 _WORDS: Mapping[Any, Collection[str]] = {
     Account.role: ROLES,
     LoginToken.purpose: ("browser", "script"),
@@ -90,7 +90,7 @@ _WORDS: Mapping[Any, Collection[str]] = {
     AlarmRow.state: ("raised", "cleared"),
     Suggestion.status: ("open", "adopted", "declined"),
 }
-"""Columns without a check of the database that hold one of a few words."""
+"""The valid words of columns that have no check constraint."""
 _UNREADABLE = (
     # Includes pydantic's errors, ConfigError and PlanError.
     ValueError,
@@ -103,7 +103,7 @@ _UNREADABLE = (
     NoResultFound,
     MultipleResultsFound,
 )
-"""What unpacking a text brings about that anybody may have written."""
+"""The errors that parsing an untrusted text can raise."""
 
 
 @dataclass(frozen=True)

@@ -104,7 +104,7 @@ UNREADABLE = (
     LookupError,
     RecursionError,
 )
-"""What reading a file brings about that anybody may have written."""
+"""The errors that reading an untrusted file can raise."""
 
 
 def _refused(path: Path, why: str) -> InvalidInput:

@@ -36,15 +36,15 @@ from app.features.care.backups.shapes import ColumnShape, Kind, TableShape
 
 Row = tuple[Any, ...]
 SHORT_ROWS, LONG_ROWS = 2000, 64
-"""How many rows are in memory at once."""
+"""How many rows are in memory simultaneously."""
 KEPT_QUERIES = 256
 _MOMENT = "YYYY-MM-DD HH24:MI:SS.US"
 Progress = Callable[[str, int], None]
-"""Called with a table's name and how many more of its rows are done."""
+"""A callback with a table's name and how many more of its rows are done."""
 
 
 def read_rows(connection: Connection, shape: TableShape) -> Iterator[list[Row]]:
-    """Yield all rows in the order of the primary key, in portions; texts are ordered by code point."""
+    """Yield all rows in portions, ordered by the primary key; texts sort by code point."""
     size = LONG_ROWS if shape.has_bytes else SHORT_ROWS
     if connection.dialect.name == "sqlite":
         # A driver-level query: each file has an engine of its own, which would compile it again.

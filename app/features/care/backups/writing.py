@@ -26,7 +26,7 @@ from app.platform.half_made import Notes, made_beside
 from app.schema_revisions import known_revisions, make_file, newest_revision, revision_of
 
 SPARE_BYTES = 64 * 1024 * 1024
-"""What a backup leaves free on its disk, which may be the one that the server writes to."""
+"""Space that a backup leaves free on its disk, which the server may write to as well."""
 _FOR_ONE_WRITER = ("journal_mode=DELETE", "journal_mode=OFF", "synchronous=OFF")
 
 

@@ -29,13 +29,13 @@ ALWAYS_CHECKED_BYTES = 2 * 10**9
 Checking takes about 2.5 s for each GB if the disk has to read it, 0.4 s if it is in memory.
 """
 ROWS_READ_BYTES = 200 * 10**6
-"""The rows of a larger file are read only where the database could not be worked with."""
+"""The rows of a larger file are read only if the database turned out to be unusable."""
 UNNAMED = "it does not say which schema it has"
 UNREADABLE = "what is in it cannot be read as text"
 _HEADER = 100
 _BLOCK = 4 * 1024 * 1024
 _SHARED_FIRST, _SHARED_SIZE = 0x40000002, 510
-"""The bytes that every process with an open SQLite database holds a lock on in WAL mode."""
+"""The byte range that every process with an open SQLite database locks in WAL mode."""
 _REVISION = re.compile(r"\d{4}")
 _ERROR_CODE = re.compile(r"error code=(\d+)")
 
@@ -145,7 +145,7 @@ def _said(error: Exception) -> str | None:
 
 
 def _plain(said: str) -> str:
-    """Return one line without unprintable characters, which damage brings into SQLite's messages."""
+    """Return one line without the unprintable characters that damage brings into messages."""
     return "".join(letter if letter.isprintable() else "?" for letter in said)[:200]
 
 
@@ -235,7 +235,7 @@ def _too_new(found: Mapping[str, set[str]], shapes: Iterable[TableShape]) -> lis
 
 
 def _read_through(file: Path) -> None:
-    """Read the file sequentially into the cache, because SQLite's check reads it at random places."""
+    """Read the file sequentially into the cache, since SQLite's check reads at random places."""
     with suppress(OSError):  # the check itself will report read errors
         handle = os.open(file, os.O_RDONLY)
         try:

@@ -123,7 +123,7 @@ def bring_up_to_date(settings: Settings, clock: Clock) -> Path | None:
 
 @contextmanager
 def begun_if_missing(settings: Settings, clock: Clock) -> Iterator[None]:
-    """Prepare the database for the block; if it was created for it and the block fails, delete it."""
+    """Prepare the database for the block; if it is new and the block fails, delete it."""
     file = database_file(settings)
     begun = file is not None and not is_there(file)
     bring_up_to_date(settings, clock)
@@ -175,7 +175,7 @@ def existing_database(settings: Settings) -> Database:
 
 
 def _revision(connection: Connection) -> str | None:
-    """Return the revision, or None for a database without tables; raise Conflict if it is unusable."""
+    """Return the revision, None for a database without tables; raise Conflict if unusable."""
     found = revision_of(connection)
     if found is None:
         _refuse_foreign(inspect(connection).get_table_names(), str(connection.engine.url.database))
@@ -247,7 +247,7 @@ def _newest_backup(settings: Settings) -> str:
 
 
 def _name_of(settings: Settings) -> str:
-    """Return the database's name for a message: its file, or its name on the server, no password."""
+    """Return the database's name for a message: its file, or its name without a password."""
     file = database_file(settings)
     return str(file or make_url(settings.resolved_database_url).database)
 

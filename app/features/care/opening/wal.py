@@ -26,13 +26,13 @@ HEADER, FRAME_HEADER = 32, 24
 MAGICS = (0x377F0682, 0x377F0683)
 FRAMES_AT_ONCE = 512
 _INDEX_HEADER = 48
-"""Bytes of `WalIndexHdr`, which is there twice; `nBackfill` follows."""
+"""Size of `WalIndexHdr`, which the index has twice; `nBackfill` follows."""
 Words = NDArray[np.uint32]
 
 
 @dataclass(frozen=True)
 class LogReport:
-    """The state of a log; `usable`: frames of complete transactions before the first invalid frame.
+    """A log's state; `usable`: frames of complete transactions before the first invalid one.
 
     `commits_behind`: transactions of this log that ended after the first invalid frame.
     """
@@ -103,9 +103,8 @@ def _frames(
         frames = frames[: len(block) // length * length].reshape(-1, length)
         heads = np.ascontiguousarray(frames[:, :FRAME_HEADER]).view(">u4").astype(np.uint32)
         own = (heads[:, 2] == salts[0]) & (heads[:, 3] == salts[1])
-        # Compute each from the stored checksum of the frame before, valid or not: as long as all
-        # are
-        # valid, that is the running checksum of SQLite.
+        # Compute each checksum from the stored one of the frame before, valid or not: as long
+        # as all are valid, that is the running checksum of SQLite.
         sums_before = np.concatenate([last_sum, heads[:, 4:6]])
         covered = np.concatenate([frames[:, :8], frames[:, FRAME_HEADER:]], axis=1)
         sums = checksum.each(_words(covered.tobytes(), order, len(frames)), sums_before[:-1])
@@ -145,7 +144,7 @@ class _Checksum:
         self._weights: Words = np.array(weights[::-1], dtype=np.uint32)
 
     def each(self, blocks: Words, before: Words) -> Words:
-        """Return the states (n, 2) after n blocks (n, pairs, 2) from the states before them (n, 2)."""
+        """Return the states (n, 2) after n blocks (n, pairs, 2), given those before them."""
         added = np.einsum("npx,psx->ns", blocks, self._weights)
         return np.asarray(before @ self._power.T + added, np.uint32)
 

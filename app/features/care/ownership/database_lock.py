@@ -17,12 +17,11 @@ from app.errors import NotDurable
 from app.features.care.ownership.owner import Owned, Owner
 
 KEY = int.from_bytes(b"reembody", "big")
-"""Of the lock, in every database: its first half is the `classid` of `pg_locks`, its second the
-`objid`."""
+"""The key of the lock in every database; its halves are `classid` and `objid` in `pg_locks`."""
 LONGEST_NAME = 63
-"""What PostgreSQL keeps of a connection's name."""
+"""The longest name of a connection in PostgreSQL."""
 _NAME = re.compile(r"reembody (\S+) (\d+) (\d+|-) (\S*)")
-"""Command, process id, port, machine."""
+"""The name of an owner's connection: command, process id, port, machine."""
 _MINE = "locktype = 'advisory' AND classid = :high AND objid = :low AND objsubid = 1 AND granted"
 _KEYS = {"key": KEY, "high": KEY >> 32, "low": KEY & 0xFFFFFFFF}
 _ENDED_NOTICED_BY_SERVER = (
@@ -30,7 +29,7 @@ _ENDED_NOTICED_BY_SERVER = (
     "SET tcp_keepalives_interval = 5",
     "SET tcp_keepalives_count = 3",
 )
-"""A machine that lost its power says no farewell: else its lock would stand for two hours."""
+"""Detect a dead client within half a minute; by default its lock would last for two hours."""
 
 
 class DatabaseLock:

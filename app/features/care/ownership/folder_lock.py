@@ -22,7 +22,7 @@ from app.features.care.ownership.owner import Owned, Owner
 NAME = "owner.lock"
 _TRIES = 20
 _SETTLES_S = 0.02
-"""How long an owner needs to write its text, many times over."""
+"""Far longer than an owner needs to write its text."""
 _HELD = (errno.EACCES, errno.EAGAIN, errno.EDEADLK)
 
 
@@ -74,12 +74,11 @@ class FolderLock:
         self.announce(self._owner)
 
     def release(self) -> None:
-        """Release the lock, and remove a folder that was created for it and has nothing else in it."""
+        """Release the lock, and remove a folder created for it that has nothing else in it."""
         unused = self._handle is not None and bool(self._made) and self._is_empty()
         with suppress(OSError):
             if unused:
-                # Unlink while the lock is held: a process that opened the file meanwhile notices
-                # that.
+                # Unlink while holding the lock: a process that opened the file will notice.
                 self._file.unlink()
         self.forget()
         with suppress(OSError):
@@ -149,7 +148,7 @@ if sys.platform == "win32":
     import msvcrt
 
     _FAR = 1 << 30
-    """A locked byte cannot be read there, so it is one far behind the text."""
+    """On Windows a locked byte cannot be read, so one far after the text is locked."""
 
     def _lock(handle: int) -> None:
         os.lseek(handle, _FAR, os.SEEK_SET)

@@ -11,7 +11,7 @@ from typing import Self
 from app.errors import Conflict
 
 SERVER = "serve"
-"""The command whose owner stays until somebody ends it; every other one ends by itself."""
+"""The command of a server, which runs until it is stopped; other commands end by themselves."""
 _PID_NAMESPACE = Path("/proc/self/ns/pid")
 
 
@@ -59,7 +59,7 @@ class Owner:
 
     @property
     def ends_by_itself(self) -> bool:
-        """Return whether to wait for this owner: it is a command, or a server that has just died."""
+        """Return whether to wait for this owner: a command, or a server that has just died."""
         return self.command != SERVER or self._is_dead()
 
     def __str__(self) -> str:

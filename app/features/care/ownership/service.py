@@ -25,11 +25,11 @@ from app.settings import Settings
 
 log = logging.getLogger(__name__)
 WAIT_S = 5.0
-"""How long a command that ends by itself is waited for."""
+"""How long to wait for a command that ends by itself."""
 TRY_EVERY_S = 0.1
 LOOK_EVERY_S = 1.0
 OWNER = "owner"
-"""The name of the watch among what runs in the background."""
+"""The name of the watch among the background tasks."""
 
 
 class _Lock(Protocol):

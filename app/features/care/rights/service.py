@@ -16,7 +16,7 @@ from app.models import Participant, StudySession
 from app.platform.context import AppContext
 
 AGAIN = "restored"
-"""The reason code of an erasure that was made again."""
+"""The reason code of a repeated erasure."""
 log = logging.getLogger(__name__)
 
 
@@ -44,7 +44,7 @@ class ErasureReplay:
 
 
 def erase_again(db: Session, context: AppContext, known: Sequence[Tombstone]) -> int:
-    """Erase every participant whose sessions are in the database although they were erased before."""
+    """Erase every participant with sessions in the database who was erased before."""
     done = 0
     for one in known:
         owners = db.scalars(

@@ -1,4 +1,4 @@
-"""Measure database and disk, which may take seconds, once for all requests, and cache the result."""
+"""Measure database and disk, which may take seconds, for all requests, and cache the result."""
 
 import shutil
 import threading

@@ -14,10 +14,10 @@ from app.platform.context import AppContext, Part
 
 LOOK_EVERY_S = 1.0
 UNTRIED_NS = 5_000_000_000
-"""As long as whoever wants to start something waits before trying it."""
+"""Write again after this time, the same as a request waits before it tries to."""
 THREAD = "storage-recovery"
 _CHANGES_NOTHING = text("UPDATE alembic_version SET version_num = version_num")
-"""A row is written, flushed and committed like any other, and is what it was."""
+"""Writes and commits a row without changing its content."""
 
 
 @dataclass(eq=False)

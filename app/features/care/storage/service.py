@@ -23,7 +23,7 @@ from app.platform.half_made import half_made
 LARGEST = 12
 """How many sessions are listed."""
 MEASURED_BY: tuple[SessionKind, ...] = ("people", "test", "simulated")
-"""Whose sessions tell how large the next will be: the first kind that has typical ones."""
+"""Kinds of sessions to estimate sizes from: the first one with typical sessions is used."""
 
 
 def storage_view(db: Session, context: AppContext, caller: Caller, *, anew: bool) -> StorageView:
@@ -54,8 +54,7 @@ def storage_view(db: Session, context: AppContext, caller: Caller, *, anew: bool
         half_made=[
             HalfMadeView(kind=one.kind, place=str(one.path), since=one.since, going_on=one.going_on)
             for one in half_made(context.settings)
-            # Files in the server's own scratch folder are in progress, and are removed
-            # automatically.
+            # Files in the scratch folder are in progress and are removed automatically.
             if one.kind != "upload"
             and one.kind != "check"
             and (one.kind != "export" or one.study_key in own)

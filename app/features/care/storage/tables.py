@@ -42,9 +42,9 @@ _RELATIONS = text(
     "WHERE relkind = 'r' AND relnamespace = current_schema()::regnamespace"
 )
 SHORT_COLUMNS_BYTES = 100
-"""What the numbers and short words of a row take, about."""
+"""Approximate size of the numbers and short texts of a row."""
 OF_SUBMISSIONS = (Answer.__table__, ScoreValue.__table__)
-"""Tables whose rows belong to a session by the form they were handed in with."""
+"""Tables whose rows belong to a session through their form."""
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from app.protocol import ConfigError
 from app.protocol.editing import Change, edit_text
 
 UNDER_WAY = ("planned", "active")
-"""Sessions that are not over yet."""
+"""The statuses of sessions that are not over yet."""
 
 
 def duplicate(

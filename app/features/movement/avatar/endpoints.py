@@ -50,7 +50,7 @@ def post_avatar(wish: NewAvatar, db: Writing, context: Context, caller: SignedIn
 
 @router.post("/check")
 def post_avatar_check(file: AvatarText, db: Reading, _: SignedIn) -> AvatarCheck:
-    """Parse a file without storing it; return its configuration, or every problem with its place."""
+    """Parse a file without storing it; return its configuration or all problems with places."""
     return check_text(db, file.text)
 
 

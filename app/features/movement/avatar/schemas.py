@@ -1,4 +1,4 @@
-"""Request and response models of avatar configurations; the configuration itself is as in its file."""
+"""Request and response models of avatar configurations; each configuration is as in its file."""
 
 from datetime import datetime
 from typing import Annotated, Any, Literal

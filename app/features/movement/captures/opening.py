@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from app.science.fitting import Fitted
 
 MapPairs = tuple[tuple[str, str], ...]
-"""A joint map that can be part of a key."""
+"""A joint map as a hashable value."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +50,7 @@ class Opened:
 
     @property
     def start_s(self) -> float:
-        """Return the time from the recording's first frame to the start of the skeleton's movement."""
+        """Return when the skeleton's movement begins, from the recording's first frame."""
         if self.fitted is None or isinstance(self.capture.motion, RigMotion):
             return 0.0
         motion, first = self.capture.motion, self.fitted.first_frame

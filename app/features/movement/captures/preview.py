@@ -26,7 +26,7 @@ MOST_HZ = 60.0
 MOST_NUMBERS = 4_000_000
 """16 MB: six minutes of sixty points at sixty hertz."""
 GAP_STEPS = 3.0
-"""Samples of a logger that lie further apart than so many usual steps have a gap between them."""
+"""A logger's samples have a gap between them if they are more usual steps apart than this."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +94,7 @@ def _evenly(motion: BodyMotion) -> tuple[float, FloatArray]:
     if motion.frame_count < 2 or rate_hz <= 0.0:
         return 1.0, motion.positions_m
     moments = 1 + math.floor((motion.times_s[-1] - motion.times_s[0]) * rate_hz + 1e-6)
-    # A gap of hours in a log must not become a movement of hours.
+    # A gap of hours in a log must not become hours of frames.
     moments = min(moments, max(1, MOST_NUMBERS // (3 * len(motion.names))))
     at_s = motion.times_s[0] + np.arange(moments) / rate_hz
     after = np.clip(np.searchsorted(motion.times_s, at_s), 1, motion.frame_count - 1)

@@ -28,7 +28,7 @@ from app.platform.context import AppContext
 
 @dataclass(frozen=True)
 class Wish:
-    """The parameters of an upload: the names of its files, and the conventions to parse them with."""
+    """The parameters of an upload: names of its files, and conventions to parse them with."""
 
     name: str
     companion: str | None

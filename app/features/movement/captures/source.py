@@ -51,7 +51,7 @@ def source_of(row: CaptureRow, reading: ReadingChoice | None = None) -> Source:
     )
 
 
-class Cannot(Exception):  # the name reads as a sentence with its reason
+class Cannot(Exception):
     """A capture cannot be parsed or retargeted; raised in the worker process, passed to the server.
 
     `file_name` and `line` locate the problem, if that is known; line 0 is the whole file.

@@ -36,9 +36,9 @@ from app.science.rig import RigError
 from app.science.rotations import FloatArray
 
 MOST_DRAWN = 3000
-"""Points of a line; a screen shows fewer."""
+"""Maximum number of points of a line; a screen shows fewer."""
 _METRE_DIGITS, _DEGREE_DIGITS = 5, 3
-"""A hundredth of a millimetre and a thousandth of a degree: far below what a line can show."""
+"""Rounding to 0.01 mm and 0.001 degrees, which is far finer than a line can show."""
 
 
 def verification_json(mapped: Mapped, avatars: tuple[str, ...], *, lock_feet: bool) -> bytes:

@@ -18,14 +18,14 @@ from app.platform.job_queue import Words, WorkingLine
 from app.platform.workers import Worker
 
 WITHIN_S = 120.0
-"""The longest that anything may take; a capture of an hour takes a quarter of it."""
+"""Time limit of one task; a capture of an hour takes a quarter of it."""
 MEMORY_BYTES = 3 * 1024**3
-"""What the process may ask for beyond its own program."""
+"""Memory that the process may use in addition to its program."""
 KEPT_BYTES = 64 * 1024**2
 
 
 def limit_memory() -> None:
-    """Load the modules that are needed anyway, then limit the memory; runs in the worker process."""
+    """Import needed modules, then limit the process's memory; runs in the worker process."""
     import_module("app.features.movement.captures.tasks")
     if sys.platform == "linux":
         import resource

@@ -19,7 +19,7 @@ from app.models import (
 
 PIECE_BYTES = 256 * 1024
 LEVEL = 6
-"""Text shrinks to a fifth within a second or two; higher levels hardly gain."""
+"""Compresses text to a fifth within a second or two; higher levels hardly improve on that."""
 
 
 def compress(file: Path, to: Path) -> None:

@@ -30,7 +30,7 @@ FileName = Annotated[
 BYTES = "application/octet-stream"
 BINARY: dict[str, Any] = {"schema": {"type": "string", "format": "binary"}}
 BODY: dict[str, Any] = {"requestBody": {"required": True, "content": {BYTES: BINARY}}}
-"""How the interface's document describes a request whose body is a file."""
+"""The OpenAPI description of a request whose body is a file."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Humanoid models that give avatars their shape: uploaded once, measured, identified by their hash."""
+"""Humanoid models that give avatars their shape: uploaded, measured and identified by hash."""
 
 from app.features.movement.humanoids.service import (
     figure_by_hash,

@@ -1,4 +1,4 @@
-"""Upload humanoid models: parsed in the worker process for captures, stored once by their content."""
+"""Upload humanoid models: parse them in the worker process for captures, store them once."""
 
 from collections.abc import AsyncIterator
 from dataclasses import asdict

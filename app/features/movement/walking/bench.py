@@ -13,7 +13,7 @@ from app.platform.job_queue import Words, WorkingLine
 from app.platform.workers import Worker
 
 WITHIN_S = 120.0
-"""The longest that an answer may take; tables of hours of tracks take half a minute."""
+"""Time limit of one prediction; tables of hours of tracks take half a minute."""
 KEPT = 64
 
 

@@ -137,7 +137,7 @@ class FittingDesk(Part):
         return told
 
     def _make_or_fail(self, fit: _Fit) -> None:
-        """Run a fit; an unexpected error marks it as failed and is raised for the background queue."""
+        """Run a fit; mark it as failed on an unexpected error, and raise that for the queue."""
         try:
             self._make(fit)
         except Exception:

@@ -91,7 +91,7 @@ def get_walk_sets(db: Reading, _: SignedIn) -> list[WalkSetView]:
 
 @router.post("/walk-sets", status_code=201)
 async def post_walk_set(wish: NewWalkSet, context: Context, caller: SignedIn) -> WalkSetView:
-    """Create a set of synthetic walks, which are marked as such, or of walks from stored captures."""
+    """Create a set of walks: synthetic ones, which are marked as such, or from captures."""
     return await add_walk_set(context, caller, wish)
 
 

@@ -88,7 +88,7 @@ def _database(files: FitFolder, entries: list[PlannedWalk], maker: MapMaker) -> 
 
 
 def _kept_maps(files: FitFolder, entries: list[PlannedWalk], maker: MapMaker) -> list[DeviationMap]:
-    """Return the maps that an earlier run finished, and truncate an incomplete record after them."""
+    """Return the maps that an earlier run finished, and truncate an incomplete last record."""
     if not files.maps.exists():
         return []
     nodes = maker.grid.size

@@ -24,9 +24,9 @@ from app.science.walking.scene import Scene, outlines_of
 Json = dict[str, Any]
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 SHOWN_STEP_S = 0.05
-"""Between two points of a path that is shown."""
+"""Time between two points of a path that is shown."""
 MOST_SHOWN = 400
-"""Points of one path that is shown; slower walkers get wider steps."""
+"""Maximum number of points of a shown path; slower walkers get longer time steps."""
 
 
 @lru_cache(maxsize=2)
@@ -139,7 +139,7 @@ def _dependencies(
 
 
 def _outside(fit: FittedWalking, dependencies: dict[str, float]) -> list[str]:
-    """Return the dependencies that are outside the range of the walks that the model was fitted to."""
+    """Return the dependencies outside the range of the walks that the model was fitted to."""
     base = fit.database
     return [
         name

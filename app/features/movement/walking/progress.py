@@ -11,7 +11,7 @@ from typing import Literal
 Stage = Literal["waiting", "walks", "maps", "blending"]
 STAGES: tuple[Stage, ...] = ("waiting", "walks", "maps", "blending")
 RECORD_BYTES = 8
-"""Of each node of a map: its deviation and its travel time."""
+"""Bytes per node of a map: its deviation and its travel time."""
 
 
 @dataclass(frozen=True)

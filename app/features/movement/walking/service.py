@@ -36,7 +36,7 @@ def model_by_id(db: Session, model_id: str, *, lock: bool = False) -> WalkingMod
 
 
 def ready_content(db: Session, model_id: str) -> tuple[str, str]:
-    """Return the content hash and title of a fitted model; raise NotFound, or NotNow before that."""
+    """Return the content hash and title of a fitted model; raise NotFound or NotNow."""
     row = model_by_id(db, model_id)
     if row.state != "ready" or row.content_hash is None:
         raise NotNow(

@@ -45,7 +45,7 @@ def tracks_source(origin: TracksOrigin, kind: Kind, content_hash: str) -> TrackS
 
 
 def captures_source(origin: CapturesOrigin, content_hash: str) -> TrackSource:
-    """Return the source of tracks from captures; raise InvalidInput if a person has two statures."""
+    """Return the source of tracks from captures; raise InvalidInput for conflicting statures."""
     names = [f"c{at}" for at in range(len(origin.captures))]
     statures: dict[str, float] = {}
     for one in origin.captures:

@@ -9,10 +9,10 @@ from typing import Literal
 from app.science.walking.records import Kind
 
 LABORATORY = "laboratory"
-"""In place of a scene's text: the paper's sixteen straight and curved walks."""
+"""Used instead of a scene's text for the paper's sixteen straight and curved walks."""
 
 
-class Cannot(Exception):  # the name reads as a sentence with its reason
+class Cannot(Exception):
     """Something cannot be parsed, fitted or predicted; raised in a worker process."""
 
     def __init__(self, reason: str, remedy: str = "") -> None:

@@ -30,7 +30,7 @@ BLINDED_NOTE = "The study is blinded: measures of sessions that are still open a
 def build_dashboard(
     db: Session, study_key: str, kind: DashboardKind, chosen: FigureFilter = NO_FILTER
 ) -> DashboardFigures:
-    """Return every figure of a study's sessions of one kind; raise NotFound for an unknown study."""
+    """Return every figure of a study's sessions of one kind; raise NotFound."""
     return dashboard_of(read_material(db, study_key, kind), chosen)
 
 
@@ -59,7 +59,7 @@ def dashboard_of(
 def drawings_of(
     material: Material, chosen: FigureFilter = NO_FILTER, group: FigureGroup | None = None
 ) -> Iterator[Drawing]:
-    """Yield the figures of one group or of all groups, each marked with what the filter selected."""
+    """Yield the figures of one or of all groups, each marked with what the filter selected."""
     prefix = TITLE_PREFIX[material.kind]
     note = f"{chosen.words()} {BLINDED_NOTE if material.blinded else ''}".strip()
     rows = Rows(material.chosen(chosen), invalid=chosen.rows == "all")
@@ -72,7 +72,7 @@ def drawings_of(
 
 
 def _explained(figure: Figure, rows: Rows) -> Iterator[Drawing]:
-    """Yield the drawings of a figure; an empty one says if there are rows that are just not valid."""
+    """Yield the drawings of a figure; an empty one says if there are only invalid rows."""
     everything: dict[str, Drawing] | None = None
     for drawing in figure.draw(rows):
         if drawing.empty is not None and not rows.invalid and not rows.left.sessions.empty:

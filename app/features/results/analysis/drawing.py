@@ -186,7 +186,7 @@ class Drawings(Part):
 
 
 def draw(url: str, asked: Asked) -> bytes:
-    """Return a dashboard or the results of the study's tests as JSON; runs in the worker process."""
+    """Return a dashboard or the study's test results as JSON; runs in the worker process."""
     # Loads pandas and plotly, which the server's own process does not need.
     from app.features.results.analysis import in_process
 

@@ -68,5 +68,5 @@ def _material(url: str, study_key: str, kind: DashboardKind) -> Iterator[Materia
 
 @cache
 def _engine(url: str) -> Engine:
-    # Without a pool no connection stays open between tasks: a database can be replaced or dropped.
+    # Without a pool, no connection stays open between tasks, so the database can be replaced.
     return make_engine(url, pooled=False)

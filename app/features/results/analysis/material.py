@@ -34,7 +34,7 @@ from app.protocol import StudyProtocol
 from app.science.instruments import Instrument
 
 KEPT = 3
-"""Studies and kinds whose tables are kept; those of a thousand sessions take some 200 MB."""
+"""Number of studies and kinds whose tables are cached; a thousand sessions take about 200 MB."""
 READ: Mapping[str, Callable[[Session, str, DashboardKind], pd.DataFrame]] = {
     "sessions": sessions_table,
     "scores": scores_table,
@@ -133,7 +133,7 @@ class Material:
 
     @property
     def visible(self) -> pd.DataFrame:
-        """Return the sessions whose measures are shown; of a blinded study only the completed ones."""
+        """Return the sessions whose measures are shown; if blinded, only completed ones."""
         known = self.sessions[~self.sessions["session_id"].isin(list(self.hidden))]
         return known[known["status"] == "completed"] if self.blinded else known
 
@@ -215,8 +215,7 @@ class MaterialStore:
         name = (db.get_bind().engine.url, study_key, kind)
         found = self._kept.pop(name, None)
         if found is None or found[0] != state:
-            # Release the old tables first, so that two sets of a large study's are not in memory
-            # together.
+            # Release the old tables first: two sets of a large study's would take too much memory.
             found = None
             reader = _Reader(study_key, kind, db)
             found = (state, reader, reader.material())

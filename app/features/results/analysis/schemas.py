@@ -83,7 +83,7 @@ class DashboardAsked(FigureFilter):
 
 
 class GroupAsked(DashboardAsked):
-    """The query of a dashboard or of one of its groups of figures; without `group`, of all groups."""
+    """The query of a dashboard, or of one group of its figures (`group`)."""
 
     group: FigureGroup | None = None
 

@@ -27,7 +27,7 @@ from app.platform.context import AppContext, Part
 log = logging.getLogger(__name__)
 QUEUE = "exports"
 AT_ONCE = 5
-"""How many a person may have waiting or under way."""
+"""How many exports an account may have queued or in progress."""
 ENDED = NotMade(
     "the process that made the export ended",
     "Make it again; if that fails too, look at the server's log and memory.",

@@ -59,7 +59,7 @@ def get_export(
 def post_export(
     key: str, wish: ExportWish, db: Reading, context: Context, caller: SignedIn
 ) -> ExportView:
-    """Start an export of a study's sessions of one kind, or of one session, as a ZIP of CSV files."""
+    """Start an export of sessions of one kind, or of one session, as a ZIP of CSV files."""
     study = study_by_key(db, key)
     what = wish.kind if wish.session_id is None else _code_of(db, study.id, wish)
     now = context.clock.utc_now()

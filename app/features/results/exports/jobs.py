@@ -11,9 +11,9 @@ from app.models import new_id
 from app.platform.workers import Worker
 
 KEPT = timedelta(hours=2)
-"""How long a file that is ready stays, from the last time somebody asked for it."""
+"""How long a finished file is kept after it was made or last downloaded."""
 FEWEST_ROWS = 2_000
-"""Before so many rows are written nobody can tell how large the file becomes."""
+"""The file's size is estimated only after this many rows have been written."""
 NS_PER_S = 1e9
 
 
@@ -65,7 +65,7 @@ class Job:
 
     @property
     def expires_at(self) -> datetime | None:
-        """Return when the file is removed unless it is downloaded before; None if it is not ready."""
+        """Return when the file is removed unless it is downloaded; None if it is not ready."""
         last = self.fetched_at or self.made_at
         return None if last is None or self.state != "ready" else last + KEPT
 

@@ -51,7 +51,7 @@ class NotMade:
 
 @dataclass
 class Progress:
-    """How many rows of movement and sessions have been written, of how many, and the file's size."""
+    """The number of rows of movement and of sessions written so far, and the file's size."""
 
     rows: int = 0
     rows_total: int = 0

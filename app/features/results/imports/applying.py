@@ -15,7 +15,7 @@ from app.features.results.imports.sheet import Sheet, SheetRow
 from app.science.instruments import Instrument, Item, fits, score_answers, valid_answers
 
 MISSING = frozenset({"", "na", "n/a", "nan", "null", ".", "-99"})
-"""What stands for no answer. Not "none": on many scales that is an answer."""
+"""Words for a missing answer; "none" is not among them, as it is an answer on many scales."""
 _YES_NO = {"true": True, "yes": True, "1": True, "false": False, "no": False, "0": False}
 _DATES = {
     "iso": ("%Y-%m-%d", "%Y/%m/%d"),

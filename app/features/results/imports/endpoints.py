@@ -151,7 +151,7 @@ def post_erase_imported(
 
 @contextmanager
 def _erasing(context: AppContext) -> Iterator[Session]:
-    """Open a transaction that deletes people's answers, and overwrite the freed bytes afterwards."""
+    """Open a transaction that deletes people's answers, then overwrite the freed bytes."""
     new = expect_erasure(context.settings)
     try:
         with context.database.writing() as db:

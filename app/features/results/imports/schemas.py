@@ -232,7 +232,7 @@ class PairView(BaseModel):
 
 
 class ScoreResult(BaseModel):
-    """The results of a score; `test` is a sentence for a paper, `why_not` says why it is missing."""
+    """The results of a score; `test` is a sentence for a paper, or `why_not` is the reason."""
 
     score: str
     title: str

@@ -24,7 +24,7 @@ _NO_TABLES = {
     "%PDF-": "a PDF",
     "PK\x03\x04": "a workbook or an archive",
 }
-"""By what a file of another kind begins with, read as Latin-1 or as Windows reads it."""
+"""Kinds of files that are not tables, by their first characters as Latin-1 or Windows-1252."""
 _TOOL_IDS = ('{"importid"', "{'importid'")
 
 

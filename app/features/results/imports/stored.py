@@ -83,7 +83,7 @@ def import_view(db: Session, row: AnswerImport) -> ImportView:
 def as_csv(
     study: Study, instrument: Instrument, row: AnswerImport, forms: Sequence[ImportedForm]
 ) -> str:
-    """Return one row per form: participant, condition, answers and scores, with origin = imported."""
+    """Return one row per form: participant, condition, answers, scores, origin = imported."""
     out = io.StringIO(newline="")
     writer = csv.writer(out, lineterminator="\n")
     items, scores = list(instrument.by_key), [one.key for one in instrument.scores]

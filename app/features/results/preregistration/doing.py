@@ -21,14 +21,13 @@ FEWEST = 2
 def done(
     db: Session, study: Study, declared: Declared, view: PreregistrationView
 ) -> PreregistrationView:
-    """Return the view with the number of participants in the test, its result and every deviation."""
+    """Return the view, completed with the test's participants, result and deviations."""
     kind = cast("Kind", view.kind)
     versions = versions_of(db, study)
     protocol = protocol_of(newest_version(db, study))
     tables = read_tables(db, study.key, kind)
     excluded = exclude(tables, declared.preregistration.exclusions)
-    # Broken-off sessions, and those that are not valid by the study's own rules, count in no test,
-    # whether or not a declared rule says so.
+    # Broken-off and invalid sessions are in no test, whether or not a declared rule says so.
     completed = tables.sessions[
         (tables.sessions["status"] == "completed") & tables.sessions["valid"]
     ]

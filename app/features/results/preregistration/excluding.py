@@ -23,7 +23,7 @@ from app.models import InstrumentVersion
 from app.protocol import COUNTED_KINDS, ExclusionRule
 
 FEWEST_ALIKE = 5
-"""Ratings of a form from which on being all alike says something."""
+"""Fewest ratings of a form for which identical ratings count as straight-lining."""
 BEGUN = ("completed", "aborted", "withdrawn")
 
 

@@ -75,7 +75,7 @@ class DeviationView(BaseModel):
 
 
 class PreregistrationView(BaseModel):
-    """What a study declared, what was done, and the deviations; `why_no_result` replaces a result."""
+    """What a study declared, what was done, and deviations, with a result or `why_no_result`."""
 
     study_key: str
     kind: str

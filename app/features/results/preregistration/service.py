@@ -31,7 +31,7 @@ def preregistration_of(
     )
     if declared is None:
         return view
-    # Imported here because it loads pandas and scipy, which would slow down start and empty page.
+    # Imported here because it loads pandas and scipy, which would slow down the start.
     from app.features.results.preregistration.doing import done
 
     return done(db, study, declared, view)

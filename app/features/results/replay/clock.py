@@ -158,7 +158,7 @@ def stretches(
 
 
 BEGINNINGS = frozenset({"started", "resumed", "walk_back_ended"})
-"""What sets the phase's clock going."""
+"""The events that start the phase's clock."""
 
 
 def later_by(begin: datetime, run_s: float, time_scale: float) -> datetime:

@@ -28,8 +28,7 @@ class ReplayDesk(Part):
 
     def movement(self, session_id: str, phase_id: int, *, full: bool) -> bytes:
         """Return the movement of a phase as bytes (`app.features.results.replay.movement`)."""
-        # Imported here because it loads scientific libraries, which would slow down the server's
-        # start.
+        # Imported here because it loads scientific libraries, which would slow down the start.
         from app.features.results.replay.movement import placed_movement
 
         placing = self._pool.submit(placed_movement, self.database, session_id, phase_id, full=full)

@@ -14,7 +14,7 @@ from app.science.rotations import FloatArray
 
 @dataclass
 class RunErrors:
-    """One run's avatar frames at the moments of the grid, and the target frames with the same seq."""
+    """One run's avatar frames at the grid's moments, and the target frames with the same seq."""
 
     sampling: Sampling
     _at: list[Indices] = field(default_factory=list)

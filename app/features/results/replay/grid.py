@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from app.features.record.telemetry import Frames, concatenate
 
 GAP_S = 0.25
-"""Frames that lie further apart have a gap between them; nothing is shown in it."""
+"""Between frames that are further apart than this is a gap, in which nothing is shown."""
 Indices = NDArray[np.int64]
 
 

@@ -50,7 +50,7 @@ from app.wire import StreamName
 MOST_HZ = 30.0
 ERROR_HZ = 10.0
 MOST_NUMBERS = 4_000_000
-"""16 MB: a quarter of an hour of two bodies at 30 Hz; what is longer comes at a lower rate."""
+"""16 MB: a quarter of an hour of two bodies at 30 Hz; longer phases have a lower rate."""
 Places = NDArray[np.float32]
 
 

@@ -19,8 +19,9 @@ from app.protocol import StepKind
 from app.wire.messages import PhaseEvent
 
 View = Literal["full", "participant"]
-"""`participant`: for readers who must not learn the latency. The participant's own movement alone,
-without the avatar and without what happened to it: their distance in time is the latency."""
+"""What a replay shows; `participant`, for blinded readers: only the participant's own movement.
+
+The avatar and its contacts are left out, because their delay would reveal the latency."""
 What = Literal[PhaseEvent, "voided"]
 Vector = tuple[float, float, float]
 

@@ -26,7 +26,7 @@ from app.platform.access import Caller, is_blind, session_by_id
 
 OVER = ("done", "voided")
 USUAL_STATURE_M = 1.7
-"""Of the body that is drawn where the participant's is not known."""
+"""Stature of the body that is drawn if the participant's is unknown."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ def replayable(db: Session, caller: Caller, session_id: str, phase_id: int) -> R
 
 
 def stature_of(db: Session, session: StudySession) -> float | None:
-    """Return the stature of the body in the session: the recorded avatar's, else the participant's."""
+    """Return the stature of the session's body: the recorded avatar's, else the participant's."""
     recorded = [content_body(row) for row in contents_of(db, session.id, "avatar")]
     for body in reversed(recorded):
         if isinstance(body, dict) and isinstance(body.get("stature_m"), float):
@@ -96,7 +96,7 @@ def frames_stored(db: Session, phase: Phase) -> int:
 
 
 def movement_tag(db: Session, asked: Replayable) -> str:
-    """Return an entity tag, with its quotes, that changes whenever the bytes of the movement may."""
+    """Return an entity tag, with its quotes, that changes whenever the movement may."""
     phase = asked.phase
     told = (
         *(phase.session_id, phase.phase_id, phase.status, phase.active_s, frames_stored(db, phase)),

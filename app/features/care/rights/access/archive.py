@@ -1,4 +1,4 @@
-"""Write everything about one participant as one ZIP: a page to read first, then texts and tables."""
+"""Write everything about one participant as one ZIP: a page to read, then texts and tables."""
 
 import json
 from collections.abc import Generator, Iterator

@@ -45,7 +45,7 @@ TABLES: dict[str, str] = {
     "codebook": "One row per column of the other files.",
     "samples": "One file per session, one row per frame: target and actual body side by side.",
 }
-"""Each table with what its rows are, in the order of the export."""
+"""The description of each table's rows, in the order of the export."""
 
 CODEBOOK: tuple[Column, ...] = (
     *SESSIONS,

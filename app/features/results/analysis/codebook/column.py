@@ -55,7 +55,7 @@ class Describe:
         return Column(self.table, name, "boolean", meaning, levels="true, false")
 
     def valid(self, meaning: str, without_rules: str) -> Column:
-        """Return the column `valid`, with a second meaning for studies without `valid_when` rules."""
+        """Return the column `valid`, with another meaning for studies without `valid_when`."""
         return replace(self.boolean("valid", meaning), without_rules=without_rules)
 
     def time(self, name: str, meaning: str) -> Column:

@@ -27,7 +27,7 @@ CALIBRATIONS: tuple[Column, ...] = (
 
 
 def epoch_column(table: str) -> Column:
-    """Return the column that names the client's run, and so the monotonic clock of the row's times."""
+    """Return the column of the client's run, which identifies the clock of the row's times."""
     return Describe(table).integer(
         "epoch",
         "Run of the client: a restart takes a new one, with a new clock.",

@@ -59,7 +59,7 @@ def achieved_drawing(phases: pd.DataFrame) -> Drawing:
 
 
 def _figure(measured: pd.DataFrame, off: pd.Series, latencies: list[float]) -> go.Figure:
-    """Draw the achieved latency in the left panel and its deviation from the set one in the right."""
+    """Draw the achieved latency (left) and its deviation from the set latency (right)."""
     spread = 0.05 * max(latencies[-1] - latencies[0], 50.0)
     figure = new_figure(titles=("Achieved", "Achieved less ordered"), horizontal_spacing=0.14)
     ends = [latencies[0] - spread, latencies[-1] + spread]

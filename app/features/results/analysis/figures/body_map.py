@@ -27,7 +27,7 @@ _HEIGHT_PX = 400
 
 
 def joint_error_body_drawing(errors: pd.DataFrame) -> Drawing:
-    """Draw the mean error of every joint on a body, from valid rows of the table of joint errors."""
+    """Draw the mean error of every joint on a body, from valid rows of the joint errors."""
     rows = task_angles(errors)
     n = participants(rows)
     if n < FEWEST_PARTICIPANTS:

@@ -1,4 +1,4 @@
-"""Figures of a measure at each latency: each participant's line and the mean, one panel per limb."""
+"""Figures of a measure at each latency: each participant's line and the mean, by limb."""
 
 import itertools
 from collections.abc import Sequence
@@ -29,9 +29,9 @@ MEANS = (
 )
 FEWEST_FOR_A_SHAPE = 5
 MANY = 60
-"""Participants from which on points are left away and lines are fainter."""
+"""With more participants than this, points are left out and lines are fainter."""
 SHAPE_SHARE = 0.16
-"""Width of a shape, of the distance between two neighbours on the x axis."""
+"""Width of a shape as a share of the distance between two neighbours on the x axis."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ LATENCY = Across("latency_ms", "added latency (ms)", "ms")
 
 
 def per_participant(frame: pd.DataFrame, value: str, across: str = LATENCY.column) -> pd.DataFrame:
-    """Return the mean of the column `value` per participant, limb and latency, as column `value`."""
+    """Return the mean of the column `value` per participant, limb and latency."""
     keys = ["participant_code", "limb", across]
     known = frame.dropna(subset=[*keys, value])
     return known.groupby(keys)[value].mean().rename("value").reset_index()
@@ -123,7 +123,7 @@ def latency_figure(
 
 
 def drawn_rows(values: pd.DataFrame, unit: str, across: Across = LATENCY) -> pd.DataFrame:
-    """Return the rows that `latency_figure` draws: participants' values, then means with intervals."""
+    """Return the rows that `latency_figure` draws: participants' values, means, intervals."""
     rows = [values.assign(row="participant")]
     for limb in LIMBS:
         own = values[values["limb"] == limb].rename(columns={across.column: "x"})
@@ -168,8 +168,8 @@ def _shapes(own: pd.DataFrame, limb: str, places: Sequence[float], unit: str) ->
             continue
         traces.append(
             go.Violin(
-                # dtype=object: plotly would encode numeric arrays in binary, and inspect every item
-                # of a list.
+                # dtype=object: plotly would encode numeric arrays in binary, and inspect a list's
+                # items.
                 x=np.full(len(group), float(str(place)) + 0.06 * gap, dtype=object),
                 y=group.to_numpy(dtype=object),
                 name=f"distribution, {limb}",

@@ -28,7 +28,7 @@ _APART = "\u001f"
 
 
 def contact_map_drawing(phases: pd.DataFrame, contacts: pd.DataFrame) -> Drawing:
-    """Draw contact times, one panel per limb and latency, from valid rows of phases and contacts."""
+    """Draw contact times from valid rows of phases and contacts, by limb and latency."""
     tasks = phases[phases["phase_kind"].isin(COUNTED_KINDS)]
     sides = contacts[contacts["surface_kind"] == "side"]
     n = participants(tasks)
@@ -44,7 +44,7 @@ def contact_map_drawing(phases: pd.DataFrame, contacts: pd.DataFrame) -> Drawing
 
 
 def _means(tasks: pd.DataFrame, sides: pd.DataFrame) -> pd.DataFrame:
-    """Return limb, latency_ms, body_part, side, mean_s_per_phase for each combination that occurs."""
+    """Return limb, latency_ms, body_part, side, mean_s_per_phase, for each existing combination."""
     times = part_side_times(sides)
     times["what"] = times["body_part"] + _APART + times["side"]
     found = []

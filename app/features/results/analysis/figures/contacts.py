@@ -72,7 +72,7 @@ def _side_times(sides: pd.DataFrame) -> pd.DataFrame:
 
 
 def _part_times(sides: pd.DataFrame) -> pd.DataFrame:
-    """Return the contact time by phase and body part: the union over its contacts with each side."""
+    """Return the contact time by phase and body part: the union of its contacts per side."""
     rows = []
     for key, contacts in _grouped(sides, "session_id", "phase_id", "body_part").items():
         rows.append((*key, sum(total_s(red) for red in red_spans(contacts).values())))

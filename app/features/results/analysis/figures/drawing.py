@@ -8,7 +8,7 @@ import pandas as pd
 import plotly.graph_objects as go
 
 FEWEST_PARTICIPANTS = 1
-"""One participant's own line is worth seeing; an interval needs two."""
+"""Even one participant's line is drawn; an interval needs two participants."""
 Group = Literal["progress", "embodiment", "answers", "tasks", "movement", "quality"]
 
 

@@ -37,7 +37,7 @@ BODY_PARTS: dict[str, tuple[str, ...]] = {
         for side in ("Left", "Right")
     },
 }
-"""Part -> its joints; each of ERROR_JOINTS is in exactly one."""
+"""The joints of each body part; each of ERROR_JOINTS is in exactly one."""
 PART_OF_JOINT: dict[str, str] = {
     joint: part for part, joints in BODY_PARTS.items() for joint in joints
 }
@@ -58,7 +58,7 @@ _COLOURS = {"head": BLUE, "spine": GREEN, "arm": VERMILLION, "leg": ORANGE}
 
 
 def joint_error_drawing(errors: pd.DataFrame) -> Drawing:
-    """Draw the mean angle by latency and body part, from valid rows of the table of joint errors."""
+    """Draw the mean angle by latency and body part, from valid rows of the joint errors."""
     key, title = "joint_error_parts", "Joint error by added latency and body part"
     rows = task_angles(errors)
     n = participants(rows)
@@ -182,7 +182,7 @@ def task_angles(errors: pd.DataFrame) -> pd.DataFrame:
 
 
 def _by_part(rows: pd.DataFrame) -> dict[str, pd.DataFrame]:
-    """Return the means of every body part that has joints in these rows, as BODY_PARTS orders them."""
+    """Return the means of every body part with joints in these rows, ordered as BODY_PARTS."""
     groups = dict(iter(rows.groupby(rows["joint"].map(PART_OF_JOINT))))
     return {part: _means(groups[part]) for part in BODY_PARTS if part in groups}
 

@@ -40,7 +40,7 @@ MOST_CATEGORIES = 9
 
 @dataclass(frozen=True)
 class _Category:
-    """One answer category: its value, label and appearance, and its side of the middle (-1, 0, 1)."""
+    """An answer category: value, label and look, and its side of the middle (-1, 0, 1)."""
 
     value: int
     label: str
@@ -109,7 +109,7 @@ def _spread(colours: Sequence[str], place: int, count: int) -> str:
 
 
 def _shares(own: pd.DataFrame) -> pd.DataFrame:
-    """Return counts and percentages of answers: item, limb, latency_ms, answer, count, percent, n."""
+    """Return shares of answers: item, limb, latency_ms, answer, count, percent, n."""
     keys = ["item", "limb", "latency_ms"]
     counts = own.groupby([*keys, "value_number"]).size().rename("count").reset_index()
     counts["n"] = counts.groupby(keys)["count"].transform("sum")
@@ -146,7 +146,7 @@ def _figure(
 
 
 def _places(items: Sequence[Item], latencies: Sequence[float]) -> dict[tuple[str, float], float]:
-    """Return the y position of each bar, from the top, with space for text above each item's bars."""
+    """Return the y position of each bar, from the top; above an item's bars is its text."""
     room = _TEXT_PX / _BAR_PX
     return {
         (item.key, latency): at * (len(latencies) + room) + room + place

@@ -38,7 +38,7 @@ TEST = "These are sessions for trying things out; their results mean nothing."
 
 
 def answers_of(material: Material) -> StatisticsResults:
-    """Return the test results of a study; measures with fewer than two participants are left out."""
+    """Return the test results of a study, without measures of fewer than two participants."""
     sessions = material.sessions
     declared = material.protocol.preregistration
     alpha = USUAL_ALPHA if declared is None else declared.alpha

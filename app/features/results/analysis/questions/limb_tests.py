@@ -43,7 +43,7 @@ from app.science.statistics import (
 WILCOXON, PAGE = statistical_test("against_reference"), statistical_test("page_trend")
 FRIEDMAN = statistical_test("friedman")
 REPORTED = frozenset({"friedman", "page_trend", "against_reference", "rm_anova"})
-"""Tests whose report says more than their outcome; `models` has the analysis of variance."""
+"""Tests with a report of their own; that of the analysis of variance is in `models`."""
 
 
 @dataclass(frozen=True, eq=False)

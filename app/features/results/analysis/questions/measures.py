@@ -20,7 +20,7 @@ from app.science.statistics import Direction, FloatArray
 
 LIMBS = ("hand", "foot")
 FALLS: frozenset[str] = frozenset({"agency"})
-"""Scores of which a fall with latency was predicted: Waltemate et al. 2016, and since."""
+"""Scores that were predicted to fall with latency: Waltemate et al. 2016, and later work."""
 _SHOWN = 12
 
 
@@ -66,7 +66,7 @@ class Measure:
         return wide.reindex(columns=list(self.latencies_ms)).sort_index()
 
     def cells(self) -> FloatArray:
-        """Return the values (n, latencies, limbs) of the participants with a value in every cell."""
+        """Return the values (n, latencies, limbs) of participants with a value in every cell."""
         tables = [self.table(limb) for limb in self.limbs]
         everybody = sorted(set().union(*(table.index for table in tables)))
         stacked = np.stack(

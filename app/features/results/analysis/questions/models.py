@@ -99,7 +99,7 @@ def carry_over_result(measure: Measure) -> Iterator[Said]:
 
 
 def _why(error: Exception) -> str:
-    """Return why no model was fitted; a numerical failure means that no residual variance is left."""
+    """Return why no model was fitted; numerical failure means no residual variance."""
     if isinstance(error, StatisticsError):
         return str(error)
     return "Participants, latencies and limbs explain the measure fully; nothing is left to chance."

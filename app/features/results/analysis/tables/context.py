@@ -1,4 +1,4 @@
-"""Tables that other tables are joined with: sessions, steps and phases, and whether they are valid."""
+"""Tables that others are joined with: sessions, steps and phases, and whether they are valid."""
 
 from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
@@ -69,7 +69,7 @@ def of_kind(study: Study, kind: Kind) -> ColumnElement[bool]:
 
 
 def read(db: Session, query: Select[*tuple[Any, ...]], names: Sequence[str]) -> pd.DataFrame:
-    """Return the rows of a query under these column names, with objects as the database gave them."""
+    """Return the rows of a query under these column names, with the database's objects."""
     rows = [tuple(row) for row in db.execute(query)]
     return pd.DataFrame(rows, columns=list(names), dtype=object)
 
@@ -136,7 +136,7 @@ def sessions_context(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
 
 
 def _counts(sessions: pd.DataFrame) -> "pd.Series[Any]":
-    """Return whether each session counts: neither broken off nor short of what its study requires."""
+    """Return which sessions count: those neither broken off nor short of requirements."""
     lacking = [bool(found) for found in sessions["shortfalls"]]
     return ~(sessions["session_status"].isin(BROKEN_OFF) | pd.Series(lacking, sessions.index))
 
@@ -244,7 +244,7 @@ DOUBT_COLUMNS = ("session_id", "phase_id", "doubt", "words", "claimed", "possibl
 
 
 def doubted_sessions(db: Session, study_key: str, kind: Kind) -> list[str]:
-    """Return the sessions that are entirely invalid because of a doubt that is not about one phase."""
+    """Return the sessions that are entirely invalid, because a doubt is about the whole session."""
     doubts = doubts_context(db, study_key, kind)
     return sorted(set(doubts.loc[doubts["phase_id"].isna(), "session_id"]))
 

@@ -49,7 +49,7 @@ def clock_probes_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
 
 
 def clock_mapping_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
-    """Return one row per segment of a clock mapping, by session, run and the order of the segments."""
+    """Return one row per segment of a clock mapping, by session, run and segment."""
     sessions = sessions_context(db, study_key, kind)
     rows = [
         {"session_id": session_id, **row}
@@ -65,7 +65,7 @@ def clock_mapping_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame
 
 
 def _segments(clock: RunClock) -> list[dict[str, object]]:
-    """Return the segments of a clock, in the client's own seconds and the server's monotonic time."""
+    """Return a clock's segments, in the client's own seconds and the server's clock time."""
     rows: list[dict[str, object]] = []
     for number, segment in enumerate(clock.mapping.segments, start=1):
         from_s = segment.client_from_s * clock.time_scale

@@ -1,4 +1,4 @@
-"""Write an export as a ZIP file while it is sent, without holding all of it in memory or on disk."""
+"""Write an export as a ZIP file while it is sent, never holding all of it in memory or on disk."""
 
 import io
 import zipfile
@@ -8,7 +8,7 @@ from datetime import datetime
 from app.features.results.exports.writing.contents import Member
 
 LEVEL = 1
-"""Digits hardly compress better with more effort, and the reader waits."""
+"""The lowest level: higher ones hardly compress digits better, and the client waits."""
 SEND_FROM_BYTES = 256 * 1024
 
 

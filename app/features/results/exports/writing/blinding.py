@@ -15,7 +15,7 @@ import pandas as pd
 from app.features.record.sessions import canonical, without_condition
 
 LEFT_OUT = frozenset({"contacts", "completions", "joint_errors", "joint_error_course"})
-"""Tables without rows of such a session."""
+"""Tables from which the rows of blinded sessions are left out."""
 EMPTIED = frozenset(
     {
         "order",
@@ -30,7 +30,7 @@ EMPTIED = frozenset(
         "hash",
     }
 )
-"""Columns, of whatever table, without values of such a session."""
+"""Columns, of any table, whose cells are emptied for blinded sessions."""
 
 
 def without_conditions(table: str, frame: pd.DataFrame, hidden: Collection[str]) -> pd.DataFrame:

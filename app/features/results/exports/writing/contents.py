@@ -66,7 +66,7 @@ TABLE_FILES: dict[str, Callable[[Session, str, Kind], pd.DataFrame]] = {
 }
 README = "README.txt"
 FOLDERS = {"samples": ".csv", "receipts": ".json", "imported": ".csv"}
-"""The folders of an export, and how their files end."""
+"""The folders of an export, and the suffixes of their files."""
 TOP_LEVEL = frozenset(
     {*(f"{name}.csv" for name in (*TABLE_FILES, "calibrations", "codebook")), README}
 )
@@ -105,7 +105,7 @@ class Contents:
         self.hidden = hidden_sessions(self.db, study_by_key(self.db, self.study_key))
 
     def members(self) -> Iterator[Member]:
-        """Yield the tables, the codebook, each session's frames and receipt, and last the README."""
+        """Yield tables, codebook, each session's frames and receipt, and last the README."""
         sessions = self._table("sessions", sessions_table)
         self.sessions = len(sessions)
         study = study_by_key(self.db, self.study_key)
@@ -149,7 +149,7 @@ class Contents:
         return Member(path, self._counted(path, pieces))
 
     def _counted(self, path: str, pieces: Iterator[bytes]) -> Iterator[bytes]:
-        """Yield the same pieces, and add the file's line count and hash to `files` after the last."""
+        """Yield the same pieces, then add the file's line count and hash to `files`."""
         digest, lines = hashlib.sha256(), 0
         for piece in pieces:
             digest.update(piece)

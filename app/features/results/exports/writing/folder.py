@@ -20,7 +20,7 @@ def silent(path: str) -> None:
 
 
 Beside = Callable[[Path], AbstractContextManager[Path]]
-"""Makes a folder beside a place, which is gone afterwards."""
+"""A context manager that creates a temporary folder beside a path."""
 
 
 def write_folder(

@@ -26,7 +26,7 @@ from app.models import StudySession, TelemetryStream
 from app.wire import StreamName
 
 LOOK_EVERY_BYTES = 32 * 1024**2
-"""How often the disk's free space is looked at."""
+"""The disk's free space is checked each time this many bytes were written."""
 
 
 class _DiskNearlyFullError(Exception):

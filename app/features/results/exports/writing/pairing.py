@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from app.features.record.telemetry import Frames
 
 Piece = tuple[int, Frames]
-"""A phase_id and consecutive frames of one stream."""
+"""A phase_id with consecutive frames of one stream."""
 
 
 @dataclass(frozen=True)

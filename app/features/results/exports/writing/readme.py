@@ -9,7 +9,7 @@ from app.features.people.audit import TrailHead
 from app.protocol import UNCOUNTED_KINDS
 
 MARK = "Reembody export"
-"""How an export's README begins, by which we know our own folders again."""
+"""The first line of an export's README, by which a folder is recognised as an export."""
 
 _BROKEN_OFF = (
     "  Redone phases, superseded forms and broken-off sessions are included: use rows with "

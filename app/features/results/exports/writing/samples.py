@@ -19,7 +19,7 @@ from app.features.results.exports.writing.pairing import Rows, Side, paired_rows
 from app.wire import VALUES_PER_FRAME, StreamName, flag_frames
 
 _POWERS = 10.0 ** np.arange(23)
-"""Exact in double precision up to 10^22, so a quotient by one of them is rounded only once."""
+"""Powers of ten, exact in double precision up to 10^22, so a quotient is rounded only once."""
 _FEWEST, _MOST = 6, 9
 ACTIVE_BIT = 1
 _MISSING: list[float | None] = [None] * VALUES_PER_FRAME
@@ -103,7 +103,7 @@ def _csv(rows: Rows, start: bytes) -> bytes:
 
 
 def _head(rows: Rows) -> list[tuple[int, int, float, bool, bool]]:
-    """Return seq, phase_id, t_s, active and flagged of each row, from the target if it has a frame."""
+    """Return each row's seq, phase_id, t_s, active and flagged, if possible from the target."""
     count = len(rows.seq)
     phase_id = np.zeros(count, np.int64)
     t_s = np.zeros(count)
