@@ -88,7 +88,7 @@ def sources_hash(frontend: Path) -> str:
 
 
 def sources(folder: Path) -> Iterator[Path]:
-    """Yield every file below `folder`, without installed packages, build products and hidden files."""
+    """Yield every file below `folder` except installed packages, products and hidden files."""
     for path in folder.iterdir():
         if path.name in NOT_SOURCES or path.name.startswith("."):
             continue

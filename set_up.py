@@ -127,7 +127,10 @@ class SetUp:
         return self.has_packages() and self.has_project() and has_pages()
 
     def has_packages(self) -> bool:
-        """Return whether the Python packages are installed; those of "dev" include those of "run"."""
+        """Return whether the Python packages are installed.
+
+        The packages of "dev" include those of "run".
+        """
         accepted = {"run", "dev"} if self.mode == "run" else {"dev"}
         return PACKAGES.says(*(packages_key(mode) for mode in accepted))
 

@@ -77,7 +77,7 @@ def prepare_connection(dbapi_connection: DBAPIConnection, _record: ConnectionPoo
 
 
 class SqliteBegin:
-    """Open the transactions of an engine, and remember whether another program held the write lock."""
+    """Open the transactions of an engine, and remember whether another program held the lock."""
 
     def __init__(self) -> None:
         self._locked = False

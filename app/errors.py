@@ -134,7 +134,10 @@ class Gone(ReembodyError):
 
 
 class Withdrawn(Gone):
-    """The participant has withdrawn, or their data were erased: no more of their data are stored."""
+    """The participant has withdrawn, or their data were erased.
+
+    No more of their data are stored.
+    """
 
     code = "withdrawn"
 

@@ -60,7 +60,7 @@ def _from_rows(table: Table, names: Names, moving: Names, rows: int) -> str:
 
 @lru_cache(maxsize=64)
 def _from_arrays(table: Table, names: Names, moving: Names) -> str:
-    """Return PostgreSQL's statement for any number of rows, with a binary array for every column."""
+    """Return PostgreSQL's statement for any number of rows, with an array for every column."""
     dialect = postgresql.dialect()  # type: ignore[no-untyped-call]  # SQLAlchemy has no type for it
     types = (table.c[name].type.compile(dialect) for name in names)
     arrays = ", ".join(f"%b::{type_}[]" for type_ in types)
@@ -68,7 +68,7 @@ def _from_arrays(table: Table, names: Names, moving: Names) -> str:
 
 
 def _statement(table: Table, names: Names, moving: Names, source: str) -> str:
-    """Return the insert statement, the same for both databases except for the `source` of its rows."""
+    """Return the insert statement, which differs between the databases only in its `source`."""
     statement = sqlite.insert(table).values(dict.fromkeys(names))
     if moving:
         statement = statement.on_conflict_do_update(
@@ -82,6 +82,6 @@ def _statement(table: Table, names: Names, moving: Names, source: str) -> str:
 
 @lru_cache(maxsize=64)
 def _processors(table: Table, names: Names, dialect: Dialect) -> tuple[tuple[str, Any], ...]:
-    """Return what converts each column's values for the driver; None where no conversion is needed."""
+    """Return what converts each column's values for the driver; None if nothing does."""
     impls = {name: table.c[name].type.dialect_impl(dialect) for name in names}
     return tuple((name, impl.bind_processor(dialect)) for name, impl in impls.items())

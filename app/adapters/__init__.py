@@ -1,1 +1,1 @@
-"""What speaks a foreign tongue: motion-capture and exchange formats, each at the edge."""
+"""Read and write foreign file formats: motion captures, humanoid models, walking tracks."""

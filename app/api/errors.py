@@ -101,7 +101,7 @@ def install_error_handler(app: FastAPI) -> None:
 
 
 def _install_database_handlers(app: FastAPI) -> None:
-    """Report errors of the database or the disk in our words: their own would disclose internals."""
+    """Report errors of the database or the disk without disclosing internals."""
 
     @app.exception_handler(OperationalError)
     def not_now(_: Request, error: OperationalError) -> JSONResponse:

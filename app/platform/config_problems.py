@@ -11,7 +11,10 @@ from app.protocol import ConfigError, sha256_of
 
 
 class ProblemView(BaseModel):
-    """One problem of a file: its place, the message, what is valid, what to do. Lines count from 1."""
+    """One problem of a file: its place, the message, what is valid, what to do.
+
+    Lines and columns count from 1.
+    """
 
     path: str
     line: int

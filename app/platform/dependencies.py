@@ -51,7 +51,10 @@ async def _writing(context: Context) -> AsyncIterator[Session]:
 
 
 async def _make_room(context: Context) -> None:
-    """Free reserved disk space; must be the route's first dependency, before the transaction opens."""
+    """Free reserved disk space if the disk is full.
+
+    This must be the route's first dependency, before the transaction opens.
+    """
     await run_sync(context.storage.make_room)
 
 

@@ -34,7 +34,10 @@ def database_file(settings: Settings) -> Path | None:
 
 
 def home_of(settings: Settings) -> Path:
-    """Return the folder of the database file and its companions, or the data folder without a file."""
+    """Return the folder of everything that belongs to the database.
+
+    It is the folder of the database file, or the data folder if there is no file.
+    """
     file = database_file(settings)
     return (settings.data_dir if file is None else file.parent).absolute()
 

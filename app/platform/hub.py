@@ -76,7 +76,7 @@ class Hub:
 
     @contextmanager
     def subscribe(self, session_id: str, *more: str) -> Iterator[Subscription]:
-        """Subscribe to a session's changes and to `more` topics, from within a running event loop."""
+        """Subscribe to a session's changes and to `more` topics, within a running event loop."""
         subscription = Subscription(asyncio.get_running_loop(), frozenset(("session", *more)))
         with self._lock:
             self._subscribers.setdefault(session_id, set()).add(subscription)
@@ -144,7 +144,7 @@ class Hub:
                 self._signals[session_id] = signal
 
     def signal(self, session_id: str) -> Mapping[str, Any] | None:
-        """Return the newest signal quality; None without a headset or before the first measurement."""
+        """Return the newest signal quality; None without a headset or a measurement."""
         with self._lock:
             return self._signals.get(session_id)
 

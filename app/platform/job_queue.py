@@ -105,7 +105,7 @@ class WorkingLine(Part, ABC):
 
     @abstractmethod
     def _refusal(self, error: Exception) -> InvalidInput | None:
-        """Return the error for the caller if the job raised `error` deliberately, otherwise None."""
+        """Return the error for the caller if the job raised `error` deliberately, else None."""
 
     @asynccontextmanager
     async def _my_turn(self) -> AsyncIterator[None]:

@@ -115,7 +115,7 @@ class Budget:
             )
 
     def charge(self, key: str, cost: float) -> None:
-        """Take `cost`, or what remains, for a request that turned out more expensive than expected."""
+        """Take `cost`, or what remains, for a request that was more expensive than expected."""
         self._take(key, cost, all_of_it=True)
 
     def _take(self, key: str, cost: float, *, all_of_it: bool = False) -> float:

@@ -1,4 +1,4 @@
-"""Study and instrument files: strict reading, frozen values, content hashes, plans and orders."""
+"""Study and instrument files: strict parsing, frozen values, content hashes, plans and orders."""
 
 from app.protocol.common import Text, canonical_json, sha256_of
 from app.protocol.conditions import Condition

@@ -1,8 +1,8 @@
-"""The file of an avatar's configuration: JSON for people, in degrees, with units in its keys.
+"""Read and write avatar configuration files: JSON for people, in degrees, with units in its keys.
 
-What is read becomes a `Configuration` (app.science.avatar.configuration), which checks what no
-single key can. The content hash is taken over the configuration as canonical JSON, so the order
-of keys, white space and 60 for 60.0 make no difference.
+The content becomes a `Configuration` (app.science.avatar.configuration), which checks what concerns
+several keys. The content hash is computed from the configuration as canonical JSON, so the order of
+keys, white space and 60 for 60.0 make no difference.
 """
 
 import json
@@ -40,7 +40,7 @@ HumanoidHash = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{64}$")]
 
 
 class AxisFile(Strict):
-    """One driven axis. Equal limits lock it."""
+    """The settings of one driven axis. Equal limits lock it."""
 
     kp_nm_per_rad: Annotated[float, Field(ge=0, le=1e6, description="spring, N m per radian")]
     kd_nm_s_per_rad: Annotated[float, Field(ge=0, le=1e6, description="damper, N m s per radian")]
@@ -52,12 +52,12 @@ class AxisFile(Strict):
 class AvatarFile(Strict):
     """An avatar's configuration.
 
-    `axes`: those of all body parts that the model has, as in LeftUpperLegX. `hips`: carried with
-    the participant's, or welded to them. `target_space`: joints follow the participant's joint
-    angles, or parts their orientation in the room. `colliders` holds for all parts but those in
-    `part_colliders`. `locked_groups` are held at the angles of `held_deg`, else as in the T-pose.
-    `humanoid` is the hash of the model whose body it is, left out for a body of the participant's
-    own; `mesh` colliders need one.
+    `axes`: those of all body parts that the model has, as in LeftUpperLegX. `hips`: moved with the
+    participant's hips, or welded to them. `target_space`: joints follow the participant's joint
+    angles, or parts their orientation in the room. `colliders` applies to all parts except those in
+    `part_colliders`. `locked_groups` are fixed at the angles of `held_deg`, or else those of the
+    T-pose. `humanoid` is the hash of the model whose body it has, left out for a body built from
+    the participant's measures; `mesh` colliders need one.
     """
 
     format: Literal["reembody-avatar"]
@@ -78,7 +78,7 @@ class AvatarFile(Strict):
 
 @dataclass(frozen=True)
 class LoadedAvatar:
-    """A configuration with the SHA-256 of its content; `canonical_json` is what it is taken of."""
+    """A configuration with the SHA-256 of its content, which is computed from `canonical_json`."""
 
     configuration: Configuration
     content_hash: str
@@ -89,7 +89,7 @@ _ADAPTER = TypeAdapter(AvatarFile)
 
 
 def load_avatar(text: str) -> LoadedAvatar:
-    """Read a configuration file. Raises ConfigError with its problems, each with its place."""
+    """Parse a configuration file; raise ConfigError with its problems, each with its place."""
     source = _source(text)
     problems = list(source.problems)
     try:
@@ -106,13 +106,13 @@ def load_avatar(text: str) -> LoadedAvatar:
 
 
 def loaded(configuration: Configuration) -> LoadedAvatar:
-    """A configuration with its canonical form and hash."""
+    """Return a configuration with its canonical form and hash."""
     canonical = canonical_json(_tree(configuration))
     return LoadedAvatar(configuration, sha256_of(canonical), canonical)
 
 
 def parse_avatar_json(canonical: str) -> Configuration:
-    """The configuration that was stored as canonical JSON. Raises ConfigError if it is not one."""
+    """Parse a configuration stored as canonical JSON; raise ConfigError if it is invalid."""
     try:
         return configuration_of(_ADAPTER.validate_json(canonical))
     except ValidationError as error:
@@ -122,7 +122,10 @@ def parse_avatar_json(canonical: str) -> Configuration:
 
 
 def avatar_text(configuration: Configuration) -> str:
-    """The configuration as a file: readable, an axis a line, the same content the same bytes."""
+    """Format the configuration as a readable file with one axis per line.
+
+    The same configuration always gives the same bytes.
+    """
     tree = _tree(configuration)
     axes = tree.pop("axes")
     head = json.dumps(tree, indent=2, ensure_ascii=False)[: -len("\n}")]
@@ -131,7 +134,10 @@ def avatar_text(configuration: Configuration) -> str:
 
 
 def configuration_of(file: AvatarFile) -> Configuration:
-    """The configuration in a file; raises AvatarSettingsError with every problem of its axes."""
+    """Convert a file to a configuration.
+
+    Raise AvatarSettingsError with all problems of its axes.
+    """
     problems: list[AvatarProblem] = []
     axes: dict[str, AxisSettings] = {}
     for name, axis in file.axes.items():
@@ -164,7 +170,7 @@ def configuration_of(file: AvatarFile) -> Configuration:
 
 
 def file_of(configuration: Configuration) -> AvatarFile:
-    """The configuration as it stands in a file."""
+    """Convert a configuration to the content of a file."""
     return AvatarFile(
         format=FORMAT,
         version=VERSION,
@@ -193,21 +199,27 @@ def file_of(configuration: Configuration) -> AvatarFile:
 
 
 def check_pieces(configuration: Configuration) -> None:
-    """Raise AvatarSettingsError for colliders of a skin without a model whose it is."""
+    """Raise AvatarSettingsError if mesh colliders are configured without a humanoid model."""
     problems = tuple(piece_problems(configuration))
     if problems:
         raise AvatarSettingsError(problems)
 
 
 def _tree(configuration: Configuration) -> dict[str, Any]:
-    """As it stands in a file; what is not there leaves no trace, in the hash neither."""
+    """Return the content of the file as plain values.
+
+    Optional values that are not set are left out, so that they do not affect the hash.
+    """
     return file_of(configuration).model_dump(mode="json", exclude_none=True)
 
 
 def _source(text: str) -> Source:
-    """The reader of study files knows lines, and JSON is a subset of what it reads."""
+    """Parse the text with the parser of study files, which records lines.
+
+    JSON is a subset of YAML.
+    """
     try:
-        # Raw tabs are only white space in JSON, but this reader wants spaces.
+        # In JSON, raw tabs can only be white space, but this parser requires spaces.
         return read_source(text.replace("\t", " "))
     except ConfigError as unreadable:
         try:
@@ -230,5 +242,5 @@ def _located(problem: AvatarProblem, source: Source) -> ConfigProblem:
 
 
 def _steps(path: str) -> Path:
-    """`locked_groups[0]` is ("locked_groups", 0)."""
+    """Parse a path: `locked_groups[0]` is ("locked_groups", 0)."""
     return tuple(int(part) if part.isdigit() else part for part in re.findall(r"[^.\[\]]+", path))

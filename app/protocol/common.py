@@ -1,6 +1,6 @@
-"""What all parts of a study file share: frozen strict models, texts, keys, durations and hashes.
+"""Shared parts of study files: frozen strict models, texts, keys, durations and hashes.
 
-Equal content has one spelling, so that a hash names the content and not its formatting.
+Equal content has one canonical form, so that a hash identifies the content and not its formatting.
 """
 
 import hashlib
@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 from pydantic_core import PydanticCustomError
 
 TEXT_MARK = "x-text"
-"""Marks, in the JSON schema, the mappings that must hold every declared language."""
+"""Marks, in the JSON schema, the mappings that must contain every declared language."""
 
 _KEY = r"^[a-z][a-z0-9_]{0,39}$"
 _MAX_DURATION_S = 86_400.0
@@ -35,13 +35,13 @@ Point = Annotated[
 
 
 class Strict(BaseModel):
-    """A frozen value that takes nothing unknown and converts nothing silently."""
+    """A frozen model that rejects unknown keys and converts nothing implicitly."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
 
 class Provenance(Strict):
-    """Where a study comes from, under which licence, and how far that was checked."""
+    """The source of a study, its licence, and how far they were verified."""
 
     source: str
     licence: str
@@ -57,7 +57,7 @@ def refusal(
     remedy: str = "",
     at: tuple[str | int, ...] = (),
 ) -> PydanticCustomError:
-    """The error that a validator raises: what happened, the value, what is valid, what to do.
+    """Make the error that a validator raises: what happened, the value, what is valid, what to do.
 
     `at`: the place within the validated value, such as (1, "key").
     """
@@ -68,12 +68,15 @@ def refusal(
 
 
 def canonical_json(value: object) -> str:
-    """JSON with sorted keys, no whitespace and unescaped letters. Raises ValueError for NaN."""
+    """Return JSON with sorted keys, no whitespace and unescaped letters.
+
+    Raise ValueError for NaN.
+    """
     return json.dumps(
         value, sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False
     )
 
 
 def sha256_of(text: str) -> str:
-    """SHA-256 of the text's UTF-8 bytes, as 64 hexadecimal digits."""
+    """Return the SHA-256 of the text's UTF-8 bytes, as 64 hexadecimal digits."""
     return hashlib.sha256(text.encode()).hexdigest()

@@ -1,4 +1,4 @@
-"""The one factor of a study, its levels, and the orders in which people meet them."""
+"""The single factor of a study, its levels, and the design of their orders."""
 
 from typing import Annotated, Literal
 
@@ -34,14 +34,14 @@ LatencyMs = Annotated[
 
 
 class Condition(Strict):
-    """One level of the factor: the latency that is added to every delayed body part's target."""
+    """One level of the factor: the latency added to the target of every delayed body part."""
 
     key: Key
     latency_ms: LatencyMs
     label: Text
 
 
-def _told_apart(conditions: tuple[Condition, ...]) -> tuple[Condition, ...]:
+def _distinct(conditions: tuple[Condition, ...]) -> tuple[Condition, ...]:
     for index, condition in enumerate(conditions):
         for earlier in conditions[:index]:
             if condition.key == earlier.key:
@@ -64,25 +64,25 @@ def _told_apart(conditions: tuple[Condition, ...]) -> tuple[Condition, ...]:
     return conditions
 
 
-Conditions = Annotated[tuple[Condition, ...], Field(min_length=1), AfterValidator(_told_apart)]
+Conditions = Annotated[tuple[Condition, ...], Field(min_length=1), AfterValidator(_distinct)]
 
 
 class Orders(Strict):
-    """Counterbalancing: which orders there are, how many times each is used, and what comes then.
+    """Counterbalancing: the orders, how often each is used, and what happens when all are used.
 
     `design`: "all_permutations" (n! orders), "williams" (n orders for an even number of conditions,
     2n for an odd one: each condition equally often at each position, each ordered pair of
     neighbours equally often), or "explicit": those listed in `sequences`, by the conditions' keys.
-    `replicates`: initial blocks of the ledger; one block holds every order once. `seed`: decides
-    how the rows are mixed within each block. `when_full`: "grow" adds whole blocks, "closed" takes
-    nobody more.
+    `replicates`: initial blocks of the ledger; one block contains every order once. `seed`:
+    determines how the rows are shuffled within each block. `when_full`: "grow" adds whole blocks,
+    "closed" accepts no more participants.
     """
 
     design: Literal["all_permutations", "williams", "explicit"]
     replicates: Annotated[int, Field(ge=1, le=1000)]
     seed: Annotated[int, Field(ge=0)]
     when_full: Literal["grow", "closed"]
-    # Left out of the content where there is none, so that the hash of other designs stays.
+    # Left out of the content if not set, so that the hashes of other designs stay the same.
     sequences: Annotated[
         tuple[tuple[Key, ...], ...] | None, Field(exclude_if=lambda value: value is None)
     ] = None

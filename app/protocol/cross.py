@@ -1,9 +1,9 @@
-"""What must fit together across a study file: references, languages, and the size of the design.
+"""Check what must be consistent across a study file: references, languages, size of the design.
 
-These checks read the plain tree and skip what has another shape than expected (its own problem is
-reported elsewhere). So they run even when a value somewhere else is wrong, and a person sees all
-problems of a file at once. Whether a named avatar exists and goes with how it is moved, and whether
-a named picture exists, are among them.
+These checks read the plain tree and skip values of an unexpected shape (that problem is reported
+elsewhere). So they run even when another value is wrong, and all problems of a file are reported
+together. They also check whether a named avatar exists and matches how it is moved, and whether a
+named picture exists.
 """
 
 import math
@@ -25,7 +25,7 @@ from app.texts import LANGUAGES
 _AVATAR_KEY = "avatar_configuration"
 _AVATAR_AT: Path = (_AVATAR_KEY,)
 _USUAL_AVATAR = "standard"
-# The pictures that texts can show on the tablet: `![t_pose]`, alone between two lines. The product
+# The pictures that texts can show on the tablet: `![t_pose]`, alone on a line. The tablet
 # draws them; `frontend/src/shared/pictures.ts` has the same names.
 PICTURES = ("equipment", "t_pose", "mirror", "hand_boxes", "foot_boxes")
 _PICTURE = re.compile(r"^\s*!\[([^\]\n]*)\]\s*$", re.MULTILINE)
@@ -37,7 +37,7 @@ def cross_problems(
     instruments: Mapping[str, Instrument],
     avatars: Mapping[str, int] | None = None,
 ) -> Iterator[DefinitionProblem]:
-    """Every problem that lies between two places of a study file, or between it and the lab."""
+    """Yield every problem between two places of a study file, or between it and the lab's data."""
     if not isinstance(tree, dict):
         return
     languages = [one for one in _list(tree.get("languages")) if isinstance(one, str)]
@@ -80,7 +80,7 @@ def _screens(tree: dict[str, Plain]) -> Iterator[DefinitionProblem]:
 
 
 def _steps(tree: dict[str, Plain]) -> Iterator[tuple[Path, dict[str, Plain]]]:
-    """Every step and phase that is a mapping, with its path."""
+    """Yield every step and phase that is a mapping, with its path."""
     procedure = _dict(tree.get("procedure"))
     places: tuple[tuple[Path, Plain], ...] = (
         (("procedure", "before"), procedure.get("before")),
@@ -118,13 +118,13 @@ def _instrument(
     path: Path, key: str, instruments: Mapping[str, Instrument], languages: list[str]
 ) -> Iterator[DefinitionProblem]:
     if key not in instruments:
-        known = ", ".join(sorted(instruments)) or "none is loaded"
+        valid = ", ".join(sorted(instruments)) or "none is loaded"
         yield DefinitionProblem(
             path,
             f"There is no instrument {key!r}.",
             key,
             sorted(instruments),
-            f"Add its file to the instruments, or use one of: {known}.",
+            f"Add its file to the instruments, or use one of: {valid}.",
         )
         return
     spoken = instruments[key].languages
@@ -135,12 +135,12 @@ def _instrument(
                 f"The instrument {key!r} has no wording in the study's language {language!r}.",
                 key,
                 list(spoken),
-                f"Translate the instrument, or take {language} out of the study's languages.",
+                f"Translate the instrument, or remove {language} from the study's languages.",
             )
 
 
 def _titles(tree: dict[str, Plain], languages: list[str]) -> Iterator[DefinitionProblem]:
-    """Built-in titles speak two languages; a study in a third brings its own."""
+    """Yield missing titles: built-in ones exist in two languages, so others need their own."""
     foreign = [language for language in languages if language not in LANGUAGES]
     for path, step in _steps(tree):
         fields = ("title", "questionnaire_title") if "questionnaire" in step else ("title",)
@@ -156,7 +156,7 @@ def _titles(tree: dict[str, Plain], languages: list[str]) -> Iterator[Definition
 
 
 def _places(tree: dict[str, Plain]) -> Iterator[DefinitionProblem]:
-    """A task needs its boxes; a limb that no phase uses needs none."""
+    """Yield tasks without boxes, for limbs that a phase uses."""
     tasks = tree.get("tasks")
     if not isinstance(tasks, dict):
         return
@@ -165,10 +165,10 @@ def _places(tree: dict[str, Plain]) -> Iterator[DefinitionProblem]:
         if limb in used and tasks.get(limb) is None:
             yield DefinitionProblem(
                 ("tasks", limb),
-                f"The procedure has a phase of the {limb}, and its boxes are missing.",
+                f"The procedure has a phase of the {limb}, but its boxes are missing.",
                 None,
                 sorted(used),
-                f"Describe the boxes under tasks.{limb}, or take the phase out.",
+                f"Describe the boxes under tasks.{limb}, or remove the phase.",
             )
 
 
@@ -188,13 +188,13 @@ def _rows(tree: dict[str, Plain]) -> Iterator[DefinitionProblem]:
 
 
 def _sequences(tree: dict[str, Plain]) -> Iterator[DefinitionProblem]:
-    """An explicit list holds orders of all conditions; the other designs have none."""
+    """Yield problems of explicit orders: each lists all conditions; other designs have no list."""
     orders = _dict(tree.get("orders"))
     listed = orders.get("sequences")
     if (orders.get("design") == "explicit") != (listed is not None):
         yield DefinitionProblem(
             ("orders", "sequences"),
-            "Orders are listed for the design explicit, and for no other.",
+            "Orders must be listed for the design explicit, and only for that.",
             orders.get("design"),
             "a list of orders with the design explicit, none otherwise",
             "Give the orders as lists of condition keys, or leave them out.",
@@ -216,7 +216,7 @@ def _sequences(tree: dict[str, Plain]) -> Iterator[DefinitionProblem]:
         if sorted(map(str, _list(sequence))) != keys:
             yield DefinitionProblem(
                 ("orders", "sequences", at),
-                "An order must hold every condition once.",
+                "An order must contain every condition once.",
                 sequence,
                 keys,
                 "Name each condition's key once.",
@@ -234,30 +234,30 @@ def _list(value: Plain) -> list[Plain]:
 def avatar_problems(
     tree: Mapping[str, Plain], avatars: Mapping[str, int] | None
 ) -> Iterator[DefinitionProblem]:
-    """A physics avatar needs a configuration, a delayed copy has none.
+    """Yield avatar problems: physics needs a configuration, a delayed copy must not have one.
 
     Args:
         tree: of the study file.
-        avatars: key -> number of its newest version; None where nobody knows which there are.
+        avatars: key -> number of the newest version; None if unknown.
     """
     moved, named = tree.get("avatar"), tree.get(_AVATAR_KEY)
-    known = sorted(avatars or ())
-    example = _USUAL_AVATAR if _USUAL_AVATAR in known or not known else known[0]
+    keys = sorted(avatars or ())
+    example = _USUAL_AVATAR if _USUAL_AVATAR in keys or not keys else keys[0]
     if moved == "physics" and named is None:
         yield DefinitionProblem(
             _AVATAR_AT,
             "The avatar is moved by physics, but its configuration is not named.",
             None,
-            known,
+            keys,
             f"Add for example {_AVATAR_KEY}: {{key: {example}, version: 1}}.",
         )
     if moved == "delayed_copy" and named is not None:
         yield DefinitionProblem(
             _AVATAR_AT,
-            "A delayed copy has no configuration: nothing of it would be used.",
+            "A delayed copy has no configuration: it would have no effect.",
             None,
             "left out",
-            "Take it out, or write avatar: physics.",
+            "Remove it, or write avatar: physics.",
         )
     if isinstance(named, dict) and avatars is not None:
         yield from _unknown_avatar(named.get("key"), named.get("version"), avatars)
@@ -269,13 +269,13 @@ def _unknown_avatar(
     if not isinstance(key, str):
         return
     if key not in avatars:
-        known = sorted(avatars)
+        keys = sorted(avatars)
         yield DefinitionProblem(
             (*_AVATAR_AT, "key"),
             f"There is no avatar {key!r}.",
             key,
-            known,
-            f"Use one of: {', '.join(known)}.",
+            keys,
+            f"Use one of: {', '.join(keys)}.",
         )
     elif isinstance(version, int) and version > avatars[key]:
         yield DefinitionProblem(
@@ -288,7 +288,7 @@ def _unknown_avatar(
 
 
 def picture_problems(path: Path, wordings: Mapping[str, str]) -> Iterator[DefinitionProblem]:
-    """A name that is no picture's would leave a hole in the instructions."""
+    """Yield names of pictures that do not exist, which would be missing from the instructions."""
     for language, words in wordings.items():
         for name in _PICTURE.findall(words):
             if name not in PICTURES:
@@ -297,5 +297,5 @@ def picture_problems(path: Path, wordings: Mapping[str, str]) -> Iterator[Defini
                     f"There is no picture {name!r}.",
                     name,
                     list(PICTURES),
-                    f"Use one of: {', '.join(PICTURES)}; or take the line out.",
+                    f"Use one of: {', '.join(PICTURES)}; or remove the line.",
                 )

@@ -1,7 +1,7 @@
-"""What differs between two trees of plain values, place by place.
+"""Compare two trees of plain values, place by place.
 
-Lists are aligned before they are compared: a step put in at the front is one step more, not a
-change of every step behind it.
+Lists are aligned before they are compared: a step inserted at the front is one added step, not a
+change of every step after it.
 """
 
 import difflib
@@ -15,7 +15,7 @@ from app.protocol.source import Path, Plain
 
 @dataclass(frozen=True)
 class Difference:
-    """One place that differs; the path is that of the older tree where the place was there."""
+    """One place that differs; its path is that in the older tree if it existed there."""
 
     path: Path
     kind: Literal["added", "removed", "changed"]
@@ -24,7 +24,7 @@ class Difference:
 
 
 def differences(before: Plain, after: Plain, path: Path = ()) -> Iterator[Difference]:
-    """Every difference, in the order of the older tree."""
+    """Yield every difference, in the order of the older tree."""
     if isinstance(before, dict) and isinstance(after, dict):
         for key in [*before, *(key for key in after if key not in before)]:
             inner = (*path, key)
@@ -55,7 +55,7 @@ def _lists(before: list[Plain], after: list[Plain], path: Path) -> Iterator[Diff
 
 
 def _name(value: Plain) -> str:
-    """What an entry is called, so that it is known again when something in it has changed."""
+    """Return what identifies a list entry, even after other parts of it have changed."""
     if isinstance(value, dict):
         for key in ("key", "number", "limb"):
             if key in value:

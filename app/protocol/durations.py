@@ -1,9 +1,9 @@
-"""How long a visit takes: the plan of one participant with the time of each step.
+"""Estimate how long a visit takes: the plan of one participant with the time of each step.
 
-Timed steps take what the study says: preparation, active time and freeze. Pauses and walks back
-come on top and cannot be planned. All other steps are estimated by the rule below, which is ours
-and rough: a reading speed, a time for each kind of item, and a time to be measured and to be
-dressed. An estimate is always marked as one.
+Timed steps take what the study specifies: preparation, active time and freeze. Pauses and walks
+back are additional and cannot be planned. All other steps are estimated by our own rough rule
+below: a reading speed, a time for each kind of item, and a time for matching the height and
+entering the body. An estimate is always marked as one.
 """
 
 from collections.abc import Mapping, Sequence
@@ -18,16 +18,16 @@ from app.science.instruments import Instrument
 READING_WORDS_PER_S = 3.0
 """Unhurried silent reading of instructions, about 180 words a minute."""
 OPENING_S = 10.0
-"""Finding the way into a page or a form."""
+"""Time to find one's way into a page or a form."""
 BY_HAND_S = {kind: one.takes_s for kind, one in STEP_KINDS.items() if one.takes_s is not None}
-"""Steps in which the experimenter and the participant do something together."""
+"""Time of the steps in which the experimenter and the participant do something together."""
 ITEM_S = {"likert": 6.0, "boolean": 4.0, "choice": 5.0, "integer": 8.0, "number": 8.0, "text": 20.0}
-"""One answer of each kind, reading the question included."""
+"""Time of one answer by the type of its item, including reading the question."""
 
 
 @dataclass(frozen=True)
 class TimedStep:
-    """A step with its time. `estimated`: by our rule, not by the study. All in seconds."""
+    """A step with its time in seconds. `estimated`: by our rule, not specified by the study."""
 
     step: Step
     start_s: float
@@ -42,7 +42,7 @@ def timeline(
     *,
     language: str,
 ) -> tuple[TimedStep, ...]:
-    """The steps of `plan` one after the other. `language`: in which texts are read."""
+    """Return the steps of `plan` with their times; texts are read in `language`."""
     timed: list[TimedStep] = []
     start_s = 0.0
     for step in plan:
@@ -59,16 +59,16 @@ def timeline(
 
 
 def total_s(steps: Sequence[TimedStep]) -> float:
-    """Length of the whole visit, seconds."""
+    """Return the length of the whole visit in seconds."""
     return sum(step.length_s for step in steps)
 
 
 @dataclass(frozen=True)
 class VisitTime:
-    """How long a visit is, minutes, to a tenth.
+    """The length of a visit in minutes, to a tenth.
 
-    `planned`: what the study sets. `total`: with our estimate of forms, texts and what is done by
-    hand; pauses, and putting the equipment on, come on top.
+    `planned`: what the study specifies. `total`: with our estimate of forms, texts and steps by
+    hand; pauses, and putting on the equipment, are additional.
     """
 
     planned: float
@@ -76,19 +76,19 @@ class VisitTime:
 
 
 def visit_time(protocol: StudyProtocol, instruments: Mapping[str, Instrument]) -> VisitTime:
-    """The time of one visit, in the first order and language: the one figure shown everywhere."""
+    """Return the time of a visit in the first order and language, the figure shown everywhere."""
     plan = compile_plan(protocol, sequences(protocol)[0])
     steps = timeline(protocol, plan, instruments, language=protocol.languages[0])
     return VisitTime(round(planned_s(steps) / 60, 1), round(total_s(steps) / 60, 1))
 
 
 def planned_s(steps: Sequence[TimedStep]) -> float:
-    """What of a visit the study sets, seconds."""
+    """Return the time that the study specifies, in seconds."""
     return sum(step.length_s for step in steps if not step.estimated)
 
 
 def form_s(instrument: Instrument) -> float:
-    """The estimated time to fill in an instrument, seconds."""
+    """Return the estimated time to fill in an instrument, in seconds."""
     return OPENING_S + sum(ITEM_S[item.type] for item in instrument.items)
 
 

@@ -1,7 +1,7 @@
-"""What can be wrong with a study or instrument file: a list of problems, never just the first.
+"""Errors of study and instrument files: a list of all problems, never just the first.
 
-ConfigError (ValueError)   the file cannot be used; holds every ConfigProblem found in it
-PlanError (ValueError)     an order of conditions that does not fit the study
+ConfigError (ValueError)   the file cannot be used; contains every ConfigProblem found in it
+PlanError (ValueError)     an order of conditions that does not match the study
 """
 
 from collections.abc import Iterable
@@ -10,11 +10,11 @@ from dataclasses import asdict, dataclass
 
 @dataclass(frozen=True)
 class ConfigProblem:
-    """One thing to correct.
+    """One problem to correct.
 
     `path`: "orders.replicates", "conditions[1].latency_ms"; empty for the whole file. `line` and
-    `column` count from 1 and are 0 where the text came from no file. `value` is what was given,
-    `valid` what could stand there, `remedy` what to do.
+    `column` count from 1 and are 0 if the text does not come from a file. `value` is the given
+    value, `valid` what is allowed there, `remedy` what to do.
     """
 
     path: str
@@ -26,7 +26,7 @@ class ConfigProblem:
     remedy: str = ""
 
     def as_json(self) -> dict[str, object]:
-        """The problem as a JSON object with the names above."""
+        """Return the problem as a JSON object with the attribute names as keys."""
         return asdict(self)
 
     def __str__(self) -> str:
@@ -37,7 +37,7 @@ class ConfigProblem:
 
 
 class ConfigError(ValueError):
-    """A study or instrument file cannot be used; `problems` are in the order of the file."""
+    """A study or instrument file is invalid; `problems` are in the order of the file."""
 
     def __init__(self, problems: Iterable[ConfigProblem]) -> None:
         self.problems = tuple(sorted(problems, key=lambda one: (one.line, one.column)))
@@ -45,4 +45,4 @@ class ConfigError(ValueError):
 
 
 class PlanError(ValueError):
-    """An order of conditions does not fit the study."""
+    """An order of conditions does not match the study."""

@@ -1,4 +1,4 @@
-"""From pydantic's findings to problems that a person can act on, each at its place in the file."""
+"""Convert pydantic's errors to problems that a person can correct, each with its place."""
 
 import difflib
 from collections.abc import Iterable
@@ -12,7 +12,7 @@ from app.protocol.source import Path, Plain, Source, path_text
 from app.science.instruments import DefinitionProblem, InstrumentDefinitionError, shortened
 
 UNKNOWN_KEY = ("extra_forbidden", "unexpected_keyword_argument")
-"""What pydantic calls a key that a model, or a dataclass, does not have."""
+"""Pydantic's error types for a key that a model, or a dataclass, does not have."""
 
 _WANTED = {
     "string_type": ("text", "Write text; put it in quotes if it looks like a number."),
@@ -37,7 +37,7 @@ _LIMITS = {
 
 
 def explain(error: ValidationError, schema: Schema, source: Source) -> Iterable[ConfigProblem]:
-    """Each finding of pydantic as a problem with its path, line, column, validity and remedy."""
+    """Yield each pydantic error as a problem with path, line, column, valid values and remedy."""
     findings = error.errors(include_url=False)
     for details in findings:
         path = _tree_path(details["loc"], source.tree, missing=details["type"] == "missing")
@@ -52,7 +52,7 @@ def explain(error: ValidationError, schema: Schema, source: Source) -> Iterable[
 
 
 def locate(problem: DefinitionProblem, source: Source, *, at_key: bool = False) -> ConfigProblem:
-    """The problem with the line and column of its value, or of its key."""
+    """Return the problem with the line and column of its value, or of its key."""
     mark = source.place(problem.path, of_key=at_key)
     return ConfigProblem(
         path_text(problem.path), mark.line, mark.column,
@@ -61,7 +61,7 @@ def locate(problem: DefinitionProblem, source: Source, *, at_key: bool = False) 
 
 
 def _shown(value: object) -> object:
-    """A value as a message can carry it: whole sections are left out, long texts cut."""
+    """Shorten a value for a message: whole sections are left out, long texts cut."""
     if isinstance(value, dict) or (isinstance(value, list) and len(str(value)) > _MAX_SHOWN):
         return None
     return shortened(value, _MAX_SHOWN)
@@ -127,7 +127,7 @@ def _wrong_tag(
 
 
 def _other(path: Path, details: ErrorDetails, schema: Schema) -> DefinitionProblem:
-    """Lengths, patterns, fixed words: pydantic's own sentence, and what the schema says."""
+    """Describe other errors, such as lengths and patterns, by pydantic's message and the schema."""
     given, context = details.get("input"), details.get("ctx", {})
     valid = schema.get("enum") or context.get("expected") or schema.get("description")
     if "const" in schema:
@@ -147,7 +147,7 @@ def _other(path: Path, details: ErrorDetails, schema: Schema) -> DefinitionProbl
 
 
 def _is_echo(details: ErrorDetails, findings: list[ErrorDetails]) -> bool:
-    """Whether a list is called too short only because its members were refused."""
+    """Return whether a list is reported as too short only because its members are invalid."""
     loc = details["loc"]
     return details["type"] == "too_short" and any(
         len(other["loc"]) > len(loc) and other["loc"][: len(loc)] == loc for other in findings
@@ -155,7 +155,7 @@ def _is_echo(details: ErrorDetails, findings: list[ErrorDetails]) -> bool:
 
 
 def remove(tree: Plain, loc: tuple[int | str, ...]) -> None:
-    """Take the key at pydantic's location out of the tree, in place."""
+    """Remove the key at pydantic's location from the tree, in place."""
     *parents, key = _tree_path(loc, tree)
     for part in parents:
         tree = _inside(tree, part)
@@ -170,9 +170,9 @@ def _inside(node: Plain, part: str | int) -> Plain:
 
 
 def _tree_path(loc: tuple[int | str, ...], tree: Plain, *, missing: bool = False) -> Path:
-    """Pydantic's location without the steps that are not in the file (the tags of unions).
+    """Return pydantic's location without parts that are not in the file (the tags of unions).
 
-    `missing`: the last step is not there, because that is the problem.
+    `missing`: the last part does not exist, which is the problem.
     """
     path: Path = ()
     node: Plain = tree
@@ -193,5 +193,8 @@ def _named(value: object) -> str:
 
 
 def _is_short(description: object) -> bool:
-    """Field descriptions fit into a sentence; docstrings of whole models do not."""
+    """Return whether a description fits into a sentence.
+
+    Those of fields do, the docstrings of models do not.
+    """
     return isinstance(description, str) and "\n" not in description and len(description) < 120

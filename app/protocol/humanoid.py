@@ -1,4 +1,4 @@
-"""The measures of a humanoid model as they are stored: JSON, the same bytes for the same model."""
+"""Store the measures of a humanoid model as JSON: the same model gives the same bytes."""
 
 from typing import Annotated, Literal
 
@@ -10,7 +10,10 @@ from app.science.rotations import Vector
 
 
 class PieceFile(Strict):
-    """A convex piece: its corners in the frame of its part, and how far skin is outside of it."""
+    """A convex piece of a body part.
+
+    It has its corners in the part's frame, and how far the skin protrudes from it.
+    """
 
     corners_m: list[Vector]
     outside_m: Annotated[float, Field(ge=0)]
@@ -32,7 +35,7 @@ _ADAPTER = TypeAdapter(FigureFile)
 
 
 def figure_json(figure: Figure) -> str:
-    """A model's measures as canonical JSON."""
+    """Format a model's measures as canonical JSON."""
     file = FigureFile(
         format="reembody-humanoid",
         version=1,
@@ -49,7 +52,7 @@ def figure_json(figure: Figure) -> str:
 
 
 def parse_figure(text: str) -> Figure:
-    """The measures that were stored."""
+    """Parse the stored measures."""
     file = _ADAPTER.validate_json(text)
     return Figure(
         file.stature_m,

@@ -1,8 +1,8 @@
-"""From the text of a file to a value with a content hash; all problems of the file at once.
+"""Load a file's text as a value with a content hash, reporting all problems of the file together.
 
-The hash is taken over the *validated* content as canonical JSON, defaults written out. So comments,
-key order, quoting and 60 for 60.0 make no difference, and what is stored stays complete even if a
-later release changes a default.
+The hash is computed from the *validated* content as canonical JSON, including defaults. So
+comments, key order, quoting and 60 for 60.0 make no difference, and stored content stays complete
+even if a later release changes a default.
 """
 
 import copy
@@ -29,9 +29,10 @@ _Value = TypeVar("_Value")
 
 @dataclass(frozen=True)
 class LoadedStudy:
-    """A study with the SHA-256 of its content; `canonical_json` is what the hash was taken over.
+    """A study with the SHA-256 of its content, which is computed from `canonical_json`.
 
-    The texts of `protocol` are those for its avatar; the content holds the lines for others, too.
+    The texts of `protocol` are those for its avatar; the content also contains the lines for
+    others.
     """
 
     protocol: StudyProtocol
@@ -54,12 +55,13 @@ def load_study(
     instruments: Mapping[str, Instrument],
     avatars: Mapping[str, int] | None = None,
 ) -> LoadedStudy:
-    """Read a study file (YAML).
+    """Load a study file (YAML).
 
     Args:
         text: of the file.
-        instruments: those it may refer to, by key.
-        avatars: those it may refer to: key -> number of the newest version. None does not check.
+        instruments: those that it may refer to, by key.
+        avatars: those that it may refer to: key -> number of the newest version. None skips the
+            check.
 
     Raises:
         ConfigError: with every problem of the file.
@@ -74,15 +76,18 @@ def load_study(
 
 @lru_cache(maxsize=16)
 def study_source(text: str) -> Source:
-    """The same file is read when it is checked, when it is saved and at every start."""
+    """Parse a study file, caching the result.
+
+    The same file is parsed when it is checked, when it is saved and at every start.
+    """
     return read_source(text)
 
 
 @lru_cache(maxsize=64)
 def load_instrument(text: str) -> LoadedInstrument:
-    """Read an instrument file (YAML). Raises ConfigError with every problem of the file.
+    """Load an instrument file (YAML); raise ConfigError with every problem of the file.
 
-    Kept by its text: a study asks for each of its instruments whenever it is read.
+    Results are cached by text: whenever a study is loaded, so are its instruments.
     """
     instrument = _validated(_INSTRUMENT, read_source(text), [])
     canonical = canonical_json(instrument_as_json(instrument))
@@ -90,19 +95,19 @@ def load_instrument(text: str) -> LoadedInstrument:
 
 
 def study_schema() -> Schema:
-    """The JSON schema of study files, with the descriptions that problems quote."""
+    """Return the JSON schema of study files, with the descriptions that problems quote."""
     return _STUDY.schema
 
 
 def parse_study_json(canonical_json: str) -> StudyProtocol:
-    """The study that was stored as canonical JSON. Raises ConfigError if it is not one."""
+    """Parse a study stored as canonical JSON; raise ConfigError if it is invalid."""
     return with_own_words(_parsed(_STUDY, canonical_json))
 
 
 def instrument_as_json(instrument: Instrument) -> dict[str, Plain]:
-    """Its content, defaults written out; without what was added later where that is not used.
+    """Return an instrument's content with defaults, but without unused newer fields.
 
-    So the hash of an instrument that is stored somewhere does not change with a release.
+    So the hash of a stored instrument does not change with a release.
     """
     tree: dict[str, Plain] = _INSTRUMENT.adapter.dump_python(instrument, mode="json")
     items = cast("list[dict[str, Plain]]", tree["items"])
@@ -118,12 +123,12 @@ def instrument_as_json(instrument: Instrument) -> dict[str, Plain]:
 
 
 def parse_instrument_json(canonical_json: str) -> Instrument:
-    """The instrument that was stored as canonical JSON. Raises ConfigError if it is not one."""
+    """Parse an instrument stored as canonical JSON; raise ConfigError if it is invalid."""
     return _parsed(_INSTRUMENT, canonical_json)
 
 
 class _Kind(Generic[_Value]):
-    """A kind of file: how its content becomes a value, and the schema that explains problems."""
+    """A kind of file: how to validate its content, and the schema that explains problems."""
 
     def __init__(self, adapter: TypeAdapter[_Value]) -> None:
         self.adapter = adapter
@@ -133,7 +138,7 @@ class _Kind(Generic[_Value]):
         return self.adapter.json_schema()
 
     def validate(self, tree: Plain) -> _Value:
-        # By way of JSON: there a list may become a tuple and a word an enum, and still nothing
+        # Validated as JSON, so that a list may become a tuple and a word an enum, but nothing
         # else is converted.
         return self.adapter.validate_json(json.dumps(tree))
 
@@ -162,7 +167,10 @@ def _validated(kind: _Kind[_Value], source: Source, found: list[ConfigProblem]) 
 def _behind_unknown_keys(
     kind: _Kind[_Value], error: ValidationError, source: Source
 ) -> Iterable[ConfigProblem]:
-    """Problems that show only once unknown keys are gone, such as formulas with unknown names."""
+    """Yield problems that appear only once unknown keys are removed.
+
+    Unknown names in formulas are an example.
+    """
     unknown = [one["loc"] for one in error.errors() if one["type"] in UNKNOWN_KEY]
     if len(unknown) != error.error_count():
         return

@@ -1,10 +1,10 @@
-"""Counterbalancing: the orders of the conditions, and the rows of the ledger that hold them.
+"""Counterbalancing: the orders of the conditions, and the rows of the ledger that contain them.
 
 All n! orders together are balanced by construction, and so are the few of a Williams design: each
-condition stands equally often at each position, and each ordered pair of neighbours occurs equally
-often. An explicit list is as balanced as who wrote it. A *block* of the ledger holds every order
-once; its rows are mixed, so that nobody can tell which order comes next. Blocks are drawn
-independently from the study's seed: adding one never changes those that exist.
+condition is equally often at each position, and each ordered pair of neighbours occurs equally
+often. The balance of an explicit list is up to its author. A *block* of the ledger contains every
+order once; its rows are shuffled, so that nobody can predict the next order. Blocks are drawn
+independently from the study's seed: adding one never changes existing ones.
 """
 
 from itertools import permutations
@@ -20,14 +20,14 @@ Sequence = tuple[str, ...]
 
 
 class LedgerRow(NamedTuple):
-    """One slot: an order, and which replicate of it this is (from 1)."""
+    """One slot: an order, and the number of its replicate (from 1)."""
 
     sequence: Sequence
     replicate: int
 
 
 def sequences(protocol: StudyProtocol) -> tuple[Sequence, ...]:
-    """Every order of the study's design; permutations as their conditions stand in the file."""
+    """Return every order of the study's design; permutations follow the conditions' file order."""
     keys = [condition.key for condition in protocol.conditions]
     match protocol.orders.design:
         case "all_permutations":
@@ -39,9 +39,9 @@ def sequences(protocol: StudyProtocol) -> tuple[Sequence, ...]:
 
 
 def ledger_block(protocol: StudyProtocol, block_index: int) -> tuple[LedgerRow, ...]:
-    """The rows of one block, in the order in which they are given out.
+    """Return the rows of one block, in the order in which they are assigned.
 
-    `block_index` counts from 0 and is the replicate less one. The rows depend on nothing but the
+    `block_index` counts from 0 and is the replicate minus one. The rows depend only on the
     conditions' keys, the seed and the index (PCG64 seeded with SeedSequence([seed, block_index])).
     Raises ValueError for a negative index.
     """

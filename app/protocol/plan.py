@@ -1,8 +1,8 @@
-"""From a study and one order of its conditions to the steps of a session.
+"""Compile a study and one order of its conditions into the steps of a session.
 
-The plan is what a session walks through: setup steps, then for each condition its phases, each
-followed by its questionnaire, and the block's own forms, then the closing steps. It never changes
-during a session.
+The plan is the list of steps that a session goes through: setup steps, then for each condition its
+phases, each followed by its questionnaire, and the block's own forms, then the closing steps. It
+never changes during a session.
 """
 
 from collections.abc import Iterator, Sequence
@@ -17,7 +17,7 @@ from app.protocol.study import StudyProtocol
 from app.science.tasks import Limb
 
 _OF_TIMED_STEPS = ("latency_ms", "limb", "preparation_s", "duration_s", "freeze_s")
-"""What a step of the plan takes over from a timed step of the study, as far as that has it."""
+"""Fields that a step of the plan copies from a timed step of the study, if that has them."""
 
 
 @dataclass(frozen=True)
@@ -26,9 +26,9 @@ class Step:
 
     `index` counts from 0; `key` is unique ("form.demographics", "block2.hand",
     "block2.hand.karas2020", "block2.fms"). `block` counts from 1 and, like `condition`, is None
-    outside the blocks. `latency_ms` is also set for free movement and practice. `text` names a text
-    of the study. `until_completions`: a practice ends early after so many tasks. `consent`: what a
-    consent asks for besides its text.
+    outside the blocks. `latency_ms` is also set for free movement and practice. `text` is the key
+    of a text of the study. `until_completions`: a practice ends early after this many tasks.
+    `consent`: what a consent step requires in addition to its text.
     """
 
     index: int
@@ -49,30 +49,30 @@ class Step:
 
     @property
     def spec(self) -> StepKindSpec:
-        """What is true of every step of this kind."""
+        """The properties of all steps of this kind."""
         return STEP_KINDS[self.kind]
 
     @property
     def phase_key(self) -> str | None:
-        """What rules call a timed step: hand, foot, free_roam, practice_hand, practice_foot."""
+        """The key of a timed step in rules: hand, foot, free_roam, practice_hand, practice_foot."""
         return self.spec.key_of_phase(self.limb)
 
 
 def compile_plan(
     protocol: StudyProtocol, sequence: Sequence[str], *, block_limb_flip: bool = False
 ) -> tuple[Step, ...]:
-    """All steps of a session in which the conditions come in the order `sequence` (their keys).
+    """Return all steps of a session with the conditions in the order `sequence` (their keys).
 
-    With `limb_order: alternate` every other block has its phases turned round: the even ones (2, 4,
-    ...), or with `block_limb_flip` the odd ones, so that a caller can balance it over people. With
-    `limb_order: fixed` the flip has no effect. Raises PlanError unless `sequence` names each
+    With `limb_order: alternate` every other block has its phases reversed: the even ones (2, 4,
+    ...), or with `block_limb_flip` the odd ones, so that a caller can balance it over participants.
+    With `limb_order: fixed` the flip has no effect. Raises PlanError unless `sequence` names each
     condition exactly once.
     """
-    known = [condition.key for condition in protocol.conditions]
-    if sorted(sequence) != sorted(known):
+    keys = [condition.key for condition in protocol.conditions]
+    if sorted(sequence) != sorted(keys):
         raise PlanError(
-            f"The order {list(sequence)} does not fit the study. "
-            f"Name each of {', '.join(known)} exactly once."
+            f"The order {list(sequence)} does not match the study. "
+            f"Name each of {', '.join(keys)} exactly once."
         )
     steps = [_simple(step) for step in protocol.procedure.before]
     for block, key in enumerate(sequence, start=1):
@@ -97,7 +97,7 @@ def compile_plan(
 
 
 def _simple(step: SetupStep | ClosingStep) -> Step:
-    """A step outside the blocks."""
+    """Return the plan's step for a step outside the blocks."""
     kind = step.step
     if isinstance(step, FormStep):
         title = _title(kind, None, step.title)
@@ -117,7 +117,7 @@ def _simple(step: SetupStep | ClosingStep) -> Step:
 
 
 def _title(kind: StepKind, limb: Limb | None, given: Text | None) -> Text:
-    """The title that the study gives, or the built-in one of the kind, with its limb."""
+    """Return the title that the study specifies, or the built-in one of the kind and limb."""
     return STEP_KINDS[kind].title(limb) if given is None else given
 
 
@@ -153,7 +153,7 @@ def _block(block: int, condition: Condition, phases: Sequence[TaskPhase]) -> Ite
 
 
 def _numbered(steps: Sequence[Step]) -> Iterator[Step]:
-    """Give each step its index, and a repeated step a key of its own: consent, consent.2."""
+    """Give each step its index, and repeated steps unique keys: consent, consent.2."""
     seen: dict[str, int] = {}
     for index, step in enumerate(steps):
         count = seen[step.key] = seen.get(step.key, 0) + 1

@@ -1,7 +1,7 @@
-"""What a study declares before it looks: one primary test, and whom it leaves out.
+"""What a study declares before data are collected: one primary test, and the exclusions.
 
-Part of the study's content, so it is hashed, versioned and frozen with the rest: the hash that a
-registry holds names this text and no other. Everything that is not declared is exploratory.
+It is part of the study's content, so it is hashed, versioned and frozen with the rest: the hash in
+a registry identifies exactly this text. Everything that is not declared is exploratory.
 """
 
 from collections.abc import Iterator, Mapping
@@ -37,17 +37,18 @@ _FEWEST = 2
 if TYPE_CHECKING:
     PrimaryTestName = str
 else:
-    # A study can declare what the registry holds; no type checker reads a computed Literal.
+    # A study can declare any registered test; type checkers cannot evaluate a computed Literal.
     PrimaryTestName = Literal[tuple(one.key for one in TESTS)]
 
 
 class PrimaryTest(Strict):
-    """The one test that the study is about.
+    """The single primary test of the study.
 
-    `measure`: a score of an instrument that is asked after a task, contact time (s) or completions.
-    `limb`: of which task; "both" is the mean of a participant's tasks. `factor` is the added
-    latency. `direction`: of the measure as latency grows; "against_reference" compares each
-    condition with `reference` by exact signed-rank tests, and `correction` adjusts for all of them.
+    `measure`: a score of an instrument that is answered after a task, contact time (s) or
+    completions. `limb`: of which task; "both" is the mean of a participant's tasks. `factor` is the
+    added latency. `direction`: of the measure as latency increases; "against_reference" compares
+    each condition with `reference` by exact signed-rank tests, and `correction` adjusts for all of
+    them.
     """
 
     measure: Measure
@@ -102,12 +103,12 @@ class PrimaryTest(Strict):
 
 
 class ExclusionRule(Strict):
-    """Whom the primary test leaves out: a session of which any task phase breaks the rule.
+    """A rule that excludes a session from the primary test if any of its task phases violates it.
 
-    complete_session: was not completed. minimum_frame_rate_hz, minimum_share_of_frames: of the
-    avatar's recorded frames; the share is active time outside gaps. maximum_latency_error_ms:
-    achieved against ordered latency. minimum_active_time_s: of a task phase.
-    maximum_straight_lined_forms: forms of a session whose ratings are all alike.
+    complete_session: the session was not completed. minimum_frame_rate_hz, minimum_share_of_frames:
+    of the avatar's recorded frames; the share is active time outside gaps.
+    maximum_latency_error_ms: achieved minus set latency. minimum_active_time_s: of a task phase.
+    maximum_straight_lined_forms: forms of a session with identical ratings for all items.
     """
 
     rule: RuleName
@@ -137,8 +138,10 @@ class ExclusionRule(Strict):
 
 
 class Preregistration(Strict):
-    """What is declared. `planned_n`: participants in the primary test. `registration`: where it
-    was registered, once it was.
+    """The declared analysis.
+
+    `planned_n`: participants in the primary test. `registration`: where it was registered, once it
+    has been.
     """
 
     alpha: Annotated[float, Field(gt=0, le=0.2, description="above 0, at most 0.2")]
@@ -153,7 +156,7 @@ class Preregistration(Strict):
         for at, rule in enumerate(rules):
             if rule in rules[:at]:
                 raise refusal(
-                    f"The rule {rule} is there twice.",
+                    f"The rule {rule} is listed twice.",
                     value=rule,
                     valid="every rule once",
                     remedy="Keep one of them.",
@@ -165,7 +168,7 @@ class Preregistration(Strict):
 def preregistration_problems(
     tree: Mapping[str, Plain], instruments: Mapping[str, Instrument]
 ) -> Iterator[DefinitionProblem]:
-    """A measure that is not asked after the task, an unknown score, limb or reference."""
+    """Yield a measure not asked after the task, and unknown scores, limbs or references."""
     primary = _dict(_dict(tree.get("preregistration")).get("primary"))
     if not primary:
         return
@@ -204,24 +207,24 @@ def _score(
     key, score = primary.get("instrument"), primary.get("score")
     if not isinstance(key, str):
         return
-    wanted = [one for one in phases if primary.get("limb") in (one.get("limb"), "both")]
-    asked = sorted({str(one.get("questionnaire")) for one in wanted})
-    if wanted and asked != [key]:
+    tasks = [one for one in phases if primary.get("limb") in (one.get("limb"), "both")]
+    instrument_keys = sorted({str(one.get("questionnaire")) for one in tasks})
+    if tasks and instrument_keys != [key]:
         yield DefinitionProblem(
             (*_PRIMARY, "instrument"),
-            f"{key!r} is not what is asked after the task.",
+            f"{key!r} is not the instrument asked after the task.",
             key,
-            asked,
-            f"Use one of: {', '.join(asked)}.",
+            instrument_keys,
+            f"Use one of: {', '.join(instrument_keys)}.",
         )
-    known = [one.key for one in instruments[key].scores] if key in instruments else []
-    if known and isinstance(score, str) and score not in known:
+    score_keys = [one.key for one in instruments[key].scores] if key in instruments else []
+    if score_keys and isinstance(score, str) and score not in score_keys:
         yield DefinitionProblem(
             (*_PRIMARY, "score"),
             f"The instrument {key!r} has no score {score!r}.",
             score,
-            known,
-            f"Use one of: {', '.join(known)}.",
+            score_keys,
+            f"Use one of: {', '.join(score_keys)}.",
         )
 
 
@@ -238,9 +241,9 @@ def _conditions(
             keys,
             f"Use one of: {', '.join(keys)}.",
         )
-    known = {one.key: one for one in TESTS}
-    needed = known[test].fewest_conditions if isinstance(test, str) and test in known else 0
-    # Every test needs two; a study with one condition is not to be mended by another test.
+    by_key = {one.key: one for one in TESTS}
+    needed = by_key[test].fewest_conditions if isinstance(test, str) and test in by_key else 0
+    # Every test needs two; another test would not help a study with one condition.
     if needed > _FEWEST and 0 < len(keys) < needed:
         possible = sorted(
             one.key for one in TESTS if one.fewest_conditions <= max(len(keys), _FEWEST)

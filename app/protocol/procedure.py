@@ -1,7 +1,8 @@
-"""What happens in a session, step by step: before the blocks, in each block, and after them.
+"""The procedure of a session, step by step: before the blocks, in each block, and after them.
 
 A *block* is one condition; its *phases* are done one after the other, each followed by its
-questionnaire. `text` names one of the study's texts; `title` replaces the built-in step title.
+questionnaire. `text` is the key of one of the study's texts; `title` replaces the built-in step
+title.
 """
 
 from typing import Annotated, Literal
@@ -14,10 +15,10 @@ from app.science.tasks import Limb
 
 
 class Statement(Strict):
-    """One line of a consent that is ticked by itself; unless `optional`, nothing goes on without.
+    """One statement of a consent with its own tick box, required unless `optional`.
 
-    An optional one asks for a permission that somebody may keep back and still take part, such as
-    the use of their data in later studies.
+    An optional one asks for a permission that a participant may withhold and still take part, such
+    as the use of their data in later studies.
     """
 
     text: Text
@@ -25,16 +26,16 @@ class Statement(Strict):
 
 
 class ConsentStep(Strict):
-    """The participant reads the consent text and agrees, or the session ends.
+    """The participant reads the consent text and agrees; otherwise the session ends.
 
     `signature`: "none" is a button, "typed" a name, "drawn" a signature by finger, pen or mouse
-    (whoever cannot draw types their name). `statements`: what is ticked line by line.
+    (participants who cannot draw type their name). `statements`: each has its own tick box.
     """
 
     step: Literal["consent"]
     text: Key
     title: Text | None = None
-    # Left out of the content where they are not used, so that the hash of other studies stays.
+    # Left out of the content if not used, so that the hashes of other studies stay the same.
     signature: Annotated[
         Literal["none", "typed", "drawn"], Field(exclude_if=lambda value: value == "none")
     ] = "none"
@@ -52,7 +53,7 @@ class FormStep(Strict):
 
 
 class InstructionsStep(Strict):
-    """The participant reads a text and can ask."""
+    """The participant reads a text and can ask questions."""
 
     step: Literal["instructions"]
     text: Key
@@ -60,7 +61,10 @@ class InstructionsStep(Strict):
 
 
 class HeightStep(Strict):
-    """The local avatar is matched to the participant's height; stated and matched are stored."""
+    """The avatar is matched to the participant's height.
+
+    The stated and matched values are stored.
+    """
 
     step: Literal["height"]
     text: Key | None = None
@@ -76,7 +80,7 @@ class MaterialiseStep(Strict):
 
 
 class FreeRoamStep(Strict):
-    """The participant gets used to the body for a while, with a latency of its own."""
+    """The participant gets used to the body for a while, with a separate latency."""
 
     step: Literal["free_roam"]
     duration_s: Duration
@@ -86,10 +90,10 @@ class FreeRoamStep(Strict):
 
 
 class PracticeStep(Strict):
-    """A task to try before it counts: boxes, clock and freeze as in a block, and no analysis of it.
+    """A practice of a task, with boxes, clock and freeze as in a block, but never analysed.
 
-    Its latency is its own. `repeat_until_completions`: it ends once so many tasks are completed,
-    and at the latest when its time is used up.
+    It has its own latency. `repeat_until_completions`: it ends once this many tasks are completed,
+    or when its time is up.
     """
 
     step: Literal["practice"]
@@ -106,7 +110,7 @@ class PracticeStep(Strict):
 
 
 class DebriefStep(Strict):
-    """The participant is told what the study was about."""
+    """The purpose of the study is explained to the participant."""
 
     step: Literal["debrief"]
     text: Key
@@ -129,7 +133,7 @@ ClosingStep = Annotated[FormStep | InstructionsStep | DebriefStep, Field(discrim
 class TaskPhase(Strict):
     """One timed task. `duration_s` is active time: pauses and walks back do not count.
 
-    `preparation_s`: countdown before it; `freeze_s`: scene and body stand still after it.
+    `preparation_s`: countdown before it; `freeze_s`: scene and body are frozen after it.
     """
 
     limb: Limb
@@ -157,18 +161,18 @@ def _each_limb_once(phases: tuple[TaskPhase, ...]) -> tuple[TaskPhase, ...]:
 class Block(Strict):
     """The phases of one condition.
 
-    `limb_order`: "fixed" as listed; "alternate" turns the order round in every other block.
-    `after`: what is filled in at the end of every block, such as a sickness scale.
+    `limb_order`: "fixed" as listed; "alternate" reverses the order in every other block. `after`:
+    forms answered at the end of every block, such as a sickness scale.
     """
 
     limb_order: Literal["fixed", "alternate"]
     phases: Annotated[tuple[TaskPhase, ...], Field(min_length=1), AfterValidator(_each_limb_once)]
-    # Left out of the content where there is none, so that the hash of other studies stays.
+    # Left out of the content if empty, so that the hashes of other studies stay the same.
     after: Annotated[tuple[FormStep, ...], Field(exclude_if=lambda steps: not steps)] = ()
 
 
 class Procedure(Strict):
-    """A whole session."""
+    """The steps of a whole session."""
 
     before: tuple[SetupStep, ...]
     block: Block

@@ -1,8 +1,8 @@
-"""When a session must not simply go on: limits on scores that are asked during it.
+"""Stop rules: limits on scores of a session, at which it is held.
 
-A *stop rule* looks at one score each time its instrument is filled in. At `warn_at` the operator is
-warned; at `stop_at` the session is held until the operator ends it or goes on with a reason. The
-checks below say whether the rules and the practice of a study file can ever do what they are for.
+A *stop rule* checks one score each time its instrument is answered. At `warn_at` the operator is
+warned; at `stop_at` the session is held until the operator ends it or continues with a reason. The
+checks below report rules and practice phases that could never have an effect.
 """
 
 from collections.abc import Iterator, Mapping
@@ -23,10 +23,10 @@ FormKey = Annotated[
 
 
 class StopRule(Strict):
-    """One limit; scores at or above it meet it.
+    """One limit, which scores at or above it reach.
 
-    `change_from`: the form before the blocks that gives the starting point; the limits are then on
-    the rise since then, not on the score itself.
+    `change_from`: the form before the blocks with the baseline; the limits then apply to the rise
+    since then, not to the score itself.
     """
 
     instrument: Key
@@ -50,7 +50,7 @@ class StopRule(Strict):
 
 
 class Safety(Strict):
-    """The stop rules of a study, in the order in which they are looked at."""
+    """The stop rules of a study, in the order in which they are checked."""
 
     stop_rules: Annotated[tuple[StopRule, ...], Field(min_length=1, max_length=10)]
 
@@ -58,7 +58,7 @@ class Safety(Strict):
 def safety_problems(
     tree: Mapping[str, Plain], instruments: Mapping[str, Instrument]
 ) -> Iterator[DefinitionProblem]:
-    """A rule on something that is not asked, on an unknown score, or beyond the score's range."""
+    """Yield rules on unasked instruments, on unknown scores, or beyond the score's range."""
     rules = _list(_dict(tree.get("safety")).get("stop_rules"))
     for at, rule in enumerate(rules):
         if isinstance(rule, dict):
@@ -66,7 +66,7 @@ def safety_problems(
 
 
 def body_problems(tree: Mapping[str, Plain]) -> Iterator[DefinitionProblem]:
-    """A phase before the participant has the body that it needs, such as practice."""
+    """Yield phases, such as practice, before the step in which the participant gets a body."""
     before = [_dict(step).get("step") for step in _list(_dict(tree.get("procedure")).get("before"))]
     for at, kind in enumerate(before):
         spec = STEP_KINDS.get(str(kind))
@@ -75,8 +75,8 @@ def body_problems(tree: Mapping[str, Plain]) -> Iterator[DefinitionProblem]:
                 ("procedure", "before", at, "step"),
                 f"The {spec.name.en.lower()} comes before the participant has a body.",
                 kind,
-                "a place behind the step materialise",
-                "Move it behind the step materialise.",
+                "a place after the step materialise",
+                "Move it after the step materialise.",
             )
 
 
@@ -91,15 +91,15 @@ def _rule(
         return
     early, late = _asked(tree)
     if key not in early:
-        asked = sorted(early)
-        said = "only after the blocks, when there is nothing left to stop" if key in late else ""
+        valid = sorted(early)
+        when = "only after the blocks, when there is nothing left to stop" if key in late else ""
         yield DefinitionProblem(
             (*path, "instrument"),
-            f"The study asks {key!r} {said}." if said else f"The study does not ask {key!r}.",
+            f"The study asks {key!r} {when}." if when else f"The study does not ask {key!r}.",
             key,
-            asked,
+            valid,
             "Ask it before, in or at the end of the blocks, or use one of: "
-            f"{', '.join(asked) or 'none is asked'}.",
+            f"{', '.join(valid) or 'none is asked'}.",
         )
     if key in instruments:
         yield from _score(path, rule, instruments[key])
@@ -110,20 +110,20 @@ def _score(
     path: Path, rule: dict[str, Plain], instrument: Instrument
 ) -> Iterator[DefinitionProblem]:
     key = rule.get("score")
-    known = {score.key: score for score in instrument.scores}
-    if isinstance(key, str) and key not in known:
+    by_key = {score.key: score for score in instrument.scores}
+    if isinstance(key, str) and key not in by_key:
         yield DefinitionProblem(
             (*path, "score"),
             f"The instrument {instrument.key!r} has no score {key!r}.",
             key,
-            sorted(known),
-            f"Use one of: {', '.join(sorted(known)) or 'it has none'}.",
+            sorted(by_key),
+            f"Use one of: {', '.join(sorted(by_key)) or 'it has none'}.",
         )
     elif isinstance(key, str):
         for field in ("stop_at", "warn_at"):
             limit = rule.get(field)
             if isinstance(limit, int | float) and not isinstance(limit, bool):
-                yield from _limit((*path, field), limit, known[key], rule.get("change_from"))
+                yield from _limit((*path, field), limit, by_key[key], rule.get("change_from"))
 
 
 def _limit(
@@ -134,12 +134,12 @@ def _limit(
     low, high = score.minimum, score.maximum
     if change_from is not None:
         low, high = 0.0, high - low
-    # At the lowest value the rule would be met by everybody.
+    # With the lowest value as the limit, every participant would reach it.
     if not low < limit <= high:
         what = "rise" if change_from is not None else "score"
         yield DefinitionProblem(
             path,
-            f"The limit {limit:g} is met by everybody or by nobody: the {what} of "
+            f"The limit {limit:g} is reached by everybody or by nobody: the {what} of "
             f"{score.key!r} goes from {low:g} to {high:g}.",
             limit,
             f"above {low:g}, at most {high:g}",
@@ -150,7 +150,7 @@ def _limit(
 def _start(
     path: Path, rule: dict[str, Plain], key: str, tree: Mapping[str, Plain]
 ) -> Iterator[DefinitionProblem]:
-    """`change_from` names a form before the blocks that asks the same instrument."""
+    """Yield a `change_from` that names no form before the blocks with the same instrument."""
     start = rule.get("change_from")
     if not isinstance(start, str):
         return
@@ -169,7 +169,7 @@ def _start(
 
 
 def _asked(tree: Mapping[str, Plain]) -> tuple[set[str], set[str]]:
-    """What is asked up to the end of the last block, and what behind it."""
+    """Return the instruments asked up to the end of the last block, and those asked after it."""
     procedure = _dict(tree.get("procedure"))
     block = _dict(procedure.get("block"))
     early = [
@@ -184,7 +184,7 @@ def _asked(tree: Mapping[str, Plain]) -> tuple[set[str], set[str]]:
 
 
 def _forms_before(tree: Mapping[str, Plain]) -> list[tuple[str, str]]:
-    """The forms before the blocks by the keys that the plan gives them, with their instrument."""
+    """Return the forms before the blocks by their keys in the plan, with their instrument."""
     seen: dict[str, int] = {}
     forms = []
     for step in _list(_dict(tree.get("procedure")).get("before")):

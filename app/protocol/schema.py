@@ -1,4 +1,4 @@
-"""Finding one's way in a JSON schema: which keys a place can have, and where the texts are."""
+"""Navigate a JSON schema: the keys that are valid at a place, and the places of texts."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -9,7 +9,7 @@ Schema = Mapping[str, Any]
 
 
 def schema_at(root: Schema, tree: Plain, path: Path) -> Schema:
-    """The schema of the place `path` leads to; empty where the schema says nothing."""
+    """Return the schema of the place at `path`; empty if there is none."""
     node, value = _resolved(root, root, tree), tree
     for part in path:
         node, value = _child(root, node, value, part)
@@ -17,7 +17,7 @@ def schema_at(root: Schema, tree: Plain, path: Path) -> Schema:
 
 
 def marked_places(root: Schema, tree: Plain, mark: str) -> Iterator[tuple[Path, Plain]]:
-    """Every value in the tree whose schema carries the mark, with its path."""
+    """Yield every value in the tree whose schema has the mark, with its path."""
 
     def walk(node: Schema, value: Plain, path: Path) -> Iterator[tuple[Path, Plain]]:
         if mark in node:
@@ -33,7 +33,7 @@ def marked_places(root: Schema, tree: Plain, mark: str) -> Iterator[tuple[Path, 
 
 
 def _child(root: Schema, node: Schema, value: Plain, part: str | int) -> tuple[Schema, Plain]:
-    """One step down, in the schema and in the value at once."""
+    """Descend one level in the schema and in the value."""
     inner: Plain = None
     schema: Any = None
     if isinstance(part, int):
@@ -41,18 +41,19 @@ def _child(root: Schema, node: Schema, value: Plain, part: str | int) -> tuple[S
         schema = node.get("items")
     else:
         inner = value.get(part) if isinstance(value, dict) else None
-        # Mappings with free keys: pydantic says it in one of two ways, by how keys are constrained.
+        # Mappings with arbitrary keys: pydantic uses either keyword, depending on the keys'
+        # constraints.
         free = [*node.get("patternProperties", {}).values(), node.get("additionalProperties")]
         schema = node.get("properties", {}).get(part, free[0])
     return _resolved(root, schema if isinstance(schema, dict) else {}, inner), inner
 
 
 def _resolved(root: Schema, node: Schema, value: Plain) -> Schema:
-    """Follow references, the non-null side of an optional, and the value's own union member."""
+    """Resolve references, the non-null option of an optional, and the value's union member."""
     if "$ref" in node:
         name = str(node["$ref"]).rpartition("/")[2]
-        beside = {key: said for key, said in node.items() if key != "$ref"}
-        return _resolved(root, {**root["$defs"][name], **beside}, value)
+        siblings = {key: keyword for key, keyword in node.items() if key != "$ref"}
+        return _resolved(root, {**root["$defs"][name], **siblings}, value)
     if "discriminator" in node:
         tags = node["discriminator"]
         tag = value.get(tags["propertyName"]) if isinstance(value, dict) else None

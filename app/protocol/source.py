@@ -1,11 +1,11 @@
-"""A configuration file as a tree of plain values that still knows where everything stood.
+"""Parse a configuration file into a tree of plain values with the place of each.
 
 The text is read as a stream of YAML events, and each limit is checked on the event itself: nothing
-is ever expanded, and a file that is too deep or too long costs no more than its first excess.
+is ever expanded, and reading a file that is too deep or too long stops at its first excess.
 
-A bare word means what the core schema of YAML 1.2 says, a little stricter. YAML 1.1 (which most
-Python readers follow) turns `no` into False, 12:30 into 750 and 010 into 8. Here only true and
-false are booleans, only decimal numbers are numbers, and all else is text.
+A bare word has the meaning of the core schema of YAML 1.2, a little stricter. YAML 1.1 (which most
+Python parsers follow) turns `no` into False, 12:30 into 750 and 010 into 8. Here only true and
+false are booleans, only decimal numbers are numbers, and everything else is text.
 """
 
 import math
@@ -26,7 +26,7 @@ _WORDS: dict[str, bool | None] = {
 }  # fmt: skip
 _FORBIDDEN = re.compile(r"[\x00-\x08\x0b-\x1f\x7f\ud800-\udfff]")
 
-# Whole numbers beyond this are not the same in every reader of JSON.
+# Larger integers are not read identically by every JSON parser.
 MAX_INTEGER = 2**53 - 1
 _MAX_DIGITS = 40
 MAX_BYTES = 256 * 1024
@@ -42,18 +42,18 @@ _ONE_WAY = "Write the value out at each place where it is needed."
 
 @dataclass(frozen=True)
 class ScalarProblem:
-    """Why a scalar cannot be taken."""
+    """The reason why a scalar is invalid, and the remedy."""
 
     message: str
     remedy: str
 
 
 def scalar_problem(text: str, *, plain: bool) -> ScalarProblem | None:
-    """Why the scalar cannot be taken, or None. `plain`: unquoted, so that it may be a number."""
+    """Return why the scalar is invalid, or None. `plain`: unquoted, so that it may be a number."""
     found = _FORBIDDEN.search(text)
     if found is not None:
         return ScalarProblem(
-            f"The text holds the control character U+{ord(found.group()):04X}.", "Remove it."
+            f"The text contains the control character U+{ord(found.group()):04X}.", "Remove it."
         )
     if not plain:
         return None
@@ -70,7 +70,7 @@ def scalar_problem(text: str, *, plain: bool) -> ScalarProblem | None:
 
 
 def scalar_value(text: str) -> bool | int | float | str | None:
-    """The value of an unquoted scalar that has no problem."""
+    """Return the value of an unquoted scalar that is valid."""
     if text in _WORDS:
         return _WORDS[text]
     if _INTEGER.fullmatch(text):
@@ -90,7 +90,7 @@ def _is_representable(text: str) -> bool:
 
 @dataclass(frozen=True)
 class Mark:
-    """A place in the text, counted from 1."""
+    """A place in the text; line and column count from 1."""
 
     line: int
     column: int
@@ -100,7 +100,7 @@ class Mark:
 class Source:
     """The values of a file, with the place of each value and of each key.
 
-    `problems` are those that did not stop the reading, such as a doubled key; `refused` are the
+    `problems` are those that did not stop the parsing, such as a duplicate key; `refused` are the
     places of values that were left empty because of one.
     """
 
@@ -111,7 +111,7 @@ class Source:
     refused: set[Path] = field(default_factory=set)
 
     def place(self, path: Path, *, of_key: bool = False) -> Mark:
-        """Where the value (or its key) stands; for a missing one, where its parent stands."""
+        """Return the place of the value (or its key); for a missing one, that of its parent."""
         marks = self.keys if of_key else self.values
         while path and path not in marks:
             path, marks = path[:-1], self.values
@@ -119,11 +119,11 @@ class Source:
 
 
 def read_source(text: str) -> Source:
-    """Read one YAML document of mappings, lists and scalars.
+    """Parse one YAML document of mappings, lists and scalars.
 
     Scalars follow the core schema of YAML 1.2: only true and false are booleans, so that `no`, `on`
-    and dates stay text. Raises ConfigError for broken YAML, for anchors, aliases and tags, and for
-    files over the limits; problems that leave the tree readable are collected in the result.
+    and dates stay text. Raises ConfigError for invalid YAML, for anchors, aliases and tags, and for
+    files beyond the limits; problems that leave the tree readable are collected in the result.
     """
     size = len(text.encode("utf-8", "surrogatepass"))
     if size > MAX_BYTES:
@@ -136,7 +136,7 @@ def read_source(text: str) -> Source:
                     f"The file has {size} bytes, more than {MAX_BYTES}.",
                     size,
                     f"<= {MAX_BYTES}",
-                    "Shorten it: a study file is settings and texts, never data.",
+                    "Shorten it: a study file contains settings and texts, never data.",
                 )
             ]
         )
@@ -154,7 +154,7 @@ def read_source(text: str) -> Source:
 
 
 def path_text(path: Path) -> str:
-    """A path as people write it: conditions[1].latency_ms."""
+    """Format a path as people write it: conditions[1].latency_ms."""
     parts = (f"[{part}]" if isinstance(part, int) else f".{part}" for part in path)
     return "".join(parts).removeprefix(".")
 
@@ -162,14 +162,14 @@ def path_text(path: Path) -> str:
 def _syntax_error(error: yaml.MarkedYAMLError) -> ConfigError:
     mark = error.problem_mark or error.context_mark
     line, column = (0, 0) if mark is None else (mark.line + 1, mark.column + 1)
-    said = ", ".join(part for part in (error.context, error.problem) if part)
+    reason = ", ".join(part for part in (error.context, error.problem) if part)
     return ConfigError(
         [
             ConfigProblem(
                 "",
                 line,
                 column,
-                f"This is not readable YAML: {said}.",
+                f"This is not valid YAML: {reason}.",
                 remedy="Check indentation, colons and quotes here and in the line before.",
             )
         ]
@@ -177,7 +177,7 @@ def _syntax_error(error: yaml.MarkedYAMLError) -> ConfigError:
 
 
 class _Builder:
-    """Builds the tree from events; recursion is as deep as the file, so at most MAX_DEPTH."""
+    """Build the tree from events; the recursion is as deep as the file, so at most MAX_DEPTH."""
 
     def __init__(self, text: str) -> None:
         self._events = yaml.parse(text, Loader=yaml.SafeLoader)
@@ -185,7 +185,7 @@ class _Builder:
         self._nodes = 0
 
     def build(self) -> Source:
-        """Read the one document of the stream."""
+        """Parse the only document of the stream."""
         next(self._events)
         if isinstance(event := next(self._events), yaml.StreamEndEvent):
             raise self._refusal(event, (), "The file is empty.", "Give a mapping of settings.")
@@ -207,7 +207,7 @@ class _Builder:
                 event,
                 path,
                 f"This is nested more than {MAX_DEPTH} levels deep.",
-                "No setting lies that deep: check the brackets and the indentation.",
+                "No setting is nested that deeply: check the brackets and the indentation.",
             )
         return (
             self._sequence(path) if isinstance(event, yaml.SequenceStartEvent) else self._map(path)
@@ -228,12 +228,12 @@ class _Builder:
                 self._duplicate(event, inner)
             else:
                 self._source.keys[inner] = _mark(event)
-            kept = self._source.values.get(inner)
+            first = self._source.values.get(inner)
             value = self._node(next(self._events), inner)
-            if kept is None:
+            if first is None:
                 values[key] = value
             else:
-                self._source.values[inner] = kept
+                self._source.values[inner] = first
         return values
 
     def _key(self, event: yaml.Event, path: Path) -> str:
@@ -250,12 +250,12 @@ class _Builder:
     def _duplicate(self, event: yaml.Event, path: Path) -> None:
         first = self._source.keys[path].line
         self._add(
-            event, path, f"The key {path[-1]!r} is there twice; first in line {first}.",
+            event, path, f"The key {path[-1]!r} occurs twice; first in line {first}.",
             "Keep one of the two.",
         )  # fmt: skip
 
     def _scalar(self, event: yaml.ScalarEvent, path: Path) -> Plain:
-        # `implicit` says whether the words may be read as a number; quoted ones may not.
+        # `implicit` says whether the scalar may be read as a number; a quoted one may not.
         plain = bool(event.implicit[0]) and event.tag is None
         problem = scalar_problem(event.value, plain=plain)
         if problem is not None:
@@ -265,7 +265,7 @@ class _Builder:
         return scalar_value(event.value) if plain else str(event.value)
 
     def _check(self, event: yaml.Event, path: Path) -> None:
-        """Refuse what could make a file mean more than it says, before it is built."""
+        """Reject YAML features whose meaning is not visible in place, before they are expanded."""
         self._nodes += 1
         if self._nodes > MAX_NODES:
             raise self._refusal(

@@ -1,8 +1,8 @@
-"""The kinds of steps a session is made of: the one place that says what each kind is.
+"""The kinds of steps of a session, each defined in one table.
 
 A step belongs to one of three families. A *timed* step is a phase: the headset runs it on its own
-clock, and its movement and touches are recorded as such. A *form* is answered at the tablet. A step
-*by hand* is over when the experimenter, or the participant at the tablet, says so.
+clock, and its movement and contacts are recorded as such. A *form* is answered on the tablet. A
+step *by hand* ends when the experimenter, or the participant on the tablet, completes it.
 
 Everything that differs between kinds is a field of `StepKindSpec`, and everything else is derived
 from the table: plans, commands, tablet screens, checks of study files, tables and figures. The
@@ -31,16 +31,17 @@ StepKind = Literal[
 ]
 Family = Literal["timed", "form", "by hand"]
 StepCommand = Literal["begin_phase", "enter_answers", "complete_step", "materialise"]
-"""What the experimenter can do to carry out a step."""
+"""The commands with which the experimenter carries out a step."""
 StepScreen = Literal["consent", "instructions", "form", "waiting"]
 
 
 @dataclass(frozen=True)
 class PhaseWords:
-    """What people read of a timed phase, for one limb or for a phase without one.
+    """The texts of a timed phase, for one limb or for a phase without one.
 
-    `title` heads the step, `in_a_sentence` names it within one ("block 2, hand task: skipped"),
-    `begin` stands on the experimenter's button, and `guidance` says what to see to before it.
+    `title` is the step's heading, `in_a_sentence` names it within a sentence ("block 2, hand task:
+    skipped"), `begin` is the label of the experimenter's button, and `guidance` says what to check
+    before it starts.
     """
 
     title: Words
@@ -55,18 +56,18 @@ class StepKindSpec:
 
     Args:
         key: the word in study files, plans, events and tables.
-        name: its title, where the study gives none and it is not done with a limb.
-        icon: of the pages' icons, whose names are in `frontend/src/shared/ui/Icon.tsx`. A step that
-            is done with a limb shows the limb.
-        guidance: for the experimenter while the step is current; None where `phases` says it.
+        name: its title, if the study specifies none and no limb is involved.
+        icon: one of the pages' icons, whose names are in `frontend/src/shared/ui/Icon.tsx`. A step
+            with a limb shows the limb.
+        guidance: for the experimenter while the step is current; None if it is in `phases`.
         screen: what the tablet shows meanwhile.
-        command: what the experimenter does to carry it out; it decides the family.
-        done: what stands on the button that completes it; None where it has a form of its own, or
-            another command.
-        takes_s: our estimate of the time it takes besides reading its text, seconds; None where the
-            study sets it, or nothing but reading is done.
-        phases: of a timed kind, its words by limb; the key None stands for a phase without a limb.
-        phase_key: of a timed kind, what the rules of a study call the phase; `{limb}` is filled in.
+        command: what the experimenter does to carry it out; it determines the family.
+        done: the label of the button that completes it; None if it has its own form or another
+            command.
+        takes_s: our estimate of the time that it takes in addition to reading its text, seconds;
+            None if the study specifies it, or if there is only reading.
+        phases: of a timed kind, its texts by limb; the key None stands for a phase without a limb.
+        phase_key: of a timed kind, the phase's key in the rules of a study; `{limb}` is replaced.
         counts: its phases are the study's data. All others are recorded, but in no figure or test.
         needs_body: it must come after the step in which the participant gets a body.
         records_movement: movement is recorded in it, once the participant has a body.
@@ -88,7 +89,7 @@ class StepKindSpec:
 
     @property
     def family(self) -> Family:
-        """Whether it is timed, a form, or done by hand."""
+        """The family of the kind: timed, a form, or done by hand."""
         match self.command:
             case "begin_phase":
                 return "timed"
@@ -103,13 +104,13 @@ class StepKindSpec:
         return bool(self.phases) and None not in self.phases
 
     def title(self, limb: str | None) -> Mapping[str, str]:
-        """By language, the title of a step of this kind that is done with `limb`, or with none."""
+        """Return the title, by language, of a step of this kind with `limb`, or without one."""
         phase = next((words for own, words in self.phases.items() if own == limb), None)
         title = self.name if phase is None else phase.title
         return {language: title.in_language(language) for language in LANGUAGES}
 
     def key_of_phase(self, limb: object) -> str | None:
-        """What rules call a phase of this kind (hand, practice_foot); None for untimed kinds."""
+        """Return the key of this kind's phase in rules (hand, practice_foot); None if untimed."""
         return None if self.phase_key is None else self.phase_key.format(limb=limb)
 
 
@@ -279,7 +280,7 @@ TIMED_KINDS: tuple[StepKind, ...] = tuple(one.key for one in _TABLE if one.famil
 """Steps that are phases: they run on the headset's clock and are recorded as such."""
 FORM_KINDS: tuple[StepKind, ...] = tuple(one.key for one in _TABLE if one.family == "form")
 COUNTED_KINDS: tuple[StepKind, ...] = tuple(one.key for one in _TABLE if one.counts)
-"""Phases that are the study's data."""
+"""Phases that count as the study's data."""
 BOX_KINDS: tuple[StepKind, ...] = tuple(one.key for one in _TABLE if one.has_boxes)
 """Phases in which a limb reaches for the boxes of a task."""
 UNCOUNTED_KINDS: tuple[StepKind, ...] = tuple(
@@ -289,16 +290,19 @@ UNCOUNTED_KINDS: tuple[StepKind, ...] = tuple(
 PHASES: Mapping[str, PhaseWords] = MappingProxyType(
     {str(one.key_of_phase(limb)): words for one in _TABLE for limb, words in one.phases.items()}
 )
-"""The words of every timed phase, by what the rules of a study call it."""
+"""The texts of every timed phase, by its key in the rules of a study."""
 
 
 def kinds_with_command(command: StepCommand) -> tuple[StepKind, ...]:
-    """The kinds that the experimenter carries out in this way."""
+    """Return the kinds that the experimenter carries out with this command."""
     return tuple(one.key for one in _TABLE if one.command == command)
 
 
 def step_kind_texts() -> dict[str, Words]:
-    """Every text by its key in the pages: `step.` a title, `guide.` guidance, `do.` a button."""
+    """Return every text by its key in the pages.
+
+    Keys begin with `step.` for a title, `guide.` for guidance, `do.` for a button.
+    """
     texts = dict[str, Words]()
     for kind, spec in STEP_KINDS.items():
         texts[f"step.{kind}"] = spec.name
@@ -315,10 +319,10 @@ def step_kind_texts() -> dict[str, Words]:
 
 
 def step_kinds_for_pages() -> dict[str, dict[str, Any]]:
-    """What the pages know of every kind besides its words, as plain values.
+    """Return the properties of every kind that the pages need, as plain values.
 
-    `limbs`: those it is done with, at the boxes; none where it needs none. `isCompletedByButton`:
-    the experimenter ends it with a plain button.
+    `limbs`: those used at the boxes; empty if it needs none. `isCompletedByButton`: the
+    experimenter ends it with a plain button.
     """
     return {
         kind: {

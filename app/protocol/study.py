@@ -1,4 +1,4 @@
-"""A study as a value: everything that decides what happens to a participant, and nothing else."""
+"""A study as a value: everything that determines what happens to a participant."""
 
 from typing import Annotated, Literal
 
@@ -43,10 +43,10 @@ Language = Annotated[
 
 
 class Blinding(Strict):
-    """Who must not know the condition. The participant is never told.
+    """Who must not know the condition. Participants never learn it.
 
-    `operator`: conditions and orders are then hidden, from operators for good, from everybody else
-    until the session that holds the slot is completed.
+    `operator`: conditions and orders are then hidden from operators permanently, and from everybody
+    else until the session that holds the slot is completed.
     """
 
     operator: bool
@@ -55,21 +55,21 @@ class Blinding(Strict):
 class LatencySettings(Strict):
     """How the added latency acts on the remote avatar.
 
-    `undelayed_parts`: parts whose target is never delayed; in the thesis the hips, which guards
-    balance. Nothing is ever buffered at 0 ms. `bypass_at_zero` said so in older files: it is read
-    there, kept in their content and decides nothing.
+    `undelayed_parts`: parts whose target is never delayed; in the thesis the hips, which helps
+    balance. Nothing is ever buffered at 0 ms. `bypass_at_zero` specified that in older files: it is
+    still accepted and kept in their content, but has no effect.
     """
 
     undelayed_parts: Annotated[tuple[str, ...], AfterValidator(_joints)] = ("Hips",)
     bypass_at_zero: Annotated[
         bool | None,
-        # Marked for the editor, which does not offer it.
+        # Marked for the editor, which does not show it.
         Field(json_schema_extra={"deprecated": True}, exclude_if=lambda value: value is None),
     ] = None
 
 
 class AvatarChoice(Strict):
-    """Which version of which avatar's configuration the sessions use."""
+    """The version of an avatar's configuration that the sessions use."""
 
     key: Annotated[
         str,
@@ -83,7 +83,7 @@ class StudyProtocol(Strict):
     """A study: conditions, orders, procedure, task places, appearance and texts.
 
     `avatar`: the remote avatar repeats the participant's movement (`delayed_copy`), or follows it
-    by forces and collides (`physics`), as `avatar_configuration` says.
+    by forces and collides (`physics`), as configured by `avatar_configuration`.
     """
 
     key: Annotated[
@@ -105,7 +105,7 @@ class StudyProtocol(Strict):
     tasks: Tasks
     appearance: Appearance
     texts: dict[Key, Text]
-    # Left out of the content where there is none, so that the hash of other studies stays.
+    # Left out of the content if not set, so that the hashes of other studies stay the same.
     safety: Annotated[Safety | None, Field(exclude_if=lambda value: value is None)] = None
     avatar_configuration: Annotated[
         AvatarChoice | None, Field(exclude_if=lambda value: value is None)
@@ -116,22 +116,22 @@ class StudyProtocol(Strict):
     ] = None
 
     def condition(self, key: str) -> Condition:
-        """The condition with that key; KeyError if there is none."""
+        """Return the condition with that key; raise StopIteration if there is none."""
         return next(condition for condition in self.conditions if condition.key == key)
 
     @property
     def instrument_keys(self) -> tuple[str, ...]:
-        """Keys of all instruments the study asks, in order of first use."""
+        """The keys of all instruments of the study, in order of first use."""
         steps = (*self.procedure.before, *self.procedure.after)
         forms = [step.instrument for step in steps if isinstance(step, FormStep)]
         block = self.procedure.block
-        asked = [phase.questionnaire for phase in block.phases]
-        ended = [step.instrument for step in block.after]
-        return tuple(dict.fromkeys([*forms, *asked, *ended]))
+        after_tasks = [phase.questionnaire for phase in block.phases]
+        after_block = [step.instrument for step in block.after]
+        return tuple(dict.fromkeys([*forms, *after_tasks, *after_block]))
 
     @property
     def design_hash(self) -> str:
-        """SHA-256 over what decides balance: conditions (without their labels) and orders.
+        """The SHA-256 of what determines balance: conditions (without their labels) and orders.
 
         Versions of a study with the same design hash can share one ledger.
         """

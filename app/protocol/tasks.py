@@ -1,6 +1,6 @@
-"""The box tasks, as a study fixes them for everybody: their places, colours and shapes.
+"""The box tasks, which a study defines for all participants: their places, colours and shapes.
 
-Only the avatar is scaled. Shapes say the same as colours to people who cannot tell those apart.
+Only the avatar is scaled. Shapes convey the same as colours to people who cannot distinguish those.
 
 World frame: origin on the floor at the centre of the start square, +x right, +y up, the participant
 faces -z; metres.
@@ -41,7 +41,7 @@ class SolidBlock(Strict):
     size_m: Size
 
     def spec(self) -> BlockSpec:
-        """The block as the task geometry takes it."""
+        """Return the block as used by the task geometry."""
         return BlockSpec(self.center_m, self.size_m)
 
 
@@ -63,10 +63,10 @@ class FootBox(Strict):
 
 
 class HandTask(Strict):
-    """Touch each back panel with the writing hand, then the target; then the other way round.
+    """Touch each back panel with the writing hand, then the target; then in the reverse order.
 
-    `sides`: which walls (and "front_rim") exist and turn red when touched. `direction`: where the
-    first order starts; "by_hand" means on the side of the writing hand.
+    `sides`: which walls (and "front_rim") exist and turn red when touched. `direction`: the side on
+    which the first order starts; "by_hand" means that of the writing hand.
     """
 
     boxes: Annotated[tuple[HandBox, ...], Field(min_length=1, max_length=_MAX_BOXES)]
@@ -78,7 +78,7 @@ class HandTask(Strict):
     reverse_after_task: bool
 
     def layout(self) -> TaskLayout:
-        """The surfaces of the task. Raises LayoutError; a loaded study never does."""
+        """Return the surfaces of the task; raises LayoutError, but never for a loaded study."""
         boxes = tuple(BoxSpec(box.number, box.center_m, box.inner_size_m) for box in self.boxes)
         return build_layout(
             Limb.HAND,
@@ -98,10 +98,10 @@ class HandTask(Strict):
 
 
 class FootTask(Strict):
-    """Step into each box, then onto the target bar; walk back to the start square, go on.
+    """Step into each box, then onto the target bar; walk back to the start square and continue.
 
-    The boxes are `base_length_m` times `length_factor` long: the factor is what expert feedback
-    added (Karas 2020, chapter 7.2), kept apart so that both numbers stay visible.
+    The boxes are `base_length_m` times `length_factor` long: the factor was added after expert
+    feedback (Karas 2020, chapter 7.2), and is separate so that both numbers stay visible.
     """
 
     boxes: Annotated[tuple[FootBox, ...], Field(min_length=1, max_length=_MAX_BOXES)]
@@ -118,11 +118,11 @@ class FootTask(Strict):
 
     @property
     def length_m(self) -> float:
-        """Inner length of each box along z, metres."""
+        """The inner length of each box along z, metres."""
         return self.base_length_m * self.length_factor
 
     def layout(self) -> TaskLayout:
-        """The surfaces of the task. Raises LayoutError; a loaded study never does."""
+        """Return the surfaces of the task; raises LayoutError, but never for a loaded study."""
         boxes = tuple(
             BoxSpec(
                 box.number, box.center_m, (box.inner_width_m, box.inner_height_m, self.length_m)
@@ -150,19 +150,19 @@ class FootTask(Strict):
 
 
 class Tasks(Strict):
-    """The places of the tasks: of each limb that the procedure uses, and maybe of the other."""
+    """The tasks of each limb that the procedure uses, and optionally of the other limb."""
 
-    # Left out of the content where there is none, so that the hash of other studies stays.
+    # Left out of the content if not set, so that the hashes of other studies stay the same.
     hand: Annotated[HandTask | None, Field(exclude_if=lambda value: value is None)] = None
     foot: Annotated[FootTask | None, Field(exclude_if=lambda value: value is None)] = None
 
     def layouts(self) -> dict[Limb, TaskLayout]:
-        """The surfaces of every task there is, the hand's first."""
+        """Return the surfaces of every task, the hand's first."""
         given = {Limb.HAND: self.hand, Limb.FOOT: self.foot}
         return {limb: task.layout() for limb, task in given.items() if task is not None}
 
     def layout(self, limb: str) -> TaskLayout:
-        """The surfaces of the task of `limb`; KeyError if the study has none."""
+        """Return the surfaces of the task of `limb`; raise KeyError if the study has none."""
         task = self.hand if limb == Limb.HAND else self.foot
         if task is None:
             raise KeyError(f"the study has no task of the {limb}")
@@ -181,7 +181,7 @@ def _try(task: HandTask | FootTask) -> None:
 
 
 class Colours(Strict):
-    """A colour for each thing of the task and each of its states."""
+    """The colour of each object of the task in each of its states."""
 
     panel: Colour
     panel_done: Colour
@@ -192,7 +192,7 @@ class Colours(Strict):
 
 
 class Cues(Strict):
-    """A shape drawn on the thing in that state, besides its colour."""
+    """The shape drawn on an object in that state, in addition to its colour."""
 
     panel_done: Cue
     side_touched: Cue
@@ -200,7 +200,7 @@ class Cues(Strict):
 
 
 class Palette(Strict):
-    """One way to show the task."""
+    """One set of colours and shapes for the task."""
 
     key: Key
     title: Text
@@ -219,7 +219,7 @@ class Appearance(Strict):
         keys = [palette.key for palette in self.palettes]
         if self.default not in keys or len(set(keys)) < len(keys):
             raise refusal(
-                "The default palette is not there, or two palettes have one key.",
+                "The default palette does not exist, or two palettes have the same key.",
                 value=self.default,
                 valid=keys,
                 remedy="Give each palette its own key, and name one of them as the default.",

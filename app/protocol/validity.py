@@ -1,8 +1,8 @@
-"""When a completed session counts: what of it must be complete, declared by the study.
+"""When a completed session counts as valid: what must be complete, as declared by the study.
 
 A study without `valid_when` counts every session that was neither aborted nor withdrawn. With it, a
-completed session must meet all rules; one that does not keeps its data, is marked as not valid in
-every table and figure, and frees its slot of the ledger for somebody else.
+completed session must satisfy all rules; one that does not keeps its data, is marked as not valid
+in every table and figure, and releases its slot of the ledger for another participant.
 """
 
 from collections.abc import Iterator, Mapping
@@ -26,10 +26,10 @@ PhaseKey = Annotated[
 
 
 class PhaseRule(Strict):
-    """A timed phase that must have been carried through, in every block where it is in a block.
+    """A timed phase that must have been completed, in every block if it is part of the blocks.
 
-    How much active time it needs at least is given in seconds (`min_active_s`) or as a share of the
-    phase's own time (`min_active_share`); pauses and walks back do not count.
+    The minimum active time is given in seconds (`min_active_s`) or as a share of the phase's own
+    time (`min_active_share`); pauses and walks back do not count.
     """
 
     phase: PhaseKey
@@ -42,7 +42,7 @@ class PhaseRule(Strict):
     def _says_it_once(self) -> Self:
         if self.min_active_s is not None and self.min_active_share is not None:
             raise refusal(
-                "The least active time is given twice.",
+                "The minimum active time is given twice.",
                 value=self.min_active_share,
                 valid="min_active_s or min_active_share",
                 remedy="Keep one of them.",
@@ -51,15 +51,18 @@ class PhaseRule(Strict):
         return self
 
     def least_s(self, duration_s: float) -> float:
-        """The least active time of a phase that lasts so long, seconds; 0 where there is none."""
+        """Return the minimum active time of a phase of this duration, in seconds.
+
+        0 if there is none.
+        """
         return self.min_active_s or (self.min_active_share or 0.0) * duration_s
 
 
 class LatencyRule(Strict):
-    """What must be known of the latency that the avatar really had, in the phases that are listed.
+    """Requirements on the achieved latency of the avatar, in the phases that are listed.
 
-    `reported`: it could be measured. `tolerance_ms`: where it was measured, it differs from the
-    ordered latency by no more than that. A body that is moved by physics adds its own lag.
+    `reported`: it could be measured. `tolerance_ms`: if it was measured, it differs from the set
+    latency by no more than this. A body that is moved by physics adds its own lag.
     """
 
     reported: bool
@@ -69,9 +72,9 @@ class LatencyRule(Strict):
 
 
 class ValidWhen(Strict):
-    """What a completed session needs in order to count.
+    """The requirements for a completed session to count.
 
-    `phases`: the timed phases; `forms`: the instruments whose every administration must have been
+    `phases`: the timed phases; `forms`: the instruments, of which every form must have been
     answered; `achieved_latency`: of the phases above.
     """
 
@@ -83,7 +86,7 @@ class ValidWhen(Strict):
     def _asks_for_something(self) -> Self:
         if not self.phases and not self.forms:
             raise refusal(
-                "The rules ask for nothing, so every completed session would meet them.",
+                "The rules require nothing, so every completed session would satisfy them.",
                 value=None,
                 valid="at least one phase or form",
                 remedy="Name a phase or a form, or leave valid_when out.",
@@ -100,7 +103,7 @@ class ValidWhen(Strict):
                     )
         if self.achieved_latency is not None and not self.phases:
             raise refusal(
-                "The achieved latency is that of the phases, and none is listed.",
+                "The achieved latency is that of the phases, but none is listed.",
                 value=None,
                 valid="at least one phase",
                 remedy="List the phases, or leave achieved_latency out.",
@@ -110,7 +113,7 @@ class ValidWhen(Strict):
 
 
 def validity_problems(tree: Mapping[str, Plain]) -> Iterator[DefinitionProblem]:
-    """Rules on phases and forms that the study does not have, or on more time than a phase has."""
+    """Yield rules on unknown phases or forms, or on more time than a phase has."""
     rules = _dict(tree.get("valid_when"))
     durations = _durations(tree)
     for at, rule in enumerate(_list(rules.get("phases"))):
@@ -147,7 +150,7 @@ def _unknown(path: Path, what: str, key: str, known: list[str]) -> DefinitionPro
 
 
 def _durations(tree: Mapping[str, Plain]) -> dict[str, float | None]:
-    """The keys of all timed phases of the procedure, each with the least active time it is given.
+    """Return the keys of all timed phases, each with the shortest active time specified for it.
 
     A phase that can end early has no such time.
     """
@@ -162,27 +165,28 @@ def _durations(tree: Mapping[str, Plain]) -> dict[str, float | None]:
     block = [_dict(phase) for phase in _list(_dict(procedure.get("block")).get("phases"))]
     phases += [(str(phase.get("limb")), phase.get("duration_s"), False) for phase in block]
     if len({str(phase.get("limb")) for phase in block}) < len(block):
-        # A limb is there twice, which is told elsewhere: nobody knows which one is missing.
+        # A duplicate limb is reported elsewhere; accept both, because which one is missing is
+        # unknown.
         phases += [("hand", None, False), ("foot", None, False)]
     found: dict[str, float | None] = {}
     for key, duration, early in phases:
         given = float(duration) if _is_number(duration) and not early else None
-        known = found.get(key, given)
-        found[key] = None if given is None or known is None else min(given, known)
+        earlier = found.get(key, given)
+        found[key] = None if given is None or earlier is None else min(given, earlier)
     return found
 
 
 def _forms(tree: Mapping[str, Plain]) -> list[str]:
-    """Every instrument that the study asks, in the order of the procedure."""
+    """Return every instrument that the study asks, in the order of the procedure."""
     procedure = _dict(tree.get("procedure"))
     block = _dict(procedure.get("block"))
-    asked = [
+    keys = [
         *(_dict(step).get("instrument") for step in _list(procedure.get("before"))),
         *(_dict(phase).get("questionnaire") for phase in _list(block.get("phases"))),
         *(_dict(step).get("instrument") for step in _list(block.get("after"))),
         *(_dict(step).get("instrument") for step in _list(procedure.get("after"))),
     ]
-    return list(dict.fromkeys(one for one in asked if isinstance(one, str)))
+    return list(dict.fromkeys(one for one in keys if isinstance(one, str)))
 
 
 def _is_number(value: Plain) -> TypeGuard[float]:

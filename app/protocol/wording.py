@@ -1,9 +1,9 @@
-"""Lines of texts that hold for one kind of avatar only.
+"""Select the lines of texts that apply to one kind of avatar only.
 
-A body that is moved by physics is held back by the boxes; a delayed copy passes through them. A
-line of a text that begins with `[avatar: physics]` or `[avatar: delayed_copy]` is there only in
-studies with that avatar. Marks are taken out, and lines of the other kind dropped, wherever a study
-is read (`app.protocol.loading`), so nobody downstream can show a participant the wrong one.
+A body that is moved by physics is stopped by the boxes; a delayed copy passes through them. A line
+of a text that begins with `[avatar: physics]` or `[avatar: delayed_copy]` is used only in studies
+with that avatar. Marks are removed, and lines for the other kind dropped, wherever a study is
+loaded (`app.protocol.loading`), so no later code can show a participant the wrong one.
 """
 
 import re
@@ -18,7 +18,7 @@ _MARK = re.compile(r"\[avatar:[ \t]*([^\]\n]*?)[ \t]*\][ \t]*")
 
 
 def with_own_words(protocol: StudyProtocol) -> StudyProtocol:
-    """The study with those lines of its texts that hold for its avatar."""
+    """Return the study with only the text lines that apply to its avatar."""
     texts = {
         key: {language: words_for(protocol.avatar, words) for language, words in text.items()}
         for key, text in protocol.texts.items()
@@ -27,14 +27,14 @@ def with_own_words(protocol: StudyProtocol) -> StudyProtocol:
 
 
 def words_for(avatar: str, text: str) -> str:
-    """The lines of a text for one kind of avatar, without their marks."""
+    """Return the lines of a text for one kind of avatar, without their marks."""
     if "[avatar:" not in text:
         return text
     kept: list[str] = []
     for line in text.split("\n"):
         mark = _MARK.match(line)
         if mark is not None and mark[1] != avatar:
-            # The empty line that followed it would open a gap.
+            # Also drop the empty line before it, which would leave a gap.
             if kept and not kept[-1].strip():
                 kept.pop()
             continue
@@ -45,7 +45,7 @@ def words_for(avatar: str, text: str) -> str:
 def mark_problems(
     path: Path, wordings: Mapping[str, str], avatar: Plain
 ) -> Iterator[DefinitionProblem]:
-    """Marks of no kind of avatar, in the middle of a line, or where no text is shown by avatar."""
+    """Yield marks of an unknown kind, within a line, or outside texts; and texts left empty."""
     for language, words in wordings.items():
         at = (*path, language)
         marks = [mark for line in words.split("\n") for mark in _MARK.finditer(line)]
@@ -79,10 +79,10 @@ def _of_mark(at: Path, mark: re.Match[str], *, in_text: bool) -> Iterator[Defini
     elif mark.start() > 0 or not in_text:
         yield DefinitionProblem(
             at,
-            "A mark for one kind of avatar stands where it is not read.",
+            "A mark for one kind of avatar is in a place where it has no effect.",
             mark[0].strip(),
             "the beginning of a line under texts",
-            "Put it at the beginning of a line of a text, or take it out.",
+            "Put it at the beginning of a line of a text, or remove it.",
         )
 
 

@@ -42,7 +42,10 @@ ACTIVE = 1
 
 
 class StreamName(StrEnum):
-    """The stream of a batch: `target` is the tracked pose, `actual` the pose of the remote avatar."""
+    """The stream of a batch.
+
+    `target` is the tracked pose, `actual` the pose of the remote avatar.
+    """
 
     TARGET = "target"
     ACTUAL = "actual"
@@ -132,7 +135,7 @@ def _require_usable(seq: int, phase_id: int, times_s: Mapping[str, float]) -> No
 
 
 def decode_batch(message: bytes) -> Batch:
-    """Decode `message`; raise MalformedBatchError if it is invalid or its checksum does not match."""
+    """Decode `message`; raise MalformedBatchError if it is invalid or its checksum is wrong."""
     header = decode_header(message)
     crc = zlib.crc32(memoryview(message)[HEADER_BYTES:])
     if crc != header.crc32:

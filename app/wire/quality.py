@@ -20,7 +20,10 @@ FRAMES_AT_ONCE = 2048
 
 @dataclass(frozen=True)
 class FrameFlags:
-    """Flags of n frames, each (n,): any non-finite value; any rotation that is not of unit length."""
+    """Flags of n frames, each (n,).
+
+    `non_finite`: any value is not finite. `non_unit`: any rotation is not of unit length.
+    """
 
     non_finite: NDArray[np.bool_]
     non_unit: NDArray[np.bool_]

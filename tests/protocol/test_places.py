@@ -22,4 +22,4 @@ def test_boxes_that_a_phase_needs_are_asked_for() -> None:
     del tree["tasks"]["foot"]
     [problem] = problems(yaml.safe_dump(tree, allow_unicode=True))
     assert problem.path == "tasks.foot"
-    assert problem.message == "The procedure has a phase of the foot, and its boxes are missing."
+    assert problem.message == "The procedure has a phase of the foot, but its boxes are missing."

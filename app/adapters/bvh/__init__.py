@@ -1,4 +1,4 @@
-"""BVH motion capture (Biovision Hierarchy): read, write, and place its joints in the world."""
+"""BVH motion capture (Biovision Hierarchy): read and write it, and compute world positions."""
 
 from app.adapters.bvh.clip import BvhClip, BvhError, BvhLimits
 from app.adapters.bvh.reader import parse_bvh, parse_bvh_lines, read_bvh

@@ -1,4 +1,4 @@
-"""What a BVH file says, as values: a skeleton of its own and one rotation per joint and frame."""
+"""The content of a BVH file: its own skeleton, and one rotation per joint and frame."""
 
 from dataclasses import dataclass
 
@@ -11,8 +11,8 @@ class BvhError(ValueError):
     """A BVH text cannot be read.
 
     Attributes:
-        line: line number from 1, 0 where the whole text is meant.
-        reason: what is wrong there and what is valid.
+        line: line number from 1, or 0 for the whole text.
+        reason: what is wrong and what is valid.
     """
 
     def __init__(self, line: int, reason: str) -> None:
@@ -23,7 +23,7 @@ class BvhError(ValueError):
 
 @dataclass(frozen=True)
 class BvhLimits:
-    """How much a text may ask for before it is refused; real captures stay far below."""
+    """Largest sizes of a text that are accepted; real captures stay far below."""
 
     characters: int = 200_000_000
     joints: int = 512
@@ -38,12 +38,12 @@ class BvhClip:
     Attributes:
         names, parents: the J joints in file order; a parent precedes its children, -1 is the root.
         offsets_m: (J, 3) rest position in the parent's frame. All-identity rotations give the rest
-            pose, which is often no T-pose.
+            pose, which is often not a T-pose.
         end_sites: (joint, (x, y, z)) for each End Site: index of its joint and offset in metres.
         channels: the joint's channel names in file order, such as "Zrotation".
         frame_time_s: time from frame to frame.
-        translations_m: (N, J, 3) place of each joint in its parent's frame; where a joint has
-            position channels they replace its offset, as is usual for the root.
+        translations_m: (N, J, 3) position of each joint in its parent's frame; if a joint has
+            position channels, they replace its offset, as is usual for the root.
         rotations: (N, J, 4) wxyz, parent_from_joint.
     """
 
@@ -58,7 +58,7 @@ class BvhClip:
 
     @property
     def root_positions_m(self) -> FloatArray:
-        """(N, 3) the root in the file's world."""
+        """(N, 3) positions of the root in the file's world."""
         return self.translations_m[:, 0]
 
     @property

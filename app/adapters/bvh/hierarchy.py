@@ -1,4 +1,4 @@
-"""The HIERARCHY section: a nested list of joints, each with an offset and channels."""
+"""Parse the HIERARCHY section of BVH: nested joints, each with an offset and channels."""
 
 import math
 from collections.abc import Iterator
@@ -13,7 +13,7 @@ _CANONICAL = {name.lower(): name for name in CHANNEL_NAMES}
 
 @dataclass
 class Hierarchy:
-    """Joints collected while reading; lengths in the file's units."""
+    """The joints parsed so far; lengths in the file's units."""
 
     names: list[str] = field(default_factory=list)
     parents: list[int] = field(default_factory=list)
@@ -23,7 +23,7 @@ class Hierarchy:
 
 
 class _Words:
-    """The words of a text with the line each stands on."""
+    """The words of a text, with the line number of each."""
 
     def __init__(self, lines: Iterator[tuple[int, str]]) -> None:
         self._words: Iterator[tuple[str, int]] = (
@@ -33,7 +33,7 @@ class _Words:
         self._kept: str | None = None
 
     def next(self, wanted: str) -> str:
-        """Return the next word."""
+        """Return the next word; raise BvhError, naming what is `wanted`, at the end of the text."""
         if self._kept is not None:
             word, self._kept = self._kept, None
             return word
@@ -56,7 +56,10 @@ class _Words:
         return read_number(word, self.line, wanted)
 
     def name(self) -> tuple[str, int]:
-        """Return the words up to the opening brace, for names may hold spaces, and their line."""
+        """Return the words before the opening brace, as one name, and their line.
+
+        Names may contain spaces.
+        """
         words, line = [], self.line
         while (word := self.next("a joint name and '{'")) != "{":
             words.append(word)
@@ -66,7 +69,7 @@ class _Words:
 
 
 def read_number(word: str, line: int, wanted: str) -> float:
-    """Read a finite number or say where it is none."""
+    """Parse a finite number, or raise BvhError."""
     try:
         value = float(word)
     except ValueError:
@@ -77,10 +80,10 @@ def read_number(word: str, line: int, wanted: str) -> float:
 
 
 def read_hierarchy(lines: Iterator[tuple[int, str]], limits: BvhLimits) -> Hierarchy:
-    """Read numbered lines up to and including the one with the word MOTION.
+    """Parse numbered lines up to and including the one with the word MOTION.
 
     Raises:
-        BvhError: with the line, where the grammar or a limit is broken.
+        BvhError: with the line, if the grammar or a limit is violated.
     """
     words, tree = _Words(lines), Hierarchy()
     words.expect("HIERARCHY")
@@ -95,7 +98,7 @@ def read_hierarchy(lines: Iterator[tuple[int, str]], limits: BvhLimits) -> Hiera
 
 
 def _read_joint(words: _Words, tree: Hierarchy, above: list[int], limits: BvhLimits) -> None:
-    """Read joints without recursion, so that depth cannot exhaust the stack."""
+    """Parse joints without recursion, so that deep nesting cannot exhaust the stack."""
     open_joints = list(above)
     _open_joint(words, tree, open_joints, limits)
     while open_joints:

@@ -1,8 +1,10 @@
-"""From a BVH text to a `BvhClip`.
+"""Parse a BVH text into a `BvhClip`.
 
-BVH names no units, so the caller must: the CMU captures use 0.056444 m a unit, most others cm.
-A joint's rotation channels turn about its moving axes in the order they are listed, and that order
-may differ from joint to joint.
+BVH has no units, so the caller must specify them: the CMU captures use 0.056444 m per unit, most
+others cm.
+
+A joint's rotation channels rotate about its moving axes in the order in which they are listed, and
+that order may differ from joint to joint.
 """
 
 import math
@@ -25,7 +27,7 @@ def read_bvh(path: Path, *, metres_per_unit: float, limits: BvhLimits = _DEFAULT
     """Read a file; see `parse_bvh`.
 
     Raises:
-        BvhError: also where the file is too large or no text.
+        BvhError: as there, and if the file is too large or not text.
         OSError: the file cannot be opened.
     """
     if path.stat().st_size > limits.characters:
@@ -38,17 +40,17 @@ def read_bvh(path: Path, *, metres_per_unit: float, limits: BvhLimits = _DEFAULT
 
 
 def parse_bvh(text: str, *, metres_per_unit: float, limits: BvhLimits = _DEFAULT_LIMITS) -> BvhClip:
-    """Read a BVH text.
+    """Parse a BVH text.
 
     Args:
-        text: the file's content; line ends of any system, a byte order mark is skipped.
+        text: the file's content, with any line endings; a byte order mark is skipped.
         metres_per_unit: length of the file's unit.
-        limits: what is refused as too large.
+        limits: the largest sizes that are accepted.
 
     Raises:
-        BvhError: the line and the reason, for anything that does not follow the format: also
-            non-finite numbers, a row with too few or many values, and a number of rows other than
-            the declared one.
+        BvhError: the line and the reason, if the text does not follow the format; also for
+            non-finite numbers, a row with too few or too many values, and a number of rows other
+            than the declared one.
     """
     if len(text) > limits.characters:
         raise BvhError(0, f"the text is longer than {limits.characters} characters.")
@@ -59,7 +61,10 @@ def parse_bvh(text: str, *, metres_per_unit: float, limits: BvhLimits = _DEFAULT
 def parse_bvh_lines(
     lines: Iterable[str], *, metres_per_unit: float, limits: BvhLimits = _DEFAULT_LIMITS
 ) -> BvhClip:
-    """Read a BVH text line by line, so that a long one need not be held; see `parse_bvh`."""
+    """Parse a BVH text line by line, so that a long one need not fit in memory.
+
+    Raises the same errors as `parse_bvh`.
+    """
     if not (math.isfinite(metres_per_unit) and metres_per_unit > 0.0):
         raise BvhError(0, f"metres_per_unit is {metres_per_unit}, it must be above zero.")
     numbered = enumerate(lines, 1)
@@ -84,14 +89,14 @@ def parse_bvh_lines(
 
 @dataclass(frozen=True)
 class _Declared:
-    """The number of frames a file says it has, and the line on which it says so."""
+    """The number of frames that a file declares, and the line of the declaration."""
 
     frames: int
     line: int
 
 
 def _read_motion_head(lines: Iterator[tuple[int, str]]) -> tuple[_Declared, float]:
-    """Return the declared number of frames and the frame time."""
+    """Return the declared number of frames, and the frame time in seconds."""
     filled = list(islice(((number, line) for number, line in lines if line.strip()), 2))
     if len(filled) < 2:
         raise BvhError(0, "the text ends before 'Frames:' and 'Frame Time:'.")
@@ -119,7 +124,7 @@ def _read_rows(
     width = sum(len(channels) for channels in tree.channels)
     if width == 0:
         raise BvhError(declared.line, "no joint has a channel, so there is no motion to read.")
-    # A pose takes seven numbers a joint, however few channels the file gives it.
+    # A pose takes seven numbers per joint, however few channels the joint has.
     needed = declared.frames * max(width, 7 * len(tree.names))
     if needed > limits.values:
         problem = f"{declared.frames} frames of {len(tree.names)} joints are too many."
@@ -148,7 +153,7 @@ def _numbers(words: list[str], number: int) -> list[float]:
     except ValueError:
         values = [math.nan]
     if not math.isfinite(sum(values)):
-        # Only now is it worth going word by word, to say which.
+        # Parse word by word only now, to find the invalid one.
         values = [read_number(word, number, "a motion value") for word in words]
     return values
 

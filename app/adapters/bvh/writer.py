@@ -1,4 +1,4 @@
-"""From a `BvhClip` back to a BVH text."""
+"""Format a `BvhClip` as BVH text."""
 
 import numpy as np
 
@@ -7,13 +7,13 @@ from app.science.rotations import FloatArray, to_euler
 
 
 def format_bvh(clip: BvhClip, *, metres_per_unit: float) -> str:
-    """Write a clip as BVH text, in units of `metres_per_unit`, with the clip's own channel orders.
+    """Format a clip as BVH text in units of `metres_per_unit`, with the clip's own channel orders.
 
-    Angles may differ from those once read by another choice of the same rotation; reading the text
-    back gives the same poses to 1e-9.
+    Angles may differ from those originally read if another set of angles gives the same rotation;
+    reading the text gives the same poses to 1e-9.
 
     Raises:
-        BvhError: a joint has one or two rotation channels, which need not hold its rotation.
+        BvhError: a joint has one or two rotation channels, which cannot represent every rotation.
     """
     for name, channels in zip(clip.names, clip.channels, strict=True):
         if len(_order(channels)) not in {0, 3}:
@@ -51,7 +51,7 @@ def _joint_lines(clip: BvhClip, joint: int, depth: int, metres_per_unit: float) 
 
 
 def _written_order(clip: BvhClip, joint: int) -> list[int]:
-    """Return the joints as they are written, each with its descendants right behind it."""
+    """Return the joints in written order, each followed directly by its descendants."""
     children = [child for child, parent in enumerate(clip.parents) if parent == joint]
     return [joint, *(index for child in children for index in _written_order(clip, child))]
 

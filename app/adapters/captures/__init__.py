@@ -1,7 +1,7 @@
-"""Movement files of other systems: read into one form, and written from it.
+"""Read movement files of other systems into a common form, and write them.
 
-`FORMATS` is the registry of what can be read, `WRITERS` of what can be written. What reads a format
-is loaded when a file of that kind comes.
+`FORMATS` is the registry of formats that can be read, `WRITERS` of those that can be written. The
+reader of a format is imported when the first file of that format is read.
 """
 
 from app.adapters.captures.bvh_export import to_bvh

@@ -1,8 +1,8 @@
-"""From a file's axes to ours: y up and right-handed.
+"""Convert a file's axes to ours: y up and right-handed.
 
-A turn T of the axes carries places by T p and rotations by T q T^-1: world and bodies get new axes
-alike, so a body that stood unturned in the file stands unturned here. A mirrored (left-handed)
-world is Unity's: p' = (x, y, -z), q' = (w, -x, -y, z).
+A rotation T of the axes maps positions to T p and rotations to T q T^-1: the world and the bodies
+get new axes together, so a body that is unrotated in the file is unrotated here. A mirrored
+(left-handed) world is Unity's: p' = (x, y, -z), q' = (w, -x, -y, z).
 """
 
 from dataclasses import replace
@@ -15,7 +15,7 @@ from app.science.rotations import FloatArray, conjugate, multiply, rotate
 
 Up = Literal["x", "y", "z"]
 _HALF = float(np.sqrt(0.5))
-# world_from_file: z up turns by -90 degrees about x, x up by +90 degrees about z.
+# world_from_file: z up is rotated by -90 degrees about x, x up by +90 degrees about z.
 _TURNS: dict[Up, tuple[float, float, float, float]] = {
     "x": (_HALF, 0.0, 0.0, _HALF),
     "y": (1.0, 0.0, 0.0, 0.0),
@@ -26,12 +26,12 @@ _MIRRORED_TURN: FloatArray = np.array((1.0, -1.0, -1.0, 1.0))
 
 
 def turned_places(places: FloatArray, up: Up) -> FloatArray:
-    """Carry places or offsets (..., 3) from axes with this one up to y up."""
+    """Convert positions or offsets (..., 3) from axes with `up` upward to y up."""
     return places if up == "y" else rotate(np.array(_TURNS[up]), places)
 
 
 def turned_rotations(rotations: FloatArray, up: Up) -> FloatArray:
-    """Carry rotations (..., 4), of the world or of a parent, from axes with this one up to y up."""
+    """Convert rotations (..., 4) to the world or a parent from axes with `up` upward to y up."""
     if up == "y":
         return rotations
     turn = np.array(_TURNS[up])
@@ -39,19 +39,19 @@ def turned_rotations(rotations: FloatArray, up: Up) -> FloatArray:
 
 
 def mirrored_places(places: FloatArray) -> FloatArray:
-    """From Unity's left-handed world to the right-handed one, (..., 3)."""
+    """Convert positions (..., 3) from Unity's left-handed world to the right-handed one."""
     mirrored: FloatArray = places * _MIRRORED_PLACE
     return mirrored
 
 
 def mirrored_rotations(rotations: FloatArray) -> FloatArray:
-    """From Unity's left-handed world to the right-handed one, (..., 4) wxyz."""
+    """Convert rotations (..., 4) wxyz from Unity's left-handed world to the right-handed one."""
     mirrored: FloatArray = rotations * _MIRRORED_TURN
     return mirrored
 
 
 def turned_rig(rig: Rig, up: Up) -> Rig:
-    """The same body with every frame's axes renamed so that y is up."""
+    """Return the same rig with the axes of every frame renamed so that y is up."""
     ends = tuple(
         (joint, _triple(turned_places(np.array(offset), up))) for joint, offset in rig.ends
     )
@@ -64,7 +64,7 @@ def turned_rig(rig: Rig, up: Up) -> Rig:
 
 
 def turned_rig_motion(motion: RigMotion, up: Up) -> RigMotion:
-    """The same movement with every frame's axes renamed so that y is up."""
+    """Return the same movement with the axes of every frame renamed so that y is up."""
     if up == "y":
         return motion
     return replace(
@@ -76,12 +76,12 @@ def turned_rig_motion(motion: RigMotion, up: Up) -> RigMotion:
 
 
 def turned_markers(motion: MarkerMotion, up: Up) -> MarkerMotion:
-    """The same markers in a world whose y is up."""
+    """Return the same markers in a world whose y axis is up."""
     return replace(motion, positions_m=turned_places(motion.positions_m, up))
 
 
 def turned_bodies(motion: BodyMotion, up: Up) -> BodyMotion:
-    """The same bodies in a world whose y is up."""
+    """Return the same bodies in a world whose y axis is up."""
     return replace(
         motion,
         positions_m=turned_places(motion.positions_m, up),

@@ -1,7 +1,7 @@
-"""BVH as a capture: a rig and its movement in metres, y up.
+"""Read BVH as a capture: a rig and its movement in metres, y up.
 
-BVH names neither its unit nor its upward axis. Exporters mostly write y up; the unit is the one
-that makes the rest skeleton human, unless the user says it.
+BVH specifies neither its unit nor its upward axis. Exporters mostly write y up; the unit is the one
+that gives the rest skeleton a human size, unless the user specifies it.
 """
 
 from dataclasses import replace
@@ -26,7 +26,7 @@ from app.science.rotations import FloatArray, geodesic_angle, identity
 
 _NOTICEABLE_M = 1e-4
 _SHORTEST_FRAME_S, _LONGEST_FRAME_S = 1e-5, 1e3
-# Thrown balls turn the shoulder at about 120 rad/s (Fleisig et al. 1995); walking stays below 20.
+# Pitching a ball turns the shoulder at about 120 rad/s (Fleisig et al. 1995); walking, below 20.
 _FASTEST_JOINT_RAD_S = 120.0
 _Y_UP = Convention("y up, right-handed", "format")
 
@@ -80,7 +80,7 @@ def _unit(clip: BvhClip, reading: Reading) -> tuple[float, Convention, list[str]
 
 
 def _extents(clip: BvhClip) -> FloatArray:
-    """The rest pose's extent along x, y and z: span of the arms, height, depth."""
+    """Return the rest pose's extent along x, y and z: arm span, height, depth."""
     places = clip.offsets_m.copy()
     for joint, parent in enumerate(clip.parents):
         if parent >= 0:
@@ -91,7 +91,7 @@ def _extents(clip: BvhClip) -> FloatArray:
 
 
 def _doubt_about_up(clip: BvhClip, reading: Reading) -> list[str]:
-    """A figure deeper than high probably lies on its back: some exporters write z up."""
+    """Return a note if the rest pose is deeper than high: some exporters write z up."""
     _, height, depth = _extents(clip).tolist()
     if reading.up is not None or depth < 1.5 * height:
         return []
@@ -136,7 +136,10 @@ def _motion(clip: BvhClip, scale: float) -> tuple[RigMotion, list[str]]:
 
 
 def _offsets(clip: BvhClip, scale: float) -> tuple[FloatArray, list[str]]:
-    """Bones keep one length: where joints have positions of their own, their median."""
+    """Return constant bone offsets: the median position for joints with position channels.
+
+    Also returns notes on these joints.
+    """
     offsets = clip.offsets_m * scale
     notes: list[str] = []
     moving = [
@@ -161,19 +164,25 @@ def _offsets(clip: BvhClip, scale: float) -> tuple[FloatArray, list[str]]:
 
 
 def _rate(frame_time_s: float) -> float:
-    """Frames a second: a whole number where the file's rounding allows it, 0.008333 s is 120 Hz."""
+    """Return the frame rate, a whole number if rounding in the file allows it.
+
+    For example, 0.008333 s is 120 Hz.
+    """
     if not _SHORTEST_FRAME_S <= frame_time_s <= _LONGEST_FRAME_S:
         raise CaptureError(
             f"frame time {frame_time_s:g} s: {_SHORTEST_FRAME_S:f} to {_LONGEST_FRAME_S:g} s is"
             " valid."
         )
     whole = max(round(1.0 / frame_time_s), 1)
-    # Six decimals are the fewest that exporters write.
+    # Exporters write at least six decimals.
     return float(whole) if abs(frame_time_s - 1.0 / whole) <= 5e-7 else 1.0 / frame_time_s
 
 
 def without_rest_row(motion: RigMotion) -> RigMotion:
-    """Drop the T-pose that some converters put before the movement: no body leaves it so fast."""
+    """Drop a T-pose that some converters insert before the movement.
+
+    It is recognised because the second frame would require an impossible joint speed.
+    """
     if motion.frame_count > 2:
         turned = geodesic_angle(motion.rotations[0], motion.rotations[1])
         if float(np.max(turned)) * motion.rate_hz > _FASTEST_JOINT_RAD_S:

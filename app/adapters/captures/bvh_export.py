@@ -1,12 +1,12 @@
-"""A movement as BVH text that every reader shows alike.
+"""Export a movement as BVH text that all readers interpret in the same way.
 
-BVH knows no rest rotations: its rest pose is its offsets, laid along the world's axes. With W_j the
-rest rotation of joint j in the world and Q_j(t) its rotation then,
+BVH has no rest rotations: its rest pose consists of its offsets, along the world's axes. With W_j
+the rest rotation of joint j in the world and Q_j(t) its rotation at time t,
 
     OFFSET_j = W_parent o_j,    world_from_joint in the file = Q_j(t) W_j^-1,
 
-so every joint is in the same place at every time. The root's OFFSET is zero and its channels say
-where it is, since readers disagree on whether the two are added.
+so every joint is in the same place at every time. The root's OFFSET is zero and its channels
+contain its position, because readers disagree on whether the two are added.
 """
 
 import numpy as np
@@ -21,13 +21,13 @@ _PLACES = ("Xposition", "Yposition", "Zposition")
 
 
 def to_bvh(motion: RigMotion, *, metres_per_unit: float = 0.01) -> str:
-    """Write a movement as BVH, Euler angles ZXY in degrees, y up.
+    """Format a movement as BVH, with Euler angles ZXY in degrees, y up.
 
-    Blanks and braces in joint names, which BVH readers trip over, become underscores.
+    Spaces and braces in joint names, which many BVH readers cannot parse, become underscores.
 
     Args:
         motion: N frames of a rig.
-        metres_per_unit: the file's unit; centimetres are what most programs expect.
+        metres_per_unit: the file's unit; most programs expect centimetres.
     """
     rig = motion.rig
     _, at_rest = rig.rest_world()
@@ -51,7 +51,7 @@ def to_bvh(motion: RigMotion, *, metres_per_unit: float = 0.01) -> str:
 
 
 def safe_names(names: tuple[str, ...]) -> tuple[str, ...]:
-    """Joint names of one word each, still different from each other."""
+    """Convert joint names to unique single words."""
     taken: set[str] = set()
     safe = []
     for name in names:
@@ -65,7 +65,7 @@ def safe_names(names: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def _ends(rig: Rig, at_rest: FloatArray) -> tuple[tuple[int, tuple[float, float, float]], ...]:
-    """End sites in world axes; a joint without children or end gets one, since readers need it."""
+    """Return end sites in world axes; each leaf joint has one, because readers need it."""
     ends = []
     for joint, offset in rig.ends:
         x, y, z = (float(value) for value in rotate(at_rest[joint], np.array(offset)))

@@ -1,4 +1,4 @@
-"""What any capture file says, in one form: the movement, and which conventions it was read by."""
+"""The common form of all captures: the movement, and the conventions by which it was read."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -7,15 +7,15 @@ from typing import Literal
 from app.science.rig import BodyMotion, MarkerMotion, RigMotion
 
 Origin = Literal["file", "format", "guessed", "chosen"]
-"""Who says so: this file, the definition of its format, we by plausibility, or the user."""
+"""Origin of a convention: the file, its format's definition, our guess, or the user's choice."""
 
 
 class CaptureError(ValueError):
     """A capture file cannot be read.
 
     Attributes:
-        line: line number from 1 of a text file, 0 where the whole file is meant or it is binary.
-        reason: what is wrong there and what is valid.
+        line: line number from 1 of a text file; 0 for the whole file, or a binary file.
+        reason: what is wrong and what is valid.
     """
 
     def __init__(self, reason: str, *, line: int = 0) -> None:
@@ -26,7 +26,7 @@ class CaptureError(ValueError):
 
 @dataclass(frozen=True)
 class Convention:
-    """One thing that had to be known to read the file: its value, and who says so."""
+    """One convention used to read the file: its value and its origin."""
 
     value: str
     origin: Origin
@@ -34,7 +34,7 @@ class Convention:
 
 @dataclass(frozen=True)
 class Conventions:
-    """By which conventions a file was read; everything after is y up, right-handed, SI.
+    """The conventions by which a file was read; the result is y up, right-handed, in SI units.
 
     Attributes:
         length: the file's unit, such as "cm" or "0.056444 m".
@@ -51,12 +51,12 @@ class Conventions:
 
 @dataclass(frozen=True)
 class Reading:
-    """What a user says about a file where the file does not, or says it wrongly.
+    """What a user specifies about a file, because the file does not, or does so wrongly.
 
     Attributes:
-        metres_per_unit: length of the file's unit; None to take the file's or a plausible one.
-        up: the file's upward axis; None to take the file's or the format's.
-        companions: other files by name, where one is not enough: an AMC needs its ASF.
+        metres_per_unit: length of the file's unit; None to use the file's or a plausible one.
+        up: the file's upward axis; None to use the file's or the format's.
+        companions: other required files by name: an AMC needs its ASF.
     """
 
     metres_per_unit: float | None = None
@@ -66,14 +66,14 @@ class Reading:
 
 @dataclass(frozen=True)
 class Limits:
-    """How much a file may ask for before it is refused; real captures stay far below."""
+    """Largest sizes of a file that are accepted; real captures stay far below."""
 
     bytes: int = 256_000_000
     tracks: int = 2_000
-    """Joints, markers or bodies."""
+    """Largest number of joints, markers or bodies."""
     depth: int = 64
     values: int = 60_000_000
-    """Numbers in memory at once, whatever a header claims."""
+    """Most numbers in memory, whatever a header claims."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +84,7 @@ class Capture:
         format: key of the format, such as "bvh" or "motive-csv".
         motion: a skeleton's movement, markers, or rigid bodies.
         conventions: by which it was read.
-        notes: what its reader should know, each a sentence: gaps, repairs, left-out columns.
+        notes: what users should know, each a sentence: gaps, repairs, omitted columns.
     """
 
     format: str

@@ -1,8 +1,8 @@
 """The registry of the capture formats that can be read, in the order in which pages list them.
 
-A format is one object: what people call it, how its files end, how its content is recognised, and
-which function reads it. Whoever adds one writes its reader and its entry in `FORMATS`; reading,
-uploading, the list of formats and their words in both languages follow from that.
+A format is one object: its name, its file extensions, how its content is recognised, and its reader
+function. To add one, write its reader and its entry in `FORMATS`; reading, uploading, the list of
+formats and its texts in both languages follow from that.
 """
 
 from collections.abc import Callable
@@ -17,10 +17,10 @@ from app.texts import Words
 
 
 class Reader(Protocol):
-    """Reads a file of one format; raises CaptureError."""
+    """A function that reads a file of one format, and raises CaptureError."""
 
     def __call__(self, data: bytes, *, name: str, reading: Reading, limits: Limits) -> Capture:
-        """See `app.adapters.captures.read_capture`."""
+        """Read a file, as described for `app.adapters.captures.read_capture`."""
 
 
 @dataclass(frozen=True)
@@ -30,13 +30,13 @@ class CaptureFormat:
     Attributes:
         key: stored with each capture, so it is never renamed.
         title: its full name, for messages.
-        extensions: how its files end, in lower case. Where no other format has an extension, it
-            tells the format of a file whose content does not.
+        extensions: of its files, in lower case. If no other format has an extension, it identifies
+            the format of a file that is not recognised by its content.
         recognises: whether the beginning of a file is of this format.
-        reader: "module.function" below `app.adapters.captures`, which is loaded when a file of
-            this format comes: a server starts without it.
-        name: as lists show it.
-        source: what a file holds, and which programs write it.
+        reader: "module.function" below `app.adapters.captures`, which is imported when a file of
+            this format is read: a server starts without it.
+        name: as shown in lists.
+        source: what a file contains, and which programs write it.
     """
 
     key: str
@@ -48,21 +48,25 @@ class CaptureFormat:
     source: Words
 
     def load_reader(self) -> Reader:
-        """Import the module that reads this format, and return its function."""
+        """Import and return the function that reads this format."""
         module, _, function = self.reader.rpartition(".")
         return cast("Reader", getattr(import_module(f"app.adapters.captures.{module}"), function))
 
 
 def _is_acclaim(head: Head) -> bool:
-    """An ASF or AMC begins with comments and sections such as :version or :DEGREES."""
+    """Return whether a file is an ASF or AMC.
+
+    These begin with comments and sections such as :version or :DEGREES.
+    """
     sections = (":version", ":name", ":units", ":documentation", ":root", ":fully-", ":degrees")
     return head.first_without("#").lower().startswith(sections)
 
 
 def _is_c3d(head: Head) -> bool:
-    """A C3D begins with the number of its first block of parameters, then "P".
+    """Return whether a file is a C3D, which begins with a block number, then "P".
 
-    A text may begin with a blank and a "P".
+    A number that is a white-space character does not count: a text may begin with a space and a
+    "P".
     """
     data = head.data
     return len(data) > 2 and data[1] == 0x50 and data[0] < 0x20 and data[0] not in b"\t\n\r"
@@ -78,7 +82,7 @@ def _is_quest_log(head: Head) -> bool:
 
 
 def _is_uxf_tracker(head: Head) -> bool:
-    # Trackers of gaze count, so that their refusal can say what a tracker of movement has.
+    # Gaze trackers are included, so that the reader's error can list the columns it needs.
     tracked = ("pos_x", "rot_x", "dir_x", "gaze_x")
     return not _is_quest_log(head) and head.has_columns(
         lambda columns: columns[0] == "time" and any(one.endswith(tracked) for one in columns)
@@ -186,9 +190,9 @@ FORMATS: tuple[CaptureFormat, ...] = (
 
 
 def format_of(data: bytes, name: str) -> CaptureFormat | None:
-    """The format of a file by its content, else by an extension that one format alone has.
+    """Determine the format of a file by its content, or else by an unambiguous extension.
 
-    None where neither tells.
+    Returns None if neither identifies it.
     """
     head = Head.of(data)
     by_content = next((one for one in FORMATS if one.recognises(head)), None)
@@ -200,11 +204,11 @@ def format_of(data: bytes, name: str) -> CaptureFormat | None:
 
 
 def extensions() -> tuple[str, ...]:
-    """How files of captures end: each extension once, in the order of the formats."""
+    """Return the extensions of capture files, each once, in the order of the formats."""
     return tuple(dict.fromkeys(end for one in FORMATS for end in one.extensions))
 
 
 def format_texts() -> dict[str, Words]:
-    """The words of every format, by their keys in the tables of the pages."""
+    """Return the texts of every format, by their keys in the pages' tables."""
     names = {f"format.{one.key}": one.name for one in FORMATS}
     return names | {f"format.{one.key}.from": one.source for one in FORMATS}

@@ -1,10 +1,10 @@
-"""Movement logs of Oculus headsets: head and two controllers, place and quaternion.
+"""Read movement logs of Oculus headsets: head and two controllers, position and quaternion.
 
     ...,LeftTouchPosX,...,LeftTouchOrientationW,...,HeadPosX,HeadPosY,HeadPosZ,HeadOrientationW,
     HeadOrientationX,HeadOrientationY,HeadOrientationZ,time
 
-The Oculus SDK is y up and right-handed, looks along -z and counts metres from where the headset
-was recentred, often at the height of the eyes. Times are seconds.
+The Oculus SDK is y up and right-handed, looks along -z, and measures in metres from where the
+headset was recentred, often at eye height. Times are in seconds.
 """
 
 import numpy as np
@@ -51,12 +51,12 @@ def read_quest_log(data: bytes, *, name: str, reading: Reading, limits: Limits) 
     places = found.cells[..., :3] * (reading.metres_per_unit or 1.0)
     check_places(places, found.lines, names)
     rotations = unit_rotations(found.cells[..., 3:], found.lines, names)
-    gone = unseen(places, rotations)[..., np.newaxis]
+    missing = unseen(places, rotations)[..., np.newaxis]
     motion = BodyMotion(
         names=names,
         times_s=found.times_s,
-        positions_m=np.where(gone, np.nan, places),
-        rotations=np.where(gone, np.nan, rotations),
+        positions_m=np.where(missing, np.nan, places),
+        rotations=np.where(missing, np.nan, rotations),
     )
     conventions = Conventions(
         length=chosen_length(reading) or Convention("m", "format"),

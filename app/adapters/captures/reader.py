@@ -1,4 +1,4 @@
-"""Reading a capture: bytes or a file of any known format in, a `Capture` out."""
+"""Read a capture of any known format, from bytes or a file, into a `Capture`."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -16,31 +16,31 @@ _LIMITS = Limits()
 def read_capture(
     data: bytes, *, name: str, reading: Reading = _AS_IT_IS, limits: Limits = _LIMITS
 ) -> Capture:
-    """Read a capture of any known format; the content decides which, the name is a hint.
+    """Read a capture of any known format, determined by its content; the name is only a hint.
 
     Args:
         data: the file.
-        name: its name, for its extension and for names of things it does not name itself.
-        reading: what the user says where the file is silent or wrong, and companion files.
-        limits: how much the file may ask for.
+        name: its name, for its extension and for names of things that the file does not name.
+        reading: what the user specifies where the file is silent or wrong, and companion files.
+        limits: the largest sizes that are accepted.
 
     Returns:
-        The movement in metres, y up and right-handed, with the conventions it was read by.
+        The movement in metres, y up and right-handed, with the conventions by which it was read.
 
     Raises:
-        CaptureError: the format is unknown, or the file breaks its rules: with line and reason.
+        CaptureError: the format is unknown, or the file violates its rules: with line and reason.
     """
     if len(data) > limits.bytes:
         raise CaptureError(f"the file has {len(data)} bytes, up to {limits.bytes} are read.")
     _check_reading(reading)
     found = format_of(data, name)
     if found is None:
-        valid = ", ".join(known.title for known in FORMATS)
+        valid = ", ".join(one.title for one in FORMATS)
         raise CaptureError(f"{what_it_looks_like(data)}; captures that can be read are {valid}.")
     try:
         return found.load_reader()(data, name=name, reading=reading, limits=limits)
     except (RigError, RotationError) as error:
-        # The body itself is impossible, which no single line is to blame for.
+        # The body itself is impossible; no single line is at fault.
         raise CaptureError(str(error)) from error
 
 
@@ -53,13 +53,13 @@ def _check_reading(reading: Reading) -> None:
 def read_capture_file(
     path: Path, *, reading: Reading = _AS_IT_IS, limits: Limits = _LIMITS
 ) -> Capture:
-    """Read a capture; an AMC takes its ASF from the same folder where it is clear which.
+    """Read a capture; the ASF of an AMC is taken from the same folder if it is unambiguous.
 
-    That is the one whose name begins the AMC's, as `02.asf` does for `02_01.amc`, else the only
+    It is the one whose name begins the AMC's, as `02.asf` does for `02_01.amc`, or else the only
     one.
 
     Raises:
-        CaptureError: see `read_capture`; also where the file is too large.
+        CaptureError: see `read_capture`; also if the file is too large.
         OSError: the file cannot be opened.
     """
     if path.stat().st_size > limits.bytes:
@@ -72,7 +72,7 @@ def read_capture_file(
 
 
 def skeleton_beside(path: Path) -> Path | None:
-    """The ASF in the folder of an AMC that goes with it, if only one can be meant."""
+    """Return the ASF in the folder of an AMC that belongs to it, if it is unambiguous."""
     found = sorted(one for one in path.parent.iterdir() if one.suffix.lower() == ".asf")
     named = [one for one in found if path.stem.startswith(one.stem)]
     candidates = named or found

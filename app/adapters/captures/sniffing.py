@@ -1,6 +1,6 @@
-"""What the beginning of a file shows, for formats to recognise themselves by.
+"""Examine the beginning of a file, by which formats recognise their files.
 
-Exporters agree on extensions less than one hopes: half of the formats end in .csv.
+Extensions are not enough: half of the formats use .csv.
 """
 
 from collections.abc import Callable
@@ -9,7 +9,7 @@ from typing import Self
 
 from app.adapters.captures.text import first_lines
 
-# Files that labs also have, recognised so that the refusal can name them.
+# Other files that labs have, recognised so that the error message can name them.
 _KNOWN_ELSEWHERE: tuple[tuple[bytes, str], ...] = (
     (b"\n\r\r\n", "a pcapng recording of network packets"),
     (b"XDF:", "an XDF recording of LabStreamingLayer"),
@@ -25,7 +25,7 @@ _KNOWN_ELSEWHERE: tuple[tuple[bytes, str], ...] = (
 
 @dataclass(frozen=True)
 class Head:
-    """The beginning of a file, as far as it tells the format.
+    """The beginning of a file, as needed to recognise its format.
 
     Attributes:
         data: the whole file.
@@ -37,12 +37,12 @@ class Head:
 
     @classmethod
     def of(cls, data: bytes) -> Self:
-        """The head of a file."""
+        """Return the head of a file."""
         return cls(data, tuple(line.strip() for line in first_lines(data, 60)))
 
     @property
     def first(self) -> str:
-        """The first line that is not blank; empty where there is none."""
+        """The first line that is not blank; empty if there is none."""
         return next((line for line in self.lines if line), "")
 
     @property
@@ -51,20 +51,20 @@ class Head:
         return self.first.split(maxsplit=1)[0].lower() if self.first else ""
 
     def first_without(self, comment: str) -> str:
-        """The first line that is neither blank nor begins with `comment`."""
+        """Return the first line that is neither blank nor begins with `comment`."""
         return next((line for line in self.lines if line and not line.startswith(comment)), "")
 
     def cells(self, separator: str = ",") -> list[str]:
-        """The first line as cells of a table, without quotes and in lower case."""
+        """Return the first line as cells of a table, without quotes and in lower case."""
         return [cell.strip().strip('"').lower() for cell in self.first.split(separator)]
 
     def has_columns(self, fits: Callable[[list[str]], bool]) -> bool:
-        """Whether the first line fits as the titles of a table, whatever separates them."""
+        """Return whether the first line fits as a table's column titles, with any separator."""
         return any(fits(self.cells(separator)) for separator in (",", ";", "\t"))
 
 
 def what_it_looks_like(data: bytes) -> str:
-    """Describe a file of no known format, for whoever chose it."""
+    """Describe a file of unknown format to the user who chose it."""
     if not data.strip():
         return "the file is empty"
     for start, title in _KNOWN_ELSEWHERE:

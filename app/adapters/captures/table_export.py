@@ -1,7 +1,7 @@
-"""A movement as a table: a row a frame, a column a number, units in the titles.
+"""Export a movement as a table: a row per frame, a column per number, units in the titles.
 
-Places are metres in the world, y up and right-handed; rotations are unit quaternions w, x, y, z,
-world_from_joint, so that a row can be read without the hierarchy. What was not seen is empty.
+Positions are in metres in the world, y up and right-handed; rotations are unit quaternions w, x, y,
+z, world_from_joint, so that a row can be read without the hierarchy. What was not visible is empty.
 """
 
 import csv
@@ -22,8 +22,9 @@ def to_csv(motion: RigMotion | MarkerMotion | BodyMotion) -> Iterator[str]:
     """Yield a CSV text in pieces of whole rows: the titles first, then some hundred frames each.
 
     Columns: `frame` from 0, `time_s`, then for each joint, marker or body `NAME.x_m`, `NAME.y_m`,
-    `NAME.z_m` and, but for markers, `NAME.qw`, `NAME.qx`, `NAME.qy`, `NAME.qz`. A skeleton's frames
-    end with `observed`: 1 where all joints were in the file, 0 where some were carried over a gap.
+    `NAME.z_m` and, except for markers, `NAME.qw`, `NAME.qx`, `NAME.qy`, `NAME.qz`. A skeleton's
+    frames end with `observed`: 1 if all joints were in the file, 0 if some were interpolated over a
+    gap.
     """
     yield _text([_titles(motion)])
     for start in range(0, motion.frame_count, _BLOCK_FRAMES):
@@ -56,7 +57,7 @@ def _times(motion: RigMotion | MarkerMotion | BodyMotion, block: slice) -> Float
 
 
 def _values(motion: RigMotion | MarkerMotion | BodyMotion, block: slice) -> FloatArray:
-    """The numbers of some frames, (n, columns)."""
+    """Return the numbers of a block of frames, (n, columns)."""
     if isinstance(motion, MarkerMotion):
         cells = motion.positions_m[block]
     elif isinstance(motion, BodyMotion):
@@ -68,7 +69,7 @@ def _values(motion: RigMotion | MarkerMotion | BodyMotion, block: slice) -> Floa
 
 
 def _number(value: float) -> str:
-    # Nine decimals are nanometres; a NaN differs from itself.
+    # Nine significant digits; a NaN, which differs from itself, becomes an empty cell.
     return f"{value:.9g}" if value == value else ""
 
 

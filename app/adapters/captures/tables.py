@@ -1,4 +1,4 @@
-"""Numbers out of delimited text: rows into one array, line by line, within limits."""
+"""Read numbers from delimited text into one array, line by line, within limits."""
 
 import csv
 import math
@@ -16,7 +16,7 @@ from app.science.rig import BoolArray
 from app.science.rotations import FloatArray
 
 FARTHEST_M = 1e5
-"""No capture volume is wider than this; beyond it a number is a slip, or noise."""
+"""Largest plausible coordinate; no capture volume is wider than this."""
 _MISSING = frozenset({"", "nan", "null", "none", "n/a", "-"})
 
 
@@ -26,7 +26,7 @@ class NumberTable:
 
     Attributes:
         lines: (N,) line of each row in the file, from 1.
-        values: (N, C), NaN where a cell was empty.
+        values: (N, C), NaN for empty cells.
     """
 
     lines: npt.NDArray[np.int64]
@@ -36,12 +36,12 @@ class NumberTable:
 def csv_rows(
     lines: Iterable[str], separator: str = ",", *, quoted: bool = True
 ) -> Iterator[tuple[int, list[str]]]:
-    """Yield (line number, cells) of each row; raises CaptureError for what is no table.
+    """Yield (line number, cells) of each row; raise CaptureError if the text is not a table.
 
     Args:
-        lines: of the file, from its first.
+        lines: all lines of the file.
         separator: between cells.
-        quoted: whether a quote at a cell's start opens a quotation, which may run over lines.
+        quoted: whether a quote at the start of a cell opens a quotation, which may span lines.
     """
     reader = csv.reader(
         lines, delimiter=separator, quoting=csv.QUOTE_MINIMAL if quoted else csv.QUOTE_NONE
@@ -76,10 +76,10 @@ def read_numbers(
     """Read the chosen columns, (index, title), of every row that is not blank.
 
     Raises:
-        CaptureError: with line and column: a row too short, a cell that is neither empty nor a
-            finite number, no row at all, or more numbers than the limits allow.
+        CaptureError: with line and column: a row is too short, a cell is neither empty nor a finite
+            number, there are no rows, or more numbers than allowed.
     """
-    # Two columns at least, since itemgetter of one index gives no tuple.
+    # At least two columns, because itemgetter with one index does not return a tuple.
     pick: Any = itemgetter(*(index for index, _ in columns), columns[0][0])
     width = len(columns)
     values, lines = array("d"), array("q")
@@ -142,7 +142,7 @@ def _too_short(row: list[str], columns: Sequence[tuple[int, str]], line: int) ->
 
 
 def check_places(places_m: FloatArray, lines: npt.NDArray[np.int64], names: Sequence[str]) -> None:
-    """Refuse places (N, B, 3) that no room can hold; NaN passes."""
+    """Raise CaptureError if positions (N, B, 3) are too far away for any room; NaN is allowed."""
     far = np.abs(places_m) > FARTHEST_M
     if far.any():
         row, body, axis = (int(index) for index in np.argwhere(far)[0])
@@ -156,10 +156,10 @@ def check_places(places_m: FloatArray, lines: npt.NDArray[np.int64], names: Sequ
 def unit_rotations(
     q: FloatArray, lines: npt.NDArray[np.int64], names: Sequence[str], tolerance: float = 0.02
 ) -> FloatArray:
-    """Return quaternions (N, B, 4) at exactly unit length; NaN, or all zero, becomes NaN.
+    """Return quaternions (N, B, 4) scaled to exactly unit length; NaN, or all zero, becomes NaN.
 
     Raises:
-        CaptureError: one is so far from unit length that it is no rounded rotation.
+        CaptureError: a length differs from 1 by more than rounding explains.
     """
     unseen = np.isnan(q).any(axis=-1) | (q == 0.0).all(axis=-1)
     length = np.linalg.norm(np.clip(q, -1e6, 1e6), axis=-1)
@@ -175,6 +175,6 @@ def unit_rotations(
 
 
 def unseen(*values: FloatArray) -> BoolArray:
-    """Where any number of a body's, in any of the arrays (..., C), is missing: shape (...)."""
+    """Return where any number of a body is missing in any of the arrays (..., C), shape (...)."""
     missing = [np.isnan(array).any(axis=-1) for array in values]
     return np.asarray(np.logical_or.reduce(missing), dtype=np.bool_)

@@ -1,6 +1,6 @@
-"""A text file's lines, one at a time, whatever its encoding and line ends.
+"""Read the lines of a text file one at a time, in any encoding and with any line endings.
 
-A file of a hundred megabytes is never held as text: only the line that is being read is.
+A file of a hundred megabytes is never completely in memory as text, only the current line is.
 """
 
 import codecs
@@ -11,15 +11,15 @@ from itertools import islice
 from app.adapters.captures.capture import CaptureError
 
 LONGEST_LINE = 2_000_000
-"""Characters; two thousand bodies with eight columns each need a fifth of it."""
+"""Most characters of a line; two thousand bodies with eight columns need a fifth of that."""
 _BLOCK = 1 << 20
 
 
 def encoding_of(data: bytes) -> str:
-    """Return the encoding to read by: UTF-8 or UTF-16 by their marks, else UTF-8, else Latin-1.
+    """Return the encoding: UTF-8 or UTF-16 by their byte order marks, else UTF-8, else Latin-1.
 
-    Latin-1 reads any bytes and keeps different names different. Older exporters write the local
-    code page, in which only words such as AM and PM leave ASCII.
+    Latin-1 can decode any bytes and keeps different names different. Older exporters write the
+    local code page, in which only words such as AM and PM are not ASCII.
     """
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         return "utf-16"
@@ -34,11 +34,10 @@ def encoding_of(data: bytes) -> str:
 
 
 def text_lines(data: bytes, *, keep_ends: bool = False) -> Iterator[str]:
-    """Yield the lines of a text file, without their ends unless these are asked for.
+    """Yield the lines of a text file, without their endings unless `keep_ends`.
 
     Raises:
-        CaptureError: a line is so long that the file is no table or text of a capture, or the
-            bytes are no text.
+        CaptureError: a line is too long for a capture, or the bytes are not text.
     """
     encoding = encoding_of(data)
     stream = io.TextIOWrapper(io.BytesIO(data), encoding=encoding, newline=None)
@@ -56,7 +55,7 @@ def text_lines(data: bytes, *, keep_ends: bool = False) -> Iterator[str]:
 
 
 def first_lines(data: bytes, count: int) -> list[str]:
-    """Return the first lines, as a look at what a file is; never raises, may be cut short."""
+    """Return the first lines, to recognise a file by; never raises, the last may be truncated."""
     start = data[: 64 * 1024]
     encoding = "utf-16" if encoding_of(start[:2]) == "utf-16" else "utf-8-sig"
     text = start.decode(encoding, errors="replace")

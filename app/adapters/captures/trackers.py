@@ -1,6 +1,6 @@
-"""What the logs of headsets share: a time column, and columns of place and rotation a body.
+"""Read what logs of headsets have in common: a time column, and each body's pose columns.
 
-Times count from the first sample on, and go strictly forward.
+Times count from the first sample and are strictly increasing.
 """
 
 import re
@@ -19,10 +19,10 @@ _LONGEST_S = 1e7
 
 @dataclass(frozen=True, eq=False)
 class SampleTimes:
-    """Which rows to keep, when they were, and what was repaired.
+    """Which rows to keep, their times, and what was repaired.
 
     Attributes:
-        kept: (N,) rows of the table whose time lies after that of the row before.
+        kept: (N,) indices of the rows whose time is later than that of the row before.
         times_s: (N,) from the first of them on.
         notes: a sentence if rows were left out.
     """
@@ -33,10 +33,10 @@ class SampleTimes:
 
 
 def sample_times(seconds: FloatArray, lines: npt.NDArray[np.int64]) -> SampleTimes:
-    """Count times from the first; rows that repeat a time are left out.
+    """Return times from the first sample on, leaving out rows that repeat a time.
 
     Raises:
-        CaptureError: a time is missing or absurd, or the clock went back.
+        CaptureError: a time is missing or implausible, or the clock went backwards.
     """
     wrong = np.flatnonzero(~(np.abs(seconds) < 1e12))
     if wrong.size:
@@ -62,7 +62,7 @@ def sample_times(seconds: FloatArray, lines: npt.NDArray[np.int64]) -> SampleTim
 
 
 def logged_rate(rate_hz: float) -> Convention:
-    """How fast a logger wrote: by the median step of its times."""
+    """Describe the sampling rate of a log, determined by the median step of its times."""
     if rate_hz <= 0.0:
         return Convention("one sample", "file")
     return Convention(f"{rate_hz:.4g} Hz by the median step", "file")
@@ -70,7 +70,7 @@ def logged_rate(rate_hz: float) -> Convention:
 
 @dataclass(frozen=True)
 class BodyColumns:
-    """Where a body's numbers stand: three places and three or four rotations, by index."""
+    """The column indices of a body: three coordinates, and three or four rotation values."""
 
     name: str
     places: tuple[int, ...]
@@ -80,13 +80,13 @@ class BodyColumns:
 def find_bodies(
     header: Sequence[str], place: str, rotation: str, axes: Sequence[str], limits: Limits
 ) -> list[BodyColumns]:
-    """Find the bodies among columns such as `head_pos_x` and `head_rot_x`.
+    """Find the bodies in columns such as `head_pos_x` and `head_rot_x`.
 
     Args:
         header: the columns' titles.
-        place, rotation: how the titles end, before the axis: `pos_`, `rot_`.
-        axes: the rotation's axes in the order wanted, such as x, y, z.
-        limits: how many bodies are read.
+        place, rotation: the end of the titles, before the axis: `pos_`, `rot_`.
+        axes: the rotation's axes in the requested order, such as x, y, z.
+        limits: the largest number of bodies.
     """
     index = {title.lower(): column for column, title in reversed(list(enumerate(header)))}
     first = re.compile(rf"^(.*?){re.escape(place)}x$", re.IGNORECASE)
@@ -117,9 +117,9 @@ class TrackedCells:
     Attributes:
         lines: (N,) line of each sample in the file.
         times_s: (N,) from the first sample on.
-        cells: (N, B, C) three places, then the rotation, as written.
+        cells: (N, B, C) three coordinates, then the rotation, as in the file.
         repairs: notes on rows left out.
-        left_out: a note that names the columns which are no movement.
+        left_out: a note that names the columns that are not movement.
     """
 
     lines: npt.NDArray[np.int64]
@@ -138,7 +138,7 @@ def read_cells(
     *,
     decimal: str = ".",
 ) -> TrackedCells:
-    """Read the time, by its column, and the bodies' numbers.
+    """Read the time column and the bodies' columns.
 
     Raises:
         CaptureError: the line and the reason.
@@ -159,7 +159,7 @@ def read_cells(
 
 
 def still_notes(names: Sequence[str], cells: FloatArray) -> tuple[str, ...]:
-    """A note for each body that never moves, (N, B, C): a controller that was switched off."""
+    """Return a note for each body in (N, B, C) that never moves, such as an unused controller."""
     if len(cells) < 10:
         return ()
     still = (cells == cells[:1]).all(axis=(0, 2))

@@ -1,15 +1,14 @@
-"""TRC, the marker table of Motion Analysis that OpenSim also writes: text, columns by tabs.
+"""Read TRC, the tab-separated marker table of Motion Analysis that OpenSim also writes.
 
     PathFileType  4  (X/Y/Z)  walk.trc
     DataRate  CameraRate  NumFrames  NumMarkers  Units  ...
     150.00    150.00      184        28          mm     ...
     Frame#  Time  R.ASIS          L.ASIS  ...
                   X1  Y1  Z1  X2  Y2  Z2  ...
-
     1  0.000  516.54  966.88  -306.10  ...
 
-Its header is often wrong: tools cut frames and leave NumFrames, or list computed markers that the
-rows do not hold. So the rows decide, and what the header says otherwise becomes a note.
+Its header is often wrong: tools cut frames without updating NumFrames, or list computed markers
+that the rows do not contain. So the rows take precedence, and a contradicting header causes a note.
 """
 
 from collections.abc import Iterator
@@ -44,10 +43,10 @@ class _Header:
 
 
 def read_trc(data: bytes, *, name: str, reading: Reading, limits: Limits) -> Capture:
-    """Read a table of markers; an empty cell is a marker that was not seen.
+    """Read a table of markers; an empty cell means that a marker was not visible.
 
     Raises:
-        CaptureError: with the line, where header or rows cannot be read.
+        CaptureError: with the line, if header or rows cannot be read.
     """
     if len(data) > limits.bytes:
         raise CaptureError(f"{name} has {len(data)} bytes: up to {limits.bytes} are read.")
@@ -83,21 +82,21 @@ def _read_header(lines: Iterator[tuple[int, str]], limits: Limits) -> _Header:
         )
     keys = [key.strip().lower() for key in head[_KEY_LINE - 1].split("\t")]
     values = [value.strip() for value in head[_VALUE_LINE - 1].split("\t")]
-    told = dict(zip(keys, values, strict=False))
-    rate = checked_rate(_number(told.get("datarate", ""), "DataRate"), line=_VALUE_LINE)
+    by_key = dict(zip(keys, values, strict=False))
+    rate = checked_rate(_number(by_key.get("datarate", ""), "DataRate"), line=_VALUE_LINE)
     frames, markers = (
-        int(_number(told.get(k.lower(), ""), k)) for k in ("NumFrames", "NumMarkers")
+        int(_number(by_key.get(k.lower(), ""), k)) for k in ("NumFrames", "NumMarkers")
     )
     names = [cell.strip() for cell in head[_NAME_LINE - 1].split("\t")[2::3]]
     while names and not names[-1]:
         names.pop()
     if not names or len(names) < markers:
         raise CaptureError(
-            f"the header tells of {markers} markers, this line names {len(names)}.", line=_NAME_LINE
+            f"the header declares {markers} markers, this line names {len(names)}.", line=_NAME_LINE
         )
     if len(names) > limits.tracks:
         raise CaptureError(f"more than {limits.tracks} markers.", line=_NAME_LINE)
-    return _Header(rate, frames, markers, told.get("units"), _own_names(names))
+    return _Header(rate, frames, markers, by_key.get("units"), _own_names(names))
 
 
 def _own_names(names: list[str]) -> tuple[str, ...]:
@@ -122,7 +121,7 @@ def _number(word: str, what: str) -> float:
 
 
 def _read_rows(lines: Iterator[tuple[int, str]], header: _Header, limits: Limits) -> FloatArray:
-    """Return places (N, M, 3) in the file's unit; frame numbers left out become unseen frames."""
+    """Return positions (N, M, 3) in the file's unit; missing frame numbers become NaN frames."""
     width = 3 * len(header.names)
     most = limits.values // width
     rows: list[FloatArray] = []
@@ -155,12 +154,12 @@ def _frame_number(cell: str, before: list[int], line: int) -> int:
 def _row(cells: list[str], width: int, line: int) -> FloatArray:
     if any(cell.strip() for cell in cells[width:]):
         raise CaptureError(f"the row has more values than its {width // 3} markers.", line=line)
-    told = cells[:width]
+    coordinates = cells[:width]
     row = np.full(width, np.nan)
     try:
-        row[: len(told)] = [float(cell) if cell.strip() else np.nan for cell in told]
+        row[: len(coordinates)] = [float(cell) if cell.strip() else np.nan for cell in coordinates]
     except ValueError:
-        wrong = next(cell for cell in told if cell.strip() and not _is_number(cell))
+        wrong = next(cell for cell in coordinates if cell.strip() and not _is_number(cell))
         raise CaptureError(f"expected a coordinate, got {wrong[:40]!r}.", line=line) from None
     row[~np.isfinite(row)] = np.nan
     return row
@@ -177,19 +176,19 @@ def _is_number(cell: str) -> bool:
 def _markers_with_values(
     header: _Header, places: FloatArray
 ) -> tuple[tuple[str, ...], FloatArray, tuple[str, ...]]:
-    """Leave out names past NumMarkers that no row has values for, and say what disagrees."""
+    """Leave out markers beyond NumMarkers that have no values, and return notes on differences."""
     notes: list[str] = []
-    told = np.any(np.isfinite(places).all(axis=-1), axis=0)
-    kept = [m for m in range(len(header.names)) if m < header.markers or told[m]]
+    visible = np.any(np.isfinite(places).all(axis=-1), axis=0)
+    kept = [m for m in range(len(header.names)) if m < header.markers or visible[m]]
     left_out = len(header.names) - len(kept)
     if left_out:
         notes.append(
             f"{left_out} further names in the header have no values in any row and are left out."
         )
     elif len(kept) != header.markers:
-        notes.append(f"The header tells of {header.markers} markers, the rows hold {len(kept)}.")
+        notes.append(f"The header declares {header.markers} markers, the rows contain {len(kept)}.")
     if header.frames != len(places):
-        notes.append(f"The header tells of {header.frames} frames, the rows of {len(places)}.")
+        notes.append(f"The header declares {header.frames} frames, the rows have {len(places)}.")
     missing = 1.0 - float(np.isfinite(places[:, kept]).all(axis=-1).mean())
     if missing > 0.0:
         notes.append(f"{100 * missing:.2g} % of the marker positions were not seen.")

@@ -1,4 +1,4 @@
-"""Units of length: as files write them, as the user chose, or guessed from the size of a body."""
+"""Units of length: from the file, chosen by the user, or guessed from the size of a body."""
 
 import math
 from dataclasses import dataclass
@@ -27,7 +27,7 @@ _NAMED: tuple[tuple[str, float], ...] = (
     ("cm", 0.01),
     ("m", 1.0),
     ("mm", 0.001),
-    ("0.056444 m", 0.056444),  # what the CMU captures count in: 1/0.45 inch
+    ("0.056444 m", 0.056444),  # the unit of the CMU captures: 1/0.45 inch
     ("inch", 0.0254),
 )
 _PLAUSIBLE_M = (0.85, 2.4)
@@ -37,27 +37,27 @@ _ADULT_M = 1.7
 def unit_of_markers(
     word: str | None, chosen: float | None, *, line: int = 0
 ) -> tuple[float, Convention]:
-    """Return metres per unit and who says so; millimetres are guessed where a file is silent.
+    """Return metres per unit and its origin; millimetres are guessed if the file names no unit.
 
     Raises:
-        CaptureError: the file names a unit that is none.
+        CaptureError: the file names an unknown unit.
     """
     if chosen is not None:
         return chosen, Convention(f"{chosen:g} m", "chosen")
-    told = (word or "").strip().lower()
-    if not told:
+    unit = (word or "").strip().lower()
+    if not unit:
         return 0.001, Convention("mm", "guessed")
-    if told not in METRES_IN:
+    if unit not in METRES_IN:
         raise CaptureError(
-            f"the unit {told[:40]!r} is not known: valid are {', '.join(METRES_IN)}; or say how"
+            f"the unit {unit[:40]!r} is not known: valid are {', '.join(METRES_IN)}; or say how"
             " many metres a unit has.",
             line=line,
         )
-    return METRES_IN[told], Convention(told, "file")
+    return METRES_IN[unit], Convention(unit, "file")
 
 
 def checked_rate(rate_hz: float, *, line: int = 0) -> float:
-    """Return the rate; raises CaptureError where no camera runs at it."""
+    """Return the rate; raise CaptureError if it is implausible for a camera."""
     if not (math.isfinite(rate_hz) and 0.0 < rate_hz <= HIGHEST_RATE_HZ):
         raise CaptureError(
             f"the rate is {rate_hz:g} Hz: above 0 up to {HIGHEST_RATE_HZ:g} is valid.", line=line
@@ -67,7 +67,7 @@ def checked_rate(rate_hz: float, *, line: int = 0) -> float:
 
 @dataclass(frozen=True)
 class GuessedLength:
-    """A unit, the size the body then has, and whether that is the size of a human."""
+    """A guessed unit, the body's size in metres by it, and whether that is a human's size."""
 
     name: str
     metres_per_unit: float
@@ -78,8 +78,8 @@ class GuessedLength:
 def guess_length(size: float) -> GuessedLength:
     """Guess the unit from a body's size in that unit: its largest extent in the rest pose.
 
-    The first unit of cm, m, mm, CMU's, inch that makes a person of 0.85 to 2.4 m; failing that the
-    one that comes nearest to 1.7 m; cm for a body without extent.
+    It is the first of cm, m, mm, CMU's unit and inch that gives a person of 0.85 to 2.4 m; if none
+    does, the one that comes nearest to 1.7 m; cm for a body without extent.
     """
     for name, scale in _NAMED:
         if _PLAUSIBLE_M[0] <= size * scale <= _PLAUSIBLE_M[1]:
@@ -91,7 +91,7 @@ def guess_length(size: float) -> GuessedLength:
 
 
 def unit_name(metres_per_unit: float) -> str:
-    """Name a unit by its length in metres, such as "cm" for 0.01."""
+    """Return the name of a unit of this length in metres, such as "cm" for 0.01."""
     for name, scale in _NAMED:
         if abs(scale - metres_per_unit) <= 1e-9:
             return name
@@ -99,14 +99,14 @@ def unit_name(metres_per_unit: float) -> str:
 
 
 def chosen_length(reading: Reading) -> Convention | None:
-    """The unit the user said, if any."""
+    """Return the unit that the user chose, if any."""
     if reading.metres_per_unit is None:
         return None
     return Convention(unit_name(reading.metres_per_unit), "chosen")
 
 
-def chosen_axes(reading: Reading, habit: Convention, handed: str = "right-handed") -> Convention:
-    """The upward axis the user said, else the format's habit."""
+def chosen_axes(reading: Reading, default: Convention, handed: str = "right-handed") -> Convention:
+    """Return the upward axis that the user chose, or else the format's default."""
     if reading.up is None:
-        return habit
+        return default
     return Convention(f"{reading.up} up, {handed}", "chosen")

@@ -1,4 +1,4 @@
-"""Which way is up, for files of markers: declared, chosen, or guessed from how a body stands."""
+"""Determine the upward axis of marker files: declared, chosen, or guessed from the body."""
 
 from typing import Literal
 
@@ -10,9 +10,9 @@ from app.science.rotations import FloatArray
 
 _AXES: tuple[Up, Up, Up] = ("x", "y", "z")
 _LOOKED_AT = 200
-"""Frames from which the axis is guessed."""
+"""Number of frames used to guess the axis."""
 _CLEARLY_TALLER = 1.2
-# Half a turn about x: what pointed down points up, and hands stay on their sides.
+# Half a turn about x: down becomes up, and left and right hands keep their sides.
 _OVER: FloatArray = np.array((1.0, -1.0, -1.0))
 _FARTHEST_M = 1e5
 
@@ -20,16 +20,16 @@ _FARTHEST_M = 1e5
 def upright(
     positions_m: FloatArray, *, declared: str | None, chosen: Up | None, usual: Up
 ) -> tuple[FloatArray, Convention, tuple[str, ...]]:
-    """Turn markers (N, M, 3) so that y is up, and say why so.
+    """Rotate markers (N, M, 3) so that y is up; return them, the convention and notes.
 
     Args:
-        positions_m: NaN where a marker was not seen.
-        declared: the file's word for its upward axis, such as "+Z"; None where it is silent.
-        chosen: the user's word, which goes before everything.
-        usual: what files of this format mostly have, for bodies as wide as they are tall.
+        positions_m: NaN where a marker was not visible.
+        declared: the file's name of its upward axis, such as "+Z"; None if it has none.
+        chosen: the user's choice, which overrides everything.
+        usual: the usual axis of this format, for bodies that are as wide as they are tall.
 
     Raises:
-        CaptureError: a coordinate is beyond any room, so unit or bytes are wrong.
+        CaptureError: a coordinate is too far away for any room, so the unit or the data are wrong.
     """
     _check_distance(positions_m)
     axis, sign, origin = _axis(positions_m, declared, chosen, usual)
@@ -58,7 +58,10 @@ def _axis(
 
 
 def _tallest(positions_m: FloatArray, usual: Up) -> Up:
-    """The axis along which the markers of one frame reach furthest, in the median frame."""
+    """Return the axis with the largest extent of the markers, by the median over frames.
+
+    `usual` is returned if no axis is clearly the longest.
+    """
     step = max(1, len(positions_m) // _LOOKED_AT)
     some = positions_m[::step]
     seen = np.isfinite(some).all(axis=-1)

@@ -1,11 +1,12 @@
-"""Tracker files of UXF (Unity Experiment Framework): places and Euler angles of a few objects.
+"""Read tracker files of UXF (Unity Experiment Framework): positions and Euler angles of objects.
 
     time,pos_x,pos_y,pos_z,rot_x,rot_y,rot_z                        one object, UXF's own tracker
     time,head_pos_x,...,head_rot_z,left_pos_x,...,grab,trigger      several, by a lab's own tracker
 
-Unity is y up and left-handed, in metres. Its Euler angles are degrees and turn about z first, then
-x, then y, all fixed axes: q = q_y q_x q_z. An object that is not tracked is written as all zeros. A
-German client writes `;` between columns and `,` in numbers; times count from the start of the app.
+Unity is y up and left-handed, in metres. Its Euler angles are in degrees and rotate about z first,
+then x, then y, all fixed axes: q = q_y q_x q_z. An object that is not tracked is written as all
+zeros. A client with German settings writes `;` between columns and `,` in numbers; times count from
+the start of the app.
 """
 
 import re
@@ -49,11 +50,11 @@ def read_uxf_tracker(data: bytes, *, name: str, reading: Reading, limits: Limits
     """Read a tracker file of UXF.
 
     Raises:
-        CaptureError: the line and the reason, also for trackers that hold no movement of bodies,
-            such as gaze.
+        CaptureError: the line and the reason; also for trackers without movement of bodies, such as
+            gaze.
     """
     separator = _separator(data)
-    # UXF quotes nothing: a quote in a lab's own column is a character like others.
+    # UXF does not quote: a quotation mark in a lab's own column is an ordinary character.
     rows = csv_rows(text_lines(data), separator, quoted=False)
     line, header = read_titles(rows)
     quaternions = any(title.lower().endswith("rot_w") for title in header)
@@ -62,8 +63,8 @@ def read_uxf_tracker(data: bytes, *, name: str, reading: Reading, limits: Limits
     decimal = "." if separator == "," else ","
     found = read_cells(rows, header, 0, bodies, limits, decimal=decimal)
     names = [body.name or _object_name(name) for body in bodies]
-    gone = unseen(found.cells) | np.asarray((found.cells == 0.0).all(axis=-1))
-    seen = np.where(gone[..., np.newaxis], np.nan, found.cells)
+    missing = unseen(found.cells) | np.asarray((found.cells == 0.0).all(axis=-1))
+    seen = np.where(missing[..., np.newaxis], np.nan, found.cells)
     places = seen[..., :3] * (reading.metres_per_unit or 1.0)
     check_places(places, found.lines, names)
     rotations = unit_rotations(_quaternions(seen[..., 3:]), found.lines, names)
@@ -73,14 +74,14 @@ def read_uxf_tracker(data: bytes, *, name: str, reading: Reading, limits: Limits
         positions_m=mirrored_places(places),
         rotations=mirrored_rotations(rotations),
     )
-    told = "quaternion x, y, z, w" if quaternions else "Unity's Euler y x z, degrees"
+    notation = "quaternion x, y, z, w" if quaternions else "Unity's Euler y x z, degrees"
     conventions = Conventions(
         length=chosen_length(reading) or Convention("m", "format"),
         axes=chosen_axes(reading, _LEFT_HANDED, "left-handed"),
-        rotations=Convention(told, "format"),
+        rotations=Convention(notation, "format"),
         rate=logged_rate(motion.rate_hz),
     )
-    notes = (*found.repairs, *_unseen_notes(names, gone), *still_notes(names, seen))
+    notes = (*found.repairs, *_unseen_notes(names, missing), *still_notes(names, seen))
     turned = turned_bodies(motion, reading.up or "y")
     return Capture("uxf-tracker", turned, conventions, (*notes, *found.left_out))
 
@@ -104,24 +105,27 @@ def _check_columns(header: Sequence[str], bodies: Sequence[BodyColumns], line: i
 
 
 def _quaternions(turns: FloatArray) -> FloatArray:
-    """Unity's angles (..., 3) x, y, z in degrees, or quaternions (..., 4), to wxyz; NaN stays."""
+    """Convert Unity's angles (..., 3) x, y, z in degrees to wxyz; NaN stays.
+
+    Quaternions (..., 4) are returned unchanged.
+    """
     if turns.shape[-1] == 4:
         return turns
-    known = np.nan_to_num(np.fmod(turns, 360.0))
-    q = from_euler("YXZ", np.radians(known[..., [1, 0, 2]]))
+    angles = np.nan_to_num(np.fmod(turns, 360.0))
+    q = from_euler("YXZ", np.radians(angles[..., [1, 0, 2]]))
     return np.where(np.isnan(turns).any(axis=-1, keepdims=True), np.nan, q)
 
 
 def _object_name(file_name: str) -> str:
-    """`head_movement_T001.csv` tracks `head`."""
+    """Return the object that a file tracks: `head_movement_T001.csv` tracks `head`."""
     stem = PurePosixPath(file_name.replace("\\", "/")).stem
     return re.sub(r"(_movement)?(_T\d+)?$", "", stem) or "tracker"
 
 
-def _unseen_notes(names: Sequence[str], gone: BoolArray) -> tuple[str, ...]:
-    counts = gone.sum(axis=0).tolist()
+def _unseen_notes(names: Sequence[str], missing: BoolArray) -> tuple[str, ...]:
+    counts = missing.sum(axis=0).tolist()
     return tuple(
-        f"{name} was not tracked in {count} of {len(gone)} samples (all zeros or empty)."
+        f"{name} was not tracked in {count} of {len(missing)} samples (all zeros or empty)."
         for name, count in zip(names, counts, strict=True)
         if count
     )

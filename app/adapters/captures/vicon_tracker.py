@@ -1,15 +1,15 @@
-"""Vicon Tracker's CSV of objects: rotation vectors and places of rigid bodies, z up.
+"""Read Vicon Tracker's CSV of objects: rotation vectors and positions of rigid bodies, z up.
 
     Objects
-    100                                                       frames a second
-    ,,Global Angle hip:hip,,,,,,Global Angle head:head,...    an object each six columns
+    100                                                       frames per second
+    ,,Global Angle hip:hip,,,,,,Global Angle head:head,...    one object per six columns
     Frame,Sub Frame,RX,RY,RZ,TX,TY,TZ,RX,...
     ,,rad,rad,rad,mm,mm,mm,rad,...
 
 RX, RY, RZ are a rotation vector, kept continuous, so that its length may exceed pi. No document
-says so; what does is rigidity: by this reading a person's hand stays at its place in the frame of
-the elbow's object (3 % of the forearm), by any Euler order it wanders (7 % and more). A table ends
-at an empty line.
+states this; it follows from rigidity: with this interpretation a person's hand keeps its position
+in the frame of the elbow's object (3 % of the forearm), with any Euler order it moves (7 % and
+more). A table ends at an empty line.
 """
 
 from collections.abc import Iterator
@@ -50,7 +50,7 @@ class _Head:
 
 
 def read_vicon_tracker(data: bytes, *, name: str, reading: Reading, limits: Limits) -> Capture:
-    """Read a CSV of objects as exported by Vicon Tracker.
+    """Read a CSV of objects exported by Vicon Tracker.
 
     Raises:
         CaptureError: the line and the reason.
@@ -65,16 +65,16 @@ def read_vicon_tracker(data: bytes, *, name: str, reading: Reading, limits: Limi
     times_s = _times(table.values[:, 0], table.lines, head.rate_hz)
     scale = reading.metres_per_unit or _METRES[head.length]
     cells = table.values[:, 1:].reshape(len(times_s), len(head.names), 6)
-    gone = unseen(cells)
-    places = np.where(gone[..., np.newaxis], np.nan, cells[..., 3:] * scale)
+    missing = unseen(cells)
+    places = np.where(missing[..., np.newaxis], np.nan, cells[..., 3:] * scale)
     check_places(places, table.lines, head.names)
-    vectors = np.where(gone[..., np.newaxis], 0.0, cells[..., :3] * _RADIANS[head.angle])
+    vectors = np.where(missing[..., np.newaxis], 0.0, cells[..., :3] * _RADIANS[head.angle])
     rotations = from_rotation_vector(np.clip(vectors, -1e3, 1e3))
     motion = BodyMotion(
         names=head.names,
         times_s=times_s,
         positions_m=places,
-        rotations=np.where(gone[..., np.newaxis], np.nan, rotations),
+        rotations=np.where(missing[..., np.newaxis], np.nan, rotations),
     )
     conventions = Conventions(
         length=chosen_length(reading) or Convention(head.length, "file"),
@@ -82,7 +82,7 @@ def read_vicon_tracker(data: bytes, *, name: str, reading: Reading, limits: Limi
         rotations=Convention(f"rotation vector, {head.angle}", "file"),
         rate=Convention(f"{head.rate_hz:g} Hz", "file"),
     )
-    notes = (*_gaps(gone, head.names), *_more_below(rows))
+    notes = (*_gaps(missing, head.names), *_more_below(rows))
     return Capture(
         "vicon-tracker-csv", turned_bodies(motion, reading.up or "z"), conventions, notes
     )
@@ -119,10 +119,10 @@ def _rate(row: list[str], line: int) -> float:
 
 
 def _names(row: list[str], line: int, limits: Limits) -> tuple[str, ...]:
-    told = [cell.strip() for cell in row[2::6]]
-    while told and not told[-1]:
-        told.pop()
-    names = tuple(_object_name(cell) for cell in told)
+    cells = [cell.strip() for cell in row[2::6]]
+    while cells and not cells[-1]:
+        cells.pop()
+    names = tuple(_object_name(cell) for cell in cells)
     if not names or not all(names) or len(set(names)) != len(names):
         raise CaptureError(
             "the objects' names are missing or repeated: 'Global Angle NAME:NAME' every six"
@@ -165,10 +165,10 @@ def _times(frames: FloatArray, lines: np.typing.NDArray[np.int64], rate_hz: floa
     return times_s
 
 
-def _gaps(gone: BoolArray, names: tuple[str, ...]) -> tuple[str, ...]:
-    counts = gone.sum(axis=0).tolist()
-    told = [f"{body} in {count}" for body, count in zip(names, counts, strict=True) if count]
-    return (f"Not seen: {', '.join(told)} of {len(gone)} frames.",) if told else ()
+def _gaps(missing: BoolArray, names: tuple[str, ...]) -> tuple[str, ...]:
+    counts = missing.sum(axis=0).tolist()
+    gaps = [f"{body} in {count}" for body, count in zip(names, counts, strict=True) if count]
+    return (f"Not seen: {', '.join(gaps)} of {len(missing)} frames.",) if gaps else ()
 
 
 def _more_below(rows: Iterator[_Row]) -> tuple[str, ...]:

@@ -1,9 +1,8 @@
-"""The registry of the formats in which movement can be written, the usual one first.
+"""The registry of the formats in which movement can be written, the default first.
 
-A writer is one object: its key in addresses, how its files end, their media type, what people call
-it, and the function that writes. Whoever adds one writes that function and its entry in `WRITERS`;
-the download of a capture on an avatar, `reembody retarget --out` and the buttons of the page follow
-from that.
+A writer is one object: its key in addresses, its file extension, its media type, its name, and the
+function that writes. To add one, write that function and its entry in `WRITERS`; the download of a
+capture on an avatar, `reembody retarget --out` and the buttons of the page follow from that.
 """
 
 from collections.abc import Callable, Iterable
@@ -20,9 +19,9 @@ class MovementWriter:
     """A format in which a skeleton's movement can be written, as text in UTF-8.
 
     Attributes:
-        key: in addresses, and the ending of the files.
+        key: used in addresses and as the file extension.
         media_type: of the files.
-        name: as buttons show it.
+        name: as shown on buttons.
         write: yields the text in pieces.
     """
 
@@ -33,7 +32,7 @@ class MovementWriter:
 
     @property
     def suffix(self) -> str:
-        """How the files end, with the point."""
+        """The file extension, with the dot."""
         return f".{self.key}"
 
 
@@ -54,10 +53,10 @@ WRITERS: tuple[MovementWriter, ...] = (
 
 
 def writer_of(key: str) -> MovementWriter:
-    """The writer with this key; raises KeyError where there is none."""
+    """Return the writer with this key; raise KeyError if there is none."""
     return {one.key: one for one in WRITERS}[key]
 
 
 def writer_texts() -> dict[str, Words]:
-    """The names of the formats, by their keys in the tables of the pages."""
+    """Return the names of the formats, by their keys in the pages' tables."""
     return {f"movement.format.{one.key}": one.name for one in WRITERS}

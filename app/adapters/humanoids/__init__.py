@@ -1,4 +1,7 @@
-"""Files of humanoid models: glTF 2.0 and VRM become `app.science.avatar.body.humanoid.Humanoid`."""
+"""Read humanoid models from glTF 2.0 and VRM files.
+
+They become `app.science.avatar.body.Humanoid`.
+"""
 
 from app.adapters.humanoids.container import HumanoidFileError
 from app.adapters.humanoids.reader import Limits, ReadHumanoid, read_humanoid

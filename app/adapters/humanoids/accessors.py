@@ -1,4 +1,4 @@
-"""Tables of numbers out of a file's buffers; every size is held against what is there.
+"""Read tables of numbers from a file's buffers; every size is checked against the data.
 
 Source: Khronos, glTF 2.0 specification, sections 3.6.2 (accessors) and 3.11 (normalised integers).
 """
@@ -26,8 +26,8 @@ class Tables:
 
     Args:
         document: the file's JSON.
-        binary: the chunk of a GLB.
-        most_values: numbers that may be read altogether.
+        binary: the binary chunk of a GLB.
+        most_values: the largest total number of values that may be read.
     """
 
     def __init__(self, document: Document, binary: bytes | None, most_values: int) -> None:
@@ -35,10 +35,11 @@ class Tables:
         self._buffers: dict[int, bytes] = {}
 
     def floats(self, number: int, kind: str) -> FloatArray:
-        """(N, width) numbers; whole ones count from -1 or 0 to 1 where they are normalised.
+        """Return (N, width) numbers; normalised integers are scaled to -1 or 0 to 1.
 
         Raises:
-            HumanoidFileError: no such accessor, not of this kind, beyond its buffer, not finite.
+            HumanoidFileError: the accessor does not exist, is of another kind, extends beyond its
+                buffer, or contains non-finite numbers.
         """
         accessor, place = self._accessor(number)
         table = self._table(accessor, kind, place)
@@ -50,7 +51,7 @@ class Tables:
         return values
 
     def whole(self, number: int, kind: str) -> IndexArray:
-        """(N, width) whole numbers from zero on; errors as for `floats`."""
+        """Return (N, width) non-negative integers; raises the same errors as `floats`."""
         accessor, place = self._accessor(number)
         table = self._table(accessor, kind, place)
         if table.dtype.kind != "u":

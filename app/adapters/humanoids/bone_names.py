@@ -1,14 +1,14 @@
-"""Which bone is which body part: by the map of VRM, else by names and how the bones hang.
+"""Map bones to body parts: by VRM's map, or else by names and the hierarchy of bones.
 
-VRM's names are those of HumanBodyBones with a small first letter, but for the thumb of VRM 1.0,
-whose first bone is the metacarpal: Metacarpal, Proximal, Distal are Unity's Proximal, Intermediate,
-Distal. Without VRM the 22 joints of the body are those of
-`app.science.retargeting.joint_map.propose_joint_map`, which is shown names without the marks of
-rigs that say nothing about the body (`DEF-` of Rigify, `J_Bip_C_` of VRoid), and bones that only
-help others (twist, inverse kinematics, ends) without theirs. Fingers are read from names below the
-hand: Mixamo's `LeftHandIndex1`, Unreal's `index_01_l`, Rigify's `f_index.01.L`, `Bip01 L Finger11`
-of 3ds Max, `finger2-1.L` of MakeHuman. Metacarpals are part of the hand; of the others the first
-three that hang on each other count, so a fourth, the tip of some rigs, does not.
+VRM's names are those of HumanBodyBones with a lower-case first letter, except for the thumb of VRM
+1.0, whose first bone is the metacarpal: Metacarpal, Proximal, Distal are Unity's Proximal,
+Intermediate, Distal. Without VRM the 22 joints of the body are those found by
+`app.science.retargeting.joint_map.propose_joint_map`. It is given names without the prefixes of
+rigs that are irrelevant to the body (`DEF-` of Rigify, `J_Bip_C_` of VRoid); helper bones (twist,
+inverse kinematics, ends) get no name. Fingers are identified by names below the hand: Mixamo's
+`LeftHandIndex1`, Unreal's `index_01_l`, Rigify's `f_index.01.L`, `Bip01 L Finger11` of 3ds Max,
+`finger2-1.L` of MakeHuman. Metacarpals are part of the hand; of the other bones the first three of
+a chain count, so a fourth, the tip in some rigs, does not.
 """
 
 import re
@@ -39,9 +39,9 @@ _VRM1_THUMB = {"Metacarpal": "Proximal", "Proximal": "Intermediate", "Distal": "
 
 
 def vrm_nodes(document: Document) -> dict[str, int] | None:
-    """Body part -> node by VRM's map; None where there is none.
+    """Return body part -> node by VRM's map; None if the file has no map.
 
-    Raises HumanoidFileError where it names a node that is not there, or a part twice.
+    Raises HumanoidFileError if the map names a node that does not exist, or a part twice.
     """
     extensions = document.extensions
     found: list[tuple[str, int]]
@@ -65,7 +65,7 @@ def vrm_nodes(document: Document) -> dict[str, int] | None:
 
 
 def named_bones(rig: Rig) -> dict[str, int]:
-    """Body part -> bone by names and hierarchy, as far as they tell."""
+    """Return body part -> bone, as far as names and hierarchy identify them."""
     plain = replace(rig, names=tuple(_plain(name, row) for row, name in enumerate(rig.names)))
     proposed = propose_joint_map(plain).joint_map
     bones = {part: plain.index(name) for part, name in proposed.items()}
@@ -76,7 +76,10 @@ def named_bones(rig: Rig) -> dict[str, int]:
 
 
 def _plain(name: str, row: int) -> str:
-    """What a name says about the body; the number, which nobody reads, makes it the bone's own."""
+    """Return a bone's name without prefixes, made unique by its number.
+
+    A helper bone gets only its number, so that it matches no body part.
+    """
     bare = _MARK.sub("", name.rsplit(":", 1)[-1])
     words = {token.lower() for token in _TOKEN.findall(bare)}
     return f"({row})" if words & _HELPERS else f"{bare} ({row})"
@@ -112,15 +115,16 @@ def _fingers(rig: Rig, side: str, bones: Mapping[str, int]) -> dict[str, int]:
 
 
 def _finger(name: str, hand: str) -> str | None:
-    """Which finger a bone below the hand belongs to."""
+    """Return the finger to which a bone below the hand belongs; None if it belongs to none."""
     word = name.rsplit(":", 1)[-1].lower()
-    # `LeftHandRing1` below `LeftHand`: what both begin with says nothing.
+    # `LeftHandRing1` below `LeftHand`: ignore the common beginning.
     word = word.removeprefix(hand.rsplit(":", 1)[-1].lower())
-    said = _WORD.search(word)
-    if said is not None:
-        # The thumb's metacarpal is its first segment; the others' are part of the hand.
-        inner = _NO_SEGMENT.search(word) is not None and said.group() != "thumb"
-        return None if inner else _WORDS[said.group()]
+    named = _WORD.search(word)
+    if named is not None:
+        # The thumb's metacarpal is its first segment; those of the other fingers are part of the
+        # hand.
+        inner = _NO_SEGMENT.search(word) is not None and named.group() != "thumb"
+        return None if inner else _WORDS[named.group()]
     numbered = _NUMBERED.search(word)
     if numbered is not None:
         return FINGERS[int(numbered.group(1)) - 1]

@@ -1,4 +1,4 @@
-"""The two forms of a glTF 2.0 file: JSON text, and the binary GLB with its chunks.
+"""Open the two forms of a glTF 2.0 file: JSON text, and the binary GLB with its chunks.
 
 Source: Khronos, glTF 2.0 specification, sections 3.6.1.1 (buffers) and 4 (GLB).
 """
@@ -12,7 +12,7 @@ from typing import Final
 _MAGIC: Final = b"glTF"
 _JSON, _BIN = 0x4E4F534A, 0x004E4942
 _MOST_JSON_VALUES: Final = 2_000_000
-"""A list of empty lists takes fifty times its bytes in memory; real files have some 50,000."""
+"""Most JSON values. A list of empty lists takes fifty times its size; real files have 50,000."""
 _AS_ONE_FILE = "Export the model as one file: glTF binary (.glb) or VRM."
 _OTHERS = {
     b"Kaydara FBX": "an FBX file",
@@ -29,7 +29,7 @@ class HumanoidFileError(ValueError):
 
     Attributes:
         reason: what is wrong and what is valid.
-        place: where in the file, such as `accessors.3`; empty where the whole file is meant.
+        place: where in the file, such as `accessors.3`; empty for the whole file.
     """
 
     def __init__(self, reason: str, place: str = "") -> None:
@@ -39,14 +39,14 @@ class HumanoidFileError(ValueError):
 
 @dataclass(frozen=True)
 class Container:
-    """A file taken apart: its JSON, and the binary chunk of a GLB."""
+    """The parts of a file: its JSON, and the binary chunk of a GLB."""
 
     text: bytes
     binary: bytes | None
 
 
 def open_container(data: bytes) -> Container:
-    """Take a file apart; raises HumanoidFileError."""
+    """Split a file into its parts; raise HumanoidFileError if that is impossible."""
     found = _glb(data) if data[:4] == _MAGIC else Container(_plain(data), None)
     values = sum(found.text.count(mark) for mark in (b",", b"[", b"{"))
     if values > _MOST_JSON_VALUES:
@@ -58,7 +58,7 @@ def open_container(data: bytes) -> Container:
 
 
 def embedded(uri: str, place: str) -> bytes:
-    """The content of a buffer that is written into the JSON; raises HumanoidFileError."""
+    """Return the content of a buffer that is embedded in the JSON; raise HumanoidFileError."""
     head, comma, body = uri.partition(",")
     if not uri.startswith("data:"):
         raise HumanoidFileError(f"The file needs another one, {uri[:100]!r}. {_AS_ONE_FILE}", place)
@@ -67,7 +67,7 @@ def embedded(uri: str, place: str) -> bytes:
     try:
         return base64.b64decode(body, validate=True)
     except (binascii.Error, ValueError) as error:
-        raise HumanoidFileError(f"The buffer is no base64: {error}.", place) from None
+        raise HumanoidFileError(f"The buffer is not base64: {error}.", place) from None
 
 
 def _plain(data: bytes) -> bytes:
@@ -78,7 +78,7 @@ def _plain(data: bytes) -> bytes:
         if data.startswith(start):
             raise HumanoidFileError(f"This is {kind}, not glTF or VRM. {_AS_ONE_FILE}")
     raise HumanoidFileError(
-        f"This is no glTF or VRM: it begins with {data[:8]!r}, valid is 'glTF' or a brace."
+        f"This is not glTF or VRM: it begins with {data[:8]!r}, valid is 'glTF' or a brace."
         f" {_AS_ONE_FILE}"
     )
 
@@ -102,5 +102,5 @@ def _glb(data: bytes) -> Container:
         chunks.setdefault(kind, data[at + 8 : at + 8 + size])
         at += 8 + size
     if _JSON not in chunks:
-        raise HumanoidFileError("The file has no JSON chunk, which tells what is in it.")
+        raise HumanoidFileError("The file has no JSON chunk, which describes its content.")
     return Container(chunks[_JSON], chunks.get(_BIN))

@@ -1,7 +1,7 @@
-"""What a glTF's JSON says, as far as bones and skin are concerned: typed, and within limits.
+"""The parts of a glTF's JSON that concern bones and skin: typed, and within limits.
 
 Source: Khronos, glTF 2.0 specification, section 5; VRM consortium, VRM 0.0 (`VRM`) and 1.0
-(`VRMC_vrm`), humanoid. Everything else in a file is passed over.
+(`VRMC_vrm`), humanoid. Everything else in a file is ignored.
 """
 
 from typing import Annotated
@@ -26,7 +26,7 @@ class _Part(BaseModel):
 
 
 class Node(_Part):
-    """A bone, or where a mesh is."""
+    """A node: a bone, or the position of a mesh."""
 
     name: Name = ""
     children: Annotated[list[Index], Field(max_length=MOST_NODES)] = []
@@ -39,7 +39,7 @@ class Node(_Part):
 
 
 class Buffer(_Part):
-    """A run of bytes: in the JSON, or the binary chunk."""
+    """A block of bytes, embedded in the JSON or in the binary chunk."""
 
     byteLength: Index  # noqa: N815 - as in the file
     uri: str | None = None
@@ -67,7 +67,7 @@ class Accessor(_Part):
 
 
 class Primitive(_Part):
-    """Triangles with one material."""
+    """The triangles of a mesh with one material."""
 
     attributes: Annotated[dict[Name, Index], Field(max_length=100)]
     indices: Index | None = None
@@ -75,64 +75,64 @@ class Primitive(_Part):
 
 
 class Mesh(_Part):
-    """What is drawn at a node."""
+    """A mesh, which nodes refer to."""
 
     primitives: Annotated[list[Primitive], Field(max_length=_MOST)]
 
 
 class Skin(_Part):
-    """Bones of a mesh, and what brings its vertices into their frames."""
+    """The bones of a mesh, and the matrices that transform its vertices into their frames."""
 
     joints: Annotated[list[Index], Field(min_length=1, max_length=MOST_NODES)]
     inverseBindMatrices: Index | None = None  # noqa: N815
 
 
 class Vrm0Bone(_Part):
-    """VRM 0: -1 for a bone that the model lacks."""
+    """A bone of VRM 0; its node is -1 if the model lacks the bone."""
 
     bone: Name
     node: Annotated[int, Field(ge=-1, lt=_MOST_NUMBER)]
 
 
 class Vrm0Humanoid(_Part):
-    """VRM 0: bones in a list."""
+    """The humanoid of VRM 0, with bones in a list."""
 
     humanBones: Annotated[list[Vrm0Bone], Field(max_length=200)]  # noqa: N815
 
 
 class Vrm0(_Part):
-    """The extension `VRM`."""
+    """The glTF extension `VRM` (VRM 0)."""
 
     humanoid: Vrm0Humanoid | None = None
 
 
 class Vrm1Bone(_Part):
-    """VRM 1.0."""
+    """A bone of VRM 1.0."""
 
     node: Index
 
 
 class Vrm1Humanoid(_Part):
-    """VRM 1.0: bones by name."""
+    """The humanoid of VRM 1.0, with bones by name."""
 
     humanBones: Annotated[dict[Name, Vrm1Bone], Field(max_length=200)]  # noqa: N815
 
 
 class Vrm1(_Part):
-    """The extension `VRMC_vrm`."""
+    """The glTF extension `VRMC_vrm` (VRM 1.0)."""
 
     humanoid: Vrm1Humanoid
 
 
 class Extensions(_Part):
-    """The humanoid's bones, by either version of VRM."""
+    """The extensions that map a humanoid's bones, of both versions of VRM."""
 
     vrm0: Vrm0 | None = Field(None, alias="VRM")
     vrm1: Vrm1 | None = Field(None, alias="VRMC_vrm")
 
 
 class Document(_Part):
-    """A file's JSON."""
+    """The JSON of a glTF file."""
 
     extensionsRequired: Annotated[list[Name], Field(max_length=200)] = []  # noqa: N815
     nodes: Annotated[list[Node], Field(max_length=MOST_NODES)] = []
@@ -149,7 +149,7 @@ _COMPRESSED = {"KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_mes
 
 
 def read_document(text: bytes) -> Document:
-    """The file's JSON; raises HumanoidFileError with the first thing that is wrong."""
+    """Parse the file's JSON; raise HumanoidFileError with the first problem."""
     try:
         document = _ADAPTER.validate_json(text)
     except ValidationError as error:

@@ -1,7 +1,7 @@
-"""The tree of a file's nodes: who hangs on whom, and where each is in the world.
+"""The tree of a file's nodes: the parent of each, and its position in the world.
 
 Source: Khronos, glTF 2.0 specification, section 3.5: matrices are column by column; a node without
-one is translation, rotation (x, y, z, w) and scale, applied from right to left.
+one has translation, rotation (x, y, z, w) and scale, applied from right to left.
 """
 
 from dataclasses import dataclass
@@ -31,9 +31,9 @@ class Tree:
     """All nodes of a file.
 
     Attributes:
-        names: each with a name of its own.
-        parents: index of the node above, -1 for those at the top.
-        order: every node after the one above it.
+        names: unique names.
+        parents: index of the parent, -1 for root nodes.
+        order: every node after its parent.
         world: (N, 4, 4) world_from_node.
     """
 
@@ -43,7 +43,7 @@ class Tree:
     world: FloatArray
 
     def line_up(self, node: int) -> list[int]:
-        """The node and all above it, upwards."""
+        """Return the node and all its ancestors, upwards."""
         line = []
         while node >= 0:
             line.append(node)
@@ -52,7 +52,7 @@ class Tree:
 
 
 def tree_of(document: Document) -> Tree:
-    """Hang the nodes; raises HumanoidFileError for a loop, or a node under two others."""
+    """Build the tree; raise HumanoidFileError for a cycle, or a node with two parents."""
     nodes = document.nodes
     parents = [-1] * len(nodes)
     for number, node in enumerate(nodes):
@@ -65,19 +65,19 @@ def tree_of(document: Document) -> Tree:
                 )
             parents[child] = number
     order = [number for number, parent in enumerate(parents) if parent < 0]
-    for number in order:  # grows while it is walked
+    for number in order:  # grows during the iteration
         order.extend(nodes[number].children)
     if len(order) < len(nodes):
         rest = sorted(set(range(len(nodes))) - set(order))
-        raise HumanoidFileError("The node hangs below itself.", f"nodes.{rest[0]}")
+        raise HumanoidFileError("The node is its own descendant.", f"nodes.{rest[0]}")
     return Tree(_names(nodes), tuple(parents), tuple(order), _world(nodes, parents, order))
 
 
 def rig_of(tree: Tree, wanted: set[int]) -> tuple[Rig, dict[int, int]]:
-    """Make a rig of some nodes and all above them.
+    """Make a rig of the given nodes and all their ancestors.
 
     Returns:
-        The rig, in metres as the file says, and node -> bone.
+        The rig, in metres as in the file, and node -> bone.
     """
     kept = {above for node in wanted for above in tree.line_up(node)}
     bones = [node for node in tree.order if node in kept]
@@ -88,7 +88,7 @@ def rig_of(tree: Tree, wanted: set[int]) -> tuple[Rig, dict[int, int]]:
     names = [tree.names[node] for node in bones]
     places = tree.world[bones, :3, 3]
     turns = _turns(tree.world[bones, :3, :3])
-    if first:  # several at the top hang on one of ours
+    if first:  # several root nodes get a common parent
         parents, names = [-1, *parents], [_ROOT, *names]
         places = np.vstack((np.zeros(3), places))
         turns = np.vstack((np.array((1.0, 0.0, 0.0, 0.0)), turns))
@@ -141,7 +141,7 @@ def _local(node: Node) -> FloatArray:
 
 
 def _turns(matrices: FloatArray) -> FloatArray:
-    """(N, 4) the rotations nearest to (N, 3, 3) matrices with any scale."""
+    """Return (N, 4) the rotations nearest to (N, 3, 3) matrices with any scale."""
     lengths = np.linalg.norm(matrices, axis=1, keepdims=True)
     left, _, right = np.linalg.svd(matrices / np.where(lengths > 0.0, lengths, 1.0))
     signs = np.ones((len(matrices), 3))

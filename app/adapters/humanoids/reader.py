@@ -1,8 +1,8 @@
-"""From the bytes of a glTF or VRM file to a humanoid in the T-pose.
+"""Read a glTF or VRM file as a humanoid in the T-pose.
 
-The reader is ours, as a body needs so little of a file (nodes, skins, places and weights of
-vertices), and as a file from anywhere must not be able to hurt: every index and size is held
-against what is there before anything is made of it.
+The parser is our own, because a body needs so little of a file (nodes, skins, positions and weights
+of vertices), and because an untrusted file must do no harm: every index and size is checked against
+the data before it is used.
 """
 
 from dataclasses import dataclass
@@ -24,28 +24,28 @@ MapSource = Literal["vrm", "names"]
 
 @dataclass(frozen=True)
 class Limits:
-    """How much a file may ask for before it is refused; real models stay far below."""
+    """Largest sizes of a file that are accepted; real models stay far below."""
 
     bytes: int = 256_000_000
     vertices: int = 2_000_000
     values: int = 60_000_000
-    """Numbers that are read altogether."""
+    """Largest total number of values."""
 
 
 @dataclass(frozen=True, eq=False)
 class ReadHumanoid:
-    """A model, and who said which bone is which body part."""
+    """A model, and how its bones were identified."""
 
     humanoid: Humanoid
     bones_by: MapSource
 
 
 def read_humanoid(data: bytes, limits: Limits | None = None) -> ReadHumanoid:
-    """Read a humanoid model from GLB, glTF with its buffers inside, or VRM 0.x and 1.0.
+    """Read a humanoid model from GLB, glTF with embedded buffers, or VRM 0.x and 1.0.
 
     Raises:
-        HumanoidFileError: the file cannot be read, with the place; or the model is no humanoid,
-            with the parts that are missing.
+        HumanoidFileError: the file cannot be read, with the place; or the model is not a humanoid,
+            with the missing parts.
     """
     most = Limits() if limits is None else limits
     if len(data) > most.bytes:
@@ -76,18 +76,18 @@ def _mesh(
         bones = named_bones(rig)
     else:
         bones = {part: bone_of[node] for part, node in mapped.items()}
-    # A mesh that follows no bone, such as a floor below the figure, is not skin.
+    # A mesh that follows no bone, such as a floor below the figure, is not part of the skin.
     owner = np.full(len(tree.names), -1, dtype=np.int64)
     for node in tree.order:
         above = tree.parents[node]
         owner[node] = bone_of.get(node, owner[above] if above >= 0 else -1)
     owners = owner[skin.nodes]
-    held = owners >= 0
-    return RiggedMesh(rig, bones, skin.places_m[held], owners[held])
+    owned = owners >= 0
+    return RiggedMesh(rig, bones, skin.places_m[owned], owners[owned])
 
 
 def _bone_nodes(document: Document, mapped: dict[str, int] | None) -> set[int]:
-    """Nodes that may be bones: those of skins and of VRM's map; all where there is neither."""
+    """Return the nodes that may be bones: those of skins and VRM's map, or all without either."""
     nodes = set() if mapped is None else set(mapped.values())
     nodes |= {
         joint for skin in document.skins for joint in skin.joints if joint < len(document.nodes)

@@ -1,11 +1,11 @@
-"""The skin at rest, in the world: where each vertex is, and which node moves it most.
+"""Compute the skin at rest in the world: each vertex, and the node that moves it most.
 
-A skinned vertex is the weighted sum of what its bones make of it,
+A skinned vertex is the weighted sum of its transformations by its bones,
 
     v_world = sum_k w_k  world_from_bone_k  bone_from_mesh_k  v,
 
-with the bones where the file has them at rest. A mesh without a skin follows its own node. Only
-vertices of triangles count: others are not drawn.
+with the bones in the file's rest pose. A mesh without a skin follows its own node. Only vertices of
+triangles count: others are not drawn.
 
 Source: Khronos, glTF 2.0 specification, section 3.7.3.
 """
@@ -25,12 +25,12 @@ _TRIANGLES = (4, 5, 6)
 _FARTHEST = 1e9
 _MOST_PRIMITIVES = 20_000
 _AT_ONCE = 65_536
-"""Vertices; each has a matrix while it is moved."""
+"""Vertices transformed together; each needs a matrix meanwhile."""
 
 
 @dataclass(frozen=True, eq=False)
 class SkinnedVertices:
-    """(V, 3) places in the world, and (V,) the node that moves each most."""
+    """(V, 3) positions in the world, and (V,) the node that moves each vertex most."""
 
     places_m: FloatArray
     nodes: IndexArray
@@ -43,7 +43,7 @@ class _Reader:
         self._primitives = 0
 
     def pieces(self) -> Iterator[SkinnedVertices]:
-        """Of every mesh at every node."""
+        """Yield the vertices of every mesh at every node."""
         for number, node in enumerate(self._document.nodes):
             if node.mesh is None:
                 continue
@@ -80,16 +80,16 @@ class _Reader:
         joints, weights = self._influences(primitive, len(points), place)
         if len(joints) and joints.max() >= len(bones.joints):
             raise HumanoidFileError(
-                f"A vertex hangs on bone {joints.max()} of {len(bones.joints)}.", place
+                f"A vertex refers to bone {joints.max()} of {len(bones.joints)}.", place
             )
-        held = used[weights[used].sum(axis=1) > 0.0]  # what hangs on nothing is nowhere
+        held = used[weights[used].sum(axis=1) > 0.0]  # a vertex without any weight has no position
         strongest = np.argmax(weights[held], axis=1)
         owners = np.array(bones.joints)[joints[held, strongest]]
         moved = _blended(points[held], joints[held], weights[held], matrices)
         yield _finite(SkinnedVertices(moved, owners), place)
 
     def _used(self, primitive: Primitive, count: int, place: str) -> IndexArray:
-        """Vertices that any triangle has, in ascending order."""
+        """Return the vertices that belong to any triangle, in ascending order."""
         if primitive.indices is None:
             return np.arange(count)
         used = np.unique(self._tables.whole(primitive.indices, "SCALAR"))
@@ -116,7 +116,7 @@ class _Reader:
     def _influences(
         self, primitive: Primitive, count: int, place: str
     ) -> tuple[IndexArray, FloatArray]:
-        """(N, 4 or 8) bones of the skin and weights, which add up to 1 or are all 0."""
+        """Return (N, 4 or 8) bones of the skin, and weights, which add up to 1 or are all 0."""
         joints, weights = [], []
         for more in range(2):
             if f"JOINTS_{more}" not in primitive.attributes:
@@ -133,7 +133,7 @@ class _Reader:
 
 
 def read_skin(document: Document, tree: Tree, tables: Tables, most: int) -> SkinnedVertices:
-    """Read all meshes, at most that many vertices; raises HumanoidFileError."""
+    """Read all meshes, with at most `most` vertices; raise HumanoidFileError."""
     pieces = list(_Reader(document, tree, tables, most).pieces())
     if not pieces:
         return SkinnedVertices(np.zeros((0, 3)), np.zeros(0, dtype=np.int64))

@@ -1,7 +1,7 @@
-"""Walks and scenes out of files: the floors people walk on, 2-D tracks, and fitted models.
+"""Read scenes, 2-D walking tracks and fitted walking models from files.
 
-This face offers scenes. `track_table` and `model_file` are imported by name, and only where tracks
-or models are wanted: a server starts without the science behind them.
+This package exports scenes only. `track_table` and `model_file` are imported separately, only where
+tracks or models are needed: a server starts without the science they depend on.
 """
 
 from app.adapters.walks.scene_file import load_scene, load_shipped, shipped_scenes

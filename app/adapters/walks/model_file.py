@@ -1,9 +1,9 @@
-"""A fitted walking model as a file: tables of its walks, and how it was fitted.
+"""Store a fitted walking model as a file: the tables of its walks, and how it was fitted.
 
-A NumPy archive without pickles: `header`, a JSON text, and the tables of the database. The space is
-not kept, since the seed makes it anew. The header has a hash over all the rest, so that a file that
-was cut or changed is refused. It is written beside its place and then moved there: whoever reads
-finds the old file or the new one, whole.
+The file is a NumPy archive without pickles: `header`, a JSON text, and the tables of the database.
+The space is not stored, because the seed reproduces it. The header contains a hash of everything
+else, so that a truncated or changed file is rejected. The file is written next to its destination
+and then moved there: a reader finds either the old or the new file, complete.
 """
 
 import hashlib
@@ -27,7 +27,7 @@ _TABLES = ("vectors", "deviations", "arrivals_s", "durations_s", "lengths_m")
 
 
 def write_model(path: Path, fit: FittedWalking, rules: FollowingRules) -> str:
-    """Write a model, whole or not at all; return its content hash. Raises OSError."""
+    """Write a model atomically and return its content hash; raise OSError."""
     tables = {name: np.ascontiguousarray(getattr(fit.database, name)) for name in _TABLES}
     header = _header(fit, rules)
     digest = content_hash(header, tables)
@@ -46,10 +46,10 @@ def write_model(path: Path, fit: FittedWalking, rules: FollowingRules) -> str:
 
 
 def read_model(path: Path) -> tuple[FittedWalking, FollowingRules, str]:
-    """Read a model, the rules its agents walk by, and its content hash.
+    """Read a model; return it with the rules its agents walk by, and its content hash.
 
     Raises:
-        WalkingError: the file is no model, of a later version, or damaged.
+        WalkingError: the file is not a model, of a later version, or damaged.
         OSError: it cannot be opened.
     """
     if path.stat().st_size > MOST_BYTES:
@@ -60,12 +60,12 @@ def read_model(path: Path) -> tuple[FittedWalking, FollowingRules, str]:
             tables = {name: archive[name] for name in _TABLES}
     except (ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
         raise WalkingError(
-            f"{path}: no model of how people walk ({error}); `./run walk fit` writes one."
+            f"{path}: not a walking model ({error}); `./run walk fit` writes one."
         ) from error
     _check_header(path, header)
     digest = str(header.pop("content_hash", ""))
     if digest != content_hash(header, tables):
-        raise WalkingError(f"{path}: damaged, its content is not what its hash says; fit it again.")
+        raise WalkingError(f"{path}: damaged, its content does not match its hash; fit it again.")
     try:
         return _fit_of(header, tables), FollowingRules(**header["rules"]), digest
     except (KeyError, TypeError) as error:
@@ -73,7 +73,7 @@ def read_model(path: Path) -> tuple[FittedWalking, FollowingRules, str]:
 
 
 def content_hash(header: dict[str, Any], tables: dict[str, Any]) -> str:
-    """SHA-256 over the header, without its own hash, and the tables."""
+    """Return the SHA-256 of the header, without its own hash, and the tables."""
     digest = hashlib.sha256(json.dumps(header, sort_keys=True).encode())
     for name in _TABLES:
         table = tables[name]
@@ -84,7 +84,7 @@ def content_hash(header: dict[str, Any], tables: dict[str, Any]) -> str:
 
 def _check_header(path: Path, header: object) -> None:
     if not isinstance(header, dict) or header.get("format") != FORMAT:
-        raise WalkingError(f"{path}: no model of how people walk.")
+        raise WalkingError(f"{path}: not a walking model.")
     if header.get("version") != VERSION:
         raise WalkingError(
             f"{path}: version {header.get('version')} of the format, this program reads {VERSION}."
@@ -140,11 +140,11 @@ def _fit_of(header: dict[str, Any], tables: dict[str, Any]) -> FittedWalking:
         ReadingScore(SuitabilityOptions(**one["options"]), one["crps_s"])
         for one in header["scores"]
     ]
-    told = header["static"]
+    stored = header["static"]
     static = StaticFit(
-        np.array(told["vector"]),
-        told["deviation"],
-        np.array(told["node"]),
-        told["node_deviation"],
+        np.array(stored["vector"]),
+        stored["deviation"],
+        np.array(stored["node"]),
+        stored["node_deviation"],
     )
     return restored(database, options, reading, scores, static)

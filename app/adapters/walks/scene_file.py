@@ -1,8 +1,8 @@
-"""Scene files (YAML or JSON): a floor with obstacles, places and the paths between them.
+"""Read scene files (YAML or JSON): a floor with obstacles, places and the paths between them.
 
     key: my-lab
     bounds_m: [-2, -2, 2, 4]          # left, near, right, far; x to the right, y ahead
-    clearance_m: 0.2                  # how far a walker's middle keeps from obstacles
+    clearance_m: 0.2                  # a walker's smallest distance from obstacles
     obstacles:
       - {shape: box, name: table, center_m: [0, 1], size_m: [1.2, 0.6], turned_deg: 10}
       - {shape: disc, name: pole, center_m: [1, 2], radius_m: 0.05}
@@ -12,7 +12,7 @@
     paths:
       - {name: there, from: start, to: goal}
 
-All problems of a file come at once, each with line, column and remedy.
+All problems of a file are reported together, each with line, column and remedy.
 """
 
 import json
@@ -30,20 +30,20 @@ _REMEDY = "Correct it: lengths are in metres, x to the right, y ahead."
 
 
 def shipped_scenes() -> dict[str, FilePath]:
-    """The files that come with the product, by their scenes' keys."""
+    """Return the shipped scene files, by their scenes' keys."""
     return {file.stem: file for file in sorted(SHIPPED.glob("*.yaml"))}
 
 
 def load_shipped(key: str) -> Scene:
-    """Read a scene that comes with the product; raises KeyError for another name."""
+    """Read a shipped scene; raise KeyError for an unknown key."""
     return load_scene(shipped_scenes()[key].read_text(encoding="utf-8"))
 
 
 def load_scene(text: str) -> Scene:
-    """Read a scene file.
+    """Parse a scene file.
 
     Raises:
-        ConfigError: with every problem of the file: unknown keys, values that are no numbers, an
+        ConfigError: with every problem of the file: unknown keys, values that are not numbers, an
             outline that is not convex, a place inside an obstacle, a path to an unknown place.
     """
     source = read_source(text)
@@ -52,7 +52,7 @@ def load_scene(text: str) -> Scene:
         problem = ConfigProblem("", 1, 1, "The file is not a mapping.", remedy=remedy)
         raise ConfigError([*source.problems, problem])
     try:
-        # By way of JSON: there a list may become a tuple, and still nothing else is converted.
+        # Validated as JSON, so that lists may become tuples but nothing else is converted.
         file = SceneFile.model_validate_json(json.dumps(source.tree))
     except ValidationError as error:
         found = explain(error, SceneFile.model_json_schema(), source)
@@ -65,7 +65,7 @@ def load_scene(text: str) -> Scene:
 
 
 def _scene(file: SceneFile, source: Source, problems: list[ConfigProblem]) -> Scene | None:
-    """Put the scene together, noting what science refuses at its place in the file."""
+    """Build the scene, recording each SceneError with its place in the file."""
     obstacles: list[Obstacle] = []
     for at, shape in enumerate(file.obstacles):
         try:
@@ -87,9 +87,9 @@ def _scene(file: SceneFile, source: Source, problems: list[ConfigProblem]) -> Sc
     for at, path in enumerate(paths):
         unknown = [place for place in (path.start, path.goal) if place not in places]
         if unknown or path.start == path.goal:
-            told = f"names {unknown[0]!r}" if unknown else "leads back to where it begins"
-            known = ", ".join(places) or "none"
-            refused = SceneError(f"Path {path.name!r} {told}; places are {known}.")
+            problem = f"names {unknown[0]!r}" if unknown else "ends where it begins"
+            valid = ", ".join(places) or "none"
+            refused = SceneError(f"Path {path.name!r} {problem}; places are {valid}.")
             problems.append(_at(("paths", at), refused, source))
     if problems:
         return None

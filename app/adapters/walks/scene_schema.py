@@ -1,4 +1,4 @@
-"""What a scene file may say, key by key; lengths in metres, angles in degrees."""
+"""The schema of scene files; lengths in metres, angles in degrees."""
 
 from typing import Annotated, Literal
 
@@ -26,16 +26,16 @@ class _Shape(_Strict):
     name: Name
 
     def corners(self) -> FloatArray:
-        """The outline, counter-clockwise."""
+        """Return the corners of the outline, counter-clockwise."""
         raise NotImplementedError
 
     def obstacle(self) -> Obstacle:
-        """The obstacle; raises SceneError for an outline that is none."""
+        """Return the obstacle; raise SceneError for an invalid outline."""
         return Obstacle(self.name, self.corners())
 
 
 class Box(_Shape):
-    """A rectangle of width and depth, turned counter-clockwise about its centre."""
+    """A rectangle of width and depth, rotated counter-clockwise about its centre."""
 
     shape: Literal["box"]
     center_m: Place
@@ -43,19 +43,19 @@ class Box(_Shape):
     turned_deg: Annotated[float, Field(ge=-360.0, le=360.0, allow_inf_nan=False)] = 0.0
 
     def corners(self) -> FloatArray:
-        """Its four corners."""
+        """Return the four corners of the rectangle."""
         return box_corners(self.center_m, self.size_m, self.turned_deg)
 
 
 class Disc(_Shape):
-    """Something round, such as a pole."""
+    """A round obstacle, such as a pole."""
 
     shape: Literal["disc"]
     center_m: Place
     radius_m: Size
 
     def corners(self) -> FloatArray:
-        """The polygon around it."""
+        """Return the corners of the polygon around the circle."""
         return disc_corners(self.center_m, self.radius_m)
 
 
@@ -68,23 +68,23 @@ class Wall(_Shape):
     thickness_m: Size
 
     def corners(self) -> FloatArray:
-        """Half of the thickness to each side."""
+        """Return the corners of the wall, with half of the thickness on each side."""
         return wall_corners(self.from_m, self.to_m, self.thickness_m)
 
 
 class Polygon(_Shape):
-    """Any convex outline, counter-clockwise."""
+    """A convex obstacle with the given corners, counter-clockwise."""
 
     shape: Literal["polygon"]
     corners_m: Annotated[tuple[Place, ...], Field(min_length=3, max_length=MOST_CORNERS)]
 
     def corners(self) -> FloatArray:
-        """The corners as given."""
+        """Return the corners as given."""
         return np.array(self.corners_m, dtype=np.float64)
 
 
 class Way(_Strict):
-    """A walk that people are asked for."""
+    """A path that participants are asked to walk."""
 
     name: Name
     start: Name = Field(alias="from")
@@ -92,7 +92,7 @@ class Way(_Strict):
 
 
 class SceneFile(_Strict):
-    """A scene file."""
+    """The content of a scene file."""
 
     key: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]{0,63}$")]
     title: Annotated[str, Field(max_length=200)] = ""
@@ -112,5 +112,5 @@ class SceneFile(_Strict):
 
 
 def point_of(place: Place) -> Point:
-    """A place as science takes it."""
+    """Convert a place to a point of `app.science.walking`."""
     return float(place[0]), float(place[1])

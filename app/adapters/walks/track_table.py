@@ -1,12 +1,12 @@
-"""Tracks on the floor out of text tables: CSV with a header, or columns as Juelich's archive has.
+"""Read tracks on the floor from text tables: CSV with a header, or columns as in Juelich's archive.
 
 A header names columns, in any case: `id` (or subject, person, participant, ped), `t`, `time`,
-`time_s`, `time_ms` or `frame`, and `x`, `y`, each of these two with a unit where it is not metres
-(`x_cm`, `y [mm]`). Other columns are left alone. Columns are parted by commas, semicolons, tabs or
+`time_s`, `time_ms` or `frame`, and `x`, `y`, each of these two with a unit if it is not metres
+(`x_cm`, `y [mm]`). Other columns are ignored. Columns are separated by commas, semicolons, tabs or
 spaces; lines beginning with # are comments, of which `framerate: 16` is read.
 
 Without a header the columns are id, frame, x, y (z) in centimetres, as in the trajectories of the
-pedestrian dynamics data archive of Juelich. Where time is a frame number, the rate must be known.
+pedestrian dynamics data archive of Juelich. If time is a frame number, the rate must be known.
 """
 
 import math
@@ -23,7 +23,7 @@ from app.science.walking.records import Kind, Track, WalkingError
 MOST_ROWS, MOST_PEOPLE = 5_000_000, 20_000
 LONGEST_GAP_S = 0.5
 FASTEST_M_S = 12.0
-"""Nobody's median speed; a faster track is in another unit."""
+"""Largest plausible median speed of a person; a faster track must be in another unit."""
 _UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 _IDS = ("id", "subject", "person", "participant", "ped", "pers_id", "agent")
 _TIMES = {"t": 1.0, "time": 1.0, "time_s": 1.0, "t_s": 1.0, "time_ms": 0.001, "t_ms": 0.001}
@@ -34,13 +34,13 @@ _RATE = re.compile(r"frame\s*rate\D*([0-9]+(?:\.[0-9]+)?)", re.IGNORECASE | re.A
 
 @dataclass(frozen=True)
 class TrackReading:
-    """What a user says about a table where the table does not.
+    """What a user specifies about a table because the table does not.
 
     Attributes:
-        rate_hz: frames a second, where time is a frame number.
-        metres_per_unit: of x and y; None to take the header's unit, else metres.
-        statures_m: subject to height.
-        kind: whether people walked or a program.
+        rate_hz: frame rate, if time is a frame number.
+        metres_per_unit: of x and y; None to use the header's unit, or else metres.
+        statures_m: stature by subject.
+        kind: whether people or a program walked.
     """
 
     rate_hz: float | None = None
@@ -51,7 +51,7 @@ class TrackReading:
 
 @dataclass(frozen=True)
 class _Layout:
-    """Which columns hold what, and their factors to SI; `person` is -1 where all are one."""
+    """The columns' indices and factors to SI; `person` is -1 if all rows are of one person."""
 
     person: int
     time: int
@@ -71,12 +71,12 @@ def read_tracks(data: bytes, *, name: str, reading: TrackReading = _AS_IT_IS) ->
 
     Args:
         data: the file.
-        name: of the file; tracks name it as their source.
-        reading: what the file does not say.
+        name: of the file, which becomes the source of the tracks.
+        reading: what the file does not specify.
 
     Raises:
-        CaptureError: with the line: a missing column, a cell that is no number, NaN, a person with
-            one sample only, times that do not grow, positions that are not in metres.
+        CaptureError: with the line: a missing column, a cell that is not a number, NaN, a person
+            with only one sample, times that do not increase, positions that are not in metres.
     """
     lines = list(text_lines(data))
     layout = _layout(lines, reading)
@@ -97,8 +97,8 @@ def read_tracks(data: bytes, *, name: str, reading: TrackReading = _AS_IT_IS) ->
 def _layout(lines: list[str], reading: TrackReading) -> _Layout:
     rate_hz, first = reading.rate_hz, 0
     while first < len(lines) and (not lines[first].strip() or lines[first].lstrip()[0] == "#"):
-        if rate_hz is None and (said := _RATE.search(lines[first])):
-            rate_hz = float(said.group(1))
+        if rate_hz is None and (stated := _RATE.search(lines[first])):
+            rate_hz = float(stated.group(1))
         first += 1
     if first == len(lines):
         raise CaptureError("the file is empty.")
@@ -123,8 +123,8 @@ def _named(
     if time is None:
         frame = next((cells.index(word) for word in _FRAMES if word in cells), None)
         if frame is None:
-            known = ", ".join((*_TIMES, *_FRAMES))
-            raise CaptureError(f"no column of time: name one of {known}.", line=at + 1)
+            valid = ", ".join((*_TIMES, *_FRAMES))
+            raise CaptureError(f"no column of time: name one of {valid}.", line=at + 1)
         time = (frame, _step_s(rate_hz, at))
     found: dict[str, tuple[int, float]] = {}
     for column, cell in enumerate(cells):
@@ -144,8 +144,7 @@ def _named(
 def _step_s(rate_hz: float | None, at: int) -> float:
     if rate_hz is None or not 0.0 < rate_hz < math.inf:
         raise CaptureError(
-            "time is a frame number, and how many frames a second there are is not said: give the"
-            " rate in hertz.",
+            "time is a frame number, but the frame rate is not specified: give the rate in hertz.",
             line=at + 1,
         )
     return 1.0 / rate_hz

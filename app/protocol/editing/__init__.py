@@ -1,4 +1,4 @@
-"""Changing single values of a configuration file's text; every other character stays as it is."""
+"""Change single values in the text of a configuration file, leaving the rest unchanged."""
 
 from app.protocol.editing.change import Change
 from app.protocol.editing.edit import edit_text

@@ -1,4 +1,4 @@
-"""What a form asks of a file's text: one value set, taken away, put into a list or moved in it."""
+"""A change requested by a form: set or remove a value, insert it into a list, or move it there."""
 
 import copy
 from dataclasses import dataclass
@@ -12,12 +12,12 @@ Action = Literal["set", "remove", "insert", "move"]
 
 @dataclass(frozen=True)
 class Change:
-    """One change.
+    """One change of a file's text.
 
     `path` leads to the value: keys and list positions from 0. "set" writes `value` there, whether
-    the key was there or not; "remove" takes key or list entry away; "insert" puts `value` into the
-    list before the position that ends the path (its length appends; a missing list is made);
-    "move" takes that list entry to the position `to`.
+    or not the key existed; "remove" deletes the key or list entry; "insert" puts `value` into the
+    list before the last position of the path (its length appends; a missing list is created);
+    "move" moves that list entry to the position `to`.
     """
 
     path: Path
@@ -27,7 +27,7 @@ class Change:
 
 
 def applied(tree: Plain, change: Change) -> Plain:
-    """The tree after the change, `tree` itself untouched. Raises ConfigError where it cannot be."""
+    """Return the changed tree, leaving `tree` unmodified; raise ConfigError if it is impossible."""
     after = copy.deepcopy(tree)
     if not change.path:
         raise _refusal(change, "The whole file cannot be changed at once.")
@@ -84,14 +84,14 @@ def _refusal(change: Change, message: str) -> ConfigError:
         [
             ConfigProblem(
                 path_text(change.path) or ".", 0, 0, message, change.action,
-                remedy="Look at the file again; it may have changed since the form was drawn.",
+                remedy="Reload the file; it may have changed since the form was shown.",
             )
         ]
     )  # fmt: skip
 
 
 def same(one: Plain, other: Plain) -> bool:
-    """Whether two trees say the same: 60 is 60.0, but 1 is not true."""
+    """Return whether two trees have the same meaning: 60 equals 60.0, but 1 does not equal true."""
     if isinstance(one, dict) and isinstance(other, dict):
         return list(one) == list(other) and all(same(one[key], other[key]) for key in one)
     if isinstance(one, list) and isinstance(other, list):

@@ -1,8 +1,8 @@
-"""Changes to a file's text that leave comments, order, quotes and indentation of the rest alone.
+"""Change a file's text while preserving comments, order, quotes and indentation elsewhere.
 
-Each change replaces the smallest stretch of text that holds the value. What comes out is read again
-and must say exactly what the change meant; where it does not (an unusual layout), the value around
-it is written anew, and so on outwards. So a change is right or refused, never nearly right.
+Each change replaces the smallest part of the text that contains the value. The result is parsed and
+must have exactly the intended content; if not (because of an unusual layout), the enclosing value
+is rewritten, and so on outwards. So a change is either correct or refused.
 """
 
 from collections.abc import Iterable, Iterator
@@ -15,10 +15,10 @@ from app.protocol.source import Path, Plain, path_text, read_source
 
 
 def edit_text(text: str, changes: Iterable[Change]) -> str:
-    """The text after the changes, one after the other.
+    """Return the text after the changes, applied one after the other.
 
-    Raises ConfigError for a text that is not readable or over the limits of `read_source`, and for
-    a change that does not fit it.
+    Raises ConfigError for a text that cannot be parsed or exceeds the limits of `read_source`, and
+    for a change that is impossible in it.
     """
     tree = read_source(text).tree
     for change in changes:
@@ -42,7 +42,7 @@ def _changed(text: str, change: Change, wanted: Plain) -> str:
         [
             ConfigProblem(
                 path_text(change.path), line, 1, "This place cannot be changed from a form.",
-                remedy="Change it in the text: its layout or its length leaves no other way.",
+                remedy="Change it in the text, because of its layout or its length.",
             )
         ]
     )  # fmt: skip

@@ -1,7 +1,7 @@
-"""Where each value of a YAML text begins and ends, so that one can be replaced alone.
+"""Locate the start and end of each value of a YAML text, so that it can be replaced alone.
 
-The end of a value is the end of its last character: trailing comments and blank lines belong to
-nobody and stay. Offsets count characters of the text from 0.
+A value ends with its last character: trailing comments and blank lines belong to no value and are
+preserved. Offsets count characters of the text from 0.
 """
 
 from collections.abc import Iterator
@@ -16,10 +16,11 @@ _NO_MARK = yaml.Mark("", 0, 0, 0, None, 0)
 
 @dataclass
 class Span:
-    """A value in the text. `column` counts from 0; `style` is the quote or block sign of a scalar.
+    """The location of a value in the text.
 
-    `lead`: where its place begins: after the colon of its key, or after the dash of its entry.
-    `own`: where its key or its dash stands.
+    `column` counts from 0; `style` is the quotation mark or block indicator of a scalar. `lead`:
+    where its slot begins: after the colon of its key, or after the dash of its entry. `own`: the
+    position of its key or its dash.
     """
 
     start: int
@@ -35,11 +36,11 @@ class Span:
 
     @property
     def children(self) -> list["Span"]:
-        """Its values in the order of the file."""
+        """The spans of its values, in file order."""
         return self.items if self.kind == "list" else list(self.entries.values())
 
     def at(self, path: Path) -> "Span | None":
-        """The span that the path leads to, if there is one."""
+        """Return the span at the path, or None if there is none."""
         span: Span | None = self
         for part in path:
             if span is None:
@@ -52,7 +53,10 @@ class Span:
 
 
 def spans_of(text: str) -> Span:
-    """The span of the document with all spans within; `text` must have passed `read_source`."""
+    """Return the span of the document with all nested spans.
+
+    `text` must have passed `read_source`.
+    """
     events = yaml.parse(text, Loader=yaml.SafeLoader)
     next(events)
     next(events)
@@ -95,12 +99,12 @@ class _Reader:
             colon = self.text.find(":", _end(event))
             value = self.node(next(self.events))
             value.own, value.lead = (event.start_mark or _NO_MARK).index, colon + 1
-            # Of a doubled key the first one counts, as in `read_source`.
+            # The first of duplicate keys counts, as in `read_source`.
             span.entries.setdefault(key, value)
         return event
 
     def _dash(self, after: int, item: Span, column: int) -> int:
-        """The dash of a block entry: in the column of its list, between its neighbour and it."""
+        """Return the position of a block entry's dash, in the column of its list."""
         line = self.text.rfind("\n", 0, item.start + 1) + 1
         while line > after:
             at = line + column

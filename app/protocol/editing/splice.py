@@ -1,4 +1,4 @@
-"""One change as one replacement in the text. None where the layout is too unusual for that."""
+"""Apply one change as one replacement in the text, unless the layout is too unusual."""
 
 from app.protocol.editing.change import Change
 from app.protocol.editing.spans import Span
@@ -7,7 +7,7 @@ from app.protocol.source import Path, Plain
 
 
 def spliced(text: str, root: Span, change: Change) -> str | None:
-    """The text after the change, or None if it cannot be made by one replacement."""
+    """Return the text after the change, or None if one replacement is not enough."""
     *_, last = change.path
     parent = root.at(change.path[:-1])
     span = root.at(change.path)
@@ -54,7 +54,7 @@ def _replace(text: str, span: Span, value: Plain, *, in_flow: bool) -> str:
 
 
 def _indent(text: str, span: Span) -> int:
-    """Where lines below the key or dash of the value begin."""
+    """Return the column of lines below the key or dash of the value."""
     column = span.own - (text.rfind("\n", 0, span.own) + 1)
     if span.kind in ("map", "list") and not span.flow and span.column > column:
         return span.column
@@ -87,7 +87,10 @@ def _insert(text: str, root: Span, change: Change, parent: Span | None) -> str |
 
 
 def _in_brackets(text: str, parent: Span | None, change: Change) -> str | None:
-    """An entry of a mapping in braces; lists in brackets are written anew."""
+    """Change an entry of a mapping in braces.
+
+    Return None for lists in brackets, which are rewritten.
+    """
     if parent is None or parent.kind != "map" or not parent.entries:
         return None
     key = str(change.path[-1])
@@ -104,7 +107,7 @@ def _in_brackets(text: str, parent: Span | None, change: Change) -> str | None:
 
 
 def _cut(text: str, parent: Span, span: Span) -> str:
-    """Without the lines of the entry; where it shares its first with a dash, up to the next key."""
+    """Remove the lines of the entry, or only up to the next key if it follows a dash."""
     start = _line_start(text, span.own)
     if not text[start : span.own].strip():
         return text[:start] + text[_line_end(text, span.end) + 1 :]
@@ -113,7 +116,7 @@ def _cut(text: str, parent: Span, span: Span) -> str:
 
 
 def _moved(text: str, parent: Span, change: Change) -> str | None:
-    """Whole entries change places, each with the comments above it."""
+    """Reorder whole entries, each with the comments above it."""
     at = change.path[-1]
     starts = [_line_start(text, one.own) for one in parent.items]
     ends = [_line_end(text, one.end) for one in parent.items]

@@ -1,4 +1,4 @@
-"""Values as YAML text: on one line where that reads well, else as an indented block."""
+"""Format values as YAML text: on one line if that is readable, otherwise as an indented block."""
 
 import json
 import textwrap
@@ -13,7 +13,7 @@ _RESOLVER = yaml.SafeLoader("")
 
 
 def inline(value: Plain) -> str:
-    """The value on one line, in flow style; words are quoted only where they must be."""
+    """Format the value on one line, in flow style, quoting words only if necessary."""
     if isinstance(value, dict):
         return "{" + ", ".join(f"{_word(key)}: {inline(one)}" for key, one in value.items()) + "}"
     if isinstance(value, list):
@@ -22,7 +22,7 @@ def inline(value: Plain) -> str:
 
 
 def scalar(value: Plain, style: str | None = None) -> str:
-    """A scalar on one line outside of brackets, in the quotes it had if it may keep them."""
+    """Format a scalar on one line outside brackets, keeping its previous quotes if possible."""
     if not isinstance(value, str):
         return _plain(value)
     if style == '"' or "\n" in value:
@@ -33,9 +33,10 @@ def scalar(value: Plain, style: str | None = None) -> str:
 
 
 def block(value: Plain, indent: int, style: str | None = None) -> list[str]:
-    """The value as lines behind a key or a dash: the first goes behind it, the others below.
+    """Format the value as lines after a key or a dash.
 
-    The others come with their `indent`. `style`: that of the scalar that stood there.
+    The first line belongs on the line of the key or dash; the others, below, include their
+    `indent`. `style`: that of the scalar that is replaced.
     """
     if isinstance(value, str):
         return _text(value, indent, style)
@@ -48,13 +49,16 @@ def block(value: Plain, indent: int, style: str | None = None) -> list[str]:
 
 
 def entry(key: str, value: Plain, indent: int) -> list[str]:
-    """Lines of a mapping's entry, all with their `indent`."""
+    """Format a mapping's entry as lines, all including their `indent`."""
     first, *rest = block(value, indent + 2)
     return [" " * indent + f"{_word(key)}:" + (f" {first}" if first else ""), *rest]
 
 
 def item(value: Plain, indent: int, *, spread: bool = False) -> list[str]:
-    """Lines of a list's entry, all with their `indent`; `spread`: a key a line, however short."""
+    """Format a list's entry as lines, all including their `indent`.
+
+    `spread`: one key per line, however short.
+    """
     first, *rest = block(value, indent + 2)
     if spread and isinstance(value, dict) and value:
         first, rest = "", _lines(value, indent + 2)
@@ -70,7 +74,7 @@ def _lines(value: dict[str, Plain] | list[Plain], indent: int) -> list[str]:
 
 
 def _is_flat(value: dict[str, Plain] | list[Plain]) -> bool:
-    """Whether it holds nothing but short words, or mappings of them such as labels."""
+    """Return whether it contains only short words, or mappings of them such as labels."""
     inner = value.values() if isinstance(value, dict) else value
     return all(
         not (isinstance(one, dict | list) or (isinstance(one, str) and "\n" in one))
@@ -109,7 +113,7 @@ def _word(value: str) -> str:
 
 
 def _quoted(value: str) -> str:
-    """In double quotes, with all line breaks that YAML knows written as escapes."""
+    """Quote a text with double quotes, escaping all line breaks that YAML recognises."""
     escaped = json.dumps(value, ensure_ascii=False)
     for mark in ("\x7f", "\x85", "\u2028", "\u2029", "\ufeff"):
         escaped = escaped.replace(mark, f"\\u{ord(mark):04x}")
@@ -117,7 +121,10 @@ def _quoted(value: str) -> str:
 
 
 def _reads_back(text: str, wanted: Plain, word: str | None = None) -> bool:
-    """Whether the text says just that, to us and (for a `word`) to readers of YAML 1.1 too."""
+    """Return whether the text is parsed as `wanted`.
+
+    A bare `word` must also be read as text by parsers of YAML 1.1.
+    """
     if word is not None and (word != word.strip() or not word or _is_special(word)):
         return False
     try:
@@ -127,6 +134,6 @@ def _reads_back(text: str, wanted: Plain, word: str | None = None) -> bool:
 
 
 def _is_special(word: str) -> bool:
-    """Whether readers of YAML 1.1 take the bare word for something else, such as no for false."""
+    """Return whether YAML 1.1 gives the bare word another meaning, such as false for no."""
     tag: str = _RESOLVER.resolve(yaml.ScalarNode, word, (True, False))  # type: ignore[no-untyped-call]  # PyYAML
     return tag != "tag:yaml.org,2002:str"

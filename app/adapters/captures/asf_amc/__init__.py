@@ -1,4 +1,4 @@
-"""Acclaim's pair of files: ASF holds a skeleton, AMC its movement."""
+"""Acclaim's pair of files: ASF contains a skeleton, AMC its movement."""
 
 from app.adapters.captures.asf_amc.reader import read_asf_amc
 

@@ -1,4 +1,4 @@
-"""Reading an ASF: sections that begin with a colon, and bones between begin and end."""
+"""Parse an ASF: sections that begin with a colon, and bones between begin and end."""
 
 import numpy as np
 
@@ -10,10 +10,10 @@ _ORDERS = frozenset({"XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"})
 
 
 def read_asf(data: bytes, limits: Limits) -> Acclaim:
-    """Read an ASF.
+    """Parse an ASF.
 
     Raises:
-        CaptureError: with the line, where its grammar or a limit is broken.
+        CaptureError: with the line, if the grammar or a limit is violated.
     """
     out = Acclaim()
     readers = {":units": _units, ":root": _root, ":bonedata": _bones, ":hierarchy": _hierarchy}

@@ -1,4 +1,4 @@
-"""AMC: the rows of an Acclaim movement, one line for each bone in each frame.
+"""Parse AMC: the rows of an Acclaim movement, one line for each bone in each frame.
 
 1
 root 10.4194 16.7048 -30.1003 -2.48972 -9.82194 -3.00914
@@ -28,13 +28,13 @@ class Rows:
 
 
 def read_amc(data: bytes, skeleton: Acclaim, limits: Limits) -> Rows:
-    """Read the rows; a bone without a line in a frame keeps its last values.
+    """Parse the rows; a bone without a line in a frame keeps its previous values.
 
     Raises:
-        CaptureError: with the line, where a bone is unknown or its values do not fit its dof.
+        CaptureError: with the line, if a bone is unknown or its values do not match its dof.
     """
     moving = {b.name: b for b in (skeleton.root, *skeleton.bones.values()) if b.channels}
-    # A frame becomes a quaternion for each bone, moving or not.
+    # A frame is stored as one quaternion for each bone, moving or not.
     width = max(sum(len(b.channels) for b in moving.values()), 4 * (len(skeleton.bones) + 1))
     values = {name: array("d") for name in moving}
     told = {name: bytearray() for name in moving}
@@ -110,7 +110,10 @@ def _bone_row(
 
 
 def rotations_of(skeleton: Acclaim, rows: Rows) -> tuple[FloatArray, BoolArray]:
-    """Rotations (N, J, 4), parent_from_joint = C M C^-1, and whether each was in the file."""
+    """Return rotations (N, J, 4), and whether each was in the file.
+
+    They are parent_from_joint = C M C^-1.
+    """
     order = skeleton.order()
     rotations = identity(rows.frames, len(order))
     observed: BoolArray = np.ones((rows.frames, len(order)), np.bool_)
@@ -127,7 +130,7 @@ def rotations_of(skeleton: Acclaim, rows: Rows) -> tuple[FloatArray, BoolArray]:
 
 
 def root_positions(skeleton: Acclaim, rows: Rows) -> FloatArray:
-    """Places of the root (N, 3) in the file's unit."""
+    """Return the positions of the root (N, 3) in the file's unit."""
     columns = [skeleton.root.channels.index(axis) for axis in ("TX", "TY", "TZ")]
     places: FloatArray = rows.values["root"][:, columns] + np.array(skeleton.position)
     return places

@@ -1,4 +1,4 @@
-"""From an AMC and its ASF to a skeleton's movement."""
+"""Read an AMC and its ASF as the movement of a skeleton."""
 
 from pathlib import PurePosixPath
 
@@ -18,24 +18,24 @@ from app.adapters.captures.text import first_lines
 from app.science.rig import RigMotion
 
 RATE_HZ = 120.0
-"""AMC names no rate; the CMU captures, where nearly all such files come from, have this one."""
+"""AMC specifies no frame rate; this is that of the CMU captures, the source of nearly all AMCs."""
 _ASF_SECTIONS = (":version", ":name", ":units", ":documentation", ":root", ":bonedata")
 
 
 def read_asf_amc(data: bytes, *, name: str, reading: Reading, limits: Limits) -> Capture:
-    """Read an AMC; its skeleton is the companion whose name ends in .asf.
+    """Read an AMC; its skeleton is the companion file whose name ends in .asf.
 
     Args:
         data: the AMC.
         name: its name, such as "02_01.amc", for messages.
-        reading: `companions` must hold the ASF; a unit or upward axis goes before the file's.
-        limits: how much the files may ask for.
+        reading: `companions` must contain the ASF; a unit or upward axis overrides the file's.
+        limits: the largest sizes that are accepted.
 
     Returns:
         The movement of a rig whose joints are where the bones begin (see `skeleton`).
 
     Raises:
-        CaptureError: the ASF is not there, `data` is itself one, or either cannot be read.
+        CaptureError: the ASF is missing, `data` is itself one, or either cannot be read.
     """
     if _is_skeleton(data):
         raise CaptureError(
@@ -61,9 +61,11 @@ def read_asf_amc(data: bytes, *, name: str, reading: Reading, limits: Limits) ->
 
 def _skeleton(data: bytes, name: str, reading: Reading, limits: Limits) -> tuple[str, Acclaim]:
     companion, asf = _skeleton_file(name, reading)
-    for told, content in ((name, data), (companion, asf)):
+    for file, content in ((name, data), (companion, asf)):
         if len(content) > limits.bytes:
-            raise CaptureError(f"{told} has {len(content)} bytes: up to {limits.bytes} are read.")
+            raise CaptureError(
+                f"{file} has {len(content)} bytes: at most {limits.bytes} are valid."
+            )
     try:
         return companion, read_asf(asf, limits)
     except CaptureError as error:

@@ -1,13 +1,13 @@
-"""ASF: the skeleton of an Acclaim pair.
+"""The skeleton of an Acclaim pair, as defined by the ASF.
 
-A bone has a direction and a length in the world of the zero pose, an `axis` C in which its
-movement is given, and the turns it can make (`dof`). With M the turn an AMC row gives, the bone
-turns in its parent by C M C^-1. All frames are aligned with the world in the zero pose, so that
-pose is this rig's rest, and its rotations are the identity.
+A bone has a direction and a length in the world of the zero pose, an `axis` C in which its movement
+is given, and its rotational degrees of freedom (`dof`). With M the rotation that an AMC row gives,
+the bone rotates in its parent by C M C^-1. All frames are aligned with the world in the zero pose,
+so that pose is the rest pose of this rig, and its rotations are the identity.
 
-A joint of ours is where a bone begins, and has that bone's name: "ltibia" is the left knee and
-"lfemur" the left hip. That is also how the BVH conversions of the CMU captures place their joints
-(LeftLeg, LeftUpLeg), so places can be compared name by name.
+A joint of our rig is where a bone begins, and has that bone's name: "ltibia" is the left knee and
+"lfemur" the left hip. The BVH conversions of the CMU captures place their joints (LeftLeg,
+LeftUpLeg) in the same way, so positions can be compared name by name.
 """
 
 from dataclasses import dataclass, field
@@ -25,7 +25,11 @@ _INCH_M = 0.0254
 
 @dataclass
 class Bone:
-    """One bone: vector in the file's unit, axis angles in radians, turns such as ("RX", "RZ")."""
+    """One bone of an ASF.
+
+    Its vector is in the file's unit, its axis angles are in radians; channels are such as ("RX",
+    "RZ").
+    """
 
     name: str = ""
     direction: Vector | None = None
@@ -36,7 +40,7 @@ class Bone:
 
 @dataclass
 class Acclaim:
-    """What an ASF says; bones in its order, parents by the name of the bone, "root" the first."""
+    """The content of an ASF: bones in file order, parents by bone name, "root" as the root."""
 
     length_unit: float = 1.0
     degrees: bool = True
@@ -47,7 +51,10 @@ class Acclaim:
 
     @property
     def metres_per_unit(self) -> float:
-        """One inch divided by the number after `length`: 0.056444 m in the CMU files."""
+        """The length of a unit: one inch divided by the number after `length`.
+
+        In the CMU files this is 0.056444 m.
+        """
         return _INCH_M / self.length_unit
 
     def rig(self, metres_per_unit: float) -> Rig:
@@ -73,7 +80,7 @@ class Acclaim:
         )
 
     def order(self) -> tuple[str, ...]:
-        """The root, then every bone after its parent."""
+        """Return the names of the root and the bones, every bone after its parent."""
         children: dict[str, list[str]] = {}
         for child, parent in self.parents.items():
             children.setdefault(parent, []).append(child)
@@ -92,7 +99,10 @@ class Acclaim:
 
 
 def turn(order: str, angles: FloatArray, *, degrees: bool, line: int) -> FloatArray:
-    """Rotations (..., 4) about the fixed axes `order`, the first letter first: "XYZ" = Rz Ry Rx."""
+    """Return rotations (..., 4) about the fixed axes `order`, first letter first.
+
+    For example, "XYZ" is Rz Ry Rx.
+    """
     if not np.isfinite(angles).all():
         raise CaptureError("an angle is not finite.", line=line)
     radians = np.radians(angles) if degrees else angles

@@ -1,4 +1,4 @@
-"""Lines of words, as both Acclaim files consist of."""
+"""Split the text of both Acclaim files into lines of words."""
 
 import math
 from collections.abc import Iterator
@@ -19,7 +19,7 @@ class Line:
 
 
 class Lines:
-    """The lines of a text, with one given back where a section ends."""
+    """The lines of a text; the line that ends a section is returned again."""
 
     def __init__(self, data: bytes) -> None:
         self._lines = (
@@ -30,12 +30,12 @@ class Lines:
         self._kept: Line | None = None
 
     def next(self) -> Line | None:
-        """The next line, None at the end."""
+        """Return the next line, or None at the end."""
         line, self._kept = self._kept or next(self._lines, None), None
         return line
 
     def section(self) -> Iterator[Line]:
-        """The lines up to the next one that begins with a colon."""
+        """Yield the lines before the next one that begins with a colon."""
         while (line := self.next()) is not None:
             if line.words[0].startswith(":"):
                 self._kept = line
@@ -44,7 +44,7 @@ class Lines:
 
 
 def number(line: Line, place: int, wanted: str) -> float:
-    """Read the word at a place as a finite number of a sane size."""
+    """Parse the word at a position as a finite number of plausible size."""
     word = line.words[place] if len(line.words) > place else ""
     try:
         value = float(word)
@@ -56,5 +56,5 @@ def number(line: Line, place: int, wanted: str) -> float:
 
 
 def numbers(line: Line, first: int, count: int) -> list[float]:
-    """Read `count` numbers from the place `first` on."""
+    """Parse `count` numbers from the position `first`."""
     return [number(line, place, "a number") for place in range(first, first + count)]

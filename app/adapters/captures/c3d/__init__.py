@@ -1,4 +1,4 @@
-"""C3D: the binary file of marker systems since 1987."""
+"""C3D, the binary format of optical marker systems since 1987."""
 
 from app.adapters.captures.c3d.reader import read_c3d
 

@@ -1,8 +1,8 @@
-"""Names of the points of a C3D file.
+"""Name the points of a C3D file.
 
-Labels of the older systems hold four characters, so "RKNE" may stand there for two markers whose
-descriptions tell them apart. Vicon puts `Subject:` before each label, and lists what it computed
-(angles, forces) among the points; a list of its own says which these are.
+Labels of older systems have four characters, so "RKNE" may be the label of two markers with
+different descriptions. Vicon writes `Subject:` before each label, and lists computed values
+(angles, forces) among the points; separate lists say which these are.
 """
 
 from collections import Counter
@@ -15,7 +15,7 @@ _COMPUTED = ("ANGLES", "FORCES", "MOMENTS", "POWERS", "SCALARS", "REACTIONS", "M
 def names_and_places(
     parameters: Parameters, points: int
 ) -> tuple[tuple[str, ...], list[int], tuple[str, ...]]:
-    """Return names, the number of the point each belongs to, and notes on what was done."""
+    """Return the markers' names, the index of each marker's point, and notes."""
     labels = parameters.texts("POINT", "LABELS")[:points]
     notes: list[str] = []
     if len(labels) < points:
@@ -33,9 +33,9 @@ def names_and_places(
     names = [labels[place] for place in kept]
     if _repeat(names):
         described = parameters.texts("POINT", "DESCRIPTIONS")[:points]
-        told = [described[place] if place < len(described) else "" for place in kept]
-        if all(told) and not _repeat(told):
-            names = told
+        descriptions = [described[place] if place < len(described) else "" for place in kept]
+        if all(descriptions) and not _repeat(descriptions):
+            names = descriptions
             notes.append("Labels repeat, so the markers are named by their descriptions.")
     names, prefixed = _without_prefix(names)
     if prefixed:
@@ -53,8 +53,8 @@ def _without_prefix(names: list[str]) -> tuple[list[str], str]:
     if not subjects:
         return names, ""
     if len(subjects) > 1 and _repeat(bare):
-        told = ", ".join(sorted(subjects)[:5])
-        return names, f"The file holds several subjects ({told}), so markers keep their prefixes."
+        listed = ", ".join(sorted(subjects)[:5])
+        return names, f"The file holds several subjects ({listed}), so markers keep their prefixes."
     return bare, ""
 
 
@@ -64,7 +64,7 @@ def _repeat(names: list[str]) -> bool:
 
 
 def _unlike(names: list[str]) -> tuple[str, ...]:
-    """Number what is still called alike: "RKNE", "RKNE (2)"."""
+    """Number duplicate names: "RKNE", "RKNE (2)"."""
     counts: Counter[str] = Counter()
     used = set(names)
     out: list[str] = []

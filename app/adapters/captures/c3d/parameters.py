@@ -1,13 +1,13 @@
-"""The parameter section of a C3D file: named values in named groups.
+"""Parse the parameter section of a C3D file: named values in named groups.
 
 Source: C3D file format user guide, www.c3d.org. Each record is: length of the name (negative when
 locked), group id (negative when the record is the group itself), name, offset to the next record,
 then for parameters the type, the dimensions, the values and a description.
 
-Three families of computers wrote the numbers of such files. Intel writes the lowest byte first and
-MIPS the highest. A DEC VAX writes the two halves of a 4-byte number in the other order than Intel,
-and its exponent counts from 128 with the mantissa in [0.5, 1), so that the same bits mean a quarter
-of what IEEE 754 reads.
+Such files were written on three families of processors. Intel writes the lowest byte first and MIPS
+the highest. A DEC VAX writes the two halves of a 4-byte number in the opposite order to Intel, and
+its exponent has a bias of 128 with the mantissa in [0.5, 1), so that the same bits mean a quarter
+of their value in IEEE 754.
 """
 
 import math
@@ -26,7 +26,7 @@ _SIZES = {-1: 1, 1: 1, 2: 2, 4: 4}
 
 @dataclass(frozen=True)
 class Processor:
-    """One way to write numbers: `order` as numpy spells it, `vax` for DEC's real numbers."""
+    """A binary number format: `order` as a numpy byte order, `vax` for DEC's real numbers."""
 
     name: str
     order: str
@@ -34,22 +34,22 @@ class Processor:
 
     @property
     def integer(self) -> np.dtype[np.int16]:
-        """The type of a signed 16-bit integer."""
+        """The numpy type of a signed 16-bit integer."""
         return np.dtype(f"{self.order}i2")
 
     def reals(self, data: bytes) -> npt.NDArray[np.float32]:
-        """Read consecutive 4-byte numbers."""
+        """Decode consecutive 4-byte real numbers."""
         if not self.vax:
             return np.frombuffer(data, f"{self.order}f4").astype(np.float32)
         return vax_reals(np.frombuffer(data, "<u2").reshape(-1, 2))
 
     def integers(self, data: bytes) -> npt.NDArray[np.int16]:
-        """Read consecutive signed 16-bit integers."""
+        """Decode consecutive signed 16-bit integers."""
         return np.frombuffer(data, self.integer)
 
 
 def vax_reals(halves: npt.NDArray[np.uint16]) -> npt.NDArray[np.float32]:
-    """Turn pairs of 16-bit halves (..., 2), the high one first, into numbers (...)."""
+    """Decode pairs of 16-bit halves (..., 2), the high one first, as numbers (...)."""
     bits = halves[..., 0].astype(np.uint32) << 16 | halves[..., 1].astype(np.uint32)
     with np.errstate(invalid="ignore"):
         quarter: npt.NDArray[np.float32] = bits.view(np.float32) * np.float32(0.25)
@@ -65,7 +65,7 @@ _BY_CODE = {84: INTEL, 85: DEC, 86: MIPS}
 
 
 def processor_of(code: int) -> Processor:
-    """Return the processor a parameter section names; raises CaptureError for any other code."""
+    """Return the processor with this code; raise CaptureError for an unknown code."""
     if code not in _BY_CODE:
         raise CaptureError(
             f"the parameter section names processor {code}: 84 (Intel), 85 (DEC) and 86 (MIPS)"
@@ -76,7 +76,10 @@ def processor_of(code: int) -> Processor:
 
 @dataclass(frozen=True)
 class Parameter:
-    """One parameter: type -1 text, 1 byte, 2 integer, 4 real; sizes, first one fastest; bytes."""
+    """One parameter, with its raw bytes.
+
+    Types are -1 text, 1 byte, 2 integer, 4 real; the first of the dimensions varies fastest.
+    """
 
     type: int
     sizes: tuple[int, ...]
@@ -84,7 +87,7 @@ class Parameter:
     processor: Processor
 
     def numbers(self) -> list[float]:
-        """All values in order; none for a text."""
+        """Return all values in order; an empty list for text."""
         if self.type == 4:
             return [float(value) for value in self.processor.reals(self.data)]
         if self.type == 2:
@@ -92,7 +95,7 @@ class Parameter:
         return [float(value) for value in self.data] if self.type == 1 else []
 
     def texts(self) -> list[str]:
-        """The texts without the blanks that fill them up; none for numbers."""
+        """Return the texts without padding; an empty list for numbers."""
         if self.type != -1:
             return []
         width = self.sizes[0] if self.sizes else len(self.data)
@@ -103,28 +106,28 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Parameters:
-    """The values of a file by (group, name), both in capitals."""
+    """The parameters of a file by (group, name), both in capitals."""
 
     processor: Processor
     values: dict[tuple[str, str], Parameter]
 
     def number(self, group: str, name: str) -> float | None:
-        """The first value, None where there is none or it is no number."""
+        """Return the first value; None if there is none or it is not a finite number."""
         numbers = self.numbers(group, name)
         return numbers[0] if numbers and math.isfinite(numbers[0]) else None
 
     def numbers(self, group: str, name: str) -> list[float]:
-        """All values, none where the parameter is absent."""
+        """Return all values; an empty list if the parameter is missing."""
         found = self.values.get((group, name))
         return found.numbers() if found else []
 
     def text(self, group: str, name: str) -> str | None:
-        """The first text, None where there is none."""
+        """Return the first text; None if there is none."""
         texts = self.texts(group, name)
         return texts[0] if texts else None
 
     def texts(self, group: str, name: str) -> list[str]:
-        """All texts, also those continued in NAME2, NAME3, ... past the 255 of one list."""
+        """Return all texts, including those beyond the first 255, in NAME2, NAME3, ..."""
         texts: list[str] = []
         for number in range(1, 100):
             found = self.values.get((group, name if number == 1 else f"{name}{number}"))
@@ -135,10 +138,10 @@ class Parameters:
 
 
 def read_parameters(data: bytes) -> Parameters:
-    """Read the section that the header's first byte points at.
+    """Parse the section that the header's first byte points to.
 
     Raises:
-        CaptureError: it lies outside the file, or a record reaches past its end.
+        CaptureError: it is outside the file, or a record extends past its end.
     """
     start = (data[0] - 1) * BLOCK
     if start < BLOCK or start + 4 > len(data):

@@ -1,8 +1,9 @@
-"""The points of a C3D file: where each frame lies in the file, and what its numbers mean.
+"""Locate and decode the points of a C3D file.
 
-A frame holds x, y, z and a fourth word for each point, then the analogue samples. With a positive
-scale all are 16-bit integers and a place is scale times the integer; with a negative one they are
-4-byte real numbers, already scaled. The fourth word is negative where the point was not seen.
+A frame contains x, y, z and a fourth word for each point, then the analogue samples. With a
+positive scale all are 16-bit integers and a coordinate is the scale times the integer; with a
+negative one they are 4-byte real numbers, already scaled. The fourth word is negative if the point
+was not visible.
 """
 
 import struct
@@ -17,7 +18,7 @@ from app.science.rotations import FloatArray
 
 @dataclass(frozen=True)
 class Layout:
-    """Where the frames are: bytes are counted from the start of the file."""
+    """The location and format of the frames; bytes count from the start of the file."""
 
     processor: Processor
     points: int
@@ -35,10 +36,10 @@ class Layout:
 
 
 def layout(data: bytes, parameters: Parameters, limits: Limits) -> Layout:
-    """Work out where the frames are, and check that they are there before any is read.
+    """Determine where the frames are, and check that the file contains them.
 
     Raises:
-        CaptureError: header and parameters describe no frames, or more than the file holds.
+        CaptureError: header and parameters describe no frames, or more than the file contains.
     """
     processor = parameters.processor
     points, analogue, first, last, _ = struct.unpack_from(f"{processor.order}5H", data, 2)
@@ -50,7 +51,7 @@ def layout(data: bytes, parameters: Parameters, limits: Limits) -> Layout:
     if not np.isfinite(scale) or scale == 0.0:
         raise CaptureError(f"the header's scale is {scale}: the file is damaged.")
     if not 1 <= points <= limits.tracks:
-        raise CaptureError(f"the header tells of {points} markers: 1 to {limits.tracks} are read.")
+        raise CaptureError(f"the header declares {points} markers: 1 to {limits.tracks} are valid.")
     start = (block - 1) * BLOCK
     frame_bytes = (4 * points + analogue) * (4 if scale < 0.0 else 2)
     if not BLOCK <= start < len(data):
@@ -62,20 +63,25 @@ def layout(data: bytes, parameters: Parameters, limits: Limits) -> Layout:
 
 
 def _frames(
-    parameters: Parameters, first: int, last: int, held: int
+    parameters: Parameters, first: int, last: int, present: int
 ) -> tuple[int, tuple[str, ...]]:
-    """The number of frames: several places tell it, and 16 bits are too few for long captures."""
-    told = [
+    """Return the number of frames, and notes if the file is inconsistent.
+
+    Several fields state it, because 16 bits are too few for long captures.
+    """
+    stated = [
         _trial_frames(parameters),
         int(parameters.number("POINT", "LONG_FRAMES") or 0),
         int(parameters.number("POINT", "FRAMES") or 0) % 65536,
         last - first + 1,
     ]
-    claims = [frames for frames in told if frames > 0]
-    fitting = [frames for frames in claims if frames <= held]
+    claims = [frames for frames in stated if frames > 0]
+    fitting = [frames for frames in claims if frames <= present]
     if not fitting:
         claim = f"{claims[0]} frames" if claims else "no frames"
-        raise CaptureError(f"the file tells of {claim} and holds {held}: it is cut off or damaged.")
+        raise CaptureError(
+            f"the file declares {claim} but contains {present}: it is truncated or damaged."
+        )
     if len(set(claims)) == 1:
         return fitting[0], ()
     listed = ", ".join(str(frames) for frames in claims)
@@ -87,7 +93,10 @@ def _frames(
 
 
 def _trial_frames(parameters: Parameters) -> int:
-    """From TRIAL:ACTUAL_START_FIELD and _END_FIELD, 32-bit numbers as two 16-bit halves."""
+    """Return the number of frames by TRIAL:ACTUAL_START_FIELD and ACTUAL_END_FIELD, or 0.
+
+    Each is a 32-bit number as two 16-bit halves.
+    """
     ends = []
     for name in ("ACTUAL_START_FIELD", "ACTUAL_END_FIELD"):
         halves = [int(half) % 65536 for half in parameters.numbers("TRIAL", name)]
@@ -98,7 +107,7 @@ def _trial_frames(parameters: Parameters) -> int:
 
 
 def read_points(data: bytes, at: Layout, kept: list[int]) -> FloatArray:
-    """Return the kept points (N, M, 3) in the file's unit, NaN where one was not seen."""
+    """Return the kept points (N, M, 3) in the file's unit, NaN where one was not visible."""
     shape, word = (at.frames, at.points, 4), 4 if at.real else 2
     if at.real and at.processor.vax:
         halves: np.ndarray[tuple[int, ...], np.dtype[np.uint16]] = np.ndarray(
@@ -113,7 +122,7 @@ def read_points(data: bytes, at: Layout, kept: list[int]) -> FloatArray:
         with np.errstate(invalid="ignore"):
             raw = table[:, kept].astype(np.float64)
     places: FloatArray = raw[..., :3] if at.real else raw[..., :3] * at.scale
-    # Some writers leave the fourth word at zero and put the unseen marker at the very origin.
+    # Some programs leave the fourth word at zero and place invisible markers exactly at the origin.
     unseen = ~(raw[..., 3] >= 0.0) | ~np.isfinite(places).all(-1) | (places == 0.0).all(-1)
     places[unseen] = np.nan
     return places

@@ -1,7 +1,7 @@
-"""From the bytes of a C3D file to markers.
+"""Read the markers of a C3D file.
 
-We read the few parts we need ourselves: every size is held against the file's length before any
-memory is asked for, which the compiled readers do not promise for a file from a stranger.
+We parse the few required parts ourselves: every size is checked against the file's length before
+memory is allocated, which compiled readers do not guarantee for untrusted files.
 """
 
 import numpy as np
@@ -25,16 +25,17 @@ _MAGIC = 0x50
 
 
 def read_c3d(data: bytes, *, name: str, reading: Reading, limits: Limits) -> Capture:
-    """Read the markers of a C3D file; analogue channels and events are left out.
+    """Read the markers of a C3D file, without analogue channels and events.
 
     Args:
-        data: the file; `name` is its name, for messages.
-        name: see `data`.
-        reading: a unit or upward axis that goes before what the file says.
-        limits: how much the file may ask for.
+        data: the file.
+        name: its name, for messages.
+        reading: a unit or upward axis that overrides the file's.
+        limits: the largest sizes that are accepted.
 
     Raises:
-        CaptureError: the file is no C3D, damaged, cut off, or holds no marker that was ever seen.
+        CaptureError: the file is not C3D, damaged, truncated, or contains no marker that was ever
+            visible.
     """
     _check_begin(data, name, limits)
     parameters = read_parameters(data)
@@ -64,7 +65,7 @@ def read_c3d(data: bytes, *, name: str, reading: Reading, limits: Limits) -> Cap
 
 
 def gaps_note(seen: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]) -> tuple[str, ...]:
-    """Say how much of the markers, (N, M) seen or not, is missing."""
+    """Describe the share of missing positions of the markers, (N, M) visible or not."""
     missing = 1.0 - float(seen.mean())
     if missing == 0.0:
         return ()

@@ -1,4 +1,4 @@
-"""Which tracks of a take are read: a skeleton before rigid bodies before markers."""
+"""Choose the tracks of a take to read: a skeleton, else rigid bodies, else markers."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -12,10 +12,10 @@ from app.adapters.captures.motive.hierarchy import asset_of, bone_names, bone_pa
 
 @dataclass(frozen=True)
 class Chosen:
-    """The tracks to read, under the names they get.
+    """The tracks to read, and their names.
 
     Attributes:
-        kind: what they are together.
+        kind: of all the tracks together.
         tracks, names: in file order.
         parents: of a skeleton's bones, -1 for the root.
         notes: what was left out.
@@ -29,10 +29,10 @@ class Chosen:
 
 
 def choose(head: Head, limits: Limits) -> Chosen:
-    """Choose what the take is about.
+    """Choose the tracks of the take to read.
 
     Raises:
-        CaptureError: nothing in the file moves, names repeat, or there is too much.
+        CaptureError: nothing in the file moves, names are duplicated, or there are too many tracks.
     """
     bones = [t for t in head.tracks if t.kind.lower() == "bone" and t.placed and t.turned]
     bodies = [t for t in head.tracks if t.kind.lower() == "rigid body" and t.placed and t.turned]
@@ -53,7 +53,7 @@ def choose(head: Head, limits: Limits) -> Chosen:
 
 
 def _skeleton(bones: Sequence[Track], *, local: bool) -> Chosen:
-    """The first skeleton of the take."""
+    """Return the bones of the take's first skeleton."""
     assets = list(dict.fromkeys(asset_of(bone) for bone in bones))
     own = [bone for bone in bones if asset_of(bone) == assets[0]]
     notes = (
@@ -85,13 +85,13 @@ def _markers(placed: Sequence[Track], line: int) -> Chosen:
 
 
 def _numbered(names: Sequence[str]) -> tuple[str, ...]:
-    """Markers found again after a gap may carry one name twice: the later ones get a number."""
+    """Number duplicate names: a marker found again after a gap may have the same name."""
     seen: Counter[str] = Counter()
-    told = []
+    unique = []
     for name in names:
         seen[name] += 1
-        told.append(name if seen[name] == 1 else f"{name} ({seen[name]})")
-    return tuple(told)
+        unique.append(name if seen[name] == 1 else f"{name} ({seen[name]})")
+    return tuple(unique)
 
 
 def _with_rest(chosen: Chosen, tracks: Sequence[Track]) -> Chosen:
@@ -99,11 +99,11 @@ def _with_rest(chosen: Chosen, tracks: Sequence[Track]) -> Chosen:
     counts = Counter(track.kind.lower() for track in tracks if id(track) not in kept)
     if not counts:
         return chosen
-    told = ", ".join(f"{count} x {kind}" for kind, count in counts.items())
+    listed = ", ".join(f"{count} x {kind}" for kind, count in counts.items())
     return Chosen(
         chosen.kind,
         chosen.tracks,
         chosen.names,
         chosen.parents,
-        (*chosen.notes, f"Left out: {told}."),
+        (*chosen.notes, f"Left out: {listed}."),
     )

@@ -1,7 +1,7 @@
-"""A take's conventions: when its rows were, and its unit of length.
+"""Determine the timing and the unit of length of a take.
 
-Rows are placed by frame and rate, since the times in the file are rounded. The unit is told by the
-settings, else it is what makes the numbers a room's.
+Rows are timed by frame number and rate, because the times in the file are rounded. The unit is
+taken from the settings, or else chosen so that the positions fit into a room.
 """
 
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from app.adapters.captures.motive.values import TakeValues
 from app.adapters.captures.units import chosen_length
 
 _AGREES = 0.02
-_TOLD = {
+_UNITS = {
     "meters": ("m", 1.0),
     "centimeters": ("cm", 0.01),
     "millimeters": ("mm", 0.001),
@@ -26,11 +26,13 @@ _TOLD = {
 
 @dataclass(frozen=True, eq=False)
 class Timing:
-    """Attributes:
-    rate_hz: frames a second of the grid.
-    slots: (N,) place of each row on an even grid from 0; frames that are missing leave gaps.
-    rate: the convention.
-    notes: about rates and missing frames.
+    """The timing of a take's rows.
+
+    Attributes:
+        rate_hz: frame rate of the grid.
+        slots: (N,) index of each row on a regular grid from 0; missing frames leave gaps.
+        rate: the convention.
+        notes: about rates and missing frames.
     """
 
     rate_hz: float
@@ -45,13 +47,14 @@ class Timing:
 
 
 def time_rows(head: Head, values: TakeValues, limits: Limits) -> Timing:
-    """Put the rows on an even grid.
+    """Map the rows to a regular grid.
 
-    The rate is the export's or the capture's, whichever the times confirm; where neither fits, the
-    times decide.
+    The rate is that of the export or of the capture, whichever matches the times; if neither does,
+    it is computed from the times.
 
     Raises:
-        CaptureError: no rate is told and the times do not tell one, or frames are missing by far.
+        CaptureError: no rate is given or can be computed from the times, or too many frames are
+            missing.
     """
     steps = np.diff(values.frames)
     step = float(np.min(steps)) if steps.size else 1.0
@@ -68,43 +71,45 @@ def time_rows(head: Head, values: TakeValues, limits: Limits) -> Timing:
 
 def _rate(head: Head, values: TakeValues, slots: npt.NDArray[np.int64]) -> tuple[float, list[str]]:
     export, capture = head.rate("export frame rate"), head.rate("capture frame rate")
-    told = [rate for rate in (export, capture) if rate is not None]
+    stated = [rate for rate in (export, capture) if rate is not None]
     span = float(values.times_s[-1] - values.times_s[0])
     by_times = float(slots[-1]) / span if np.isfinite(span) and span > 0.0 else None
     notes = []
     if export and capture and abs(export - capture) > _AGREES * capture:
         notes.append(f"Captured at {capture:g} Hz, exported at {export:g} Hz.")
     if by_times is None or not 0.01 <= by_times <= 1e5:
-        if not told:
-            raise CaptureError("neither the settings nor the times tell the frame rate.")
-        return told[0], notes
-    for rate in told:
+        if not stated:
+            raise CaptureError("neither the settings nor the times give the frame rate.")
+        return stated[0], notes
+    for rate in stated:
         if abs(rate - by_times) <= max(_AGREES * by_times, by_times * 2e-3 / span):
             return rate, notes
-    if told:
-        notes.append(f"The times tell {by_times:.4g} Hz, the settings {told[0]:g} Hz.")
+    if stated:
+        notes.append(f"The times give {by_times:.4g} Hz, the settings {stated[0]:g} Hz.")
     return by_times, notes
 
 
 def length_of(head: Head, values: TakeValues, reading: Reading) -> tuple[float, Convention]:
-    """Return metres per unit, and who says so.
+    """Return metres per unit, and the origin of that value.
 
     Raises:
-        CaptureError: the settings tell a unit that does not exist.
+        CaptureError: the settings name an unknown unit.
     """
-    said = chosen_length(reading)
-    if said is not None and reading.metres_per_unit is not None:
-        return reading.metres_per_unit, said
-    told = head.settings.get("length units", "").lower()
-    if told:
-        if told not in _TOLD:
-            raise CaptureError(f"length units {told[:40]!r}: {', '.join(_TOLD)} are valid.", line=1)
-        name, scale = _TOLD[told]
+    chosen = chosen_length(reading)
+    if chosen is not None and reading.metres_per_unit is not None:
+        return reading.metres_per_unit, chosen
+    unit = head.settings.get("length units", "").lower()
+    if unit:
+        if unit not in _UNITS:
+            raise CaptureError(
+                f"length units {unit[:40]!r}: {', '.join(_UNITS)} are valid.", line=1
+            )
+        name, scale = _UNITS[unit]
         return scale, Convention(name, "file")
-    # People and props are seen between the floor and 3 m, so that the 90th percentile tells.
-    known = np.abs(values.places[np.isfinite(values.places)])
-    typical = float(np.percentile(known, 90)) if known.size else 1.0
-    name, scale = _TOLD[
+    # People and props are between the floor and 3 m, so the 90th percentile reveals the unit.
+    distances = np.abs(values.places[np.isfinite(values.places)])
+    typical = float(np.percentile(distances, 90)) if distances.size else 1.0
+    name, scale = _UNITS[
         "meters" if typical < 12 else "centimeters" if typical < 400 else "millimeters"
     ]
     return scale, Convention(name, "guessed")

@@ -1,4 +1,4 @@
-"""What stands above the numbers of a Motive CSV: the take's settings and what each column is."""
+"""Parse the head of a Motive CSV: the take's settings, and the meaning of each column."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -9,7 +9,7 @@ _LABELS = frozenset({"type", "name", "id", "parent"})
 _MEASURED = frozenset({"rotation", "position"})
 _AXES = frozenset("XYZW")
 _MOST_HEAD_ROWS = 24
-_MOST_CELLS = 40  # a track; rotation, place and quality of a rigid body take eight
+_MOST_CELLS = 40  # per track; rotation, position and quality of a rigid body take eight
 _Row = tuple[int, list[str]]
 
 
@@ -25,12 +25,12 @@ class Track:
 
     @property
     def placed(self) -> bool:
-        """Whether all three coordinates are there."""
+        """Whether the columns of all three coordinates exist."""
         return set(self.place) == set("XYZ")
 
     @property
     def turned(self) -> bool:
-        """Whether a whole rotation is there: Euler angles or a quaternion."""
+        """Whether the columns of a complete rotation exist: Euler angles or a quaternion."""
         return set(self.turn) in ({*"XYZ"}, {*"XYZW"})
 
 
@@ -44,11 +44,11 @@ class Head:
 
     @property
     def local(self) -> bool:
-        """Whether bones are seen from their parents instead of from the world."""
+        """Whether bones are given relative to their parents instead of the world."""
         return self.settings.get("coordinate space", "").lower() == "local"
 
     def rate(self, key: str) -> float | None:
-        """A frame rate in Hz; None where it is absent or no rate."""
+        """Return a frame rate in Hz; None if it is missing or invalid."""
         try:
             value = float(self.settings.get(key, ""))
         except ValueError:
@@ -57,10 +57,10 @@ class Head:
 
 
 def read_head(rows: Iterator[_Row], limits: Limits) -> Head:
-    """Read up to and including the row that begins with "Frame".
+    """Parse up to and including the row that begins with "Frame".
 
     Raises:
-        CaptureError: the row is missing, or columns do not name what they hold.
+        CaptureError: the row is missing, or columns are not labelled.
     """
     _, first = next(rows, (0, []))
     settings = {
@@ -110,7 +110,7 @@ def _columns(track: Track, what: str) -> dict[str, int]:
 def _head_rows(
     above: list[_Row], line: int
 ) -> tuple[Sequence[str], Sequence[str], Sequence[str], Sequence[str]]:
-    """Find the rows of types, names, kinds and parents: by label, else by their order."""
+    """Find the rows of types, names, kinds and parents: by label, or else by their order."""
     by_label = {_cell(row, 1).lower(): row for _, row in above if _cell(row, 1).lower() in _LABELS}
     if len(above) < 3:
         raise CaptureError(

@@ -1,7 +1,7 @@
-"""Which bone hangs on which: told by the file from version 1.25 on, known by name before.
+"""Determine the parents of bones: named in the file from version 1.25 on, known by name before.
 
-Motive names bones in its own way (Hip, Ab, Chest, LUArm) or, if so chosen at export, as FBX does
-(Hips, Spine, LeftArm). A skeleton's root carries the asset's name, `Asset:Asset`.
+Motive has its own bone names (Hip, Ab, Chest, LUArm) or, if selected at export, those of FBX (Hips,
+Spine, LeftArm). A skeleton's root has the asset's name, `Asset:Asset`.
 """
 
 from collections.abc import Mapping, Sequence
@@ -45,7 +45,7 @@ def _fbx_side(s: str) -> dict[str, str]:
     return {**arm, f"{s}Hand": f"{s}ForeArm", **fingers, **leg}
 
 
-KNOWN_PARENTS: Mapping[str, str] = {
+MOTIVE_PARENTS: Mapping[str, str] = {
     "Ab": ROOT,
     "Chest": "Ab",
     "Neck": "Chest",
@@ -64,12 +64,12 @@ FBX_PARENTS: Mapping[str, str] = {
 
 
 def asset_of(track: Track) -> str:
-    """The skeleton a bone belongs to: `Asset:Bone`."""
+    """Return the skeleton of a bone, whose name is `Asset:Bone`."""
     return track.name.partition(":")[0]
 
 
 def bone_names(bones: Sequence[Track]) -> list[str]:
-    """The bones without their asset; the root, `Asset:Asset`, is the hip."""
+    """Return the bones' names without their asset; the root, `Asset:Asset`, becomes the hip."""
     names = []
     for bone in bones:
         asset, _, name = bone.name.partition(":")
@@ -78,26 +78,29 @@ def bone_names(bones: Sequence[Track]) -> list[str]:
 
 
 def bone_parents(bones: Sequence[Track], names: Sequence[str]) -> list[int] | None:
-    """Index of each bone's parent, -1 for the root; None where the file and we do not know it."""
+    """Return the index of each bone's parent, -1 for the root.
+
+    None if the file does not name the parents and a bone's name is unknown.
+    """
     index = {bone.name: joint for joint, bone in enumerate(bones)}
     if all(bone.parent for bone in bones):
         return [index.get(bone.parent, -1) for bone in bones]
     by_name = {name: joint for joint, name in enumerate(names)}
-    known = FBX_PARENTS if "LeftArm" in by_name or "Spine" in by_name else KNOWN_PARENTS
-    parents = [-1 if name == ROOT else by_name.get(known.get(name, ""), -2) for name in names]
+    table = FBX_PARENTS if "LeftArm" in by_name or "Spine" in by_name else MOTIVE_PARENTS
+    parents = [-1 if name == ROOT else by_name.get(table.get(name, ""), -2) for name in names]
     return None if -2 in parents else parents
 
 
 def parents_first(parents: Sequence[int], names: Sequence[str], limits: Limits) -> list[int]:
-    """Order bones so that a parent precedes its children, else as in the file.
+    """Order bones so that a parent precedes its children, otherwise as in the file.
 
     Raises:
-        CaptureError: several roots or none, a circle, or bones nested too deep.
+        CaptureError: several roots or none, a cycle, or bones nested too deeply.
     """
     roots = [joint for joint, parent in enumerate(parents) if parent < 0]
     if len(roots) != 1:
-        told = ", ".join(names[joint] for joint in roots) or "none"
-        raise CaptureError(f"a skeleton has one root bone, this one has: {told}.")
+        listed = ", ".join(names[joint] for joint in roots) or "none"
+        raise CaptureError(f"a skeleton has one root bone, this one has: {listed}.")
     children: dict[int, list[int]] = {}
     for joint, parent in enumerate(parents):
         children.setdefault(parent, []).append(joint)

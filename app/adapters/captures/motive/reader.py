@@ -1,4 +1,4 @@
-"""From a Motive CSV to a capture: its skeleton, else its rigid bodies, else its markers."""
+"""Read a Motive CSV as a capture: its skeleton, else its rigid bodies, else its markers."""
 
 from collections.abc import Iterator
 
@@ -59,8 +59,8 @@ def read_motive(data: bytes, *, name: str, reading: Reading, limits: Limits) -> 
         rotations=values.turned_by,
         rate=timing.rate,
     )
-    told = (*chosen.notes, *timing.notes, *notes, *_length_notes(head, len(values.lines)))
-    return Capture("motive-csv", motion, conventions, told)
+    all_notes = (*chosen.notes, *timing.notes, *notes, *_length_notes(head, len(values.lines)))
+    return Capture("motive-csv", motion, conventions, all_notes)
 
 
 def _skeleton(
@@ -84,12 +84,12 @@ def _skeleton(
 
 
 def _bodies(chosen: Chosen, values: TakeValues, timing: Timing, places_m: FloatArray) -> BodyMotion:
-    gone = unseen(places_m, values.rotations)[..., np.newaxis]
+    missing = unseen(places_m, values.rotations)[..., np.newaxis]
     return BodyMotion(
         names=chosen.names,
         times_s=timing.slots / timing.rate_hz,
-        positions_m=np.where(gone, np.nan, places_m),
-        rotations=np.where(gone, np.nan, values.rotations),
+        positions_m=np.where(missing, np.nan, places_m),
+        rotations=np.where(missing, np.nan, values.rotations),
     )
 
 
@@ -102,7 +102,7 @@ def _on_grid(values: FloatArray, timing: Timing) -> FloatArray:
 
 
 def _length_notes(head: Head, rows: int) -> list[str]:
-    told = head.settings.get("total exported frames", "")
-    if told.isascii() and told.isdecimal() and len(told) < 16 and int(told) != rows:
-        return [f"The settings tell {told} exported frames, the file has {rows}."]
+    stated = head.settings.get("total exported frames", "")
+    if stated.isascii() and stated.isdecimal() and len(stated) < 16 and int(stated) != rows:
+        return [f"The settings state {stated} exported frames, the file has {rows}."]
     return []

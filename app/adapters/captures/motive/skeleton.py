@@ -1,9 +1,9 @@
-"""A Motive skeleton's bones as a rig: offsets from how bones lie to each other as they move.
+"""Convert a Motive skeleton's bones to a rig, with offsets computed from their movement.
 
-In Motive's T-pose every bone's axes are the world's, so the rest rotations are identities and the
-offset of a bone, in its parent's frame, is its offset in the T-pose. The solver lets bones stretch
-a little; the median over the take is the bone. While a skeleton was not seen, it goes on between
-the frames around the gap.
+In Motive's T-pose the axes of every bone are the world's, so the rest rotations are identities and
+the offset of a bone, in its parent's frame, is its offset in the T-pose. The solver lets bones
+stretch a little; the median over the take is used as the offset. While a skeleton was not visible,
+its movement is interpolated between the frames around the gap.
 """
 
 from collections.abc import Sequence
@@ -28,13 +28,13 @@ def skeleton_motion(
     *,
     local: bool,
 ) -> tuple[RigMotion, list[str]]:
-    """Make a rig of bones (N, J), parents first, seen from the world or each from its parent.
+    """Make a rig of bones (N, J), parents first, given in the world or relative to their parents.
 
     Returns:
         The movement, and notes on gaps and on bones that stretch.
 
     Raises:
-        CaptureError: a bone is never seen.
+        CaptureError: a bone is never visible.
     """
     seen = ~unseen(places_m, rotations)
     _check_seen(names, seen)
@@ -84,8 +84,8 @@ def _stretch_notes(
         apart = np.linalg.norm(places_m - motion.rig.offsets_m, axis=-1)
         apart[:, 0] = 0.0
     else:
-        told, _ = place(motion.rig, motion.root_positions_m, motion.rotations)
-        apart = np.linalg.norm(places_m - told, axis=-1)
+        modelled, _ = place(motion.rig, motion.root_positions_m, motion.rotations)
+        apart = np.linalg.norm(places_m - modelled, axis=-1)
     apart = np.where(seen, apart, 0.0)
     worst = float(apart.max())
     if worst < _NOTICEABLE_M:
@@ -97,25 +97,29 @@ def _stretch_notes(
 
 
 def _fill_places(places: FloatArray, seen: BoolArray) -> FloatArray:
-    """Carry places (N, 3) over gaps in a straight line; before and after, the nearest holds."""
+    """Interpolate positions (N, 3) linearly over gaps.
+
+    At both ends the nearest position is used.
+    """
     if seen.all():
         return places
-    known, frames = np.flatnonzero(seen), np.arange(len(seen))
+    visible, frames = np.flatnonzero(seen), np.arange(len(seen))
     return np.stack(
-        [np.interp(frames, known, places[known, axis]) for axis in range(places.shape[1])], axis=-1
+        [np.interp(frames, visible, places[visible, axis]) for axis in range(places.shape[1])],
+        axis=-1,
     )
 
 
 def _fill_rotations(rotations: FloatArray, seen: BoolArray) -> FloatArray:
-    """Carry rotations (N, 4) over gaps by the shorter turn at constant speed."""
+    """Interpolate rotations (N, 4) over gaps by the shorter rotation at constant speed."""
     if seen.all():
         return rotations
-    known, missing = np.flatnonzero(seen), np.flatnonzero(~seen)
-    after = np.searchsorted(known, missing)
-    before = known[np.clip(after - 1, 0, len(known) - 1)]
-    behind = known[np.clip(after, 0, len(known) - 1)]
-    span = np.maximum(behind - before, 1)
+    visible, missing = np.flatnonzero(seen), np.flatnonzero(~seen)
+    index = np.searchsorted(visible, missing)
+    before = visible[np.clip(index - 1, 0, len(visible) - 1)]
+    after = visible[np.clip(index, 0, len(visible) - 1)]
+    span = np.maximum(after - before, 1)
     fraction = np.clip((missing - before) / span, 0.0, 1.0)
     filled = rotations.copy()
-    filled[missing] = slerp(rotations[before], rotations[behind], fraction)
+    filled[missing] = slerp(rotations[before], rotations[after], fraction)
     return filled

@@ -1,4 +1,4 @@
-"""The numbers of chosen tracks of a Motive CSV, as places and rotations."""
+"""Read the numbers of the chosen tracks of a Motive CSV as positions and rotations."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -22,8 +22,8 @@ class TakeValues:
         lines: (N,) line of each row.
         frames: (N,) the file's frame numbers.
         times_s: (N,) the file's times, rounded to a millisecond or so.
-        places: (N, T, 3) in the file's unit, NaN where not seen.
-        rotations: (N, T, 4) wxyz, NaN where not seen; T = 0 where tracks have none.
+        places: (N, T, 3) in the file's unit, NaN where not visible.
+        rotations: (N, T, 4) wxyz, NaN where not visible; T = 0 if tracks have none.
         turned_by: the convention of the rotations.
     """
 
@@ -83,12 +83,12 @@ def _rotations(
         return unit_rotations(cells, table.lines, names), Convention(
             "quaternion x, y, z, w", "file"
         )
-    told = head.settings.get("rotation type", "").upper()
-    order = told if told in _ORDERS else "XYZ"
+    stated = head.settings.get("rotation type", "").upper()
+    order = stated if stated in _ORDERS else "XYZ"
     angles = np.nan_to_num(np.fmod(cells, 360.0))[..., ["XYZ".index(axis) for axis in order]]
     q = from_euler(order, np.radians(angles))
     unseen = np.isnan(cells).any(axis=-1, keepdims=True)
-    origin = Convention(f"Euler {order}, degrees", "file" if told in _ORDERS else "guessed")
+    origin = Convention(f"Euler {order}, degrees", "file" if stated in _ORDERS else "guessed")
     return np.where(unseen, np.nan, q), origin
 
 
