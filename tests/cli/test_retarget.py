@@ -185,7 +185,7 @@ def test_a_map_that_does_not_fit_is_refused(clip: Path, tmp_path: Path) -> None:
     path = tmp_path / "map.json"
     for told, reason in (
         ({"Hips": "Pelvis"}, "no joint 'Pelvis'"),
-        ({"Hips": "Hips", "Tail": "Spine"}, "no body joint"),
+        ({"Hips": "Hips", "Tail": "Spine"}, "not a joint of the body"),
         (["Hips"], "one object"),
         ({"Hips": 3}, "one object"),
     ):

@@ -1,18 +1,20 @@
-"""From a client's monotonic clock to the server's, with a bound for every moment.
+"""Map a client's monotonic clock to the server's clock, with an error bound for every moment.
 
-Clients stamp everything with their own clock and exchange probes with the server. `fit_clock` maps
-the one on the other:
+Clients timestamp everything with their own clock and exchange clock probes with the server.
+`fit_clock` maps client times to server times:
 
-1. each probe bounds the offset from both sides, whatever the two ways took (`probes`);
-2. all lines between the bounds of a window of minutes are a polygon that is known exactly: what
-   any of them says of a moment bounds the truth (`band`);
-3. where no line is left a clock jumped, or a single probe is wrong (`windows`);
-4. the line that is told is fitted to the probes with the shortest round trips (`band`);
-5. windows without a jump between them join to one unbroken course (`stretch`), and these are put on
-   one time line of the server (`placing`);
-6. the mapping never falls and says how far it can be off (`mapping`).
+1. each probe bounds the clock offset from above and below, however its two ways share the round
+trip (`probes`);
+2. all straight lines between the bounds of a window of a few minutes form a polygon that is known
+exactly; at any moment, the values of these lines bound the true offset (`band`);
+3. where no line fits, either a clock jumped or a single probe is wrong (`windows`);
+4. the line that is reported is fitted mainly to the probes with the shortest round trips (`band`);
+5. windows without a jump between them are joined to one continuous curve of the offset (`stretch`),
+and the stretches are placed on one time line of the server (`placing`);
+6. the mapping never decreases, and states its uncertainty at every moment (`mapping`).
 
-The bound holds on asymmetric paths too, as long as the clocks keep to `ClockLimits`.
+The bound also holds on asymmetric network paths, provided that the clocks stay within
+`ClockLimits`.
 """
 
 from app.science.clock.fit import fit_clock

@@ -1,23 +1,25 @@
-"""All straight lines that lie between bounds from above and from below, and the best of them.
+"""All straight lines that lie between upper and lower bounds, and the best-fitting one of them.
 
-A line a + b (t - ref) lies under all upper bounds and over all lower ones if
+A line a + b (t - ref) lies below all upper bounds and above all lower bounds if
 
     low(b) = max_i (lower_i - b (t_i - ref)) <= a <= high(b) = min_j (upper_j - b (t_j - ref)).
 
-`high` is concave and piecewise linear with its corners at the slopes of the lower convex hull of
-the upper bounds, `low` likewise convex with those of the upper hull of the lower bounds. So the
-lines form a convex polygon in (a, b) whose corners are known exactly, and the largest and the
-smallest value that any of them takes at a time t is found among the corners. No solver is needed.
+`high` is concave and piecewise linear; its corners are at the slopes of the lower convex hull of
+the upper bounds. `low` is convex; its corners are at the slopes of the upper hull of the lower
+bounds. The lines therefore form a convex polygon in (a, b) whose corners are known exactly, and the
+largest and the smallest value that any of them takes at a time t is found among the corners. No
+solver is needed.
 
-One line of a band is reported as the offset (`best_line`). Half the round trip is the best guess
-for each way, and the better the shorter the round trip was: what a probe lost in queues it mostly
-lost on one way. So the lines' middle is a least-squares fit to the probes' offsets with weights
-that fall with the time in queues,
+One line of a band is reported as the offset (`best_line`). The best estimate of either way is half
+the round trip, and it is better the shorter the round trip was, because queueing delays mostly
+affect one way only. The line is therefore a least-squares fit to the probes' offsets, with weights
+that fall with the queueing delay,
 
     sigma_i = slack + (round_trip_i - shortest) / 2,
 
-and the drift is held by its limit where the probes are too few to tell (a Gaussian prior with that
-standard deviation). The line is then brought into the band, which no true clock leaves.
+and a Gaussian prior with mean 0 and the drift limit as standard deviation keeps the drift small
+where there are too few probes to determine it. The line is then clamped to the band, because the
+true offset cannot lie outside it.
 """
 
 from dataclasses import dataclass
@@ -29,8 +31,9 @@ from app.science.clock.probes import Bounds, ClockLimits, ClockProbes, FloatArra
 
 @dataclass(frozen=True, eq=False)
 class Band:
-    """The lines offset_s + a + b (t - ref_s): for each slope (v,) the lowest and highest a, (v,).
+    """All lines offset_s + a + b (t - ref_s) between the bounds of a window.
 
+    For each slope b in `slopes` (v,), `low_s` and `high_s` (v,) are the lowest and highest a.
     Slopes ascend; between two of them `low_s` and `high_s` are linear.
     """
 
@@ -41,14 +44,14 @@ class Band:
     high_s: FloatArray
 
     def at(self, t_s: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Lowest and highest value of any line at each time (k,): ((k,), (k,))."""
+        """Return the lowest and highest value of any line at each time (k,), each (k,)."""
         moved = np.multiply.outer(t_s - self.ref_s, self.slopes)
         low = self.offset_s + (moved + self.low_s).min(axis=-1)
         high = self.offset_s + (moved + self.high_s).max(axis=-1)
         return low, high
 
     def nearest(self, a_s: float, slope: float) -> tuple[float, float]:
-        """The line brought into the band: first its slope, then its height."""
+        """Clamp a line to the band, its slope first and then its height; return (height, slope)."""
         slope = float(np.clip(slope, self.slopes[0], self.slopes[-1]))
         low = float(np.interp(slope, self.slopes, self.low_s))
         high = float(np.interp(slope, self.slopes, self.high_s))
@@ -56,11 +59,11 @@ class Band:
 
 
 def band_of(bounds: Bounds, drift: float) -> Band | None:
-    """The band of lines with |slope| <= `drift` between the bounds; None if there is no line."""
+    """Return all lines with |slope| <= `drift` between the bounds; None if there is none."""
     ref_s = 0.5 * float(bounds.upper_t_s[0] + bounds.lower_t_s[-1])
     offset_s = 0.5 * float(bounds.upper_s[0] + bounds.lower_s[0])
     upper = _hull(bounds.upper_t_s - ref_s, bounds.upper_s - offset_s)
-    # The upper hull is the lower hull of the mirror image.
+    # The upper hull is the lower hull of the points mirrored at the time axis.
     mirrored = _hull(bounds.lower_t_s - ref_s, offset_s - bounds.lower_s)
     corners = np.concatenate((_slopes(upper), -_slopes(mirrored)))
     inner = corners[np.abs(corners) < drift]
@@ -75,7 +78,7 @@ def band_of(bounds: Bounds, drift: float) -> Band | None:
 def _cut(
     ref_s: float, offset_s: float, slopes: FloatArray, low: FloatArray, high: FloatArray
 ) -> Band:
-    """Keep the slopes that have a line, and add those at which the last line ends."""
+    """Keep the slopes that have a line, and add the two slopes at which the polygon ends."""
     room = high - low
     kept = np.flatnonzero(room >= 0.0)
     first, last = int(kept[0]), int(kept[-1])
@@ -93,7 +96,7 @@ def _cut(
 
 
 def _hull(x: FloatArray, y: FloatArray) -> FloatArray:
-    """(h, 2) corners of the lower convex hull of points, from left to right.
+    """Return the corners of the lower convex hull of points, (h, 2), from left to right.
 
     Monotone chain (Andrew 1979).
     """
@@ -118,7 +121,7 @@ def _slopes(hull: FloatArray) -> FloatArray:
 
 
 def best_line(probes: ClockProbes, band: Band, limits: ClockLimits) -> tuple[float, float]:
-    """Offset at `band.ref_s` in s and drift in s/s."""
+    """Return the offset at `band.ref_s` in s and the drift in s/s of the best-fitting line."""
     t_s = probes.middle_s - band.ref_s
     offset_s = probes.offset_s - band.offset_s
     round_trip_s = probes.round_trip_s

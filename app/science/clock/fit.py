@@ -1,4 +1,4 @@
-"""Fitting the mapping to the probes of a client run."""
+"""Fit the clock mapping to the clock probes of a client run."""
 
 from dataclasses import replace
 
@@ -21,28 +21,28 @@ DEFAULT_LIMITS = ClockLimits()
 
 
 def fit_clock(probes: ClockProbes, limits: ClockLimits = DEFAULT_LIMITS) -> ClockMapping:
-    """Map the client's clock on the server's.
+    """Map the client's clock to the server's clock.
 
     Args:
         probes: of one client run, in the order in which they were made. Probes without an answer
-            tell nothing; those that cannot be true are left out and counted.
-        limits: what is taken for granted about the clocks.
+            are ignored; those that cannot be true are left out and counted.
+        limits: the assumptions about the clocks.
 
     Returns:
-        A mapping that is good at any time, with an uncertainty for each. Without a probe it gives
+        A mapping for any client time, with an uncertainty at each. Without a usable probe it gives
         NaN and inf.
     """
-    answered = probes.taken(probes.answered)
+    answered = probes.select(probes.answered)
     resolution_s = reading_step_s(
         np.concatenate((answered.client_sent_s, answered.client_received_s))
     )
     widening_s = limits.slack_s + resolution_s
     possible = is_possible(answered, widening_s)
-    used = answered.taken(possible)
+    used = answered.select(possible)
     bounds = bounds_of(used, widening_s)
-    # How many usable probes came before each impossible one.
-    places = np.cumsum(possible, dtype=np.int64)[~possible]
-    windows = _counted(cut_windows(bounds, limits), places)
+    # The number of usable probes before each impossible one.
+    positions = np.cumsum(possible, dtype=np.int64)[~possible]
+    windows = _count_impossible(cut_windows(bounds, limits), positions)
     runs = [
         make_stretch(run, used, bounds, limits, widening_s)
         for run in stretches(windows, bounds, limits)
@@ -50,14 +50,14 @@ def fit_clock(probes: ClockProbes, limits: ClockLimits = DEFAULT_LIMITS) -> Cloc
     return ClockMapping(place(runs, limits.step_s), resolution_s)
 
 
-def _counted(windows: list[Window], places: npt.NDArray[np.int64]) -> list[Window]:
-    """Count each impossible probe in the window behind it, or in the last one."""
+def _count_impossible(windows: list[Window], positions: npt.NDArray[np.int64]) -> list[Window]:
+    """Count each impossible probe in the window that follows it, or in the last window."""
     if not windows:
         return windows
     ends = np.array([window.index[-1] for window in windows])
-    inside = np.minimum(np.searchsorted(ends, places), len(windows) - 1)
-    lost = np.bincount(inside, minlength=len(windows))
+    following = np.minimum(np.searchsorted(ends, positions), len(windows) - 1)
+    counts = np.bincount(following, minlength=len(windows))
     return [
-        replace(window, left_out=window.left_out + int(more))
-        for window, more in zip(windows, lost, strict=True)
+        replace(window, left_out=window.left_out + int(count))
+        for window, count in zip(windows, counts, strict=True)
     ]

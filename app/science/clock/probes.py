@@ -1,15 +1,15 @@
-"""Readings of two clocks, and what each of them proves about the offset.
+"""Paired readings of two clocks, and the bounds on their offset that each reading proves.
 
 A probe leaves the client at `client_sent`, reaches the server at `server_received`, is answered at
-`server_sent` and is back at `client_received`, each read on its own side's clock. No message
+`server_sent` and arrives back at `client_received`; each side reads its own clock. No message
 arrives before it was sent. So with theta(t) = server minus client, t on the client's clock,
 
     server_sent - client_received <= theta(client_received)
     theta(client_sent) <= server_received - client_sent,
 
-whatever the two ways took: the width of the two together is the round trip. This is the
-correctness interval of NTP (Mills, RFC 5905, section 11.1; Marzullo 1984), kept as two one-sided
-bounds at their own times because the clocks drift in between.
+whatever each of the two ways took: the two bounds lie a round trip apart. This is the correctness
+interval of NTP (Mills, RFC 5905, section 11.1; Marzullo 1984), stored as two one-sided bounds at
+their own times because the clocks drift in between.
 """
 
 from dataclasses import dataclass
@@ -19,22 +19,22 @@ import numpy.typing as npt
 
 
 class ClockError(ValueError):
-    """The readings or the limits cannot be used; the message says why."""
+    """The clock readings or the limits are invalid; the message says why."""
 
 
 @dataclass(frozen=True)
 class ClockLimits:
-    """The model: over a window the offset is a line, but for a small wander.
+    """Assumptions about the clocks: over a window the offset is a line, except for a small wander.
 
     Attributes:
-        drift: largest rate of one clock against the other, s/s. Crystals stay within 100 ppm;
+        drift: largest rate of one clock relative to the other, s/s. Crystals stay within 100 ppm;
             500 ppm is what NTP allows itself when it slews (RFC 5905, appendix A.1).
-        slack_s: how far a clock may stray from its line within a window. A crystal that warms up
-            by 5 ppm in a quarter of an hour strays 30 us in 5 minutes. Every bound is widened by
-            it and every uncertainty holds it.
-        window_s: longest time that one line has to serve, s.
-        step_s: a jump below this is not looked for in the server's wall clock, s. That clock is
-            read when a probe is stored, tens of milliseconds late.
+        slack_s: how far a clock may deviate from its line within a window. A crystal that warms up
+            by 5 ppm in a quarter of an hour deviates by 30 us in 5 minutes. Every bound is widened
+            by it and every uncertainty includes it.
+        window_s: longest time that one line may cover, s.
+        step_s: smallest jump that the server's wall clock is used to explain, s. That clock is read
+            when a probe is stored, tens of milliseconds late.
     """
 
     drift: float = 500e-6
@@ -56,10 +56,11 @@ _STEP_NEEDS = 8
 
 @dataclass(frozen=True, eq=False)
 class ClockProbes:
-    """n probes of one client run in the order in which they were made; seconds.
+    """n clock probes of one client run, in the order in which they were made; seconds.
 
-    A probe without an answer has NaN in place of what is missing. `server_utc_s` (optional) is the
-    server's wall clock, read when or after the answer was sent; it only tells which clock jumped.
+    A probe without an answer has NaN for each missing reading. `server_utc_s` (optional) is the
+    server's wall clock, read when or after the answer was sent; it is used only to decide which
+    clock jumped.
 
     Raises ClockError if the arrays are not all of shape (n,).
     """
@@ -82,7 +83,7 @@ class ClockProbes:
 
     @property
     def arrays(self) -> tuple[FloatArray, ...]:
-        """All readings there are, the wall clock last."""
+        """All arrays of readings, the wall clock last if it is given."""
         four = (
             self.client_sent_s,
             self.server_received_s,
@@ -91,13 +92,13 @@ class ClockProbes:
         )
         return four if self.server_utc_s is None else (*four, self.server_utc_s)
 
-    def taken(self, chosen: npt.NDArray[np.bool_] | npt.NDArray[np.intp]) -> "ClockProbes":
-        """Some of the probes, in their order."""
+    def select(self, chosen: npt.NDArray[np.bool_] | npt.NDArray[np.intp]) -> "ClockProbes":
+        """Return the chosen probes, given by a mask (n,) or by indices."""
         return ClockProbes(*(array[chosen] for array in self.arrays))
 
     @property
     def answered(self) -> npt.NDArray[np.bool_]:
-        """(n,) whether all four times are there."""
+        """Mask (n,) of the probes that have all four readings."""
         complete = np.isfinite(self.client_sent_s)
         for readings in self.arrays[1:4]:
             complete = complete & np.isfinite(readings)
@@ -105,14 +106,17 @@ class ClockProbes:
 
     @property
     def round_trip_s(self) -> FloatArray:
-        """(n,) time under way: the client's waiting less the server's handling; NaN if lost."""
+        """Time under way (n,): the client's waiting minus the server's handling time, in s.
+
+        NaN where the probe was lost.
+        """
         return (self.client_received_s - self.client_sent_s) - (
             self.server_sent_s - self.server_received_s
         )
 
     @property
     def offset_s(self) -> FloatArray:
-        """(n,) server minus client if both ways took as long (RFC 5905, eq. for theta)."""
+        """Server minus client (n,) if both ways took equally long (RFC 5905, eq. for theta)."""
         return 0.5 * (
             (self.server_received_s - self.client_sent_s)
             + (self.server_sent_s - self.client_received_s)
@@ -120,13 +124,16 @@ class ClockProbes:
 
     @property
     def middle_s(self) -> FloatArray:
-        """(n,) the client's time half-way through the exchange."""
+        """The client's time half-way through each exchange, (n,)."""
         return 0.5 * (self.client_sent_s + self.client_received_s)
 
 
 @dataclass(frozen=True, eq=False)
 class Bounds:
-    """n bounds from above at `upper_t_s` and n from below at `lower_t_s`, all (n,), slack added."""
+    """Upper bounds of the offset at `upper_t_s` and lower bounds at `lower_t_s`, slack included.
+
+    All arrays are (n,), one element per probe.
+    """
 
     upper_t_s: FloatArray
     upper_s: FloatArray
@@ -134,21 +141,21 @@ class Bounds:
     lower_s: FloatArray
 
     def between(self, first: int, end: int) -> "Bounds":
-        """The bounds of the probes first to end - 1."""
+        """Return the bounds of the probes from `first` to `end` - 1."""
         part = slice(first, end)
         return Bounds(
             self.upper_t_s[part], self.upper_s[part], self.lower_t_s[part], self.lower_s[part]
         )
 
-    def chosen(self, index: npt.NDArray[np.intp]) -> "Bounds":
-        """The bounds of these probes."""
+    def select(self, index: npt.NDArray[np.intp]) -> "Bounds":
+        """Return the bounds of the probes with these indices."""
         return Bounds(
             self.upper_t_s[index], self.upper_s[index], self.lower_t_s[index], self.lower_s[index]
         )
 
 
 def bounds_of(probes: ClockProbes, widening_s: float) -> Bounds:
-    """The bounds that answered probes set, each moved outwards by `widening_s`."""
+    """Return the bounds that answered probes set, each widened by `widening_s`."""
     return Bounds(
         upper_t_s=probes.client_sent_s,
         upper_s=probes.server_received_s - probes.client_sent_s + widening_s,
@@ -158,9 +165,11 @@ def bounds_of(probes: ClockProbes, widening_s: float) -> Bounds:
 
 
 def is_possible(probes: ClockProbes, widening_s: float) -> npt.NDArray[np.bool_]:
-    """(n,) whether each answered probe can be true: time went forward and no way took less than 0.
+    """Return for each answered probe whether its readings can be true, (n,).
 
-    With half of what its bounds are widened by to spare, so that some line fits each on its own.
+    Time must have passed on both clocks, and the round trip may be negative by no more than
+    `widening_s`. That is half the widening of the two bounds together, so some line fits each probe
+    on its own.
     """
     waited_s = probes.client_received_s - probes.client_sent_s
     handled_s = probes.server_sent_s - probes.server_received_s
@@ -168,10 +177,11 @@ def is_possible(probes: ClockProbes, widening_s: float) -> npt.NDArray[np.bool_]
 
 
 def reading_step_s(client_s: FloatArray) -> float:
-    """The coarse step in which a clock is read, 0 if it is finer than a millisecond.
+    """Return the step in which a clock is read; 0 if it is finer than a millisecond.
 
-    Browsers round their clocks, some to a millisecond or more, against timing attacks. A clock all
-    of whose readings are whole multiples of such a step is taken at its word.
+    Browsers round their clocks, some to a millisecond or more, as protection against timing
+    attacks. A clock is assumed to be rounded if all its readings are whole multiples of such a
+    step.
     """
     if len(client_s) < _STEP_NEEDS:
         return 0.0

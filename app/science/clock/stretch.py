@@ -1,4 +1,4 @@
-"""A time without a jump: windows whose lines are joined to one unbroken course of the offset."""
+"""A time without a clock jump: windows whose lines are joined to one continuous offset curve."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,8 +15,11 @@ _WALL_READINGS = 16
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """One window of a stretch: what it rests on. `wall_s` is the server's wall clock minus its
-    monotonic clock, the smallest reading; NaN if there is none."""
+    """One window of a stretch, and the probes it is based on.
+
+    `wall_s` is the server's wall clock minus its monotonic clock, the smallest difference of the
+    probes; NaN if there is none.
+    """
 
     band: Band
     min_round_trip_s: float
@@ -27,15 +30,18 @@ class Piece:
 
 @dataclass(frozen=True, eq=False)
 class Stretch:
-    """w pieces between w + 1 knots. At the knots the offset is the mean of the lines on both sides.
+    """A continuous piecewise linear offset: w pieces between w + 1 knots.
+
+    At an inner knot the offset is the mean of the lines on both sides.
 
     Attributes:
         knots_s: (w + 1,) client's time, ascending.
         offsets_s: (w + 1,) server minus client at the knots, as the server's clock was read.
-        end_drift: (before the first knot, behind the last) s/s.
+        end_drift: drift before the first knot and after the last one, s/s.
         server_first_s, server_last_s: readings of the server's clock at both ends.
-        wall_first_s, wall_last_s: as `Piece.wall_s`, over the probes nearest to both ends.
-        slack_s, drift: as the limits say, the slack with the step in which the clock is read.
+        wall_first_s, wall_last_s: as `Piece.wall_s`, over the probes nearest to each end.
+        slack_s: the slack of the limits plus the step in which the client's clock is read.
+        drift: the drift limit.
     """
 
     knots_s: FloatArray
@@ -50,21 +56,27 @@ class Stretch:
     drift: float
 
     def offset_at(self, t_s: FloatArray) -> FloatArray:
-        """Server minus client (k,); beyond the ends the last drift goes on."""
+        """Return server minus client at times (k,), (k,).
+
+        Beyond the first and last knot the drift at that end continues.
+        """
         inside = np.interp(t_s, self.knots_s, self.offsets_s)
-        before = np.minimum(t_s - self.knots_s[0], 0.0) * self.end_drift[0]
-        behind = np.maximum(t_s - self.knots_s[-1], 0.0) * self.end_drift[1]
-        offset: FloatArray = inside + before + behind
+        below = np.minimum(t_s - self.knots_s[0], 0.0) * self.end_drift[0]
+        above = np.maximum(t_s - self.knots_s[-1], 0.0) * self.end_drift[1]
+        offset: FloatArray = inside + below + above
         return offset
 
     def bounds_at(self, t_s: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """What the offset can be at most and at least; beyond the ends it grows with the drift."""
+        """Return the lowest and highest possible offset at times (k,), each (k,).
+
+        Beyond the first and last knot the bounds widen with the drift limit.
+        """
         at_s = np.clip(t_s, self.knots_s[0], self.knots_s[-1])
         which = np.searchsorted(self.knots_s[1:-1], at_s, side="right")
         low, high = np.empty(len(t_s)), np.empty(len(t_s))
-        for number in np.unique(which):
-            mine = which == number
-            low[mine], high[mine] = self.pieces[number].band.at(at_s[mine])
+        for piece in np.unique(which):
+            in_piece = which == piece
+            low[in_piece], high[in_piece] = self.pieces[piece].band.at(at_s[in_piece])
         growth = self.slack_s + self.drift * np.abs(t_s - at_s)
         return low - growth, high + growth
 
@@ -76,11 +88,14 @@ def make_stretch(
     limits: ClockLimits,
     slack_s: float,
 ) -> Stretch:
-    """Join windows that join on. `probes` and `bounds` are all of the clock's, by place."""
+    """Join adjacent windows without a jump between them to a stretch.
+
+    `probes` and `bounds` are those of the whole client run; the windows refer to them by index.
+    """
     pieces, lines = [], []
     for window in windows:
-        own = probes.taken(window.index)
-        pieces.append(_piece(window, own))
+        own = probes.select(window.index)
+        pieces.append(_make_piece(window, own))
         offset_s, drift = best_line(own, window.band, limits)
         lines.append((window.band.ref_s, offset_s, drift))
     first, last = int(windows[0].index[0]), int(windows[-1].index[-1])
@@ -94,20 +109,20 @@ def make_stretch(
         pieces=tuple(pieces),
         server_first_s=float(probes.server_received_s[first]),
         server_last_s=float(probes.server_sent_s[last]),
-        wall_first_s=_wall_s(probes.taken(index[:_WALL_READINGS])),
-        wall_last_s=_wall_s(probes.taken(index[-_WALL_READINGS:])),
+        wall_first_s=_wall_s(probes.select(index[:_WALL_READINGS])),
+        wall_last_s=_wall_s(probes.select(index[-_WALL_READINGS:])),
         slack_s=slack_s,
         drift=limits.drift,
     )
 
 
-def _piece(window: Window, own: ClockProbes) -> Piece:
+def _make_piece(window: Window, own: ClockProbes) -> Piece:
     shortest_s = max(0.0, float(own.round_trip_s.min()))
     return Piece(window.band, shortest_s, len(own), window.left_out, _wall_s(own))
 
 
 def _at_knots(knots_s: FloatArray, lines: Sequence[tuple[float, float, float]]) -> FloatArray:
-    """(w + 1,) the lines' values at the knots, the mean of two where two meet."""
+    """Return the lines' values at the knots, (w + 1,); the mean of two lines where two meet."""
     begins = [offset + drift * (knots_s[at] - ref) for at, (ref, offset, drift) in enumerate(lines)]
     ends = [
         offset + drift * (knots_s[at + 1] - ref) for at, (ref, offset, drift) in enumerate(lines)
@@ -118,7 +133,10 @@ def _at_knots(knots_s: FloatArray, lines: Sequence[tuple[float, float, float]]) 
 
 
 def _wall_s(probes: ClockProbes) -> float:
-    """Wall clock minus monotonic clock. It is read late, never early: the smallest is nearest."""
+    """Return the server's wall clock minus its monotonic clock; NaN if the wall clock is unknown.
+
+    The wall clock is read late, never early, so the smallest difference is the most accurate.
+    """
     if probes.server_utc_s is None:
         return float("nan")
     differences = probes.server_utc_s - probes.server_sent_s

@@ -1,9 +1,9 @@
-"""Cutting probes into windows that one line serves, with single impossible probes left out.
+"""Cut probes into windows that a single line fits, leaving out single impossible probes.
 
-A window grows probe by probe while some line still lies between all bounds, and no longer than the
-limit. Where no line is left there are two explanations. Either that one probe is wrong: then the
-ones behind it fit again, and it alone is left out. Or a clock jumped, stood still or changed its
-rate: then they do not, and the next window begins.
+A window grows probe by probe while some line still lies between all bounds, up to the longest
+window that the limits allow. Where no line is left there are two explanations. Either that one
+probe is wrong: then the probes after it fit again, and it alone is left out. Or a clock jumped,
+stood still or changed its rate: then they do not fit, and the next window begins.
 """
 
 from collections.abc import Sequence
@@ -21,7 +21,7 @@ _AGREEING = 2
 
 @dataclass(frozen=True, eq=False)
 class Window:
-    """Probes (by place) that lines fit, those lines, and how many probes were left out here."""
+    """Indices of probes that one line fits, the band of such lines, and how many were left out."""
 
     index: Index
     band: Band
@@ -29,17 +29,17 @@ class Window:
 
 
 def cut_windows(bounds: Bounds, limits: ClockLimits) -> list[Window]:
-    """All windows of the probes, in their order; single probes that fit nothing are left out."""
+    """Return all windows of the probes, in order; single probes that fit no line are left out."""
     windows: list[Window] = []
     first, count = 0, len(bounds.upper_t_s)
     while first < count:
         window, first = _longest(bounds, first, limits)
         windows.append(window)
-    return _without_loners(windows, bounds, limits)
+    return _drop_isolated_probes(windows, bounds, limits)
 
 
 def stretches(windows: Sequence[Window], bounds: Bounds, limits: ClockLimits) -> list[list[Window]]:
-    """Runs of windows that join on: no jump between them and no long gap."""
+    """Group windows into runs without a jump or a long gap between them."""
     runs: list[list[Window]] = []
     for window in windows:
         if runs and _joins_on(runs[-1][-1], window, bounds, limits):
@@ -50,7 +50,7 @@ def stretches(windows: Sequence[Window], bounds: Bounds, limits: ClockLimits) ->
 
 
 def boundary_s(before: Window, after: Window, bounds: Bounds) -> float:
-    """Half-way between the last probe of a window and the first of the next, client's time."""
+    """Return the client time half-way between a window's last probe and the next window's first."""
     sent_s = bounds.upper_t_s
     return 0.5 * float(sent_s[before.index[-1]] + sent_s[after.index[0]])
 
@@ -66,43 +66,43 @@ def _joins_on(before: Window, after: Window, bounds: Bounds, limits: ClockLimits
 
 
 def _longest(bounds: Bounds, first: int, limits: ClockLimits) -> tuple[Window, int]:
-    """The longest window from `first` on, and where the next one begins."""
-    kept = _within(bounds.upper_t_s, first, limits.window_s)
-    end, left_out = first + len(kept), 0
+    """Return the longest window that starts at probe `first`, and where the next one begins."""
+    index = _within(bounds.upper_t_s, first, limits.window_s)
+    end, left_out = first + len(index), 0
     while True:
-        count, band = _fitting(bounds, kept, limits.drift)
-        if count == len(kept):
-            return Window(kept, band, left_out), end
-        blocked = int(kept[count])
-        behind = np.arange(blocked + 1, min(blocked + 1 + _AGREEING, len(bounds.upper_t_s)))
-        on = np.concatenate((kept[:count], behind))
-        if len(behind) == 0 or band_of(bounds.chosen(on), limits.drift) is None:
-            return Window(kept[:count], band, left_out), blocked
-        kept, left_out = np.delete(kept, count), left_out + 1
+        count, band = _fitting(bounds, index, limits.drift)
+        if count == len(index):
+            return Window(index, band, left_out), end
+        blocked = int(index[count])
+        following = np.arange(blocked + 1, min(blocked + 1 + _AGREEING, len(bounds.upper_t_s)))
+        without_it = np.concatenate((index[:count], following))
+        if len(following) == 0 or band_of(bounds.select(without_it), limits.drift) is None:
+            return Window(index[:count], band, left_out), blocked
+        index, left_out = np.delete(index, count), left_out + 1
 
 
 def _within(sent_s: FloatArray, first: int, window_s: float) -> Index:
-    """The probes from `first` on up to the first that is more than a window away."""
+    """Return the indices of the probes from `first` on, up to the first one over a window away."""
     away = np.flatnonzero(np.abs(sent_s[first:] - sent_s[first]) > window_s)
     end = first + int(away[0]) if len(away) else len(sent_s)
     return np.arange(first, end)
 
 
 def _fitting(bounds: Bounds, index: Index, drift: float) -> tuple[int, Band]:
-    """How many probes from the front have a line in common, and their band.
+    """Return how many of the first probes have a line in common, and the band of these lines.
 
-    More bounds never allow more lines, so halving finds it.
+    Additional bounds never allow additional lines, so bisection finds the number.
     """
-    band = band_of(bounds.chosen(index), drift)
+    band = band_of(bounds.select(index), drift)
     if band is not None:
         return len(index), band
     fits, too_many = 1, len(index)
-    best = band_of(bounds.chosen(index[:1]), drift)
+    best = band_of(bounds.select(index[:1]), drift)
     if best is None:
         raise ClockError(f"Probe {index[0]} contradicts itself: leave impossible probes out first.")
     while too_many - fits > 1:
         middle = (fits + too_many) // 2
-        band = band_of(bounds.chosen(index[:middle]), drift)
+        band = band_of(bounds.select(index[:middle]), drift)
         if band is None:
             too_many = middle
         else:
@@ -110,7 +110,9 @@ def _fitting(bounds: Bounds, index: Index, drift: float) -> tuple[int, Band]:
     return fits, best
 
 
-def _without_loners(windows: Sequence[Window], bounds: Bounds, limits: ClockLimits) -> list[Window]:
+def _drop_isolated_probes(
+    windows: Sequence[Window], bounds: Bounds, limits: ClockLimits
+) -> list[Window]:
     """Leave out each probe that agrees with neither neighbour, unless no two probes agree."""
     runs = stretches(windows, bounds, limits)
     sizes = [sum(len(window.index) for window in run) for run in runs]

@@ -1,4 +1,4 @@
-"""Skeletons from what carries none: markers on the skin, rigid bodies strapped to a person."""
+"""Fit skeletons to data without one: markers on the skin, or rigid bodies strapped to a person."""
 
 from app.science.fitting.fit import fit_skeleton
 from app.science.fitting.model import FitError, Fitted

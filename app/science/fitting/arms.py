@@ -1,9 +1,10 @@
-"""An arm from shoulder, elbow and wrist.
+"""Compute the joints of an arm from shoulder, elbow and wrist.
 
-In the T-pose the palms face down and the elbow bends forwards, about the vertical. So the upper
-arm's y is the elbow's axis: across the plane of the bent arm, and where the arm is straight and
-has no plane, what the chest's vertical becomes when the arm is swung the shortest way from the
-T-pose. Between 6 and 20 degrees of bend the one takes over from the other.
+In the T-pose the palms face down and the elbow bends forwards, about the vertical. The upper arm's
+y axis is therefore the elbow's axis. Where the arm is bent, this is the normal of the arm's plane.
+Where the arm is straight and has no plane, it is the chest's vertical, rotated by the shortest
+swing that takes the arm from the T-pose to its direction. Between 6 and 20 degrees of bend the two
+are blended.
 """
 
 import numpy as np
@@ -27,17 +28,17 @@ def arm(
     across_wrist: FloatArray | None = None,
     fingers: FloatArray | None = None,
 ) -> Limb:
-    """Centres (N, 3) and axes (N, 3, 3) of upper arm, forearm and hand.
+    """Return centres (N, 3) and axes (N, 3, 3) of upper arm, forearm and hand.
 
     Args:
         side: "Left" or "Right".
         chest_axes: (N, 3, 3).
         shoulder, wrist: (N, 3) centres.
         outer_elbow: (N, 3) marker on the outer side, or the centre with a half width of 0.
-        half_width_m: from that marker to the centre.
+        half_width_m: distance from that marker to the centre.
         inner: marker on the inner side of the elbow, if any.
-        across_wrist: from the thumb's side to the little finger's, if marked.
-        fingers: knuckles, if marked.
+        across_wrist: direction from the thumb's side to the little finger's, if marked.
+        fingers: position of the knuckles, if marked.
     """
     sign = 1.0 if side == "Right" else -1.0
     if inner is not None:
@@ -64,17 +65,18 @@ def _bend_axis(
     wrist: FloatArray,
     half: float,
 ) -> FloatArray:
-    """The elbow's axis towards its outer side, which in the T-pose is up."""
+    """Return the elbow's axis, pointing to its outer side, which is up in the T-pose."""
     upper, lower = outer - shoulder, wrist - outer
-    # With the centre e = outer - half n: n is across e - shoulder and across wrist - e.
+    # With the centre e = outer - half n: n is perpendicular to e - shoulder and to wrist - e.
     outwards = (upper, half, lower, -half) if sign > 0.0 else (lower, -half, upper, half)
     bent = across(*outwards)
-    # The outer marker stands off the arm even where it is straight: the centres tell the bend.
+    # The outer marker is off the arm's line even if the arm is straight: use the centres for the
+    # bend.
     above, below = upper - half * bent, lower + half * bent
     sine = np.linalg.norm(np.cross(unit(above), unit(below)), axis=-1)
     weight = np.clip((sine - _STRAIGHT) / (_BENT - _STRAIGHT), 0.0, 1.0)
     weight = np.where(np.isfinite(bent).all(axis=-1), weight, 0.0)[:, None]
-    # Towards the shoulder's side by as much as the outer marker leans the line to it.
+    # Lean the axis towards the shoulder by as much as the outer marker tilts the line to it.
     lean = (half / np.linalg.norm(upper, axis=-1))[:, None]
     rest = np.sqrt(np.clip(1.0 - lean**2, 0.0, 1.0))
     straight = rest * _swung_up(sign, chest_axes, upper) + lean * unit(upper)
@@ -82,11 +84,11 @@ def _bend_axis(
 
 
 def _swung_up(sign: float, chest_axes: FloatArray, upper: FloatArray) -> FloatArray:
-    """The chest's y after the shortest swing of the arm from straight sideways to where it is."""
+    """Return the chest's y axis after the shortest swing of the arm from sideways to `upper`."""
     start, end = sign * chest_axes[..., 0], unit(upper)
     vertical = chest_axes[..., 1]
     # Rodrigues' formula for the swing from `start` to `end`: v - (v.(s+e)) (s+e) / (1+s.e)
-    # + 2 (v.s) e, and v is across s.
+    # + 2 (v.s) e, where v is perpendicular to s.
     both = start + end
     denominator = np.maximum(1.0 + dot(start, end), 1e-6)[:, None]
     return unit(vertical - dot(vertical, both)[:, None] * both / denominator)

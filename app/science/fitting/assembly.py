@@ -1,8 +1,8 @@
-"""From joints as they were seen to a rig with bones of constant length, and its movement.
+"""Assemble a rig with bones of constant length, and its movement, from the joints of each frame.
 
-Each joint's axes give its rotation in the world; the place of a joint in its parent's axes, in the
-median of all frames, gives the direction of the bone between them, and the median distance its
-length. The rig's rest pose has every rotation at the identity, which is the T-pose.
+Each joint's axes give its rotation in the world. The position of a joint in its parent's axes, as
+the median over all frames, gives the direction of the bone between them, and the median distance
+gives its length. In the rig's rest pose, the T-pose, every rotation is the identity.
 """
 
 import numpy as np
@@ -17,9 +17,9 @@ _POINT_M = 1e-6
 
 
 def assemble(parts: Parts, rate_hz: float) -> tuple[RigMotion, float]:
-    """Return the movement, and the rms distance of its joints from the seen centres in metres.
+    """Return the movement, and the rms distance of its joints from the measured centres in metres.
 
-    Every part must be there in every frame; the first one is the hips.
+    Every part must be valid in every frame; the first one is the hips.
     """
     names = tuple(name for name in JOINT_NAMES if name in parts)
     parents = _parents(names)
@@ -46,7 +46,7 @@ def assemble(parts: Parts, rate_hz: float) -> tuple[RigMotion, float]:
 
 
 def _parents(names: tuple[str, ...]) -> tuple[int, ...]:
-    """The nearest ancestor in the body that is there."""
+    """Return for each joint the index of its nearest ancestor that is present, -1 for the root."""
     out: list[int] = []
     for name in names:
         body = PARENTS[JOINT_NAMES.index(name)]
@@ -65,7 +65,7 @@ def _axes(parts: Parts, names: tuple[str, ...], parents: tuple[int, ...]) -> Flo
 
 
 def _offset(local: FloatArray) -> FloatArray:
-    """Median direction times median length of steps (N, 3) in the parent's axes."""
+    """Return median direction times median length of bone vectors (N, 3) in the parent's axes."""
     length = float(np.median(np.linalg.norm(local, axis=-1)))
     middle: FloatArray = np.median(local, axis=0)
     size = float(np.linalg.norm(middle))
@@ -75,14 +75,14 @@ def _offset(local: FloatArray) -> FloatArray:
 
 
 def _quaternions(axes: FloatArray) -> FloatArray:
-    from scipy.spatial.transform import Rotation  # slow to load, and only needed here
+    from scipy.spatial.transform import Rotation  # slow to import, and only needed here
 
     flat = Rotation.from_matrix(axes.reshape(-1, 3, 3)).as_quat(scalar_first=True)
     return np.asarray(flat, dtype=np.float64).reshape(*axes.shape[:-2], 4)
 
 
 def _continuous(world: FloatArray) -> FloatArray:
-    """Choose of q and -q the one nearer to the frame before, (N, J, 4)."""
+    """Choose of q and -q the one nearer to the previous frame's, (N, J, 4)."""
     away = np.einsum("nji,nji->nj", world[1:], world[:-1]) < 0.0
     flips = np.cumsum(away, axis=0) % 2 == 1
     out = world.copy()

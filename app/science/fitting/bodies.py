@@ -1,17 +1,18 @@
-"""Joints from rigid bodies strapped to hip, collar, head, shoulders, elbows and hands.
+"""Compute joints from rigid bodies on hip, collar, head, shoulders, elbows and hands.
 
-Vicon Tracker and OptiTrack give each body a place and a rotation, zero in whatever way it lay when
-it was defined. The places are taken as the joints'. Of the rotations only the change is used: how
-a body lies on its part of the person is a constant, found for hip and head by taking the person as
-upright and straight in the tenth of the frames in which the collar is highest, and for a hand by
-taking it as the forearm's prolongation in the mean.
+Vicon Tracker and OptiTrack report a position and a rotation of each body; the rotation is zero in
+the orientation in which the body was defined. The positions are used as those of the joints. Of the
+rotations only the change is used: how a body is oriented on its body part is a constant. For hip
+and head it is found by assuming that the person stands upright and straight in the tenth of the
+frames in which the collar is highest; for a hand, by assuming that on average it is aligned with
+the forearm.
 """
 
 import numpy as np
 
 from app.science.fitting.arms import arm
 from app.science.fitting.frames import UP, frame, highest, levelled
-from app.science.fitting.marker_sets import plain
+from app.science.fitting.marker_sets import normalised_label
 from app.science.fitting.model import FitError, Part, Parts
 from app.science.fitting.resampling import Body, bodies_at_constant_rate
 from app.science.fitting.upper_body import collar_bone, neck_and_head
@@ -40,10 +41,11 @@ _NEEDED = tuple(role for role in _ROLES if role != "head")
 def parts_of_bodies(
     motion: BodyMotion,
 ) -> tuple[Parts, dict[str, Parts], float, tuple[str, ...]]:
-    """Core and limbs as `fit` takes them, the rate in Hz, and notes.
+    """Return core and limbs as `fit` needs them, the rate in Hz, and notes.
 
     Raises:
-        FitError: bodies are missing, such as where only a headset and two controllers are tracked.
+        FitError: bodies are missing, for example because only a headset and two controllers are
+            tracked.
     """
     roles = _roles(motion.names)
     missing = [role for role in _NEEDED if role not in roles]
@@ -70,13 +72,16 @@ def parts_of_bodies(
         limbs["head"] = neck_and_head(parts, Part(head.places, axes, head.seen))
     for side in ("Left", "Right"):
         limbs[f"{side.lower()} arm"] = _arm(side, bodies, parts["Neck"], trunk, seen)
-    known = ", ".join(roles.values())
-    notes = (f"The bodies {known} were taken as joints.", *_flips(motion, roles))
+    used = ", ".join(roles.values())
+    notes = (f"The bodies {used} were used as joints.", *_flips(motion, roles))
     return parts, limbs, rate_hz, notes
 
 
 def _flips(motion: BodyMotion, roles: dict[str, str]) -> list[str]:
-    """Name the bodies that turn by more than a quarter between samples: a tracker's mistake."""
+    """Return a note on each body that turns by more than a quarter turn between samples.
+
+    Such a turn is a mistake of the tracking system.
+    """
     notes = []
     for name in roles.values():
         rotations = motion.rotations[:, motion.names.index(name)]
@@ -85,7 +90,7 @@ def _flips(motion: BodyMotion, roles: dict[str, str]) -> list[str]:
         if count:
             notes.append(
                 f"{name} turns by more than 90 degrees from one sample to the next {count} times:"
-                " the tracker took its markers for one another."
+                " the tracking system confused its markers."
             )
     return notes
 
@@ -109,9 +114,10 @@ def _arm(
 
 
 def _aligned(body: FloatArray, part: FloatArray, frames: BoolArray) -> FloatArray:
-    """Axes of a part from those of the body on it, given the part's in some frames.
+    """Return the axes of a body part in all frames, from those of the rigid body attached to it.
 
-    The constant body_from_part is the rotation nearest to the mean of the matrices.
+    `part` gives the part's axes in the `frames` in which they are known. The constant
+    body_from_part is the rotation nearest to the mean of the matrices.
     """
     usable = frames & np.isfinite(body).all(axis=(-1, -2)) & np.isfinite(part).all(axis=(-1, -2))
     if not usable.any():
@@ -124,7 +130,7 @@ def _aligned(body: FloatArray, part: FloatArray, frames: BoolArray) -> FloatArra
 
 
 def _roles(names: tuple[str, ...]) -> dict[str, str]:
-    by_label = {plain(name): name for name in reversed(names)}
+    by_label = {normalised_label(name): name for name in reversed(names)}
     found = {
         role: next((by_label[label] for label in labels if label in by_label), None)
         for role, labels in _ROLES.items()
@@ -133,15 +139,16 @@ def _roles(names: tuple[str, ...]) -> dict[str, str]:
 
 
 def _too_few(names: tuple[str, ...], roles: dict[str, str], missing: list[str]) -> str:
-    told = ", ".join(names[:12]) or "none"
+    listed = ", ".join(names[:12]) or "none"
     if len(names) <= 3:
         return (
-            f"{len(names)} tracked bodies ({told}) are no skeleton: between a head and two hands"
-            " elbows, trunk and legs can be anywhere. It takes bodies on hip, collar and both"
+            f"{len(names)} tracked bodies ({listed}) are too few for a skeleton: the positions of"
+            " elbows, trunk and legs are unknown. Needed are bodies on hip, collar and both"
             " shoulders, elbows and hands, a marker set of the whole body, or a suit's skeleton."
         )
-    known = ", ".join(roles) or "none"
+    recognised = ", ".join(roles) or "none"
     return (
-        f"The bodies ({told}) give no skeleton: {', '.join(missing)} missing. Recognised: {known}."
-        " It takes bodies on hip, collar and both shoulders, elbows and hands, named so."
+        f"No skeleton can be fitted to the bodies ({listed}): {', '.join(missing)} missing."
+        f" Recognised: {recognised}."
+        " Needed are bodies on hip, collar and both shoulders, elbows and hands, with these names."
     )

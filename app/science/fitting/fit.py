@@ -1,4 +1,4 @@
-"""A skeleton from markers or rigid bodies: joint centres, then axes, then bones of one length."""
+"""Fit a skeleton to markers or rigid bodies: joint centres, then axes, then bone lengths."""
 
 import numpy as np
 
@@ -14,25 +14,25 @@ from app.science.skeleton import JOINT_NAMES
 
 _SHORTEST_S = 0.5
 _WORTH_TRIMMING = 0.8
-"""A limb that would cost more than a fifth of the frames is left out instead."""
+"""A limb is left out if keeping it would cost more than a fifth of the frames."""
 
 
 def fit_skeleton(motion: MarkerMotion | BodyMotion) -> Fitted:
     """Fit the body's skeleton to markers of a known set, or to rigid bodies on the upper body.
 
-    Gaps of up to half a second are bridged by straight lines and marked as not observed. Where a
-    needed joint is missing for longer, the longest stretch without such a gap is kept. Heels, head
-    bands and pelvis seldom carry their markers level: each part is tilted by a constant so that it
-    stands level where the body stands tall (feet: where they move least).
+    Gaps of up to half a second are bridged by linear interpolation and marked as not observed.
+    Where a required joint is missing for longer, the longest stretch without such a gap is kept.
+    Markers on heels, head bands and pelvis are seldom level: each part is tilted by a constant so
+    that it is level when the body stands tall (feet: when they move least).
 
     Args:
         motion: y up, metres.
 
     Returns:
-        The movement of a rig named like the body, and what it leaves out.
+        The movement of a rig whose joints are named like the body's, and what it leaves out.
 
     Raises:
-        FitError: what is there is no body, or no stretch of half a second holds it.
+        FitError: the data do not contain a body, or not for half a second without a gap.
     """
     if isinstance(motion, BodyMotion):
         core, limbs, rate_hz, notes = parts_of_bodies(motion)
@@ -51,7 +51,7 @@ def fit_skeleton(motion: MarkerMotion | BodyMotion) -> Fitted:
 
 def _parts_of_markers(motion: MarkerMotion) -> tuple[Parts, dict[str, Parts], tuple[str, ...]]:
     if motion.frame_count == 0:
-        raise FitError("There is no frame, so nothing to fit a skeleton to.")
+        raise FitError("The capture has no frames, so no skeleton can be fitted.")
     marks = landmarks_of(motion)
     pelvis, spine = pelvis_of(marks)
     core = pelvis | legs_of(marks, pelvis)
@@ -68,46 +68,49 @@ def _parts_of_markers(motion: MarkerMotion) -> tuple[Parts, dict[str, Parts], tu
 def _choose(
     core: Parts, limbs: dict[str, Parts], rate_hz: float
 ) -> tuple[int, int, Parts, list[str]]:
-    """The stretch to keep and the parts that hold all through it; the trunk comes before limbs."""
-    good = _all_there(core)
-    first, end = longest_run(good)
+    """Return the stretch to keep (first frame, end), the parts that are valid in it, and notes.
+
+    Limbs are only considered once the trunk is accepted.
+    """
+    usable = _all_present(core)
+    first, end = longest_run(usable)
     if end - first < max(2, _SHORTEST_S * rate_hz):
-        raise FitError(_never_whole(core, end - first, rate_hz))
-    chosen, notes, trunk_there = dict(core), [], False
+        raise FitError(_incomplete(core, end - first, rate_hz))
+    chosen, notes, trunk_present = dict(core), [], False
     for name, parts in limbs.items():
-        if name != "trunk" and "trunk" in limbs and not trunk_there:
+        if name != "trunk" and "trunk" in limbs and not trunk_present:
             continue
-        with_it = good & _all_there(parts)
+        with_it = usable & _all_present(parts)
         start, stop = longest_run(with_it)
         if stop - start < _WORTH_TRIMMING * (end - first):
             notes.append(
-                f"The {name} is left out: it was seen for {(stop - start) / rate_hz:.1f} s of"
-                f" {(end - first) / rate_hz:.1f} s at a stretch."
+                f"The {name} is left out: it was seen without a gap for only"
+                f" {(stop - start) / rate_hz:.1f} s of {(end - first) / rate_hz:.1f} s."
             )
             continue
-        trunk_there = trunk_there or name == "trunk"
+        trunk_present = trunk_present or name == "trunk"
         chosen |= parts
-        good, first, end = with_it, start, stop
-    if end - first < len(good):
+        usable, first, end = with_it, start, stop
+    if end - first < len(usable):
         notes.append(
             f"Only {(end - first) / rate_hz:.2f} s from {first / rate_hz:.2f} s on are used, of"
-            f" {len(good) / rate_hz:.2f} s: elsewhere a joint is missing for more than half a"
+            f" {len(usable) / rate_hz:.2f} s: elsewhere a joint is missing for more than half a"
             " second."
         )
     return first, end, chosen, notes
 
 
-def _all_there(parts: Parts) -> BoolArray:
-    there: BoolArray = np.all([part.there for part in parts.values()], axis=0)
-    return there
+def _all_present(parts: Parts) -> BoolArray:
+    present: BoolArray = np.all([part.present for part in parts.values()], axis=0)
+    return present
 
 
-def _never_whole(core: Parts, frames: int, rate_hz: float) -> str:
-    shares = {name: float(part.there.mean()) for name, part in core.items()}
+def _incomplete(core: Parts, frames: int, rate_hz: float) -> str:
+    shares = {name: float(part.present.mean()) for name, part in core.items()}
     worst = min(shares, key=lambda name: shares[name])
     return (
-        f"No stretch of {_SHORTEST_S} s holds pelvis and legs whole: the longest has"
-        f" {frames / rate_hz:.2f} s. {worst} is missing most, it could be had in"
+        f"Pelvis and legs are never complete for {_SHORTEST_S} s: the longest stretch lasts"
+        f" {frames / rate_hz:.2f} s. {worst} is missing most often: it is known in"
         f" {100 * shares[worst]:.0f} % of the frames. Fill the gaps of its markers in the capture"
         " software and export again."
     )

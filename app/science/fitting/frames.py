@@ -1,7 +1,7 @@
-"""Right-handed frames from directions, frame by frame; NaN where the directions give none.
+"""Right-handed coordinate frames from directions, for each frame of a movement.
 
-A frame is (N, 3, 3) with its x, y, z axes in the world as columns: x to the body's right, y up
-and z to its back in the T-pose.
+A frame is (N, 3, 3) with its x, y, z axes in the world as columns: in the T-pose, x points to the
+body's right, y up and z to its back. It is NaN where the directions do not define a frame.
 """
 
 from typing import Literal
@@ -18,19 +18,19 @@ UP: FloatArray = np.array((0.0, 1.0, 0.0))
 
 
 def unit(vectors: FloatArray) -> FloatArray:
-    """Scale to length one, NaN where there is no direction."""
+    """Scale vectors to length one; NaN where a vector is too short to have a direction."""
     length = np.linalg.norm(vectors, axis=-1, keepdims=True)
     return vectors / np.where(length > _SHORTEST_M, length, np.nan)
 
 
 def dot(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Scalar product over the last axis."""
+    """Return the scalar product over the last axis."""
     product: FloatArray = np.einsum("...i,...i->...", a, b)
     return product
 
 
 def frame(first: Axis, along: FloatArray, second: Axis, near: FloatArray) -> FloatArray:
-    """The frame whose `first` axis points `along` and whose `second` is as `near` as it can be."""
+    """Return frames whose `first` axis points `along` and whose `second` is closest to `near`."""
     a = unit(along)
     b = near - dot(near, a)[..., np.newaxis] * a
     b = unit(b)
@@ -38,33 +38,33 @@ def frame(first: Axis, along: FloatArray, second: Axis, near: FloatArray) -> Flo
     i, j = _INDEX[first], _INDEX[second]
     k = 3 - i - j
     out[..., i], out[..., j] = a, b
-    # x y z in circle gives +, against it -.
+    # Cyclic order of x, y and z gives +, the opposite order -.
     sign = 1.0 if (i, j) in {(0, 1), (1, 2), (2, 0)} else -1.0
     out[..., k] = sign * np.cross(a, b)
     return out
 
 
 def in_frame(axes: FloatArray, vectors: FloatArray) -> FloatArray:
-    """World vectors (..., 3) by their components along a frame's axes."""
-    told: FloatArray = np.einsum(
+    """Return the components of world vectors (..., 3) along a frame's axes."""
+    components: FloatArray = np.einsum(
         "...ij,...i->...j", axes, np.broadcast_to(vectors, axes.shape[:-1])
     )
-    return told
+    return components
 
 
 def to_world(axes: FloatArray, components: FloatArray) -> FloatArray:
-    """Components along a frame's axes, (..., 3) or (3,), as world vectors."""
-    told: FloatArray = np.einsum(
+    """Return world vectors from their components along a frame's axes, (..., 3) or (3,)."""
+    vectors: FloatArray = np.einsum(
         "...ij,...j->...i", axes, np.broadcast_to(components, axes.shape[:-1])
     )
-    return told
+    return vectors
 
 
 def levelled(axes: FloatArray, upright: BoolArray) -> FloatArray:
-    """Tilt a frame about its own x by a constant, so that in `upright` frames it stands level.
+    """Tilt a frame about its own x axis by a constant, so that it is level in the `upright` frames.
 
-    Markers seldom sit level on the body: a head band slopes, a heel marker is lower than a toe
-    marker. What is upright in the median of those frames is what the T-pose calls upright.
+    Markers are seldom level on the body: a head band slopes, a heel marker is lower than a toe
+    marker. The median direction of up in these frames is taken as the T-pose's up.
     """
     up = in_frame(axes, UP)[upright & np.isfinite(axes).all(axis=(-1, -2))]
     if len(up) == 0:
@@ -78,7 +78,7 @@ def levelled(axes: FloatArray, upright: BoolArray) -> FloatArray:
 
 
 def highest(values: FloatArray, share: float = 0.2) -> BoolArray:
-    """Mark the frames with the largest finite values, the given share of them."""
+    """Return which frames have the largest finite values, as a mask of the given share of them."""
     finite = values[np.isfinite(values)]
     if len(finite) == 0:
         none: BoolArray = np.zeros(len(values), np.bool_)
@@ -90,10 +90,10 @@ def highest(values: FloatArray, share: float = 0.2) -> BoolArray:
 def across(
     a: FloatArray, along_a: FloatArray | float, b: FloatArray, along_b: FloatArray | float
 ) -> FloatArray:
-    """The unit vectors n with n.a = along_a and n.b = along_b, on the side of a x b.
+    """Return the unit vectors n with n.a = along_a and n.b = along_b, on the side of a x b.
 
     n = s a + t b + u (a x b) solves the two equations for s and t, and length one gives u. NaN
-    where a and b are parallel or ask for more than length one.
+    where a and b are parallel or no unit vector satisfies both equations.
     """
     aa, bb, ab = dot(a, a), dot(b, b), dot(a, b)
     determinant = aa * bb - ab**2
@@ -107,7 +107,7 @@ def across(
 
 
 def median_distance(a: FloatArray, b: FloatArray) -> float:
-    """Median distance over the frames that have both, NaN where none has."""
+    """Return the median distance over the frames that have both points; NaN if there are none."""
     lengths = np.linalg.norm(a - b, axis=-1)
     lengths = lengths[np.isfinite(lengths)]
     return float(np.median(lengths)) if len(lengths) else float("nan")

@@ -1,4 +1,4 @@
-"""The landmarks of a body over time, short gaps bridged."""
+"""The landmarks of a body over time, with short gaps bridged."""
 
 from dataclasses import dataclass
 
@@ -9,17 +9,18 @@ from app.science.fitting.resampling import bridged
 from app.science.rig import BoolArray, MarkerMotion
 from app.science.rotations import FloatArray
 
-# An inner marker often stands only in the standing trial: use it where it nearly always is there.
+# Inner markers are often worn in the standing trial only: use one if it is nearly always present.
 _MOSTLY = 0.9
 
 
 @dataclass(frozen=True, eq=False)
 class Landmarks:
-    """Places (N, 3) and whether they were seen (N,), by landmark; see `marker_sets`.
+    """Positions (N, 3) of landmarks and whether they were seen (N,); see `marker_sets`.
 
     Attributes:
-        set: the marker set they were read by.
-        markers: landmark -> the marker it was.
+        set: the marker set by which they were identified.
+        markers: landmark -> name of its marker.
+        places, seen: by landmark.
         names: all markers of the capture.
         frames: N.
     """
@@ -32,11 +33,11 @@ class Landmarks:
     frames: int
 
     def has(self, *names: str) -> bool:
-        """Whether all these landmarks are marked."""
+        """Return whether all these landmarks have a marker."""
         return all(name in self.places for name in names)
 
-    def keeps_up_with(self, inner: str, outer: str) -> bool:
-        """Whether the inner marker is there nearly whenever the outer one is."""
+    def nearly_always_with(self, inner: str, outer: str) -> bool:
+        """Return whether the inner marker is present nearly whenever the outer one is."""
         if not self.has(inner, outer):
             return False
         there = np.isfinite(self.places[outer]).all(axis=-1)
@@ -47,12 +48,15 @@ class Landmarks:
         return self.places[name]
 
     def middle(self, *names: str) -> FloatArray:
-        """The mean of several landmarks."""
+        """Return the mean position of several landmarks."""
         middle: FloatArray = np.mean([self.places[name] for name in names], axis=0)
         return middle
 
     def all_seen(self, *names: str) -> BoolArray:
-        """(N,) whether all of these that are marked were seen, not bridged."""
+        """Return in which frames (N,) all of these landmarks were seen, not bridged.
+
+        Landmarks without a marker are ignored.
+        """
         seen: BoolArray = np.ones(self.frames, np.bool_)
         for name in names:
             seen = seen & self.seen.get(name, seen)
@@ -60,8 +64,8 @@ class Landmarks:
 
 
 def landmarks_of(motion: MarkerMotion) -> Landmarks:
-    """Find the landmarks in the marker set that knows most of these markers."""
-    found = [(known, known.found_in(motion.names)) for known in MARKER_SETS]
+    """Return the landmarks by the marker set that recognises most of these markers."""
+    found = [(marker_set, marker_set.found_in(motion.names)) for marker_set in MARKER_SETS]
     best, markers = max(found, key=lambda pair: len(pair[1]))
     places: dict[str, FloatArray] = {}
     seen: dict[str, BoolArray] = {}

@@ -1,4 +1,4 @@
-"""Marker sets as data: which label of which laboratory's set is which landmark of the body.
+"""Marker sets as data: which label in a laboratory's set denotes which landmark of the body.
 
 Landmarks (L and R before those on both sides): ASI, PSI front and back of the pelvis, SACR between
 the PSI; KNE, KNM outer and inner knee; ANK, ANM outer and inner ankle; HEE heel, TOE head of the
@@ -7,7 +7,7 @@ of the breast bone; ACR top of the shoulder; ELB, ELM outer and inner elbow; WRA
 little-finger side of the wrist, WRI one marker on it; FIN knuckles; FHD, BHD front and back of the
 head.
 
-Labels compare in capitals without dots, blanks and underscores.
+Labels are compared in upper case, without dots, spaces and underscores.
 """
 
 from collections import Counter
@@ -17,33 +17,40 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class MarkerSet:
-    """A laboratory's labels: landmark -> labels it may have; "_" stands for L and R, or both."""
+    """The labels of one marker set.
+
+    `labels` maps each landmark to its possible labels. "_" stands for L or R, in landmark and
+    label.
+    """
 
     title: str
     labels: Mapping[str, tuple[str, ...]]
 
     def found_in(self, names: tuple[str, ...]) -> dict[str, str]:
-        """Return landmark -> marker for the landmarks these markers hold."""
+        """Return landmark -> marker for the landmarks that these markers include."""
         prefix = _common_prefix(names)
-        by_label = {plain(name.removeprefix(prefix)): name for name in reversed(names)}
+        by_label = {normalised_label(name.removeprefix(prefix)): name for name in reversed(names)}
         found: dict[str, str] = {}
         for landmark, labels in self._both_sides():
-            hit = next((by_label[label] for label in labels if label in by_label), None)
-            if hit is not None:
-                found[landmark] = hit
+            marker = next((by_label[label] for label in labels if label in by_label), None)
+            if marker is not None:
+                found[landmark] = marker
         return found
 
     def _both_sides(self) -> list[tuple[str, list[str]]]:
         out = []
         for landmark, labels in self.labels.items():
             for side in ("L", "R") if "_" in landmark else ("",):
-                told = [plain(label.replace("_", side)) for label in labels]
-                out.append((landmark.replace("_", side), told))
+                plain_labels = [normalised_label(label.replace("_", side)) for label in labels]
+                out.append((landmark.replace("_", side), plain_labels))
         return out
 
 
 def _common_prefix(names: tuple[str, ...]) -> str:
-    """What most names begin with up to the first underscore: a person's or set's name."""
+    """Return the prefix (up to the first underscore) that most names share; "" if there is none.
+
+    It is the name of a person or a marker set.
+    """
     counts = Counter(name.split("_", 1)[0] for name in names if "_" in name)
     for prefix, count in counts.most_common(1):
         if 2 * count > len(names):
@@ -51,8 +58,8 @@ def _common_prefix(names: tuple[str, ...]) -> str:
     return ""
 
 
-def plain(label: str) -> str:
-    """A label without what laboratories write differently."""
+def normalised_label(label: str) -> str:
+    """Return a label in upper case without punctuation and spaces, which laboratories vary."""
     return "".join(letter for letter in label.upper() if letter.isalnum())
 
 

@@ -1,4 +1,4 @@
-"""What a fit gives back."""
+"""Data types of a fit: its result, the joints it is assembled from, and its error."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ from app.science.rotations import FloatArray
 
 
 class FitError(ValueError):
-    """Markers or bodies give no skeleton; the message says what is missing and what would do."""
+    """No skeleton can be fitted; the message says what is missing and what would be sufficient."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -17,14 +17,15 @@ class Fitted:
     """A skeleton fitted to markers or bodies.
 
     Attributes:
-        motion: the rig's joints are called like the body's (`app.science.skeleton.JOINT_NAMES`),
-            its rest pose is the T-pose facing -z, all rotations the identity. Joints past which
-            nothing is marked (toes, hands without finger markers) keep their parent's rotation.
-        unfitted: body joints that could not be had; what moves them is part of their parent.
-        residual_m: rms distance between the rig's joints and the joint centres of each frame,
-            which bones of constant length cannot all reach.
+        motion: the rig's joints have the names of the body's (`app.science.skeleton.JOINT_NAMES`);
+            its rest pose is the T-pose facing -z, all rotations the identity. Joints beyond which
+            nothing is marked (toes, hands without finger markers) have their parent's rotation.
+        unfitted: joints of the body that could not be fitted; their movement is part of their
+            parent's.
+        residual_m: rms distance between the rig's joints and the joint centres of each frame, which
+            bones of constant length cannot all reach.
         first_frame: the frame of the capture with which `motion` begins.
-        notes: what was trimmed, bridged or left out, each a sentence.
+        notes: sentences on what was trimmed, bridged or left out.
     """
 
     motion: RigMotion
@@ -36,13 +37,13 @@ class Fitted:
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """A joint as it was seen, N frames.
+    """A joint as measured in N frames.
 
     Attributes:
-        centre_m: (N, 3), NaN where it could not be had.
-        axes: (N, 3, 3) columns are the joint's x, y, z in the world, which in the T-pose are the
-            world's; None where nothing tells, and the parent's hold.
-        seen: (N,) false where a marker it rests on was bridged over a gap.
+        centre_m: (N, 3), NaN where it is unknown.
+        axes: (N, 3, 3) with the joint's x, y, z in the world as columns, which in the T-pose are
+            the world's; None where they cannot be determined and the parent's are used.
+        seen: (N,) false where a marker it is computed from was bridged over a gap.
     """
 
     centre_m: FloatArray
@@ -50,12 +51,12 @@ class Part:
     seen: BoolArray
 
     @property
-    def there(self) -> BoolArray:
-        """(N,) frames in which the joint has a place, and a rotation where it needs one."""
-        there: BoolArray = np.all(np.isfinite(self.centre_m), axis=-1)
+    def present(self) -> BoolArray:
+        """Mask (N,) of the frames with a known position, and known axes unless `axes` is None."""
+        present: BoolArray = np.all(np.isfinite(self.centre_m), axis=-1)
         if self.axes is not None:
-            there = there & np.isfinite(self.axes).all(axis=(-1, -2))
-        return there
+            present = present & np.isfinite(self.axes).all(axis=(-1, -2))
+        return present
 
 
 Parts = dict[str, Part]

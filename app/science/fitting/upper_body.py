@@ -1,8 +1,8 @@
-"""Trunk, head and arms from their landmarks, each where it is marked.
+"""Compute the joints of trunk, head and arms from their landmarks, as far as they are marked.
 
 Neck: a third of the way from C7 to the top of the breast bone; upper chest: midway between T10 and
 the bottom of the breast bone, or 0.55 of the way from the spine's lowest joint to the neck; the
-head's joint 0.4 of the way from neck to the middle of the head band. These are estimated by us.
+head's joint: 0.4 of the way from neck to the middle of the head band. These are our own estimates.
 Shoulder: below the marker on top of it by 0.17 of the distance between the two, along the trunk
 (Rab, Petuskey and Bagley 2002, Gait & Posture 15:113-119).
 Elbow: midway between outer and inner marker; with an outer one only, half a width (0.16 of the
@@ -25,7 +25,7 @@ INNER_SHOULDER = 0.15
 
 
 def trunk_of(marks: Landmarks, hips: Part, spine: FloatArray) -> Parts:
-    """Spine, upper chest and neck; nothing where C7 or the breast bone is not marked."""
+    """Return spine, upper chest and neck; empty if C7 or the breast bone is not marked."""
     if not marks.has("C7", "CLAV") or hips.axes is None:
         return {}
     neck = marks["C7"] + _NECK_FROM_C7 * (marks["CLAV"] - marks["C7"])
@@ -49,7 +49,7 @@ def trunk_of(marks: Landmarks, hips: Part, spine: FloatArray) -> Parts:
 
 
 def head_of(marks: Landmarks, trunk: Parts) -> Parts:
-    """Neck and head; nothing where the head band has not its four markers."""
+    """Return neck and head; empty if the head band lacks one of its four markers."""
     names = ("LFHD", "RFHD", "LBHD", "RBHD")
     if not marks.has(*names) or not trunk:
         return {}
@@ -59,7 +59,7 @@ def head_of(marks: Landmarks, trunk: Parts) -> Parts:
     upright = highest(band[:, 1])
     axes = levelled(frame("x", right, "z", back), upright)
     neck, seen = trunk["Neck"], marks.all_seen(*names)
-    # Nodding brings band and neck together, so their distance is taken while the head is up.
+    # Nodding brings band and neck together, so their distance is measured while the head is up.
     tall = median_distance(band[upright], neck.centre_m[upright])
     below = (1.0 - _HEAD_ON_BAND) * tall
     head = band - below * axes[..., 1]
@@ -67,7 +67,7 @@ def head_of(marks: Landmarks, trunk: Parts) -> Parts:
 
 
 def neck_and_head(trunk: Parts, head: Part) -> Parts:
-    """Turn the neck towards the head, half way between trunk and head about its length."""
+    """Return the head, and the neck pointing to it and turned half-way between trunk and head."""
     neck, chest = trunk["Neck"], trunk.get("UpperChest", trunk["Spine"])
     if chest.axes is None or head.axes is None:
         return {}
@@ -77,7 +77,7 @@ def neck_and_head(trunk: Parts, head: Part) -> Parts:
 
 
 def arms_of(marks: Landmarks, trunk: Parts) -> dict[str, Parts]:
-    """By side, the collar bone, upper arm, forearm and hand, where all of it is marked."""
+    """Return by side the collar bone, upper arm, forearm and hand, if all of them are marked."""
     chest = trunk.get("UpperChest")
     if chest is None or chest.axes is None or not marks.has("LACR", "RACR"):
         return {}
@@ -91,7 +91,9 @@ def arms_of(marks: Landmarks, trunk: Parts) -> dict[str, Parts]:
         collar = collar_bone(trunk["Neck"], chest.axes, shoulder, side)
         names = (f"{letter}ELB", *wrist[1])
         outer = marks[f"{letter}ELB"]
-        inner = marks[f"{letter}ELM"] if marks.keeps_up_with(f"{letter}ELM", names[0]) else None
+        inner = (
+            marks[f"{letter}ELM"] if marks.nearly_always_with(f"{letter}ELM", names[0]) else None
+        )
         half = 0.0 if inner is not None else ELBOW_HALF_WIDTH * median_distance(outer, wrist[0])
         seen = marks.all_seen(*names)
         hand = marks[f"{letter}FIN"] if marks.has(f"{letter}FIN") else None
@@ -112,7 +114,7 @@ def arms_of(marks: Landmarks, trunk: Parts) -> dict[str, Parts]:
 def collar_bone(
     neck: Part, chest_axes: FloatArray, shoulder: FloatArray, side: str
 ) -> tuple[FloatArray, FloatArray]:
-    """Its inner end, fixed to the chest, and its axes towards the shoulder."""
+    """Return the collar bone's inner end, fixed to the chest, and its axes towards the shoulder."""
     local = in_frame(chest_axes, shoulder - neck.centre_m)
     finite = local[np.isfinite(local).all(axis=-1)]
     if len(finite) == 0:
@@ -125,7 +127,7 @@ def collar_bone(
 def _wrist(
     marks: Landmarks, letter: str
 ) -> tuple[FloatArray, tuple[str, ...], FloatArray | None] | None:
-    """Middle of the wrist, its landmarks, and the direction from thumb to little finger."""
+    """Return the wrist's middle, its landmarks, and the direction from thumb to little finger."""
     pair = (f"{letter}WRA", f"{letter}WRB")
     if marks.has(*pair):
         return marks.middle(*pair), pair, marks[pair[1]] - marks[pair[0]]

@@ -1,7 +1,7 @@
-"""The latency that a participant really got, found from the two recorded streams.
+"""Achieved latency: the delay that a participant really had, measured from two recorded streams.
 
-`latency_of_runs` says how late the avatar was, how sure that is, and why it is not known where it
-is not; `is_off` compares it with the ordered one.
+`latency_of_runs` returns the delay of the avatar, its confidence interval, and the reason where it
+cannot be determined; `is_off` compares it with the set latency.
 """
 
 from app.science.latency.achieved_latency import (

@@ -1,23 +1,25 @@
-"""The latency that a phase really had, measured from what was recorded.
+"""The latency that a phase really had, measured from the recorded streams.
 
-A study orders a latency; what participants got is another matter: a busy headset, a wrong buffer
-or a physics controller that follows slowly add to it. Both bodies are recorded with one clock, the
-headset's, so the achieved latency is the lag at which the target's movement, shifted, fits that of
-the actual body best. All joints but the hips count (these are not delayed), each by its local
-rotation (parent_from_joint), so that a late trunk is not blamed on the hand.
+A study sets a latency; what participants got may differ: a busy headset, a wrong buffer or a
+physics controller that follows slowly add to it. Both bodies are recorded with one clock, the
+headset's, so the achieved latency is the lag at which the target's movement, shifted in time, best
+fits that of the actual body. All joints except the hips count (the hips are not delayed), each by
+its local rotation (parent_from_joint), so that a late trunk is not attributed to the hand.
 
-The lag is first looked for coarsely, by correlating angular velocities, then to a small fraction of
-a frame by least squares on the rotations. Its 95 % confidence interval comes from how blocks of
-about two seconds disagree. `app.science.latency` holds the steps with formulas and sources.
+A coarse search first correlates angular velocities; a fine search then finds the lag to a small
+fraction of a frame by least squares on the rotations. The 95 % confidence interval comes from how
+much blocks of about two seconds disagree. The other modules of `app.science.latency` hold the steps
+with formulas and sources.
 
 What the number means:
 
-- It is an *effective* delay, as an average over the movement that took place. If the actual body is
-  not a copy but follows with physics, its mean lag is part of it: a controller that works like a
+- It is an *effective* delay, an average over the movement that took place. If the actual body is
+  not a copy but follows with physics, its mean lag is included: a controller that works like a
   filter adds the filter's group delay at the frequencies of human movement, below about 5 Hz.
-- It is the delay between the two streams. What tracking, rendering and display take is not in it.
-- A movement that repeats itself fits at several lags. Where the data cannot tell, the smallest lag
-  that is not negative is given, and `reason` says which others fit as well.
+- It is the delay between the two streams. Delays of tracking, rendering and display are not
+  included.
+- A movement that repeats itself fits at several lags. Where the data cannot decide between them,
+  the smallest lag that is not negative is returned, and `reason` lists the others.
 """
 
 import math
@@ -38,26 +40,26 @@ LEAST_MOVEMENT_S = 5.0
 MOVING_DEG_S = 20.0
 LOWEST_S, HIGHEST_S = -0.1, 1.5
 TOLERANCE_S = 0.010
-# Unrelated bodies, time turned round or a delay that changed half-way stay below it.
+# Unrelated bodies, reversed time or a delay that changed half-way stay below it.
 _LEAST_CORRELATION = 0.6
 _WIDEST_HALF_S = 0.1
 _BANDWIDTH_S = 0.02
 
 
 class AchievedLatencyError(ValueError):
-    """The streams do not have the shape of streams, or the lags are no range."""
+    """The streams do not have the required shapes, or the range of lags is invalid."""
 
 
 @dataclass(frozen=True, eq=False)
 class StreamPair:
-    """Both streams of one run of the client, on its clock; runs have clocks of their own.
+    """The target and the actual stream of one client run, on that run's own clock.
 
     Attributes:
-        target_times_s: (n,), from one lag before the phase on; may hold anything.
-        target_rotations: (n, 22, 4) local rotations wxyz; bad ones are left out joint by joint.
+        target_times_s: (n,), starting one lag before the phase; may contain invalid times.
+        target_rotations: (n, 22, 4) local rotations wxyz; invalid ones are left out joint by joint.
         actual_times_s: (m,) of the phase.
         actual_rotations: (m, 22, 4).
-        active: (m,) during which actual frames the phase's clock ran; only these are compared.
+        active: (m,) mask of the actual frames that are in active time; only these are compared.
     """
 
     target_times_s: FloatArray
@@ -69,16 +71,16 @@ class StreamPair:
 
 @dataclass(frozen=True)
 class AchievedLatency:
-    """What was found; seconds.
+    """The achieved latency of a phase, or why it is unknown; seconds.
 
     Attributes:
-        latency_s: the lag of the actual body behind the target; None where nothing can be said.
+        latency_s: the lag of the actual body behind the target; None where it is unknown.
         low_s, high_s: its 95 % confidence interval.
         movement_s: active time during which the target's fastest joint turned above 20 deg/s.
-        samples: active frames of the actual body with at least one usable joint.
-        frame_s: median time from frame to frame of the actual body.
+        samples: number of active frames of the actual body with at least one usable joint.
+        frame_s: median interval between frames of the actual body.
         correlation: of all angular velocities at the best lag, -1 to 1.
-        reason: why there is no latency, or what to keep in mind about it; else None.
+        reason: why there is no latency, or a reservation about it; else None.
     """
 
     latency_s: float | None
@@ -101,9 +103,9 @@ def achieved_latency(
     lowest_s: float = LOWEST_S,
     highest_s: float = HIGHEST_S,
 ) -> AchievedLatency:
-    """Find the latency between two streams on one clock; see `StreamPair` for the arguments.
+    """Measure the latency between two streams on one clock; see `StreamPair` for the arguments.
 
-    All frames count as active where `active` is left out.
+    All frames count as active if `active` is None.
 
     Raises:
         AchievedLatencyError: as `latency_of_runs`.
@@ -116,65 +118,75 @@ def achieved_latency(
 def latency_of_runs(
     runs: Sequence[StreamPair], *, lowest_s: float = LOWEST_S, highest_s: float = HIGHEST_S
 ) -> AchievedLatency:
-    """Find the latency of a phase from all runs of the client that took part in it.
+    """Measure the latency of a phase from all client runs that took part in it.
 
     Args:
-        runs: none, one or more; each is compared on its own clock, and all decide together.
-        lowest_s, highest_s: the lags to look at.
+        runs: any number; each is compared on its own clock, and one lag is fitted to all of them.
+        lowest_s, highest_s: the range of lags to search.
 
     Raises:
-        AchievedLatencyError: shapes other than those of `StreamPair`, or lags that are no range.
+        AchievedLatencyError: the shapes differ from those of `StreamPair`, or the range of lags is
+            invalid.
     """
     if not (math.isfinite(lowest_s) and math.isfinite(highest_s) and lowest_s < highest_s):
         raise AchievedLatencyError(
-            f"Lags from {lowest_s} s to {highest_s} s are no range: give two rising finite numbers."
+            f"The lags {lowest_s} s to {highest_s} s are not a range:"
+            " give two ascending finite numbers."
         )
     tracks = [_tracks(run) for run in runs]
     parts = list(stretches(tracks))
     samples = sum(int((actual.active & actual.valid.any(axis=1)).sum()) for _, actual in tracks)
-    nothing = AchievedLatency(None, None, None, 0.0, samples, _frame_s(tracks))
+    unknown = AchievedLatency(None, None, None, 0.0, samples, _frame_s(tracks))
     if not parts:
-        return replace(nothing, reason="There are no active frames of both bodies.")
-    found = correlate(parts, lowest_s, highest_s, math.radians(MOVING_DEG_S))
-    nothing = replace(nothing, movement_s=found.movement_s, correlation=float(found.values.max()))
-    if found.movement_s < LEAST_MOVEMENT_S:
-        return replace(nothing, reason=_little_movement(found.movement_s))
-    return _refined(parts, found, nothing)
+        return replace(unknown, reason="There are no active frames of both bodies.")
+    coarse = correlate(parts, lowest_s, highest_s, math.radians(MOVING_DEG_S))
+    unknown = replace(unknown, movement_s=coarse.movement_s, correlation=float(coarse.values.max()))
+    if coarse.movement_s < LEAST_MOVEMENT_S:
+        return replace(unknown, reason=_little_movement(coarse.movement_s))
+    return _refine(parts, coarse, unknown)
 
 
 def tolerance_s(achieved: AchievedLatency) -> float:
-    """Return how far the latency may be off: 10 ms, or one frame where that is longer."""
+    """Return the accepted deviation of the latency: 10 ms, or one frame where that is longer."""
     return max(TOLERANCE_S, achieved.frame_s or 0.0)
 
 
 def is_off(achieved: AchievedLatency, ordered_s: float) -> bool:
-    """Return whether the latency is off by more than the tolerance; False where it is unknown."""
+    """Return whether the latency differs from the set one by more than the tolerance.
+
+    False where the latency is unknown.
+    """
     if achieved.latency_s is None:
         return False
     return abs(achieved.latency_s - ordered_s) > tolerance_s(achieved)
 
 
-def _refined(
-    parts: Sequence[Stretch], found: Correlation, nothing: AchievedLatency
+def _refine(
+    parts: Sequence[Stretch], coarse: Correlation, unknown: AchievedLatency
 ) -> AchievedLatency:
-    """Refine what the coarse search found; `nothing` is what to return, with a reason, if not."""
-    highest = float(found.values.max())
+    """Refine the result of the coarse search.
+
+    Where no lag can be determined, return `unknown` with the reason.
+    """
+    highest = float(coarse.values.max())
     if highest < _LEAST_CORRELATION:
-        reason = "The bodies do not turn alike at any one lag"
-        return replace(nothing, reason=f"{reason} (correlation {highest:.2f}).")
+        reason = "The rotations of the two bodies do not match at any lag"
+        return replace(unknown, reason=f"{reason} (correlation {highest:.2f}).")
     slowest_s = max(track.frame_s for part in parts for track in (part.target, part.actual))
     comparisons = [prepare(part, max(_BANDWIDTH_S, slowest_s)) for part in parts]
-    chosen = choose(comparisons, found)
+    chosen = choose(comparisons, coarse)
     if chosen is None:
-        reason = f"The best lag lies outside {_ms(found.lags_s[0])} to {_ms(found.lags_s[-1])} ms."
-        return replace(nothing, reason=reason)
+        reason = (
+            f"The best lag lies outside {_ms(coarse.lags_s[0])} to {_ms(coarse.lags_s[-1])} ms."
+        )
+        return replace(unknown, reason=reason)
     fit, others = chosen
     half_s = half_width_s(fit)
     if half_s > _WIDEST_HALF_S:
-        reason = f"The lag stays uncertain by more than {_ms(_WIDEST_HALF_S)} ms."
-        return replace(nothing, reason=reason)
+        reason = f"The lag is uncertain by more than {_ms(_WIDEST_HALF_S)} ms."
+        return replace(unknown, reason=reason)
     return replace(
-        nothing,
+        unknown,
         latency_s=fit.lag_s,
         low_s=fit.lag_s - half_s,
         high_s=fit.lag_s + half_s,
@@ -190,7 +202,7 @@ def _little_movement(movement_s: float) -> str:
 
 
 def _tenths(time_s: float) -> str:
-    # Cut off, not rounded: 4.97 s must not read as the 5.0 s that are enough.
+    # Truncated, not rounded: 4.97 s must not be printed as the 5.0 s that would be enough.
     return f"{math.floor(time_s * 10.0) / 10.0:.1f}"
 
 
@@ -221,7 +233,7 @@ def _tracks(run: StreamPair) -> tuple[Track, Track]:
             )
     if np.shape(run.active) != others[0]:
         raise AchievedLatencyError(
-            f"active {np.shape(run.active)} does not fit: give one for each actual frame."
+            f"active {np.shape(run.active)} does not fit: give one value for each actual frame."
         )
     every = np.ones(shapes[0], dtype=np.bool_)
     return (

@@ -1,22 +1,23 @@
-"""Which lag it is where the movement repeats itself, and how sure that is.
+"""Choose the lag where a movement repeats itself, and compute the lag's confidence interval.
 
-Whoever walks at one stride a second looks at 1.1 s much as at 0.1 s. Every peak of the correlation
-that is nearly as high as the highest is therefore refined, and the blocks decide: a lag at which
-the bodies differ clearly more, block by block, is out. If several are left, the data cannot tell,
-and the smallest lag that is not negative is taken; the others are handed back to be told.
+For somebody who walks at one stride a second, a lag of 1.1 s fits nearly as well as one of 0.1 s.
+Every peak of the correlation that is nearly as high as the highest is therefore refined, and the
+blocks decide: a lag at which the bodies differ clearly more, block by block, is rejected. If
+several are left, the data cannot decide, and the smallest lag that is not negative is chosen; the
+others are returned with it.
 
-How sure the lag is follows from how the blocks of the movement disagree about it. Noise from frame
-to frame, jitter, lost frames, a controller that lags more in one posture than in another: whatever
-makes single differences deviate also makes the blocks' parts N_b of the estimating sum scatter,
-with the dependence from frame to frame that it has. So the error follows from the blocks alone
-(Künsch 1989, Annals of Statistics 17:1217), with the allowance of the jackknife for a block's own
-pull and, where neighbours lean to the same side, with their product (Newey & West 1987,
-Econometrica 55:703):
+The confidence interval follows from how much the blocks of the movement disagree about the lag.
+Noise from frame to frame, jitter, dropped frames, a controller that lags more in one posture than
+in another: whatever makes single differences deviate also makes the blocks' parts N_b of the
+estimating sum scatter, including their dependence from frame to frame. So the error follows from
+the blocks alone (Künsch 1989, Annals of Statistics 17:1217), with the jackknife's correction for a
+block's influence on the estimate and, where neighbouring blocks deviate in the same direction, with
+their product (Newey & West 1987, Econometrica 55:703):
 
     e_b = (N_b + delta D_b) / (1 - D_b / D),   var = (sum e_b^2 + max(0, sum e_b e_(b+1))) / D^2.
 
-Student's t with D^2 / sum D_b^2 - 1 degrees of freedom makes the interval: a phase in which most of
-the movement fell into three blocks is worth three blocks.
+The interval uses Student's t with D^2 / sum D_b^2 - 1 degrees of freedom: a phase in which most of
+the movement fell into three blocks counts as three blocks.
 """
 
 import math
@@ -32,14 +33,18 @@ from app.science.rotations import FloatArray
 _NEARLY = 0.15
 _MOST_PEAKS = 4
 _CLEARLY_SE = 3.0
-# In squared scales, which are at least 0.1 degrees: below it two lags fit equally well.
+# In units of the squared scale (a scale is at least 0.1 degrees): below it two lags fit equally
+# well.
 _NO_DIFFERENCE = 0.01
 
 
 def choose(
     comparisons: Sequence[Comparison], correlation: Correlation
 ) -> tuple[Fit, tuple[float, ...]] | None:
-    """Return the fit and the other lags that fit as well; None where no peak lies within."""
+    """Return the chosen fit and the other lags that fit as well.
+
+    None if the highest correlation is at an end of the range of lags.
+    """
     peaks = correlation.peaks(_NEARLY, _MOST_PEAKS)
     fits = [refine(comparisons, float(correlation.lags_s[peak])) for peak in peaks]
     if len(fits) <= 1:
@@ -63,14 +68,18 @@ def _clearly_worse(differences: FloatArray) -> bool:
     return mean > _CLEARLY_SE * error
 
 
-# Straight lines between a client's frames shift its movement by up to 0.02 ms, and a browser's
-# clock may be no finer than 0.1 ms: nobody knows more, however well the blocks agree.
+# Linear interpolation between a client's frames shifts its movement by up to 0.02 ms, and a
+# browser's
+# clock may be no finer than 0.1 ms: the error is not smaller, however well the blocks agree.
 _LEAST_HALF_WIDTH_S = 0.00005
 _CONFIDENCE = 0.95
 
 
 def half_width_s(fit: Fit) -> float:
-    """Return half of the 95 % confidence interval of a fit's lag; infinite with too few blocks."""
+    """Return half the width of the 95 % confidence interval of a fit's lag.
+
+    Infinite if there are too few blocks.
+    """
     from scipy.special import stdtrit  # slow to load, and rarely needed
 
     total = float(fit.bottom.sum())

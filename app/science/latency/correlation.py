@@ -1,14 +1,14 @@
-"""Coarse search: at which shifts do the joints of two bodies turn alike?
+"""Coarse search for the lags at which the joints of two bodies turn most similarly.
 
 The angular velocities of all joints (vectors in the parent's frame) are correlated over the grid
-for every lag L at once, over the times t at which the clock runs and both bodies are known:
+for all lags L simultaneously, over the times t that are active and at which both bodies are known:
 
     C(L) = sum a(t) . b(t - L) / sqrt( sum |a(t)|^2  sum |b(t - L)|^2 ).
 
-Velocities do not care for constant differences between the two bodies, as a sagging arm has.
+Velocities are unaffected by constant differences between the two bodies, such as a sagging arm.
 
 Source: Padfield (2012), "Masked object registration in the Fourier domain", IEEE Trans. Image
-Processing 21:2706, here with one dimension and no mean taken off.
+Processing 21:2706, here in one dimension and without subtracting the mean.
 """
 
 from collections.abc import Sequence
@@ -22,24 +22,27 @@ from app.science.latency.stretches import GRID_S, Stretch
 from app.science.rotations import FloatArray, conjugate, multiply
 
 COARSE_BANDWIDTH_S = 0.05
-# Squared rad/s, summed over frames: rounding is below it, movement far above.
+# Squared rad/s, summed over frames: rounding errors are below it, movement is far above.
 _LEAST_ENERGY = 1e-6
-# A lag at which little of the movement overlaps would say much with little behind it.
+# A lag at which little of the movement overlaps would give a high correlation on little evidence.
 _LEAST_SHARE = 0.1
 
 
 @dataclass(frozen=True, eq=False)
 class Correlation:
-    """Correlation (k,) at each lag (k,), in steps of the grid; and the seconds of movement."""
+    """The correlation `values` (k,) of two bodies' movement at the lags `lags_s` (k,).
+
+    The lags are a grid; `movement_s` is the active time in which the target moves.
+    """
 
     lags_s: FloatArray
     values: FloatArray
     movement_s: float
 
     def peaks(self, within: float, at_most: int) -> list[int]:
-        """Indices of the local maxima no more than `within` below the highest, best first.
+        """Return indices of the local maxima at most `within` below the highest value, best first.
 
-        None at all if the highest value lies at an end: its peak, and the answer, are outside.
+        Empty if the highest value is at an end of the range: then the true peak lies outside it.
         """
         c = self.values
         if int(np.argmax(c)) in (0, len(c) - 1):
@@ -53,9 +56,9 @@ class Correlation:
 def correlate(
     parts: Sequence[Stretch], lowest_s: float, highest_s: float, moving_rad_s: float
 ) -> Correlation:
-    """Correlate all stretches together, and count the active time in which the target moves.
+    """Correlate all stretches together, and sum up the active time in which the target moves.
 
-    A target moves while its fastest joint turns faster than `moving_rad_s`.
+    The target counts as moving while its fastest joint turns faster than `moving_rad_s`.
     """
     lags = np.arange(round(lowest_s / GRID_S), round(highest_s / GRID_S) + 1)
     before, after = max(int(lags[-1]), 0), max(-int(lags[0]), 0)
@@ -71,7 +74,7 @@ def correlate(
         known = known & part.active[:, np.newaxis]
         actual *= known[..., np.newaxis]
         sums += _masked_sums(actual, known, target, target_known)[:, before - lags]
-    # Rounding of the transforms may leave an energy of nothing just below zero.
+    # Rounding errors of the transforms may leave an energy of zero slightly negative.
     energy = np.sqrt(np.maximum(sums[1], 0.0) * np.maximum(sums[2], 0.0))
     enough = energy > max(_LEAST_ENERGY, _LEAST_SHARE * float(energy.max()))
     values = np.zeros(energy.shape)
@@ -80,7 +83,7 @@ def correlate(
 
 
 def _turning(curves: Curves) -> tuple[FloatArray, BoolArray]:
-    """Angular velocities (k, joints, 3) in the parent's frame, and where they are known."""
+    """Return angular velocities (k, joints, 3) in the parent's frame, and where they are known."""
     rate = 2.0 * multiply(curves.rates, conjugate(curves.values))[..., 1:]
     return rate, np.broadcast_to(curves.known, rate.shape[:2])
 
@@ -88,7 +91,10 @@ def _turning(curves: Curves) -> tuple[FloatArray, BoolArray]:
 def _masked_sums(
     a: FloatArray, a_known: BoolArray, b: FloatArray, b_known: BoolArray
 ) -> FloatArray:
-    """The three sums of C over t with a at t and b at t + m, (3, at least len(b)), for each m."""
+    """Return the three sums of C over t, with a at t and b at t + m, for each shift m.
+
+    The result is (3, at least len(b)).
+    """
     from scipy import fft  # slow to load, and rarely needed
 
     size = fft.next_fast_len(len(a) + len(b), real=True)

@@ -1,13 +1,14 @@
-"""A stream of rotations as smooth curves that can be read at any time.
+"""A stream of rotations as smooth curves that can be evaluated at any time.
 
-Frames come unevenly, with noise, and some are missing. Around each asked time t the quaternions of
-a joint are therefore fitted by a straight line with Gaussian weights (local linear regression),
+Frames arrive unevenly, with noise, and some are missing. Around each requested time t the
+quaternions of a joint are therefore fitted by a straight line with Gaussian weights (local linear
+regression),
 
     q(t + d) ~ value + rate d,    weight exp(-d^2 / 2 b^2),    b the bandwidth,
 
-one component at a time: neighbouring quaternions are nearly parallel once q and -q are told apart,
-so the components behave like ordinary signals. The fit has no phase: what it takes away from fast
-movement it takes away evenly on both sides, from two streams alike. That matters more here than
+one component at a time: neighbouring quaternions are nearly parallel once their signs are made
+consistent, so the components behave like ordinary signals. The fit has zero phase: it attenuates
+fast movement symmetrically in time, and both streams equally. That matters more here than
 sharpness. Interpolating between two noisy frames does worse: it averages most half-way between
 them, so a search for the best shift would be drawn to half frames.
 
@@ -28,20 +29,20 @@ if TYPE_CHECKING:
 
 BoolArray = npt.NDArray[np.bool_]
 _REACH_BANDWIDTHS = 4.0
-# A stretch without samples that is longer than this many frames is a gap: nothing is said in it.
+# A time without samples that is longer than this many frames is a gap, in which curves are unknown.
 _LONGEST_GAP_FRAMES = 4.5
 
 
 @dataclass(frozen=True, eq=False)
 class Track:
-    """The frames of one stream that can be used, in order.
+    """The usable frames of one stream, in order.
 
     Attributes:
-        times_s: (n,) rising.
-        rotations: (n, joints, 4) quaternions, each in the hemisphere of the one before.
-        valid: (n, joints) which of them count; (n, 1) where every joint of a frame shares its fate.
-        active: (n,) during which frames the phase's clock ran.
-        frame_s: median time from frame to frame; NaN with fewer than two frames.
+        times_s: (n,) ascending.
+        rotations: (n, joints, 4) quaternions, each in the hemisphere of the previous one.
+        valid: (n, joints) mask of the usable rotations; (n, 1) if all joints of a frame share it.
+        active: (n,) mask of the frames that are in active time.
+        frame_s: median interval between frames; NaN with fewer than two frames.
     """
 
     times_s: FloatArray
@@ -53,12 +54,13 @@ class Track:
 
 @dataclass(frozen=True, eq=False)
 class Curves:
-    """A track at k asked times.
+    """A track evaluated at k requested times.
 
     Attributes:
         values: (k, joints, 4) near-unit quaternions.
         rates: (k, joints, 4) their change per second.
-        known: (k, joints or 1) where there are frames close by on both sides; else all is zero.
+        known: (k, joints or 1) mask of the times with frames close by on both sides; elsewhere
+            values and rates are zero.
     """
 
     values: FloatArray
@@ -67,11 +69,11 @@ class Curves:
 
 
 def track_of(times_s: FloatArray, rotations: FloatArray, active: BoolArray) -> Track:
-    """Keep the frames whose time is finite and later than all before; note unusable quaternions.
+    """Keep the frames whose time is finite and later than all previous ones; mask bad rotations.
 
     Args:
-        times_s: (n,) in any state.
-        rotations: (n, joints, 4), may hold anything.
+        times_s: (n,), may be unordered or not finite.
+        rotations: (n, joints, 4), may contain any values.
         active: (n,).
     """
     usable = np.where(np.isfinite(times_s), times_s, -np.inf)
@@ -87,7 +89,10 @@ def track_of(times_s: FloatArray, rotations: FloatArray, active: BoolArray) -> T
 
 
 def smoothed(track: Track, at_s: FloatArray, bandwidth_s: float) -> Curves:
-    """Read a track at rising times (k,); the bandwidth is the standard deviation of the weights."""
+    """Evaluate a track at ascending times (k,).
+
+    `bandwidth_s` is the standard deviation of the Gaussian weights.
+    """
     track = _around(track, at_s, _REACH_BANDWIDTHS * bandwidth_s)
     if len(track.times_s) == 0:
         nothing = np.zeros((len(at_s), *track.rotations.shape[1:]))
@@ -100,7 +105,7 @@ def smoothed(track: Track, at_s: FloatArray, bandwidth_s: float) -> Curves:
     t0 = (weights @ signal).reshape(shape)
     t1 = (first_moment @ signal).reshape(shape)
     spread = s0 * s2 - s1 * s1
-    # With fewer than two frames in reach there is no line to lay through them.
+    # With fewer than two frames in reach no line can be fitted.
     known = _between_frames(track, at_s) & (spread > 1e-9 * s0 * s0 * bandwidth_s**2) & (s0 > 0.0)
     scale = np.where(known, 1.0 / np.where(known, spread, 1.0), 0.0)
     a, b, c = ((scale * s)[..., np.newaxis] for s in (s0, s1, s2))
@@ -108,7 +113,10 @@ def smoothed(track: Track, at_s: FloatArray, bandwidth_s: float) -> Curves:
 
 
 def _around(track: Track, at_s: FloatArray, reach_s: float) -> Track:
-    """The frames that matter to these times: long recordings are read a stretch at a time."""
+    """Return the part of a track that influences these times.
+
+    Long recordings are evaluated one stretch at a time, which bounds the memory.
+    """
     reach_s += _LONGEST_GAP_FRAMES * track.frame_s
     low, high = np.searchsorted(track.times_s, (at_s[0] - reach_s, at_s[-1] + reach_s))
     kept = slice(int(low), int(high))
@@ -124,7 +132,10 @@ def _around(track: Track, at_s: FloatArray, reach_s: float) -> Track:
 def _kernels(
     times_s: FloatArray, at_s: FloatArray, bandwidth_s: float
 ) -> "tuple[csr_array, csr_array, csr_array]":
-    """Weights (k, n) of each sample at each asked time, and times the distance and its square."""
+    """Return the weights (k, n) of each sample at each requested time, and their first two moments.
+
+    The moments are the weights times the distance in time, and times its square.
+    """
     from scipy.sparse import csr_array  # slow to load, and rarely needed
 
     reach_s = _REACH_BANDWIDTHS * bandwidth_s
@@ -145,7 +156,7 @@ def _kernels(
 
 
 def _between_frames(track: Track, at_s: FloatArray) -> BoolArray:
-    """Whether the valid frames just before and just after each time are close together."""
+    """Return whether the valid frames just before and just after each time are close together."""
     times = track.times_s[:, np.newaxis]
     before = np.maximum.accumulate(np.where(track.valid, times, -np.inf), axis=0)
     after = np.minimum.accumulate(np.where(track.valid, times, np.inf)[::-1], axis=0)[::-1]
@@ -158,7 +169,7 @@ def _between_frames(track: Track, at_s: FloatArray) -> BoolArray:
 
 
 def _filled(rotations: FloatArray, valid: BoolArray) -> FloatArray:
-    """Repeat each joint's last valid quaternion over the ones that are not."""
+    """Replace each joint's invalid quaternions by its last valid one, or by the identity."""
     last = np.maximum.accumulate(np.where(valid, np.arange(len(valid))[:, np.newaxis], -1), axis=0)
     q = np.take_along_axis(rotations, np.maximum(last, 0)[..., np.newaxis], axis=0)
     return np.where((last >= 0)[..., np.newaxis], q, identity())

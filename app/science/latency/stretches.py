@@ -1,4 +1,4 @@
-"""What is compared: stretches of active time on a regular grid, cut into blocks."""
+"""Stretches of active time on a regular grid, divided into blocks, as the units of comparison."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -10,18 +10,18 @@ from app.science.latency.smoothing import BoolArray, Track
 from app.science.rotations import FloatArray
 
 GRID_S = 1.0 / 90.0
-_LONGEST_STRETCH_S = 60.0  # bounds memory, not meaning
+_LONGEST_STRETCH_S = 60.0  # bounds memory; does not change the result
 _BLOCK_S = 2.0
 
 
 @dataclass(frozen=True, eq=False)
 class Stretch:
-    """Up to a minute of a run of the client.
+    """Up to a minute of a client run.
 
     Attributes:
         target, actual: both streams of the run, on one clock.
         grid_s: (k,) regular times from the first to the last active actual frame.
-        active: (k,) where the phase's clock ran.
+        active: (k,) mask of the grid times that are in active time.
     """
 
     target: Track
@@ -36,13 +36,13 @@ class Stretch:
 
     @property
     def block_starts(self) -> npt.NDArray[np.intp]:
-        """Where in `at_s` each block of about two seconds begins."""
+        """The index in `at_s` at which each block of about two seconds begins."""
         number = np.floor((self.at_s - self.grid_s[0]) / _BLOCK_S)
         return np.flatnonzero(np.diff(number, prepend=-1.0))
 
 
 def stretches(runs: Sequence[tuple[Track, Track]]) -> Iterator[Stretch]:
-    """Cut (target, actual) of each run of the client into stretches with active time in them."""
+    """Cut each client run's (target, actual) tracks into stretches that contain active time."""
     for target, actual in runs:
         times = actual.times_s[actual.active]
         if times.size < 2 or target.times_s.size < 2:
@@ -54,13 +54,13 @@ def stretches(runs: Sequence[tuple[Track, Track]]) -> Iterator[Stretch]:
             active = _active_at(actual, grid_s)
             if active.any():
                 yield Stretch(target, actual, grid_s, active)
-            # On to the next active frame, however long the pause before it was.
+            # Continue at the next active frame, however long the pause before it was.
             later = times[np.searchsorted(times, end_s, side="right") :]
             start_s = float(later[0]) if later.size else end_s
 
 
 def _active_at(track: Track, at_s: FloatArray) -> BoolArray:
-    """Whether the frames on both sides are active."""
+    """Return whether the frames before and after each time are both active."""
     last = len(track.times_s) - 1
     low = np.clip(np.searchsorted(track.times_s, at_s, side="right") - 1, 0, last)
     high = np.clip(np.searchsorted(track.times_s, at_s, side="left"), 0, last)

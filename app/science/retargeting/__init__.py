@@ -1,8 +1,8 @@
-"""Any body's movement on any avatar.
+"""Retarget the movement of any body to any avatar.
 
-`propose_joint_map` finds what the joints of a rig are, `retarget_motion` carries a whole movement
-onto an avatar, with feet that hold the ground, and `Retargeter` does so frame by frame. `verify`
-and `check_table1` measure the result.
+`propose_joint_map` identifies the joints of a rig, `retarget_motion` transfers a whole movement to
+an avatar, optionally with feet locked to the ground, and `Retargeter` does so frame by frame.
+`verify` and `check_table1` check the result.
 """
 
 from app.science.retargeting.gait import Walk

@@ -1,4 +1,4 @@
-"""Which bones of a rig a T-pose aligns, to which axes, and which way the rig faces at rest."""
+"""Find the bones of a rig that a T-pose aligns, their target axes, and the rig's facing at rest."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -17,18 +17,18 @@ _ARM = ("UpperArm", "LowerArm", "Hand")
 _LEG = ("UpperLeg", "LowerLeg", "Foot")
 _SHORTEST_BONE_M = 1e-4
 _STRAIGHT_ON = 0.5
-"""Cosine of 60 degrees: a finger bent further does not show where the hand points."""
+"""Cosine of 60 degrees: a finger bent further does not indicate the hand's direction."""
 
 
 @dataclass(frozen=True, eq=False)
 class Bone:
-    """What is aligned at one joint.
+    """A bone that is aligned by turning one joint.
 
     Attributes:
         body_joint: name of the joint of the body.
         joint: index in the rig.
         direction: (3,) of the bone in the joint's own frame, of any length above zero.
-        axis: (3,) unit vector it is brought to, in the axes (before the rig's facing).
+        axis: (3,) unit vector it is aligned to, in the axes (before the rig's facing).
     """
 
     body_joint: str
@@ -38,10 +38,10 @@ class Bone:
 
 
 def joints_of(rig: Rig, joint_map: JointMap) -> dict[str, int]:
-    """Return body joint -> index in the rig, in the body's order.
+    """Return body joint -> index in the rig, in the skeleton's order.
 
     Raises:
-        JointMapError: the map does not fit the rig.
+        JointMapError: the map does not match the rig.
     """
     check_joint_map(rig, joint_map)
     return {name: rig.index(joint_map[name]) for name in JOINT_NAMES if name in joint_map}
@@ -50,7 +50,7 @@ def joints_of(rig: Rig, joint_map: JointMap) -> dict[str, int]:
 def bones_of(
     rig: Rig, joints: Mapping[str, int], axes: Axes, local_axes: Mapping[str, Vector]
 ) -> tuple[Bone, ...]:
-    """Return what there is to align, root to leaf."""
+    """Return the bones to align, ordered from root to leaf."""
     up, left = axes.up_array(), axes.left_array()
     limbs: list[tuple[tuple[str, ...], FloatArray]] = [(_TORSO, up)]
     for side, outwards in (("Left", left), ("Right", -left)):
@@ -70,7 +70,7 @@ def bones_of(
 
 
 def _direction(rig: Rig, chain: list[int], at: int, limb: tuple[str, ...]) -> FloatArray:
-    """Return the bone of one joint of a limb in its own frame; zero where it has none."""
+    """Return the bone of one joint of a limb in the joint's own frame; zero if it has none."""
     places, world = rig.rest_world()
     joint = chain[at]
     bone = np.zeros(3)
@@ -83,7 +83,7 @@ def _direction(rig: Rig, chain: list[int], at: int, limb: tuple[str, ...]) -> Fl
 
 
 def points_below(rig: Rig, joint: int, places: FloatArray, world: FloatArray) -> FloatArray:
-    """Return joints and free ends below a joint, (P, 3) in the world."""
+    """Return the positions of joints and free ends below a joint, (P, 3) in the world."""
     below = [other for other in range(rig.joint_count) if is_below(rig, other, joint)]
     points = [places[other] for other in below if other != joint]
     points += [
@@ -95,9 +95,10 @@ def points_below(rig: Rig, joint: int, places: FloatArray, world: FloatArray) ->
 
 
 def rest_facing(rig: Rig, joints: Mapping[str, int], axes: Axes) -> FloatArray:
-    """Return the turn about up, (4,), that brings `axes.left` to the rig's left at rest.
+    """Return the rotation about up, (4,), that brings `axes.left` to the rig's left at rest.
 
-    Left is read from the hip sockets, else the shoulders; without either the rig faces as the axes.
+    Left is determined from the hip joints, else from the shoulders; without either the rig is
+    assumed to face as the axes do.
     """
     places = rig.rest_world()[0]
     up = axes.up_array()
@@ -120,7 +121,10 @@ def _turn_about(up: FloatArray, start: FloatArray, end: FloatArray) -> FloatArra
 def _longest_finger(
     rig: Rig, joint: int, places: FloatArray, world: FloatArray, forearm: FloatArray
 ) -> FloatArray:
-    """Return the way to the farthest point below a hand, in the world; zero if none shows it."""
+    """Return the vector from a hand to the farthest point below it, in the world.
+
+    Zero if there is no such point, or if its direction deviates too much from the forearm's.
+    """
     ways = points_below(rig, joint, places, world) - places[joint]
     if not len(ways):
         return np.zeros(3)

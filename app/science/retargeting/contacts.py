@@ -1,10 +1,11 @@
-"""When feet are on the ground, found from the movement itself.
+"""Detect when feet are on the ground, from the movement itself.
 
-A foot is down while its ball is slow and low. Captures drift: the floor of the CMU walks rises by
-2 cm a stride. So *low* is meant above the lowest slow place within a second, and *slow* in leg
-lengths a second, or as a share of the foot's own fast swings where an avatar slides. Both have two
-limits, a tight one to come down and a loose one to leave (hysteresis), so a foot at the limit does
-not flicker. Every measure scales with the body: a body twice as large has the same contacts.
+A foot is down while its ball is slow and low. Captures drift: the floor of the CMU walks rises by 2
+cm per stride. *Low* is therefore relative to the lowest slow position within a second, and *slow*
+is in leg lengths per second, or a share of the foot's own fast swings for an avatar that slides.
+Both have two thresholds, a tight one to come down and a loose one to leave the ground (hysteresis),
+so a foot at the threshold does not flicker. Every measure scales with the body: a body twice as
+large has the same contacts.
 """
 
 from dataclasses import dataclass
@@ -18,15 +19,15 @@ from app.science.rotations import FloatArray
 
 @dataclass(frozen=True)
 class ContactLimits:
-    """What counts as down; L is the leg length.
+    """Thresholds for a foot to be on the ground; L is the leg length.
 
     Attributes:
-        slow_per_s: below this many L a second a foot may come down ...
-        slow_share: ... or below this share of its fast swings' speed, whichever is more.
-        low: below this many L above the floor it may come down.
-        leaving: how many times these limits it takes to leave.
-        floor_s: the floor is the lowest slow place within this time before and after.
-        shortest_s: shorter contacts, and shorter gaps in one, are taken for noise.
+        slow_per_s: a foot may come down below this speed, in L per second ...
+        slow_share: ... or below this share of the speed of its fast swings, whichever is higher.
+        low: a foot may come down below this height above the floor, in L.
+        leaving: the factor on these thresholds that must be exceeded to leave the ground.
+        floor_s: the floor is the lowest slow position within this time before and after.
+        shortest_s: shorter contacts, and shorter gaps in a contact, are treated as noise.
     """
 
     slow_per_s: float = 0.35
@@ -39,24 +40,25 @@ class ContactLimits:
 
 _DEFAULT = ContactLimits()
 _FAST_QUANTILE = 0.95
-# Speeds are differences over about this time on either side; faster captures are noisier.
+# Speeds are differences over about this time on either side; differences between single frames
+# of fast captures would be noisier.
 _DIFFERENCE_S = 1.0 / 120.0
 
 
 @dataclass(frozen=True, eq=False)
 class Contacts:
-    """Which feet are down in which frames: down (N, 2), left then right."""
+    """When each foot is on the ground: `down` (N, 2) by frame, left then right."""
 
     rate_hz: float
     down: BoolArray
 
     def intervals(self, foot: int) -> list[tuple[int, int]]:
-        """First and last frame of each contact of a foot, 0 left and 1 right."""
+        """Return the first and last frame of each contact of a foot, 0 left and 1 right."""
         return runs(self.down[:, foot])
 
 
 def find_contacts(motion: RigMotion, legs: Legs, limits: ContactLimits = _DEFAULT) -> Contacts:
-    """Find when each foot of a moving body is down."""
+    """Detect when each foot of a moving body is on the ground."""
     balls = legs.balls_m(*motion.world())
     return contacts_of(balls, legs.length_m, motion.rate_hz, limits)
 
@@ -64,15 +66,16 @@ def find_contacts(motion: RigMotion, legs: Legs, limits: ContactLimits = _DEFAUL
 def contacts_of(
     balls_m: FloatArray, leg_m: float, rate_hz: float, limits: ContactLimits = _DEFAULT
 ) -> Contacts:
-    """The same from the paths of both balls, (2, N, 3), and the leg length."""
+    """Detect contacts from the paths of the balls of both feet, (2, N, 3), and the leg length."""
     down = [_down(ball, leg_m, rate_hz, limits) for ball in balls_m]
     return Contacts(rate_hz, np.stack(down, axis=1))
 
 
 def mean_slide_m_s(balls_m: FloatArray, contacts: Contacts) -> float | None:
-    """Mean horizontal speed of feet while they are down; None where none is down for two frames.
+    """Return the mean horizontal speed of feet in contact; None if no contact has two frames.
 
-    The way each ball, (2, N, 3), makes over the ground during its contacts, by the time they last.
+    It is the distance that each ball, (2, N, 3), moves over the ground during its contacts, divided
+    by their duration.
     """
     way_m, frames = 0.0, 0
     for foot, ball in enumerate(balls_m):
@@ -84,7 +87,7 @@ def mean_slide_m_s(balls_m: FloatArray, contacts: Contacts) -> float | None:
 
 
 def runs(flags: BoolArray) -> list[tuple[int, int]]:
-    """First and last index of each run of true values."""
+    """Return the first and last index of each run of true values."""
     edges = np.diff(np.concatenate(([False], flags, [False])).astype(np.int8))
     starts, stops = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1) - 1
     return list(zip(starts.tolist(), stops.tolist(), strict=True))
@@ -114,15 +117,15 @@ def _speed(ball_m: FloatArray, rate_hz: float) -> FloatArray:
 
 
 def _floor(height_m: FloatArray, slow: BoolArray, reach: int) -> FloatArray:
-    """Lowest slow height within `reach` frames on either side; minus infinity where none is."""
-    from scipy.ndimage import minimum_filter1d  # slow to load
+    """Return the lowest slow height within `reach` frames on either side; -inf if none is slow."""
+    from scipy.ndimage import minimum_filter1d  # slow to import
 
     lowest = minimum_filter1d(np.where(slow, height_m, np.inf), 2 * reach + 1, mode="nearest")
     return np.where(np.isfinite(lowest), lowest, -np.inf)
 
 
 def _hysteresis(enter: BoolArray, stay: BoolArray) -> BoolArray:
-    """True from `enter` on for as long as `stay` holds without a break."""
+    """Return flags that are true from `enter` on for as long as `stay` is true without a break."""
     result = np.zeros(len(enter), dtype=np.bool_)
     for first, last in runs(stay):
         inside = np.flatnonzero(enter[first : last + 1])
@@ -132,7 +135,7 @@ def _hysteresis(enter: BoolArray, stay: BoolArray) -> BoolArray:
 
 
 def _without_short(flags: BoolArray, shortest: float) -> BoolArray:
-    """Without runs of fewer frames than `shortest`; at the ends they may go on, and stay."""
+    """Drop runs of fewer frames than `shortest`, except at the ends, where they may be cut off."""
     result = flags.copy()
     for first, last in runs(flags):
         if first > 0 and last < len(flags) - 1 and last - first + 1 < shortest:

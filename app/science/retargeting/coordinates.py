@@ -1,19 +1,19 @@
-"""Between OptiTrack's world and Unreal Engine's, places and rotations.
+"""Convert positions and rotations between OptiTrack's and Unreal Engine's world.
 
 OptiTrack (Motive, NatNet) is y up, right-handed, in metres; Unreal is z up, left-handed, in
-centimetres. Exchanging y and z turns the one into the other,
+centimetres. Exchanging y and z converts one to the other,
 
     p' = 100 (x, z, y),   q' = (w, -x, -z, -y):
 
-the exchange mirrors space, so a turn keeps its axis, exchanged, and goes round the other way. A
-T-pose that faces +z in Motive, left arm on +x, faces +y in Unreal, left arm on +x.
+the exchange mirrors space, so a rotation keeps its axis, with y and z exchanged, and reverses its
+direction. A T-pose that faces +z in Motive, left arm on +x, faces +y in Unreal, left arm on +x.
 
-Unreal prints rotations as FRotator, degrees of roll, pitch and yaw about x, y and z with signs of
-its own:
+Unreal prints rotations as FRotator, degrees of roll, pitch and yaw about x, y and z with its own
+signs:
 
     q = Rz(yaw) Ry(-pitch) Rx(-roll).
 
-With the textbook's Rz Ry Rx the mannequin's head comes to lie below its pelvis.
+With the textbook's Rz Ry Rx the mannequin's head would be below its pelvis.
 """
 
 import numpy as np
@@ -29,8 +29,8 @@ def unreal_from_optitrack(
 ) -> tuple[FloatArray, FloatArray]:
     """Return positions (..., 3) in centimetres and rotations (..., 4) in Unreal's world.
 
-    Takes metres and rotations in OptiTrack's; every rotation that maps one frame to another is
-    converted the same way, local or in the world.
+    The arguments are metres and rotations in OptiTrack's world. Local rotations and world rotations
+    are converted in the same way, as is every rotation that maps one frame to another.
     """
     return _CM_PER_M * positions_m[..., [0, 2, 1]], _Q_SIGNS * rotations[..., [0, 1, 3, 2]]
 
@@ -49,7 +49,7 @@ def from_rotator(roll_pitch_yaw_deg: FloatArray) -> FloatArray:
 
 
 def to_rotator(rotations: FloatArray) -> FloatArray:
-    """Return Unreal's roll, pitch and yaw (..., 3) in degrees: pitch within 90 degrees.
+    """Return Unreal's roll, pitch and yaw (..., 3) in degrees, with pitch within 90 degrees.
 
     At a pitch of 90 degrees, where only a sum of roll and yaw is determined, roll is zero.
     """

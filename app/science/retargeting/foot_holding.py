@@ -1,10 +1,10 @@
-"""Where feet are held while they stand, and how they come there and leave.
+"""Compute where feet are held during contacts, and the smooth transition before and after.
 
-During a contact the sole of a foot stays at one place, the mean of where it would slide along, at
-the height of the ground there. The correction that takes it there is c(t). Between two contacts c
-goes from the end of one to the start of the next along 3u^2 - 2u^3; on either side of a contact its
-slope runs out smoothly, so that the foot has one speed at the edge. Before the first contact and
-after the last c stays.
+During a contact the sole of a foot stays at one place: the mean of the positions along which it
+would slide, at the height of the ground there. The correction that moves the sole there is c(t).
+Between two contacts c goes from the end of one to the start of the next along 3u^2 - 2u^3; on
+either side of a contact the slope of c decays smoothly, so that the foot's speed is continuous at
+the edge. Before the first contact and after the last c is constant.
 """
 
 from itertools import pairwise
@@ -26,14 +26,14 @@ def held_shifts(
     ground: Ground,
     settling_s: float,
 ) -> FloatArray:
-    """By how much each foot is moved, (2, N, 3); zero where no foot ever touches the ground.
+    """Return the shift of each foot, (2, N, 3); zero if no foot ever touches the ground.
 
     Args:
         positions_m, world: joints (N, J, 3) and world_from_joint (N, J, 4) of the avatar.
-        legs: which joints its legs are.
+        legs: the joints of its legs.
         contacts: when the feet are held.
         ground: under the avatar.
-        settling_s: how long a foot takes to take up its own speed again beside a contact.
+        settling_s: time in which a foot returns to its own speed before and after a contact.
     """
     settle = max(1, round(settling_s * contacts.rate_hz))
     shifts = np.zeros((2, len(positions_m), 3))
@@ -49,10 +49,11 @@ def held_shifts(
 
 
 def _sole_m(leg: Leg, positions_m: FloatArray, world: FloatArray, down: BoolArray) -> FloatArray:
-    """Where a foot touches the ground, (N, 3): below its ball, as low as its ball or heel is.
+    """Return where a foot touches the ground, (N, 3): below its ball, at the height of the sole.
 
-    Both lie above the lowest point of the foot by what is usual in contact. The lowest point
-    itself would do, but it is often a toe, and captures hardly measure how toes turn.
+    That height is the lower of ball and heel, each minus its median height above the foot's lowest
+    point during contact. The lowest point itself could be used, but it is often a toe, and captures
+    hardly measure how toes turn.
     """
     ball, ankle = leg.ball_m(positions_m, world), positions_m[:, leg.foot]
     lowest = leg.lowest_m(positions_m, world)
@@ -63,7 +64,7 @@ def _sole_m(leg: Leg, positions_m: FloatArray, world: FloatArray, down: BoolArra
 def _corrections(
     sole_m: FloatArray, intervals: list[tuple[int, int]], ground: Ground, settle: int
 ) -> FloatArray:
-    """(N, 3) from where a sole is to where it is held, smooth in between."""
+    """Return the shifts (N, 3) from a sole's position to where it is held, smooth in between."""
     count = len(sole_m)
     shift = np.zeros_like(sole_m)
     for first, last in intervals:
@@ -86,7 +87,7 @@ def _corrections(
 
 
 def _settle(shift: FloatArray, slope: FloatArray, settle: int) -> None:
-    """Go on with a contact's slope (a frame) beyond its edge and let it run out, in place."""
+    """Continue a contact's slope (per frame) beyond its edge and let it decay, in place."""
     span = min(settle, len(shift) + 1)
     k = np.arange(1, span)[:, np.newaxis]
     shift[: span - 1] += slope * k * (1.0 - k / span) ** 2

@@ -1,19 +1,19 @@
-"""Feet that stay where they stand.
+"""Foot locking: keep feet from sliding while they are on the ground.
 
 An avatar with the person's proportions walks without sliding at any size. With another thigh:shin
-ratio the same joint angles carry the foot elsewhere, and it slides while it should stand. Locking
+ratio the same joint angles move the foot elsewhere, and it slides while it should stand. Locking
 holds each foot, during each contact of the *source*, at one place:
 
     c(t) = (mean x, ground there, mean z) - (x, y, z)(t) of the sole below the ball,
     ankle(t) = unlocked ankle(t) + c(t).
 
-Between two contacts c passes smoothly from the end of one to the start of the next, before the
-first and after the last it stays, so nothing pops. Feet keep their orientation, so they still roll
-from heel to toe, and legs reach for the ankles (`leg_reach`). The body rises and sinks with its
-feet: the hips take the smoothed mean of both corrections' heights, and so follow a ground that the
-capture never saw. Where a leg is then too short the hips come down a little, by a limited amount;
-what is still out of reach is let go: the leg points to its place as far as it goes, and the frames
-are counted.
+Between two contacts c changes smoothly from the end of one to the start of the next, before the
+first and after the last it is constant, so nothing pops. Feet keep their orientation, so they still
+roll from heel to toe, and legs reach for the ankles (`leg_reach`). The body rises and sinks with
+its feet: the hips are raised by the smoothed mean of both corrections' heights, and so follow a
+ground that was not in the capture. Where a leg is then too short, the hips are lowered by a limited
+amount; if the target is still out of reach, the leg points towards it, stretched as far as allowed,
+and the frame is counted.
 """
 
 from dataclasses import dataclass
@@ -30,18 +30,18 @@ from app.science.rig import Rig, RigError, RigMotion, place, to_local
 from app.science.rotations import FloatArray, multiply
 
 _FLAT = Flat()
-# Shorter than this no eye sees a foot miss its place.
+# A foot that misses its place by less than this is not visible.
 _REACHED_M = 1e-3
 
 
 @dataclass(frozen=True)
 class LockLimits:
-    """How a foot is held.
+    """Limits of the correction by foot locking.
 
     Attributes:
-        smoothing_s: over how long the hips' rise and fall is smoothed, either way.
-        settling_s: how long a foot takes to take up its own speed again beside a contact.
-        deepest: by how many leg lengths the hips may come down to let both feet reach.
+        smoothing_s: time over which the hips' rise and fall is smoothed, either way.
+        settling_s: time in which a foot returns to its own speed before and after a contact.
+        deepest: largest lowering of the hips to let both feet reach, in leg lengths.
     """
 
     smoothing_s: float = 0.2
@@ -54,13 +54,13 @@ _DEFAULT = LockLimits()
 
 @dataclass(frozen=True, eq=False)
 class LockedFeet:
-    """A movement with its feet held, and what it took.
+    """A movement with its feet locked, and measures of the correction.
 
     Attributes:
         motion: the movement.
         slide_before_m_s, slide_after_m_s: mean horizontal speed of feet in contact; None without
             any contact.
-        lowered_m: by how much the hips came down at most to let the legs reach.
+        lowered_m: largest lowering of the hips to let the legs reach.
         out_of_reach: frames in which a foot in contact could not reach its place, both feet added.
     """
 
@@ -78,22 +78,23 @@ def lock_feet(
     ground: Ground = _FLAT,
     limits: LockLimits = _DEFAULT,
 ) -> LockedFeet:
-    """Hold the feet of an avatar at their places while the source's are down.
+    """Hold the feet of an avatar in place while the source's are down.
 
     Args:
         motion: the avatar's movement, after the transfer.
-        joint_map: the avatar's.
-        contacts: of the source, `find_contacts`, as many frames.
+        joint_map: of the avatar.
+        contacts: of the source, from `find_contacts`, with the same number of frames.
         ground: under the avatar.
         limits: of the correction.
 
     Raises:
-        RigError: the legs are not mapped, or the contacts have another number of frames.
+        RigError: the legs are not mapped, or the contacts have a different number of frames.
     """
     legs = legs_of(motion.rig, joint_map)
     if len(contacts.down) != motion.frame_count:
         raise RigError(
-            f"{len(contacts.down)} frames of contacts do not fit {motion.frame_count} of movement."
+            f"{len(contacts.down)} frames of contacts do not match"
+            f" {motion.frame_count} frames of movement."
         )
     positions, world = motion.world()
     shifts = held_shifts(positions, world, legs, contacts, ground, limits.settling_s)
@@ -119,7 +120,10 @@ def lock_feet(
 def _lowered(
     positions_m: FloatArray, legs: Legs, targets_m: FloatArray, deepest_m: float, reach: int
 ) -> FloatArray:
-    """(N,) by how much the hips come down so that both legs reach, smoothly and not too deep."""
+    """Return by how much the hips are lowered, (N,), so that both legs reach.
+
+    It is smooth and at most `deepest_m`.
+    """
     from scipy.ndimage import maximum_filter1d  # slow to load
 
     need = np.zeros(len(positions_m))
@@ -130,13 +134,13 @@ def _lowered(
         away = np.linalg.norm((target - hip)[:, [0, 2]], axis=1)
         drop = hip[:, 1] - target[:, 1] - np.sqrt(np.maximum(longest**2 - away**2, 0.0))
         need = np.maximum(need, drop)
-    # A mean over the span of a running maximum is smooth, and nowhere below what is needed.
+    # A mean over the span of a running maximum is smooth, and never below what is needed.
     widened = maximum_filter1d(np.clip(need, 0.0, deepest_m), 2 * reach + 1, mode="nearest")
     return _smooth(widened, reach)
 
 
 def _smooth(values: FloatArray, reach: int) -> FloatArray:
-    """Twice the mean over nearby frames, `reach` on either side in all."""
+    """Apply the mean over nearby frames twice, `reach` frames on either side in total."""
     from scipy.ndimage import uniform_filter1d  # slow to load
 
     span = 2 * (reach // 2) + 1
@@ -147,7 +151,7 @@ def _smooth(values: FloatArray, reach: int) -> FloatArray:
 def _reached(
     motion: RigMotion, legs: Legs, targets_m: FloatArray, root_m: FloatArray
 ) -> tuple[RigMotion, FloatArray]:
-    """The movement whose ankles are at their targets, and (2, N) by how much they fall short."""
+    """Return the movement with the ankles at their targets, and each foot's shortfall, (2, N)."""
     positions, world = place(motion.rig, root_m, motion.rotations)
     right = positions[:, legs.right.thigh] - positions[:, legs.left.thigh]
     short = np.empty(targets_m.shape[:2])
@@ -162,7 +166,10 @@ def _reached(
 
 
 def _turn(world: FloatArray, rig: Rig, leg: Leg, reach: Reach) -> None:
-    """Turn the thigh with what hangs on it, and the shin, in place; the foot keeps its own way."""
+    """Turn the thigh and the shin, each with the joints attached to it, in place.
+
+    The foot and the joints below it keep their world rotation.
+    """
     for joint in range(leg.thigh, rig.joint_count):
         part = _nearest(rig, joint, (leg.thigh, leg.shin, leg.foot))
         if part == leg.thigh:
@@ -172,7 +179,7 @@ def _turn(world: FloatArray, rig: Rig, leg: Leg, reach: Reach) -> None:
 
 
 def _nearest(rig: Rig, joint: int, parts: tuple[int, ...]) -> int:
-    """The first of `parts` on the way from a joint to the root, itself included; -1 for none."""
+    """Return the first of `parts` from a joint (inclusive) up to the root; -1 if there is none."""
     while joint >= 0 and joint not in parts:
         joint = rig.parents[joint]
     return joint

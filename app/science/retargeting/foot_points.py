@@ -1,4 +1,4 @@
-"""What of a body touches the ground when it stands: its feet, toes and all that hangs on them."""
+"""The points of a body that may touch the ground: feet, toes and everything attached to them."""
 
 from typing import cast
 
@@ -13,14 +13,14 @@ _FOOT_PARTS = ("LeftFoot", "LeftToes", "RightFoot", "RightToes")
 
 
 class FootPoints:
-    """Joints and free ends of a rig's feet; of its whole body where no foot is mapped.
+    """Joints and free ends of a rig's feet; of its whole body if no foot is mapped.
 
     Attributes:
-        joints: the joint each point moves with, (P,).
+        joints: (P,) the joint with which each point moves.
     """
 
     def __init__(self, rig: Rig, joint_map: JointMap) -> None:
-        """Find the points once; raises RigError where the map names a joint the rig lacks."""
+        """Find the points; raise RigError if the map names a joint that the rig lacks."""
         feet = [rig.index(joint_map[part]) for part in _FOOT_PARTS if part in joint_map] or [0]
         low = [
             joint
@@ -39,9 +39,9 @@ class FootPoints:
         self._offsets = cast("list[Vector]", rig.offsets_m.tolist())
 
     def places_m(self, root_position_m: FloatArray, rotations: FloatArray) -> FloatArray:
-        """Return where the points are, (P, 3), in one frame, (3,) and (J, 4)."""
+        """Return the positions of the points, (P, 3), for one frame, (3,) and (J, 4)."""
         local = cast("list[Quaternion]", rotations.tolist())
-        # Plain floats: a few dozen products of one frame cost more as arrays.
+        # Plain floats: the few dozen products of a single frame are slower with arrays.
         turns: dict[int, Quaternion] = {0: local[0]}
         places: dict[int, Vector] = {0: cast("Vector", tuple(root_position_m.tolist()))}
         for joint in self._order:

@@ -1,16 +1,17 @@
-"""A walk in figures: the path of the balls of the feet, lifts, steps, and slide.
+"""Measures of a walk: the paths of the balls of the feet, lifts, steps, and foot slide.
 
 The paper rates a retargeted walk by its figure 9: the main toe joint's forward against its vertical
-movement. A *lift* is what it shows as one arc: the ball leaves the ground, swings and comes down.
-A step's length is the ball's forward travel from the middle of the contact before to the middle of
-the one after, where it rests, and its height the range from its lowest to its highest place between
-them (the paper's 110, 150 and 165 cm, and 16, 20 and 22 cm).
+movement. A *lift* is one arc in that figure: the ball leaves the ground, swings and comes down. A
+step's length is the ball's forward travel from the middle of the previous contact to the middle of
+the next one, where it rests, and its height is the range from its lowest to its highest position
+between them (the paper's 110, 150 and 165 cm, and 16, 20 and 22 cm).
 
 Source: Degen et al. (2022), section 4 and figure 9.
 
 Lengths are along the walk. The direction of travel d(t) is that of the hips, smoothed over half a
-stride so that their sway from foot to foot is left out; where they hardly move, the nearest moving
-frame's holds, and a body that never travels has the direction it faces. A point p has come
+stride so that their sway from foot to foot is left out; where they hardly move, the direction of
+the nearest moving frame is used, and for a body that never travels the direction it faces. A point
+p has travelled
 
     forward(t) = (p(0) - hips(0)) . d(0) + integral of p' . d dt,
 
@@ -30,19 +31,19 @@ from app.science.rig import RigMotion
 from app.science.rotations import FloatArray
 
 _FLAT = Flat()
-# In leg lengths: a foot that comes less high is put aside on the ground, not lifted.
+# In leg lengths: a foot that rises less is shifted along the ground, not lifted.
 _LOWEST_LIFT = 0.02
 
 
 @dataclass(frozen=True)
 class Step:
-    """One lift of a foot, from the ground to the ground.
+    """One lift of a foot, from contact to contact.
 
     Attributes:
         side: the foot.
         lift_s, contact_s: when it leaves the ground and comes down, from the first frame.
         length_m: forward travel of the ball from contact to contact.
-        height_m: from its lowest to its highest place on the way.
+        height_m: from its lowest to its highest position on the way.
         contact_height_m: of the ball above the ground at contact.
     """
 
@@ -56,7 +57,7 @@ class Step:
 
 @dataclass(frozen=True, eq=False)
 class FootPath:
-    """Where the ball of one foot goes.
+    """The path of the ball of one foot.
 
     Attributes:
         side: the foot.
@@ -70,21 +71,21 @@ class FootPath:
 
     @property
     def start_height_m(self) -> float:
-        """Height above the ground in the first frame."""
+        """Height of the ball above the ground in the first frame."""
         return float(self.height_m[0])
 
 
 @dataclass(frozen=True, eq=False)
 class Walk:
-    """The figures of one body's walk.
+    """The measures of one body's walk.
 
     Attributes:
-        rate_hz: frames a second.
+        rate_hz: frames per second.
         leg_length_m: thigh plus shin.
         thigh_share: thigh over thigh plus shin, the mean of both legs.
         feet: left and right path.
         contacts: when the feet are down.
-        steps: whole lifts in the order of their start; what a capture cuts off is left out.
+        steps: whole lifts in the order of their start; lifts cut off by the capture are left out.
         slide_m_s: mean horizontal speed of feet in contact; None without contact.
     """
 
@@ -98,12 +99,12 @@ class Walk:
 
     @property
     def mean_step_length_m(self) -> float | None:
-        """Mean forward travel a step; None without a whole step."""
+        """Mean length of the steps; None without a whole step."""
         return _mean([step.length_m for step in self.steps])
 
     @property
     def mean_step_height_m(self) -> float | None:
-        """Mean height of a step; None without a whole step."""
+        """Mean height of the steps; None without a whole step."""
         return _mean([step.height_m for step in self.steps])
 
 
@@ -117,10 +118,11 @@ def walk_figures(
 
     Args:
         motion: of a body with legs.
-        legs: which joints they are, `legs_of`.
+        legs: its leg joints, from `legs_of`.
         ground: under the body; heights are above it.
-        contacts: of another body that does the same, to measure the same stretches of time; None
-            to find this body's own. Lifts are then the other's, whatever their height here.
+        contacts: of another body with the same movement, to measure the same stretches of time;
+            None to detect this body's own. With the other body's contacts every lift counts,
+            whatever its height here.
     """
     positions, world = motion.world()
     balls, hips = legs.balls_m(positions, world), positions[:, legs.hips]
@@ -176,13 +178,13 @@ def _mean(values: list[float]) -> float | None:
 
 
 _SMOOTHING_S = 0.5
-# In leg lengths a second: half a minute for one's own leg is no walking.
+# In leg lengths per second: anything slower is not walking.
 _SLOWEST_PER_S = 0.15
 
 
 def directions(motion: RigMotion, positions_m: FloatArray, legs: Legs) -> FloatArray:
-    """Unit horizontal direction of travel, (N, 3), of a movement placed at positions (N, J, 3)."""
-    from scipy.ndimage import gaussian_filter1d  # slow to load
+    """Return the unit horizontal direction of travel, (N, 3), for joint positions (N, J, 3)."""
+    from scipy.ndimage import gaussian_filter1d  # slow to import
 
     facing = _facing(positions_m, legs)
     if motion.frame_count < 3:
@@ -203,14 +205,17 @@ def directions(motion: RigMotion, positions_m: FloatArray, legs: Legs) -> FloatA
 
 
 def forward_m(points_m: FloatArray, hips_m: FloatArray, ways: FloatArray) -> FloatArray:
-    """How far points (N, 3) have come along the directions (N, 3), from the hips' first place."""
+    """Return how far points (N, 3) travel along directions (N, 3), relative to the hips' start."""
     start = float((points_m[0] - hips_m[0]) @ ways[0])
     steps = np.sum(np.diff(points_m, axis=0) * (ways[1:] + ways[:-1]) / 2.0, axis=1)
     return np.asarray(start + np.concatenate(([0.0], np.cumsum(steps))))
 
 
 def _facing(positions_m: FloatArray, legs: Legs) -> FloatArray:
-    """The horizontal direction across the hip sockets, the way the toes point."""
+    """Return the horizontal direction that the body faces, (N, 3).
+
+    It is perpendicular to the line between the hip joints, on the side of the toes.
+    """
     right = positions_m[:, legs.right.thigh] - positions_m[:, legs.left.thigh]
     ahead = np.stack((right[:, 2], np.zeros(len(right)), -right[:, 0]), axis=1)
     length = np.linalg.norm(ahead, axis=1, keepdims=True)

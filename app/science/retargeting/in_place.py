@@ -1,9 +1,10 @@
-"""A capture as the movement of a body that stays where it is.
+"""Convert a capture to the movement of a body that stays in place.
 
-A session takes many minutes and a walk a few seconds. So a walk that is to accompany a session is
-brought onto the participant's skeleton and its slow travel and slow turning are taken out: it
-becomes walking on the spot, facing -z, with standing feet flat on the floor. `skeleton.loop` then
-makes it endless. Legs that a capture does not show stand straight beneath the hips.
+A session takes many minutes and a captured walk a few seconds. A walk that is to accompany a
+session is therefore retargeted to the participant's skeleton, and its slow travel and slow turning
+are removed: it becomes walking on the spot, facing -z, with standing feet flat on the floor.
+`skeleton.loop` then makes it endless. Legs that a capture does not contain are straight beneath the
+hips.
 """
 
 import numpy as np
@@ -23,7 +24,7 @@ from app.science.skeleton import (
     ground_height,
 )
 
-# Slower than a stride, faster than a turn of the walk.
+# Longer than a stride, shorter than a turn of the walk.
 _PATH_SMOOTHING_S = 0.6
 _LEGS = tuple(
     f"{side}{part}"
@@ -33,17 +34,19 @@ _LEGS = tuple(
 
 
 def movement_in_place(source: RigMotion, joint_map: JointMap, skeleton: Skeleton) -> Movement:
-    """Carry a capture over to a skeleton, moving in place and facing -z.
+    """Retarget a capture to a skeleton, moving in place and facing -z.
 
     The hips' height and sway are scaled by the ratio of leg lengths. Slow travel and slow turning
-    (over 0.6 s) are taken out; a standing foot is flat on the floor.
+    (over 0.6 s) are removed; a standing foot is flat on the floor.
 
     Raises:
-        JointMapError: the map does not fit the capture's skeleton.
+        JointMapError: the map does not match the capture's skeleton.
         SkeletonError: the capture has fewer than two frames.
     """
     if source.frame_count < 2:
-        raise SkeletonError("A capture of one frame holds no movement: give at least two frames.")
+        raise SkeletonError(
+            "A capture of one frame contains no movement: give at least two frames."
+        )
     avatar = reference_avatar(skeleton.stature_m)
     retargeter = Retargeter(source.rig, joint_map, avatar, REFERENCE_JOINT_MAP)
     moved = retargeter.batch(source)
@@ -59,7 +62,7 @@ def movement_in_place(source: RigMotion, joint_map: JointMap, skeleton: Skeleton
 def _standing(
     world: FloatArray, root: FloatArray, skeleton: Skeleton
 ) -> tuple[FloatArray, FloatArray]:
-    """Upright legs, the lower foot on the floor: how they bent the capture does not tell."""
+    """Straighten the legs, which the capture lacks, and put the lower foot on the floor."""
     world, root = world.copy(), root.copy()
     world[:, [JOINT_INDEX[name] for name in _LEGS]] = identity(1)
     sockets = [JOINT_INDEX["LeftUpperLeg"], JOINT_INDEX["RightUpperLeg"]]
@@ -71,7 +74,7 @@ def _standing(
 def _in_place(
     world: FloatArray, root: FloatArray, smoothing: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Take slow heading and slow travel out of the movement; `smoothing` in frames."""
+    """Remove slow turning and slow travel from a movement; `smoothing` is in frames."""
     forward = rotate(world[:, 0], np.array((0.0, 0.0, -1.0)))
     heading = np.unwrap(np.arctan2(-forward[:, 0], -forward[:, 2]))
     back = _yaw(-_slow(heading, smoothing))
@@ -86,8 +89,8 @@ def _yaw(angle_rad: FloatArray) -> FloatArray:
 
 
 def _slow(values: FloatArray, smoothing: float) -> FloatArray:
-    """Return the slow part: the straight line through the values plus its smoothed remainder."""
-    from scipy.ndimage import gaussian_filter1d  # slow to load; a server seldom needs it
+    """Return the slow part of values: their linear trend plus the smoothed remainder."""
+    from scipy.ndimage import gaussian_filter1d  # slow to import; a server seldom needs it
 
     frames = np.arange(len(values))
     line = np.polyval(np.polyfit(frames, values, 1), frames)

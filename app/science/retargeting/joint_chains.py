@@ -1,4 +1,4 @@
-"""What the tree of joints tells about a body where names say nothing."""
+"""Identify joints of a body from the hierarchy of a rig where their names do not."""
 
 from collections.abc import Mapping
 
@@ -9,14 +9,17 @@ _LEG = ("UpperLeg", "LowerLeg", "Foot", "Toes")
 
 
 def is_below(rig: Rig, joint: int, above: int) -> bool:
-    """Whether a joint is among another's descendants."""
+    """Return whether a joint is a descendant of `above` or the same joint."""
     while joint > above:
         joint = rig.parents[joint]
     return joint == above and joint >= 0
 
 
 def path_between(rig: Rig, above: int, below: int) -> list[int]:
-    """The joints strictly between two, from above to below; empty where they are no such pair."""
+    """Return the joints strictly between two, from above to below.
+
+    Empty if `above` is not an ancestor of `below`.
+    """
     path: list[int] = []
     joint = rig.parents[below]
     while joint > above:
@@ -26,7 +29,7 @@ def path_between(rig: Rig, above: int, below: int) -> list[int]:
 
 
 def hips_above(rig: Rig, found: Mapping[str, int]) -> dict[str, int]:
-    """The hips, where no name tells: the joint from which both legs hang."""
+    """Identify the hips, unless named, as the nearest common ancestor of both legs."""
     if "Hips" in found or not {"LeftUpperLeg", "RightUpperLeg"} <= set(found):
         return {}
     joint = rig.parents[found["LeftUpperLeg"]]
@@ -36,7 +39,7 @@ def hips_above(rig: Rig, found: Mapping[str, int]) -> dict[str, int]:
 
 
 def spine_between(rig: Rig, found: Mapping[str, int]) -> dict[str, int]:
-    """Share out the joints between the hips and where arms and neck begin."""
+    """Assign the joints between hips and neck (or shoulder) to the parts of the spine."""
     if "Hips" not in found:
         return {}
     ends = [
@@ -53,7 +56,7 @@ def spine_between(rig: Rig, found: Mapping[str, int]) -> dict[str, int]:
 
 
 def complete_limbs(rig: Rig, found: Mapping[str, int]) -> dict[str, int]:
-    """Add what lies on a limb between or behind joints that are known."""
+    """Add the missing joints of limbs that lie between or below joints that are already found."""
     complete = dict(found)
     for side in ("Left", "Right"):
         for limb in (_ARM, _LEG):
@@ -70,7 +73,7 @@ def _complete(rig: Rig, limb: list[str], found: dict[str, int]) -> None:
             between = [j for j in path_between(rig, found[above], found[below]) if j not in taken]
         else:
             between = [j for j in rig.children(found[above]) if j not in taken]
-            # A hand has many children; where one is meant there is no choice to make.
+            # A joint with several children, such as a hand, is ambiguous.
             between = between if len(between) == 1 else []
         if between:
             found[joint] = between[0]

@@ -1,11 +1,11 @@
-"""Which joint of a skeleton is which part of a human body.
+"""Joint maps: which joint of a rig corresponds to which joint of the human body.
 
-A map names, for joints of the human body (HumanBodyBones, `app.science.skeleton.JOINT_NAMES`), the
-joint of a rig that plays them. Source and avatar each have one, so any two skeletons meet in the
-body's own words, and a map made once serves a skeleton wherever it is used.
+A map assigns joints of a rig to joints of the human body (HumanBodyBones,
+`app.science.skeleton.JOINT_NAMES`). Source and avatar each have one, so any two skeletons are
+related through the body's joints, and a map made once can be reused wherever its skeleton is used.
 
-A map is proposed from the names of joints, taken apart into a side and a word for the part of the
-body. They come as `LeftUpLeg` (CMU's BVH conversion), `lfemur` (ASF), `upperarm_l` (Unreal),
+A map is proposed from the names of joints, which are split into a side and a word for the part of
+the body. Examples are `LeftUpLeg` (CMU's BVH conversion), `lfemur` (ASF), `upperarm_l` (Unreal),
 `LUArm` (Motive), `mixamorig:LeftForeArm`, `Skeleton 002_LShin` (NatNet), `left_upper_arm` or `Bip01
 L Calf`.
 """
@@ -26,15 +26,15 @@ from app.science.rig import Rig, RigError
 from app.science.skeleton import JOINT_NAMES, PARENTS
 
 JointMap = Mapping[str, str]
-"""Body joint -> joint of the rig; joints that are absent are unmapped."""
+"""Body joint -> joint of the rig; absent body joints are unmapped."""
 Found = Literal["name", "hierarchy"]
 
 
 class JointMapError(RigError):
-    """A joint map does not fit its skeleton: an unknown joint, one joint used twice, wrong order.
+    """A joint map does not match its skeleton: a joint is unknown, mapped twice or misplaced.
 
     Attributes:
-        problems: (body joint, what is wrong there and what is valid), one for each.
+        problems: (body joint, what is wrong there and what is valid), one for each problem.
     """
 
     def __init__(self, problems: tuple[tuple[str, str], ...]) -> None:
@@ -44,13 +44,14 @@ class JointMapError(RigError):
 
 @dataclass(frozen=True)
 class Proposal:
-    """A joint map as far as names and hierarchy tell, and what they leave open.
+    """A joint map derived from names and hierarchy, and the joints that remain unmapped.
 
     Attributes:
         joint_map: body joint -> rig joint.
-        sources: body joint -> whether its name or its place in the tree told.
-        unmapped_body_joints: of the 22 body joints; an avatar keeps them as in its T-pose.
-        unmapped_rig_joints: they move nothing, and on an avatar keep their rest pose.
+        sources: body joint -> whether it was identified by its name or by its place in the
+            hierarchy.
+        unmapped_body_joints: of the 22 body joints; in an avatar these keep their T-pose.
+        unmapped_rig_joints: they move nothing, and in an avatar keep their rest pose.
     """
 
     joint_map: JointMap
@@ -60,10 +61,11 @@ class Proposal:
 
 
 def propose_joint_map(rig: Rig) -> Proposal:
-    """Read a map from the joints' names; where these say nothing, from how they hang together.
+    """Derive a map from the joints' names or, where names are unknown, from their hierarchy.
 
-    The spine is shared out by its place between hips and neck: one joint is the Spine, two are
-    Spine and Chest; of more the first is the Spine, the second the Chest, the last the UpperChest.
+    The joints between hips and neck are assigned to the spine by their number: a single one is the
+    Spine; two are Spine and Chest; of more, the first is the Spine, the second the Chest, the last
+    the UpperChest.
     """
     by_name = _by_name(rig)
     found = {joint: place for joint, place in by_name.items() if _in_order(rig, by_name, joint)}
@@ -85,21 +87,21 @@ def propose_joint_map(rig: Rig) -> Proposal:
 
 
 def unmapped_body_joints(joint_map: JointMap) -> tuple[str, ...]:
-    """The body joints that a map leaves out, in their order."""
+    """Return the body joints that a map leaves out, in the skeleton's order."""
     return tuple(joint for joint in JOINT_NAMES if joint not in joint_map)
 
 
 def unmapped_rig_joints(rig: Rig, joint_map: JointMap) -> tuple[str, ...]:
-    """The rig's joints that a map leaves out, in their order."""
+    """Return the rig's joints that a map leaves out, in the rig's order."""
     used = set(joint_map.values())
     return tuple(name for name in rig.names if name not in used)
 
 
 def check_joint_map(rig: Rig, joint_map: JointMap) -> None:
-    """Raise JointMapError with every problem of a map that somebody has changed by hand."""
+    """Raise JointMapError with every problem of a map, which may have been edited by hand."""
     problems = [problem for joint in joint_map for problem in _problems(rig, joint_map, joint)]
     if "Hips" not in joint_map:
-        problems.append(("Hips", "is not mapped: without the hips no body can be placed"))
+        problems.append(("Hips", "is not mapped: without the hips the body has no position"))
     if problems:
         raise JointMapError(tuple(problems))
 
@@ -107,24 +109,24 @@ def check_joint_map(rig: Rig, joint_map: JointMap) -> None:
 def _problems(rig: Rig, joint_map: JointMap, joint: str) -> list[tuple[str, str]]:
     name = joint_map[joint]
     if joint not in JOINT_NAMES:
-        return [(joint, f"is no body joint: valid are {', '.join(JOINT_NAMES)}")]
+        return [(joint, f"is not a joint of the body: valid are {', '.join(JOINT_NAMES)}")]
     if name not in rig.names:
         return [(joint, f"the skeleton has no joint {name!r}: it has {', '.join(rig.names)}")]
     problems = []
     others = [other for other in joint_map if other != joint and joint_map[other] == name]
     if others:
-        problems.append((joint, f"{name!r} is also {others[0]}: a joint can play one part"))
+        problems.append((joint, f"{name!r} is also mapped to {others[0]}: map each joint once"))
     above = _mapped_above(joint, joint_map)
     if above is None or joint_map[above] not in rig.names or joint_map[above] == name:
         return problems
     if not is_below(rig, rig.index(name), rig.index(joint_map[above])):
-        told = f"{name!r} is not below {joint_map[above]!r}, which is {above}"
-        problems.append((joint, f"{told}: choose a joint further out"))
+        reason = f"{name!r} is not below {joint_map[above]!r}, which is {above}"
+        problems.append((joint, f"{reason}: choose a joint further out"))
     return problems
 
 
 def _mapped_above(joint: str, joint_map: Mapping[str, object]) -> str | None:
-    """The nearest body joint above that is mapped."""
+    """Return the nearest mapped ancestor of a body joint, as a body joint."""
     above = PARENTS[JOINT_NAMES.index(joint)]
     while above >= 0:
         if JOINT_NAMES[above] in joint_map:
@@ -139,33 +141,39 @@ def _in_order(rig: Rig, found: Mapping[str, int], joint: str) -> bool:
 
 
 def _by_name(rig: Rig) -> dict[str, int]:
-    """The surest name of each part; of equally sure ones the joint nearest to the root."""
+    """Return the rig joint with the most specific name for each body joint.
+
+    Of equally specific ones the joint nearest to the root is chosen.
+    """
     read = [side_and_word(name) for name in rig.names]
     found: dict[str, int] = {}
     taken: set[int] = set()
     for part, words in CENTRE_WORDS.items():
-        _take(found, taken, part, [("", word) for word in words], read)
+        _assign_first(found, taken, part, [("", word) for word in words], read)
     for side in ("Left", "Right"):
         for part in ("UpperArm", "Shoulder", *(p for p in SIDE_WORDS if "Shoulder" not in p)):
             if f"{side}{part}" in found:
                 continue
-            wanted = [(side, word) for word in SIDE_WORDS[part]]
-            if part == "UpperArm" and any(key in read for key in wanted[:-2]):
-                # There is a better word for the arm, so a shoulder is the collar bone.
-                wanted = wanted[:-2]
-            _take(found, taken, f"{side}{part}", wanted, read)
+            candidates = [(side, word) for word in SIDE_WORDS[part]]
+            if part == "UpperArm" and any(key in read for key in candidates[:-2]):
+                # There is a more specific word for the upper arm, so "shoulder" denotes the collar
+                # bone.
+                candidates = candidates[:-2]
+            _assign_first(found, taken, f"{side}{part}", candidates, read)
     return found
 
 
-def _take(
+def _assign_first(
     found: dict[str, int],
     taken: set[int],
     joint: str,
-    wanted: list[tuple[str, str]],
+    candidates: list[tuple[str, str]],
     read: list[tuple[str, str]],
 ) -> None:
-    for key in wanted:
-        places = [place for place, told in enumerate(read) if told == key and place not in taken]
+    for key in candidates:
+        places = [
+            place for place, side_word in enumerate(read) if side_word == key and place not in taken
+        ]
         if places:
             found[joint] = places[0]
             taken.add(places[0])
@@ -175,7 +183,7 @@ def _take(
 _TOKEN = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|\d+")
 _SIDES = {"left": "Left", "l": "Left", "right": "Right", "r": "Right"}
 
-# In each row the surest word first: a rig may have a wrist and a hand, a hip joint and a thigh.
+# Most specific word first: a rig may have a wrist and a hand, or a hip joint and a thigh.
 CENTRE_WORDS = MappingProxyType(
     {
         "Hips": ("hips", "pelvis", "hip", "root", "bodybase"),
@@ -201,19 +209,19 @@ _SIDED = frozenset(word for words in SIDE_WORDS.values() for word in words)
 def side_and_word(name: str) -> tuple[str, str]:
     """Return "Left", "Right" or "" and the rest of a name, in lower case and without numbers.
 
-    A prefix up to a colon is a namespace and one up to an underscore may be an asset's name; it is
-    left out where what remains says more.
+    A prefix up to a colon is a namespace and is dropped. A prefix up to an underscore may be an
+    asset's name; it is dropped if the remaining name is a known word and the whole name is not.
     """
     bare = name.rsplit(":", 1)[-1]
-    side, word = _taken_apart(bare)
+    side, word = _split_name(bare)
     if "_" in bare and word not in _SIDED:
-        inner = _taken_apart(bare.split("_", 1)[1])
+        inner = _split_name(bare.split("_", 1)[1])
         if inner[1] in _SIDED or any(inner[1] in words for words in CENTRE_WORDS.values()):
             return (inner[0] or side, inner[1])
     return side, word
 
 
-def _taken_apart(name: str) -> tuple[str, str]:
+def _split_name(name: str) -> tuple[str, str]:
     tokens = [token.lower() for token in _TOKEN.findall(name)]
     sides = [_SIDES[token] for token in tokens if token in _SIDES]
     rest = [token for token in tokens if token not in _SIDES and not token.isdigit()]

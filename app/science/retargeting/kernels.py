@@ -1,9 +1,9 @@
-"""Retargeting compiled to machine code: one frame, or all frames of a movement on one core.
+"""Retargeting compiled to machine code, for one frame or for all frames of a movement on one core.
 
-One body serves both, so that a movement comes out the same live and from a file. It works on
-blocks of frames with a component's values side by side, which lets one instruction take several
-frames. Importing this module loads the compiler (half a second); `transfer` does so when the first
-retargeter is made.
+Both use the same code, so that a movement is identical live and from a file. It works on blocks of
+frames with the values of a component adjacent in memory, so that one instruction processes several
+frames. Importing this module loads the compiler (half a second); `transfer` imports it when the
+first retargeter is made.
 """
 
 import numpy as np
@@ -13,7 +13,7 @@ from app.science.retargeting.plan import Body, IntArray
 from app.science.rotations import FloatArray
 
 BLOCK = 16
-"""Frames worked on at once: two bodies of 22 joints then fill half of a core's nearest cache."""
+"""Frames per block: two bodies of 22 joints then fill half of a core's first-level cache."""
 
 
 @compiled_fused
@@ -27,7 +27,7 @@ def transfer(
     roots_out: FloatArray,
     rotations_out: FloatArray,
 ) -> None:
-    """Carry N frames from a source to an avatar.
+    """Transfer N frames from a source to an avatar.
 
     Args:
         roots, rotations: (N, 3), (N, S, 4) of the source.
@@ -56,7 +56,10 @@ def transfer(
 
 @compiled_fused
 def _walk_source(rotations: FloatArray, source: Body, world: FloatArray) -> None:
-    """World rotations of one block: world_from_joint = world_from_parent parent_from_joint."""
+    """Compute the source's world rotations for one block of frames.
+
+    world_from_joint = world_from_parent parent_from_joint.
+    """
     n = len(rotations)
     for joint in source.order:
         parent = source.parents[joint]
@@ -85,7 +88,7 @@ def _turn_avatar(
     world: FloatArray,
     n: int,
 ) -> None:
-    """World rotations of the avatar, at unit length whatever a file's rounding left."""
+    """Compute the avatar's world rotations, normalised against rounding errors of the file."""
     for joint in avatar.order:
         fw, fx, fy, fz = factors[joint, 0], factors[joint, 1], factors[joint, 2], factors[joint, 3]
         inner = world[joint]
@@ -107,7 +110,10 @@ def _turn_avatar(
 
 @compiled_fused
 def _write_local(world: FloatArray, avatar: Body, rotations_out: FloatArray) -> None:
-    """parent_from_joint = world_from_parent^-1 world_from_joint."""
+    """Write the avatar's local rotations of one block of frames.
+
+    parent_from_joint = world_from_parent^-1 world_from_joint.
+    """
     n = len(rotations_out)
     for joint in avatar.order:
         parent, inner = avatar.parents[joint], world[joint]
@@ -128,7 +134,7 @@ def _write_local(world: FloatArray, avatar: Body, rotations_out: FloatArray) -> 
 
 @compiled_fused
 def _root_to_hips(body: Body, world: FloatArray, b: int) -> tuple[float, float, float]:
-    """Where the hips lie from the root, in the world."""
+    """Return the vector from the root to the hips, in the world."""
     sx, sy, sz = 0.0, 0.0, 0.0
     for joint in body.to_hips:
         outer = world[body.parents[joint]]
@@ -143,7 +149,7 @@ def _root_to_hips(body: Body, world: FloatArray, b: int) -> tuple[float, float, 
 
 @compiled_fused
 def _filled(row: IntArray) -> IntArray:
-    """The joints of a row before its filling."""
+    """Return the joints of a row without its padding."""
     count = 0
     while row[count] >= 0:
         count += 1
@@ -161,7 +167,7 @@ def transfer_frame(
     root_out: FloatArray,
     rotations_out: FloatArray,
 ) -> None:
-    """Carry one frame over: `transfer` for (3,) and (S, 4)."""
+    """Transfer one frame: `transfer` for (3,) and (S, 4)."""
     transfer(
         root.reshape((1, 3)),
         rotations.reshape((1, *rotations.shape)),

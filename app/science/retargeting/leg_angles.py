@@ -1,13 +1,13 @@
-"""Angles of hip, knee and ankle over time, as far as joint places tell them.
+"""Angles of hip, knee and ankle over time, computed from joint positions alone.
 
-Seen from the side, that is across the line between the hip sockets:
+Seen from the side, that is along the line between the hip joints:
 
-- **hip**: thigh against the trunk (mid of the hip sockets to the neck), forward is positive;
-- **knee**: shin against the thigh, zero is a straight leg, bent is positive;
-- **ankle**: foot (ankle to ball) against the shin, zero is a right angle, toes up are positive.
+- **hip**: thigh relative to the trunk (middle of the hip joints to the neck), forward is positive;
+- **knee**: shin relative to the thigh, zero is a straight leg, bent is positive;
+- **ankle**: foot (ankle to ball) relative to the shin, zero is a right angle, toes up is positive.
 
-They need no rest pose and no joint frames, so captures of any kind compare. A standing person's
-ankle is not zero, as the ball lies lower than the ankle.
+They need no rest pose and no joint frames, so captures of any kind can be compared. A standing
+person's ankle angle is not zero, as the ball is lower than the ankle.
 """
 
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ _TRUNK_ENDS = ("Neck", "UpperChest", "Head", "Chest")
 
 @dataclass(frozen=True, eq=False)
 class LegAngles:
-    """Angles of one leg over time, each (N,) in radians; see the module for their zero and sign."""
+    """Angles of one leg over time, each (N,) in radians; see the module for zero and sign."""
 
     side: Side
     hip_rad: FloatArray
@@ -33,15 +33,15 @@ class LegAngles:
 
 
 def leg_angles(motion: RigMotion, joint_map: JointMap) -> tuple[LegAngles, LegAngles]:
-    """Measure both legs, left first.
+    """Compute the angles of both legs, left first.
 
     Raises:
-        RigError: the legs, or everything between hips and head, are not mapped.
+        RigError: the legs, or all joints from chest to head, are not mapped.
     """
     legs = legs_of(motion.rig, joint_map)
     top = next((joint_map[name] for name in _TRUNK_ENDS if name in joint_map), None)
     if top is None:
-        raise RigError("Hip angles are against the trunk: map the neck, head or a chest joint.")
+        raise RigError("Hip angles are relative to the trunk: map the neck, head or a chest joint.")
     positions, world = motion.world()
     left, right = positions[:, legs.left.thigh], positions[:, legs.right.thigh]
     across = _unit(right - left)
@@ -57,18 +57,19 @@ def _angles(
 ) -> LegAngles:
     hip, knee, ankle = (positions_m[:, joint] for joint in (leg.thigh, leg.shin, leg.foot))
     thigh, shin, foot = knee - hip, ankle - knee, leg.ball_m(positions_m, world) - ankle
-    # Angles grow from the first direction to the second as the body sees them turn forward.
+    # Angles are positive if the rotation from the first to the second direction is forward.
     return LegAngles(
         side=leg.side,
         hip_rad=_forward_angle(-trunk, thigh, right),
         knee_rad=-_forward_angle(thigh, shin, right),
-        # Against the direction at right angles to the shin, so that no turn wraps round.
+        # Relative to the direction perpendicular to the shin, so that the angle does not wrap
+        # around.
         ankle_rad=_forward_angle(np.cross(right, shin), foot, right),
     )
 
 
 def _forward_angle(start: FloatArray, end: FloatArray, right: FloatArray) -> FloatArray:
-    """Angle (N,) from `start` to `end` about the axis to the right, -pi to pi."""
+    """Return the angle (N,) from `start` to `end` about the axis to the right, -pi to pi."""
     flat_start, flat_end = _across(start, right), _across(end, right)
     sine = np.sum(np.cross(flat_start, flat_end) * right, axis=1)
     return np.asarray(np.arctan2(sine, np.sum(flat_start * flat_end, axis=1)))
@@ -81,5 +82,5 @@ def _across(vectors: FloatArray, axis: FloatArray) -> FloatArray:
 def _unit(vectors: FloatArray) -> FloatArray:
     length = np.linalg.norm(vectors, axis=1, keepdims=True)
     if not bool(np.all(length > 1e-9)):
-        raise RigError("The hip sockets lie on one another, so there is no side to look from.")
+        raise RigError("The hip joints coincide, so the side view is undefined.")
     return np.asarray(vectors / length)

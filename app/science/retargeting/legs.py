@@ -1,8 +1,8 @@
-"""The legs of any rig: which joints they are, how long, and where they go.
+"""The legs of any rig: their joints, their lengths, and the positions of their feet.
 
-Feet are followed by the *ball*: the toe joint, which is the paper's "main toe joint" and the point
-that rests longest on the ground, from the flat foot to toe-off. A rig without toe joints is
-followed by the free end of its foot, and without one by the ankle.
+A foot is tracked by its *ball*: the toe joint, which is the paper's "main toe joint" and the point
+that rests longest on the ground, from the flat foot to toe-off. For a rig without toe joints the
+free end of the foot is used, and without one the ankle.
 """
 
 from dataclasses import dataclass
@@ -27,14 +27,14 @@ class Leg:
     """Joints of one leg as indices of the rig.
 
     Attributes:
-        side: whose left or right.
+        side: left or right.
         thigh, shin, foot: the joints at hip, knee and ankle.
-        ball: joint that is followed as the foot's contact.
-        ball_in_joint_m: where the ball is in that joint's frame; zero for a toe joint.
+        ball: the joint to which the ball is attached.
+        ball_in_joint_m: position of the ball in that joint's frame; zero for a toe joint.
         length_m: thigh plus shin.
         thigh_share: thigh over thigh plus shin.
-        sole: (joint, place in its frame) of every point that may touch the ground: ankle, toes and
-            free ends below.
+        sole: (joint, position in its frame) of every point that may touch the ground: ankle, toes
+            and free ends below.
     """
 
     side: Side
@@ -48,18 +48,21 @@ class Leg:
     sole: tuple[tuple[int, Place], ...]
 
     def ball_m(self, positions_m: FloatArray, world: FloatArray) -> FloatArray:
-        """Place of the ball, (N, 3), from joints (N, J, 3) and world_from_joint (N, J, 4)."""
+        """Return the positions of the ball, (N, 3).
+
+        The arguments are positions (N, J, 3) and world_from_joint (N, J, 4) of all joints.
+        """
         return _point(positions_m, world, self.ball, self.ball_in_joint_m)
 
     def lowest_m(self, positions_m: FloatArray, world: FloatArray) -> FloatArray:
-        """Height of the foot's lowest point, (N,)."""
+        """Return the height of the foot's lowest point, (N,)."""
         heights = [_point(positions_m, world, joint, at)[..., 1] for joint, at in self.sole]
         return np.asarray(np.min(heights, axis=0))
 
 
 @dataclass(frozen=True)
 class Legs:
-    """Both legs, and the pelvis between them."""
+    """Both legs of a rig, and the hips between them."""
 
     left: Leg
     right: Leg
@@ -67,11 +70,14 @@ class Legs:
 
     @property
     def both(self) -> tuple[Leg, Leg]:
-        """Left, then right."""
+        """The left leg, then the right one."""
         return self.left, self.right
 
     def balls_m(self, positions_m: FloatArray, world: FloatArray) -> FloatArray:
-        """Places of both balls, (2, N, 3), from joints (N, J, 3) and world_from_joint (N, J, 4)."""
+        """Return the positions of both balls, (2, N, 3).
+
+        The arguments are positions (N, J, 3) and world_from_joint (N, J, 4) of all joints.
+        """
         return np.stack([leg.ball_m(positions_m, world) for leg in self.both])
 
     @property
@@ -81,23 +87,23 @@ class Legs:
 
 
 def has_legs(joint_map: JointMap) -> bool:
-    """Whether both legs are mapped from the hips to the ankles; upper bodies are not."""
+    """Return whether both legs are mapped from the hips to the ankles."""
     sides = ("Left", "Right")
     return all(f"{s}{p}" in joint_map for s in sides for p in _PARTS) and "Hips" in joint_map
 
 
 def legs_of(rig: Rig, joint_map: JointMap) -> Legs:
-    """Find the legs.
+    """Return the legs of a rig.
 
     Raises:
         RigError: a joint of a leg or the hips is not mapped, or a leg has no length.
     """
     if not has_legs(joint_map):
-        wanted = ["Hips", *(f"{s}{p}" for s in ("Left", "Right") for p in _PARTS)]
-        missing = ", ".join(name for name in wanted if name not in joint_map)
+        required = ["Hips", *(f"{s}{p}" for s in ("Left", "Right") for p in _PARTS)]
+        missing = ", ".join(name for name in required if name not in joint_map)
         raise RigError(
-            f"The joint map has no {missing}: walking can be followed only where both legs are"
-            " mapped. Map them, or take a capture of the whole body."
+            f"The joint map has no {missing}: walking can be measured only if both legs are"
+            " mapped. Map them, or use a capture of the whole body."
         )
     positions, _ = rig.rest_world()
     left, right = (_leg(rig, joint_map, side, positions) for side in SIDES)

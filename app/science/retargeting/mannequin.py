@@ -1,9 +1,9 @@
 """The stock mannequin of Unreal Engine 4, the avatar of the paper's Table 1.
 
-Its offsets are those of the engine's reference skeleton. Bones run along their joints' own x axis,
-backwards in the left leg and the right arm. The initial angles are the paper's, roll, pitch and yaw
-of each joint in its parent as Unreal prints them. Table 1 depends on directions only: of the
-lengths of limbs on nothing.
+Its offsets are those of the engine's reference skeleton. Bones lie along their joints' own x axis,
+in the negative direction in the left leg and the right arm. The initial angles are the paper's:
+roll, pitch and yaw of each joint in its parent as Unreal prints them. Table 1 depends on the
+directions of bones only, not on their lengths.
 
 Sources: the Unreal Engine 4 mannequin's reference skeleton (offsets); Degen et al. (2022), Table 1.
 """
@@ -19,7 +19,7 @@ from app.science.rotations import Vector
 
 _CM_PER_M = 100.0
 
-# Joint, parent, place in the parent in cm, printed initial angles in degrees.
+# Joint, parent, position in the parent in cm, printed initial angles in degrees.
 _JOINTS: tuple[tuple[str, str, Vector, Vector], ...] = (
     ("pelvis", "", (0.0, 0.0, 0.0), (90.00, 89.79, 90.00)),
     ("spine_01", "pelvis", (10.808878, 0.851415, 0.0), (0.00, 0.00, 7.15)),

@@ -1,9 +1,9 @@
-"""A skeleton's movement in, an avatar's movement and its figures out.
+"""Retarget a movement to an avatar and measure both walks.
 
-What a command, a server and a rehearsal all do with a capture once it is read: carry it over
-(`transfer`), hold the feet if asked (`foot_locking`), and measure (`gait`). Both walks are measured
-over the source's contacts, so step number i is the same step on both, and under uniform scaling
-their lengths have the ratio of the legs.
+This is what a command, a server and a rehearsal all do with a capture once it is read: transfer it
+(`transfer`), lock the feet if requested (`foot_locking`), and measure the walk (`gait`). Both walks
+are measured over the source's contacts, so step number i is the same step in both, and under
+uniform scaling the ratio of their lengths is that of the legs.
 """
 
 from dataclasses import dataclass, replace
@@ -21,18 +21,18 @@ from app.science.retargeting.transfer import Retargeter
 from app.science.rig import Rig, RigError, RigMotion
 
 _FLAT = Flat()
-# About half a step: so long a body takes to go up or down an edge.
+# About half a step: the time in which a body goes up or down an edge.
 _EASING_S = 0.3
 
 
 @dataclass(frozen=True, eq=False)
 class Walks:
-    """The same steps of the source and of the avatar, and what became of its feet.
+    """The same walk of the source and of the avatar, measured, and the result of foot locking.
 
     Attributes:
         source, avatar: measured over the source's contacts; the avatar's after foot locking.
         slide_before_m_s: the avatar's mean foot slide before foot locking; None without contact.
-        locked: what foot locking did; None where it was not asked for.
+        locked: result of foot locking; None where it was not requested.
     """
 
     source: Walk
@@ -42,22 +42,22 @@ class Walks:
 
     @property
     def slide_m_s(self) -> float | None:
-        """Mean horizontal speed of the avatar's feet while they should stand, as delivered."""
+        """The avatar's mean foot slide after any foot locking; None without contact."""
         return self.avatar.slide_m_s
 
 
 @dataclass(frozen=True, eq=False)
 class Retargeted:
-    """A movement on its avatar.
+    """A movement retargeted to an avatar.
 
     Attributes:
         motion: the avatar's.
         scale: factor on the hips' travel.
-        scaled_by: "legs", or what it was taken from where one of the bodies has none.
+        scaled_by: "legs", or what determined the scale where one of the bodies has no legs.
         carried: body joints that move the avatar.
-        unmapped_avatar_joints: they keep their T-pose.
-        unmapped_source_joints: they move none of the avatar's joints themselves.
-        walks: figures; None where one of the bodies has no legs.
+        unmapped_avatar_joints: joints that keep their T-pose.
+        unmapped_source_joints: joints that move no joint of the avatar themselves.
+        walks: measures of both walks; None where one of the bodies has no legs.
     """
 
     motion: RigMotion
@@ -70,7 +70,7 @@ class Retargeted:
 
     @property
     def leg_ratio(self) -> float | None:
-        """Leg length of the avatar over the source's; None where one of them has no legs."""
+        """Leg length of the avatar over the source's; None if one of them has no legs."""
         return self.scale if self.scaled_by == "legs" else None
 
 
@@ -84,28 +84,28 @@ def retarget_motion(
     lock: bool = False,
     standing_frame: int = 0,
 ) -> Retargeted:
-    """Carry a movement over to an avatar and measure it.
+    """Retarget a movement to an avatar and measure it.
 
     Args:
         source: the capture's movement.
         source_map: body joint -> joint of its rig.
-        avatar: any rig; its rest pose is aligned to the T-pose by itself.
+        avatar: any rig; its rest pose is aligned to the T-pose automatically.
         avatar_map: body joint -> joint of the avatar.
         ground: under the avatar.
         lock: hold the avatar's feet while the source's are down.
-        standing_frame: one in which the source stands on the ground.
+        standing_frame: a frame in which the source stands on the ground.
 
     Raises:
-        RigError: a map does not fit its rig, or feet are to be held and one body has no legs.
+        RigError: a map does not match its rig, or feet are to be locked and one body has no legs.
     """
     legged = has_legs(source_map) and has_legs(avatar_map)
     if lock and not legged:
         raise RigError(
-            "Feet can be held only where both bodies have legs: leave foot locking out, or map"
+            "Feet can be locked only if both bodies have legs: turn foot locking off, or map"
             " both legs from the hips to the feet."
         )
     retargeter = Retargeter(source.rig, source_map, avatar, avatar_map)
-    # Held feet carry the body over the ground; otherwise the ground below the hips does.
+    # Locked feet raise the body with the ground; without locking the ground below the hips does.
     moved = retargeter.batch(source, _FLAT if lock else ground, standing_frame=standing_frame)
     if not lock:
         moved = _eased(retargeter, moved, ground)
@@ -127,11 +127,11 @@ def _result(retargeter: Retargeter, motion: RigMotion, walks: Walks | None) -> R
 
 
 def _eased(retargeter: Retargeter, moved: RigMotion, ground: Ground) -> RigMotion:
-    """The movement with the ground's edges taken smoothly: no body jumps up a kerb at once.
+    """Smooth the edges of the ground, so that the body does not jump up or down at a kerb.
 
     The height below the hips is replaced by its mean over nearby frames. The ends are continued by
-    their mirror image through the last point, so that the first frame stays as it was, and even
-    ground and even slopes stay everywhere.
+    their mirror image through the last point, so that the first frame is unchanged, as are all
+    frames on level ground and constant slopes.
     """
     hips = retargeter.hips_m(moved.root_positions_m, moved.rotations)
     height = ground.height_m(hips[:, 0], hips[:, 2])

@@ -1,8 +1,8 @@
-"""How large one body is beside another, by which the hips' travel is scaled.
+"""The ratio of two bodies' sizes, by which the hips' travel is scaled.
 
-The length of a step goes with the length of the legs, so scale = leg length avatar / source, each
-thigh plus shin, the mean of both sides. A source without legs (upper body only) is scaled by the
-trunk, hips to neck, as both bodies have it; without that by nothing.
+The length of a step is proportional to the length of the legs, so scale = leg length avatar /
+source, each thigh plus shin, the mean of both sides. If the source has no legs (upper body only),
+the ratio of the trunks, hips to neck, is used if both bodies have one, else 1.
 
 Source: Degen et al. (2022), section 2.3.
 """
@@ -22,14 +22,14 @@ _SHORTEST_M = 1e-3
 
 @dataclass(frozen=True)
 class Scale:
-    """A factor on lengths, and what it was taken from."""
+    """A factor on lengths, and the body part that determined it."""
 
     factor: float
     scaled_by: ScaledBy
 
 
 def leg_length_m(pose: TPose, joint_map: JointMap) -> float | None:
-    """Thigh plus shin, the mean of the sides that are mapped; None for a body without legs."""
+    """Return thigh plus shin, the mean of the mapped sides; None for a body without legs."""
     sides = []
     for side in ("Left", "Right"):
         names = [f"{side}{part}" for part in ("UpperLeg", "LowerLeg", "Foot")]
@@ -43,7 +43,7 @@ def leg_length_m(pose: TPose, joint_map: JointMap) -> float | None:
 def scale_between(
     source: TPose, source_map: JointMap, avatar: TPose, avatar_map: JointMap
 ) -> Scale:
-    """Return how much larger the avatar is than the source."""
+    """Return the ratio of the avatar's size to the source's."""
     theirs, ours = leg_length_m(source, source_map), leg_length_m(avatar, avatar_map)
     if theirs is not None and ours is not None:
         return Scale(ours / theirs, "legs")

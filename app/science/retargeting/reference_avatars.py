@@ -1,12 +1,12 @@
 """Avatars of any stature, made from published body proportions.
 
 A reference avatar is the product's own body (`app.science.skeleton`) as a `Rig`: 22 joints named
-after HumanBodyBones, T-pose at rest, facing -z, left is -x. Statures scale it as a whole, so two
-of them differ by one number. `thigh_share` moves the knee along the leg: the same leg length with
-another thigh:shin ratio, for which no scaling can keep the feet from sliding.
+after HumanBodyBones, T-pose at rest, facing -z, left is -x. Avatars of different stature differ by
+one scale factor only. `thigh_share` moves the knee along the leg: the same leg length with another
+thigh:shin ratio, for which scaling cannot keep the feet from sliding.
 
 The paper's avatars are 130, 165 and 190 cm tall (Degen et al. 2022, figure 7); their leg lengths
-are not published, so these are consistent with it, not equal to it.
+are not published, so these avatars are consistent with the paper's, but not identical.
 """
 
 import re
@@ -30,7 +30,7 @@ PAPER_STATURES_M: tuple[float, ...] = (1.30, 1.65, 1.90)
 """Statures of the paper's three avatars."""
 
 REFERENCE_JOINT_MAP: JointMap = {name: name for name in JOINT_NAMES}
-"""Every joint of a reference avatar plays itself."""
+"""A reference avatar's joints are named like the body's, so each is mapped to itself."""
 
 _KEY = re.compile(r"(\d{1,3}(?:\.\d{1,3})?)\s*cm", re.IGNORECASE)
 _FREE_ENDS = ("Head", "LeftHand", "RightHand", "LeftToes", "RightToes")
@@ -38,11 +38,11 @@ _SHARES = (0.3, 0.7)
 
 
 class AvatarError(ValueError):
-    """No avatar of that name, stature or proportion."""
+    """There is no avatar of this name, stature or proportion."""
 
 
 def reference_avatar(stature_m: float, *, thigh_share: float | None = None) -> Rig:
-    """Build the avatar of a stature.
+    """Build the reference avatar of a stature.
 
     Args:
         stature_m: body height, 0.5 to 2.6 m.
@@ -58,7 +58,7 @@ def reference_avatar(stature_m: float, *, thigh_share: float | None = None) -> R
         raise AvatarError(str(error)) from None
     offsets = skeleton.offsets_m.copy()
     if thigh_share is not None:
-        _share_legs(offsets, thigh_share)
+        _move_knees(offsets, thigh_share)
     ends = skeleton.ends_m.tolist()
     return Rig(
         names=JOINT_NAMES,
@@ -76,16 +76,16 @@ def reference_avatar(stature_m: float, *, thigh_share: float | None = None) -> R
 
 
 def named_stature_m(key: str) -> float | None:
-    """The stature that a key such as `165cm` names, in metres; None where it is no such key."""
-    told = _KEY.fullmatch(key.strip())
-    return float(told[1]) / 100.0 if told else None
+    """Return the stature in metres of a key such as `165cm`; None if it is not such a key."""
+    match = _KEY.fullmatch(key.strip())
+    return float(match[1]) / 100.0 if match else None
 
 
 def named_avatar(key: str) -> Rig:
-    """The reference avatar a key such as `165cm` names.
+    """Return the reference avatar of a key such as `165cm`.
 
     Raises:
-        AvatarError: the key names no avatar, with what is valid.
+        AvatarError: the key is not valid; the message says which keys are.
     """
     stature_m = named_stature_m(key)
     if stature_m is None:
@@ -97,22 +97,22 @@ def named_avatar(key: str) -> Rig:
 
 
 def as_movement(motion: RigMotion) -> Movement:
-    """The movement of a reference avatar as the product's body takes it: (N, 3) and (N, 22, 4).
+    """Return a reference avatar's movement as one of the product's body: (N, 3) and (N, 22, 4).
 
     Raises:
-        AvatarError: the rig is no reference avatar.
+        AvatarError: the rig is not a reference avatar.
     """
     if motion.rig.names != JOINT_NAMES or motion.rig.parents != PARENTS:
         raise AvatarError(
-            "Only a reference avatar's movement is one of the 22 body joints: retarget onto one."
+            "Only a reference avatar's movement has the 22 body joints: retarget to one first."
         )
     return Movement(motion.rate_hz, motion.root_positions_m, motion.rotations)
 
 
-def _share_legs(offsets_m: FloatArray, thigh_share: float) -> None:
+def _move_knees(offsets_m: FloatArray, thigh_share: float) -> None:
     low, high = _SHARES
     if not low <= thigh_share <= high:
-        raise AvatarError(f"A thigh's share of {thigh_share} is outside {low} to {high}.")
+        raise AvatarError(f"A thigh share of {thigh_share} is outside {low} to {high}.")
     for side in ("Left", "Right"):
         knee, ankle = JOINT_INDEX[f"{side}LowerLeg"], JOINT_INDEX[f"{side}Foot"]
         leg = float(np.linalg.norm(offsets_m[knee]) + np.linalg.norm(offsets_m[ankle]))

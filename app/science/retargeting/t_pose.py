@@ -1,33 +1,33 @@
-"""From any rest pose to the ideal T-pose, by which a source and an avatar are made comparable.
+"""Bring any rest pose into the ideal T-pose, which makes a source and an avatar comparable.
 
-Rotations of a movement are carried over relative to a pose that both bodies share. A rest pose is
-whatever its maker chose (arms half down, legs apart); the T-pose is made from it, root to leaf,
-each joint by the smallest turn that brings its bone onto its axis. With k the bone's direction in
-the world at that moment, and v the axis,
+Rotations of a movement are transferred relative to a pose that both bodies share. A rest pose may
+be any pose that its author chose (arms half down, legs apart); the T-pose is made from it, root to
+leaf, by turning each joint by the smallest rotation that brings its bone onto its axis. With k the
+bone's direction in the world at that moment, and v the axis,
 
     k = (P_child - P_parent) / |P_child - P_parent|,   q_diff = the shortest turn from v to k,
     world_from_joint <- q_diff^-1 world_from_joint,
 
-after which everything below the joint has turned along. A bone that points exactly the wrong way
-is turned about the axis the body faces along.
+after which everything below the joint has turned with it. A bone that points in exactly the
+opposite direction is turned about the axis along which the body faces.
 
 - **Torso** (Hips to Neck) along +up, **legs** (UpperLeg, LowerLeg) along -up, **arms** (UpperArm,
   LowerArm) along +left and -left. A bone runs from a mapped joint to the next mapped joint of its
   limb; joints between them keep their local rotation, as do **collar bones** and **toes**. A bone
-  of no length (under 0.1 mm) has no direction, and its joint keeps its local rotation.
+  without length (under 0.1 mm) has no direction, and its joint keeps its local rotation.
 - **Feet** stand on the floor at rest, so a foot is turned back to its rest rotation in the world.
-- **Head and hands** have no next joint. Where the rig's own axes run along its bones, as Unreal's
+- **Head and hands** have no next joint. Where the rig's own axes lie along its bones, as Unreal's
   do, `local_axes` names the axis that is aligned: +x for the head and left hand, -x for the right
-  hand (`UNREAL_LOCAL_AXES`). Elsewhere a hand is aligned by its longest finger: the farthest point
-  below it at rest, if that lies within 60 degrees of where the forearm points; a hand without one
+  hand (`UNREAL_LOCAL_AXES`). Otherwise a hand is aligned by its longest finger: the farthest point
+  below it at rest, if that lies within 60 degrees of the forearm's direction; a hand without one
   continues its forearm (keeps its local rotation). A head without an axis looks straight ahead at
-  rest, whatever its neck does, and is turned back to that like a foot.
+  rest, regardless of its neck, and is turned back to that like a foot.
 
-A rig may face any way at rest. That is read from its left-right axis, and it is aligned in its own
-facing: `facing` turns the axes to the rig's.
+A rig may face in any direction at rest. The direction is determined from its left-right axis, and
+the rig is aligned in its own facing: `facing` turns the axes to the rig's.
 
-Source: Degen et al. (2022), "Methodical approach to integrate human movement diversity ...",
-J. Transportation Technologies 12:296-309, section 3. Its slips are resolved as
+Source: Degen et al. (2022), "Methodical approach to integrate human movement diversity ...", J.
+Transportation Technologies 12:296-309, section 3. Its errors are resolved as
 `tests/science/retargeting/test_pitfalls.py` shows.
 """
 
@@ -57,11 +57,11 @@ class TPose:
     Attributes:
         rig: the body.
         axes: the frame it was aligned in.
-        facing: (4,) world_from_axes, a turn about up: how the rig faces at rest.
+        facing: (4,) world_from_axes, a rotation about up: how the rig faces at rest.
         local_rotations: (J, 4) parent_from_joint.
         world_rotations: (J, 4) world_from_joint.
-        positions_m: (J, 3) in the world, the root at its rest place.
-        bones: what was aligned, root to leaf.
+        positions_m: (J, 3) in the world, the root at its rest position.
+        bones: the bones that were aligned, root to leaf.
     """
 
     rig: Rig
@@ -73,7 +73,7 @@ class TPose:
     bones: tuple[Bone, ...]
 
     def misalignment(self) -> FloatArray:
-        """Return |k - v| of each aligned bone, (B,): how far from its axis it ends."""
+        """Return |k - v| of each aligned bone, (B,): its remaining deviation from its axis."""
         dtype = self.local_rotations.dtype
         joints = [bone.joint for bone in self.bones]
         along = np.array([unit(bone.direction.astype(dtype)) for bone in self.bones], dtype=dtype)
@@ -96,13 +96,13 @@ def t_pose(
     Args:
         rig: any skeleton; its rest pose is the start.
         joint_map: body joint (`app.science.skeleton.JOINT_NAMES`) -> joint of the rig. Body joints
-            left out are not aligned.
+            that are not mapped are not aligned.
         axes: the frame, by default y up with the left arm along -x.
-        local_axes: body joint -> the rig joint's own axis that runs along it, for head and hands.
+        local_axes: body joint -> the rig joint's own axis along its bone, for head and hands.
         dtype: precision of the computation, float64 or float32.
 
     Raises:
-        JointMapError: the map does not fit the rig, or leaves the hips out.
+        JointMapError: the map does not match the rig, or leaves the hips out.
     """
     joints = joints_of(rig, joint_map)
     bones = bones_of(rig, joints, axes, local_axes)
@@ -126,7 +126,10 @@ def _aligned(
     bones: tuple[Bone, ...],
     at_rest: set[int],
 ) -> tuple[FloatArray, FloatArray]:
-    """Return local and world rotations: one pass, as a parent's turn carries all below it."""
+    """Return the local and world rotations of the aligned rig.
+
+    One pass is sufficient, as a parent's rotation is applied before its children are aligned.
+    """
     bone_of = {bone.joint: bone for bone in bones}
     forward = rotate(facing, np.array(axes.forward, dtype=rest.dtype))
     kept = rig.rest_rotations.astype(rest.dtype)

@@ -1,15 +1,15 @@
-"""The paper's Table 1 computed again: the T-pose of the Unreal mannequin, joint by joint.
+"""Reproduce the paper's Table 1: the T-pose of the Unreal mannequin, joint by joint.
 
-The printed initial angles go in, `t_pose` aligns, and the angles that come out are laid beside the
-printed ones. The table prints hundredths of a degree and its input is rounded to those too, so
-agreement within 0.01 degrees is all it can show.
+The T-pose is computed from the printed initial angles with `t_pose`, and the resulting angles are
+compared with the printed ones. The table prints hundredths of a degree and its input is rounded to
+those too, so agreement within 0.01 degrees is all it can show.
 
-One row does not fit: for the pelvis 84.87 is printed where 85.50 comes out. The rows below it side
-with 85.50, since their angles follow from it. The row is flagged as the source's own inconsistency;
-nothing is tuned to it.
+One row does not agree: for the pelvis 84.87 is printed where 85.50 is computed. The rows below it
+agree with 85.50, since their angles follow from it. The row is flagged as an inconsistency of the
+source; nothing is tuned to it.
 
-Source: Degen et al. (2022), "Methodical approach to integrate human movement diversity ...",
-J. Transportation Technologies 12:296-309, Table 1.
+Source: Degen et al. (2022), "Methodical approach to integrate human movement diversity ...", J.
+Transportation Technologies 12:296-309, Table 1.
 """
 
 from dataclasses import dataclass
@@ -57,9 +57,9 @@ class Table1Row:
     Attributes:
         joint: name in the mannequin.
         initial, printed, computed: the initial pose, the T-pose as printed, as computed here.
-        difference_deg: angle of the turn from the printed to the computed rotation. It is the
-            measure, as three angles can differ by much where rotations hardly do.
-        largest_angle_difference_deg: of roll, pitch and yaw singly.
+        difference_deg: angle of the rotation from the printed to the computed one. It is the
+            measure of agreement, as three angles can differ by much where rotations hardly differ.
+        largest_angle_difference_deg: of roll, pitch and yaw individually.
         inconsistent_in_source: whether the row contradicts the rest of the printed table.
     """
 
@@ -73,12 +73,12 @@ class Table1Row:
 
     @property
     def agrees(self) -> bool:
-        """Within the printing's rounding, `TOLERANCE_DEG`."""
+        """Whether printed and computed rotation agree within the rounding, `TOLERANCE_DEG`."""
         return self.difference_deg <= TOLERANCE_DEG
 
 
 def check_table1() -> tuple[Table1Row, ...]:
-    """Compute the table and compare it, in the order it is printed."""
+    """Compute the rows of the table and compare them with the print, in its order."""
     rig = mannequin()
     pose = t_pose(rig, MANNEQUIN_MAP, UNREAL, local_axes=UNREAL_LOCAL_AXES)
     printed = np.array([_PRINTED[name] for name in rig.names])

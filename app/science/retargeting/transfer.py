@@ -1,23 +1,22 @@
-"""Any body's movement on any avatar, live or from a file.
+"""Transfer any body's movement to any avatar, live or from a file.
 
-Every joint of the avatar that the source also has turns in the world as the source's does, counted
-from the pose both share, the T-pose (`t_pose`), with both bodies brought to face the same way:
+Every joint of the avatar that the source also has turns in the world as the source's does, relative
+to the pose that both share, the T-pose (`t_pose`), with both bodies brought to face the same way:
 
     D_j = world_from_source_j(t) world_from_source_j(T-pose)^-1,
     world_from_avatar_j(t) = D_j world_from_avatar_j(T-pose).
 
-A source whose T-pose rotations are the identity (OptiTrack Motive) gives the paper's
-Q_avatar = Q_capture Q_T. Other avatar joints keep their T-pose local rotation. Only the hips
-travel:
+For a source whose T-pose rotations are the identity (OptiTrack Motive) this is the paper's Q_avatar
+= Q_capture Q_T. Other avatar joints keep their T-pose local rotation. Only the hips are translated:
 
     p_hips(t) = scale p_source_hips(t) + (0, offset, 0),   scale = leg length avatar / source,
 
-so that the bones keep their lengths, and the offset stands the feet on the ground. With bodies
-that are scaled copies of each other steps are scaled exactly and no foot slides; with other
-proportions feet slide by what their legs differ in shape.
+so that the bones keep their lengths; the offset puts the feet on the ground. If the bodies are
+scaled copies of each other, steps are scaled exactly and no foot slides; with other proportions
+feet slide as far as the shapes of the legs differ.
 
-Source: Degen et al. (2022), "Methodical approach to integrate human movement diversity ...",
-J. Transportation Technologies 12:296-309, sections 2.3 and 3.
+Source: Degen et al. (2022), "Methodical approach to integrate human movement diversity ...", J.
+Transportation Technologies 12:296-309, sections 2.3 and 3.
 """
 
 from collections.abc import Mapping
@@ -40,21 +39,21 @@ _FLOAT64 = np.dtype(np.float64)
 
 
 class Retargeter:
-    """Carries movement from one rig to one avatar.
+    """Transfers movement from one rig to one avatar.
 
-    It holds scratch memory, so that a frame allocates nothing but its result; threads that share
-    one take turns.
+    It owns scratch memory, so that a frame allocates only its result; it must not be used by
+    several threads simultaneously.
 
     Attributes:
         source, avatar: the rigs.
-        source_t_pose, avatar_t_pose: what they share.
-        carried: body joints that both maps have, which move the avatar.
+        source_t_pose, avatar_t_pose: the pose that they share.
+        carried: body joints that both maps contain, which move the avatar.
         scale: factor on the hips' travel.
-        scaled_by: what it was taken from; `legs` but for sources without legs.
+        scaled_by: what determined the scale; `legs` unless a body has no legs.
         moved_by: (A,) the source joint that moves each of the avatar's, -1 for none.
-        foot_points: what of the avatar stands on the ground.
-        factors: (A, 4) what the source joint's world rotation is multiplied with from the right;
-            where none moves it, the T-pose's local rotation.
+        foot_points: the points of the avatar that stand on the ground.
+        factors: (A, 4) right factors on the source joints' world rotations; for a joint that none
+            moves, the T-pose's local rotation.
     """
 
     def __init__(
@@ -75,7 +74,7 @@ class Retargeter:
             source_local_axes, avatar_local_axes: see `t_pose`.
 
         Raises:
-            JointMapError: a map does not fit its rig, or leaves the hips out.
+            JointMapError: a map does not match its rig, or leaves the hips out.
         """
         self.source, self.avatar = source, avatar
         self.source_t_pose = t_pose(source, source_map, local_axes=source_local_axes)
@@ -93,7 +92,7 @@ class Retargeter:
         self._prepare(theirs["Hips"], ours["Hips"])
 
     def _prepare(self, source_hips: int, avatar_hips: int) -> None:
-        from app.science.retargeting import kernels  # loads the compiler, which takes a moment
+        from app.science.retargeting import kernels  # loads the compiler, which takes half a second
 
         moving = [joint for joint in self.moved_by.tolist() if joint >= 0]
         source = body_of(self.source, moving, source_hips)
@@ -116,29 +115,29 @@ class Retargeter:
 
     @property
     def unmapped_source_joints(self) -> tuple[str, ...]:
-        """Joints of the source that move none of the avatar's themselves."""
+        """Joints of the source that move no joint of the avatar themselves."""
         moving = set(self.moved_by.tolist())
         return tuple(n for joint, n in enumerate(self.source.names) if joint not in moving)
 
     def frame(
         self, root_position_m: FloatArray, rotations: FloatArray, hips_offset_m: float = 0.0
     ) -> tuple[FloatArray, FloatArray]:
-        """Carry over one frame.
+        """Transfer one frame.
 
         Args:
             root_position_m, rotations: (3,) and (S, 4) of the source, as in `RigMotion`.
-            hips_offset_m: what is added to the hips' height; see `hips_offset_m`.
+            hips_offset_m: added to the hips' height; see `hips_offset_m`.
 
         Returns:
             Root position (3,) and local rotations (A, 4) of the avatar.
 
         Raises:
-            RigError: the arrays are no frame of the source.
+            RigError: the arrays do not have the shapes of a frame of the source.
         """
         if root_position_m.shape != (3,) or rotations.shape != (self.source.joint_count, 4):
             raise RigError(
-                f"Root {root_position_m.shape} and rotations {rotations.shape} are no frame of this"
-                f" source: give (3,) and ({self.source.joint_count}, 4)."
+                f"Root {root_position_m.shape} and rotations {rotations.shape} are not a frame of"
+                f" this source: give (3,) and ({self.source.joint_count}, 4)."
             )
         root, local = np.empty(3), np.empty((self.avatar.joint_count, 4))
         self._transfer_frame(
@@ -156,22 +155,22 @@ class Retargeter:
     def batch(
         self, motion: RigMotion, ground: Ground | None = None, *, standing_frame: int = 0
     ) -> RigMotion:
-        """Carry over a movement, standing on the ground and following its height.
+        """Transfer a movement, standing on the ground and following its height.
 
-        In the standing frame the lowest point of the feet is on the ground. From there the hips
-        rise and fall with the ground below them.
+        In the standing frame the lowest point of the feet is on the ground. Relative to that frame,
+        the hips rise and fall with the ground below them.
 
         Args:
             motion: of the source.
             ground: flat at height zero by default.
-            standing_frame: one in which the source stands; negative counts from the end.
+            standing_frame: a frame in which the source stands; negative counts from the end.
 
         Returns:
-            The avatar's movement. Where a joint's source was not observed, neither is it; joints
-            that keep their T-pose count as observed.
+            The avatar's movement. A joint counts as observed where its source joint was; joints
+            that keep their T-pose always do.
 
         Raises:
-            RigError: the movement is another rig's, or has no such frame.
+            RigError: the movement has a different rig, or no such frame.
         """
         self._check(motion, standing_frame)
         ground = _FLAT if ground is None else ground
@@ -197,16 +196,16 @@ class Retargeter:
     def hips_offset_m(
         self, root_position_m: FloatArray, rotations: FloatArray, ground: Ground | None = None
     ) -> float:
-        """Return the offset that stands the avatar's lower foot on the ground in this frame.
+        """Return the offset that puts the avatar's lower foot on the ground in this frame.
 
-        Takes a frame of the source, (3,) and (S, 4). While the avatar moves on uneven ground, add
-        the difference of the ground's height below the hips to it, as `batch` does.
+        The arguments are a frame of the source, (3,) and (S, 4). While the avatar moves on uneven
+        ground, add the difference of the ground's height below the hips to it, as `batch` does.
         """
         root, local = self.frame(root_position_m, rotations)
         return self._standing(root, local, _FLAT if ground is None else ground)
 
     def hips_m(self, roots: FloatArray, local: FloatArray) -> FloatArray:
-        """Return where the avatar's hips are, (..., 3), for frames (..., 3) and (..., A, 4)."""
+        """Return the avatar's hip positions, (..., 3), for frames (..., 3) and (..., A, 4)."""
         if self._avatar_hips == 0:
             return roots
         return place(self.avatar, roots, local)[0][..., self._avatar_hips, :]
@@ -218,18 +217,18 @@ class Retargeter:
     def _check(self, motion: RigMotion, standing_frame: int) -> None:
         if motion.rig.fingerprint != self.source.fingerprint:
             raise RigError(
-                "The movement is of another skeleton than the retargeter was made for: make one"
-                " for its rig."
+                "The movement has a different skeleton from the retargeter's source: make a"
+                " retargeter for its rig."
             )
         if not -motion.frame_count <= standing_frame < motion.frame_count:
             raise RigError(
-                f"There is no frame {standing_frame} to stand in: the movement has frames 0 to"
+                f"There is no standing frame {standing_frame}: the movement has frames 0 to"
                 f" {motion.frame_count - 1}."
             )
 
 
 def _plain(array: FloatArray) -> FloatArray:
-    """Return what the kernel was compiled for: another layout would compile it again."""
+    """Return the array in the layout the kernel was compiled for; others would recompile it."""
     if array.flags.carray and array.dtype is _FLOAT64:
         return array
     return np.array(array, dtype=np.float64, order="C")

@@ -1,12 +1,12 @@
 """The paper's verification: one person's walk on avatars of several sizes.
 
-The same movement goes onto each avatar, and its character must stay: as many lifts of each foot, at
-the same times, steps longer and higher as the legs are longer, feet that do not slide. Each
-avatar's lifts are found from its own movement, so that they can disagree.
+The same movement is retargeted to each avatar, and its character must be preserved: as many lifts
+of each foot, at the same times, longer and higher steps for longer legs, and no foot slide. Each
+avatar's lifts are detected from its own movement, so that disagreement is possible.
 
 The paper's own numbers (130, 165, 190 cm: 110, 150, 165 cm forward; 16, 20, 22 cm up) come from
-avatars and a person whose leg lengths are not published. One scale per avatar fits both within
-5 cm and 0.5 cm, so consistency can be asked for, equality cannot.
+avatars and a person whose leg lengths are not published. One scale per avatar fits both within 5 cm
+and 0.5 cm, so the results can be checked for consistency, but not for equality.
 
 Source: Degen et al. (2022), section 4, figures 8 and 9.
 """
@@ -26,7 +26,7 @@ _FLAT = Flat()
 
 @dataclass(frozen=True, eq=False)
 class LegFigures:
-    """The source: leg angles over time (the paper's figure 8) and its walk."""
+    """Measures of the source: leg angles over time (the paper's figure 8) and its walk."""
 
     angles: tuple[LegAngles, LegAngles]
     walk: Walk
@@ -34,14 +34,14 @@ class LegFigures:
 
 @dataclass(frozen=True, eq=False)
 class AvatarFigures:
-    """One avatar: its walk beside the source's.
+    """Measures of one avatar's walk, to compare with the source's.
 
     Attributes:
         name: as it was given.
         leg_ratio: its leg length over the source's.
         walk: lifts, steps and slide from its own contacts.
-        slide_m_s: mean horizontal speed of its feet while the *source's* are down, which is what
-            retargeting and foot locking can be held to; None without contact.
+        slide_m_s: mean horizontal speed of its feet while the *source's* are down, the measure by
+            which retargeting and foot locking are judged; None without contact.
     """
 
     name: str
@@ -52,13 +52,13 @@ class AvatarFigures:
 
 @dataclass(frozen=True, eq=False)
 class Verification:
-    """Whether a walk keeps its character on every avatar.
+    """Result of checking whether a walk keeps its character on every avatar.
 
     Attributes:
         source: the person.
         avatars: in the given order.
         lifts_agree: every avatar lifts each foot as often as the source.
-        largest_timing_difference_s: between the same lift, or the contact after it, of any two of
+        largest_timing_difference_s: between the same lift, or the following contact, of any two of
             the bodies; None where the numbers of lifts disagree, 0 where there is no lift.
     """
 
@@ -74,7 +74,7 @@ def verify(
     avatars: Sequence[tuple[str, RigMotion, JointMap]],
     ground: Ground = _FLAT,
 ) -> Verification:
-    """Compare a walk with what became of it.
+    """Compare a captured walk with the same walk on each avatar.
 
     Args:
         source: the capture.
@@ -83,14 +83,15 @@ def verify(
         ground: under the avatars; the source's is flat.
 
     Raises:
-        RigError: legs are not mapped, or an avatar has another number of frames than the source.
+        RigError: legs are not mapped, or an avatar has a different number of frames than the
+            source.
     """
     walk = walk_figures(source, legs_of(source.rig, source_map))
     figures = []
     for name, motion, joint_map in avatars:
         if motion.frame_count != source.frame_count:
             raise RigError(
-                f"{name} has {motion.frame_count} frames, its source {source.frame_count}."
+                f"{name} has {motion.frame_count} frames, but its source has {source.frame_count}."
             )
         legs = legs_of(motion.rig, joint_map)
         same = walk_figures(motion, legs, ground, contacts=walk.contacts)
@@ -107,7 +108,7 @@ def verify(
 
 
 def lift_times_s(walk: Walk, side: Side) -> tuple[tuple[float, float], ...]:
-    """Lift and contact time of each whole lift of a foot."""
+    """Return the lift and contact time of each whole lift of a foot."""
     return tuple((step.lift_s, step.contact_s) for step in walk.steps if step.side == side)
 
 

@@ -1,4 +1,4 @@
-"""Every frame of a span judged, fault by fault."""
+"""Examine every frame of a span for each kind of fault."""
 
 from dataclasses import dataclass, replace
 from typing import Any
@@ -8,21 +8,22 @@ from numpy.typing import NDArray
 
 from app.science.skeleton import JOINT_COUNT
 from app.science.stream_quality.faults import Pacing, changes, is_timed, jumps, pace, stillness
-from app.science.stream_quality.limits import USUAL, QualityError, QualityLimits
+from app.science.stream_quality.limits import DEFAULT_LIMITS, QualityError, QualityLimits
 from app.science.stream_quality.memory import LastPose, Memory
 
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.floating[Any]]
-NOTHING = Memory()
+EMPTY_MEMORY = Memory()
 
 
 @dataclass(frozen=True)
 class Examination:
-    """What is wrong with each of n frames.
+    """The faults of each of n frames.
 
-    `non_finite` and `non_unit` (n,) as on the wire: such a frame is left out of what follows.
-    `turned` (n, 22) and `shifted` (n,): the joint, or the hips' place, jumped against the frame
-    before. `frozen` (n, 22). `after` is for the span that follows.
+    `non_finite` and `non_unit` (n,) mark frames whose values are invalid as received; these frames
+    are left out of all other checks. `turned` (n, 22) and `shifted` (n,) mark joints, and positions
+    of the hips, that jumped since the previous frame. `frozen` (n, 22) marks frozen joints. `after`
+    is the memory for the next span.
     """
 
     pacing: Pacing
@@ -35,7 +36,7 @@ class Examination:
 
     @property
     def jumped(self) -> Bools:
-        """Frames (n,) with a jump of any kind."""
+        """Mask (n,) of the frames in which a joint or the hips jumped."""
         jumped: Bools = self.turned.any(axis=1) | self.shifted
         return jumped
 
@@ -45,68 +46,69 @@ def examine(
     rotations: Floats,
     positions_m: Floats,
     *,
-    limits: QualityLimits = USUAL,
+    limits: QualityLimits = DEFAULT_LIMITS,
     usual_s: float | None = None,
-    before: Memory = NOTHING,
+    before: Memory = EMPTY_MEMORY,
 ) -> Examination:
-    """Judge each frame of a span of one stream.
+    """Examine each frame of a span of one stream for faults.
 
     Args:
         times_s: (n,) client monotonic time of each frame, in s.
-        rotations: (n, 22, 4) local rotations wxyz, as they came.
-        positions_m: (n, 3) place of the hips.
+        rotations: (n, 22, 4) local rotations wxyz, as received.
+        positions_m: (n, 3) position of the hips.
         limits: what counts as a fault.
-        usual_s: interval that frames usually have; None takes the median of this span.
-        before: what is known of the frames before; with the same `usual_s` the judgement does not
-            depend on where a recording is cut into spans.
+        usual_s: typical interval between frames; None uses the median of this span.
+        before: memory of the previous spans; with the same `usual_s` the result does not depend on
+            where a recording is cut into spans.
 
     Raises:
-        QualityError: the shapes do not fit.
+        QualityError: the shapes of the arrays do not match.
     """
     _require_shapes(times_s, rotations, positions_m)
-    non_finite, non_unit = _broken(times_s, rotations, positions_m, limits)
+    non_finite, non_unit = _invalid_values(times_s, rotations, positions_m, limits)
     pacing = pace(times_s, limits, usual_s, before)
     timed = is_timed(times_s, limits)
-    sound = np.flatnonzero(timed & ~(non_finite | non_unit))
+    valid = np.flatnonzero(timed & ~(non_finite | non_unit))
     turned = np.zeros((len(times_s), JOINT_COUNT), np.bool_)
     frozen = np.zeros_like(turned)
     shifted = np.zeros(len(times_s), np.bool_)
-    # One sum from the very first frame on, so that cutting a recording rounds nothing differently.
+    # A running sum from the very first frame, so that rounding does not depend on where spans are
+    # cut.
     watched_s = np.cumsum(np.concatenate(([before.watched_s], pacing.watched_s)))[1:]
-    after = _paced(before, times_s[timed], watched_s)
-    if len(sound):
-        whole = len(sound) == len(times_s)
-        usable = slice(None) if whole else sound
+    after = _memory_of_times(before, times_s[timed], watched_s)
+    if len(valid):
+        whole = len(valid) == len(times_s)
+        usable = slice(None) if whole else valid
         poses = (times_s[usable], rotations[usable], positions_m[usable])
         turned[usable], shifted[usable] = _jumped(*poses, pacing.usual_s, limits, before)
-        found = stillness(changes(poses[1], before), watched_s[usable], limits, before)
-        frozen[usable] = found.frozen
+        joints = stillness(changes(poses[1], before), watched_s[usable], limits, before)
+        frozen[usable] = joints.frozen
         after = replace(
             after,
             pose=LastPose(
-                time_s=float(times_s[sound[-1]]),
-                watched_s=float(watched_s[sound[-1]]),
+                time_s=float(times_s[valid[-1]]),
+                watched_s=float(watched_s[valid[-1]]),
                 rotations=poses[1][-1].copy(),
                 position_m=poses[2][-1].copy(),
             ),
-            changed_s=found.changed_s,
-            lively_s=found.lively_s,
-            frozen_s=found.frozen_s,
-            frozen=found.frozen[-1],
+            changed_s=joints.changed_s,
+            lively_s=joints.lively_s,
+            frozen_s=joints.frozen_s,
+            frozen=joints.frozen[-1],
         )
     return Examination(pacing, non_finite, non_unit, turned, shifted, frozen, after)
 
 
-def _broken(
+def _invalid_values(
     times_s: NDArray[np.float64], rotations: Floats, positions_m: Floats, limits: QualityLimits
 ) -> tuple[Bools, Bools]:
-    """Frames with a value that is not a number, and those with a rotation that is none."""
+    """Return which frames have a non-finite value and which a non-unit quaternion, each (n,)."""
     with np.errstate(invalid="ignore", over="ignore"):
         wide = rotations.astype(np.float64)
         length = np.sqrt(np.einsum("njk,njk->nj", wide, wide))
         unit = (np.abs(length - 1.0) <= limits.unit_tolerance).all(axis=1)
     finite = np.isfinite(times_s) & np.isfinite(positions_m).all(axis=1)
-    # A rotation of unit length holds numbers only.
+    # A quaternion of unit length contains finite numbers only.
     finite &= unit | np.isfinite(rotations).all(axis=(1, 2))
     return ~finite, finite & ~unit
 
@@ -134,8 +136,10 @@ def _jumped(
     )
 
 
-def _paced(before: Memory, times_s: NDArray[np.float64], watched_s: NDArray[np.float64]) -> Memory:
-    """What is known after the span if none of its poses is usable, from the times that are some."""
+def _memory_of_times(
+    before: Memory, times_s: NDArray[np.float64], watched_s: NDArray[np.float64]
+) -> Memory:
+    """Return the memory after a span without valid poses, updated from its valid times."""
     return replace(
         before,
         time_s=float(times_s[-1]) if len(times_s) else before.time_s,
@@ -151,7 +155,7 @@ def _require_shapes(times_s: NDArray[np.float64], rotations: Floats, positions_m
         or positions_m.shape != (n, 3)
     ):
         raise QualityError(
-            f"Shapes {times_s.shape}, {rotations.shape} and {positions_m.shape} do not fit: times"
-            f" (n,), rotations (n, {JOINT_COUNT}, 4) and places (n, 3) of the same frames are"
+            f"Shapes {times_s.shape}, {rotations.shape} and {positions_m.shape} do not match: times"
+            f" (n,), rotations (n, {JOINT_COUNT}, 4) and positions (n, 3) of the same frames are"
             " needed."
         )

@@ -1,11 +1,11 @@
-"""What can be wrong with a span of frames: joints that freeze, poses that jump, times that halt.
+"""Checks of a span of frames for frozen joints, jumping poses, and gaps or reversals of time.
 
-A frozen joint's rotation stays the same to the last bit while the body moves. A sensor that has
-frozen looks like that. So does a joint that nobody tracks, or one that a solver lets rest between
-two steps; but these were still before. Only a joint that was lively so far can freeze.
+The rotation of a frozen joint stays the same to the last bit while the body moves, as with a sensor
+that has frozen. An untracked joint, or one that a solver keeps at rest between two steps, looks the
+same; but these had been still before. Only a joint that was lively until then can freeze.
 
-A jump is a pose that no body could take so quickly after the one before. The pace of the frames has
-their intervals, gaps, and clocks that ran backwards.
+A jump is a pose that no body could reach so soon after the previous one. The pacing of the frames
+covers their intervals, gaps, and clocks that ran backwards.
 """
 
 from dataclasses import dataclass
@@ -24,7 +24,10 @@ Table = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Stillness:
-    """How still each joint was: `frozen` (n, 22), and per joint (22,) what the next span needs."""
+    """Which joints were frozen in each frame (`frozen`, n x 22), and the state to carry on.
+
+    `changed_s`, `lively_s` and `frozen_s` (22,) are those of `Memory` after the span.
+    """
 
     frozen: Bools
     changed_s: Table
@@ -33,10 +36,13 @@ class Stillness:
 
 
 def changes(rotations: NDArray[np.floating[Any]], before: Memory) -> Bools:
-    """Which joints differ in any bit from the frame before: (n, 22) for rotations (n, 22, 4)."""
+    """Return which joints differ in any bit from the previous frame, (n, 22).
+
+    `rotations` is (n, 22, 4).
+    """
     bits = _bits(rotations)
     changed = np.zeros((len(rotations), JOINT_COUNT), np.bool_)
-    for part in bits:  # quicker than `any` over an axis that short
+    for part in bits:  # faster than `any` over such a short axis
         changed[1:] |= part[1:] != part[:-1]
     if before.pose is not None:
         last = before.pose.rotations.astype(rotations.dtype, copy=False)[np.newaxis]
@@ -46,22 +52,22 @@ def changes(rotations: NDArray[np.floating[Any]], before: Memory) -> Bools:
 
 
 def _bits(rotations: NDArray[np.floating[Any]]) -> list[NDArray[np.uint64]]:
-    """Quaternions as a few tables (n, 22) of whole numbers, quicker to compare than four floats."""
+    """Return quaternions as tables (n, 22) of integers, which compare faster than four floats."""
     whole = np.ascontiguousarray(rotations).view(np.uint64)
     return [whole[..., part] for part in range(whole.shape[-1])]
 
 
 def stillness(changed: Bools, watched_s: Table, limits: QualityLimits, before: Memory) -> Stillness:
-    """Which joints are frozen, from `changed` (n, 22) as told by `changes`.
+    """Return which joints are frozen, from `changed` (n, 22) as returned by `changes`.
 
-    `watched_s` (n,) is the time of each frame with gaps left out, so that a joint is not blamed for
-    what nobody saw.
+    `watched_s` (n,) is the time of each frame with gaps left out, so that a joint does not count as
+    still while no frames arrived.
     """
     last_s = before.watched_s if before.pose is None else before.pose.watched_s
     passed_s = np.diff(watched_s, prepend=last_s)
     at_s = np.where(changed, watched_s[:, np.newaxis], -np.inf)
-    known_s = before.changed_s if before.pose is not None else watched_s[0]
-    np.maximum(at_s[0], known_s, out=at_s[0])
+    changed_before_s = before.changed_s if before.pose is not None else watched_s[0]
+    np.maximum(at_s[0], changed_before_s, out=at_s[0])
     np.maximum.accumulate(at_s, axis=0, out=at_s)
     still_s = watched_s[:, np.newaxis] - at_s
     lively_s = passed_s[:, np.newaxis] * (still_s < limits.lively_s)
@@ -74,18 +80,22 @@ def stillness(changed: Bools, watched_s: Table, limits: QualityLimits, before: M
     may_freeze &= (JOINT_COUNT - still.sum(axis=1) >= limits.others)[:, np.newaxis]
     may_freeze[:, list(limits.may_rest)] = False
     frozen, lost_s = np.zeros_like(still), before.frozen_s + np.zeros_like(at_s)
-    # How long a joint was frozen says nothing about how it moves, so it is left out; each turn
-    # knows of one more time.
+    # The time a joint was frozen is no evidence of how it moves, so it is left out of the lively
+    # share.
+    # Each iteration leaves out one more such time.
     while True:
-        found = may_freeze & (lively_s >= limits.lively_share * (at_s - lost_s))
-        if np.array_equal(found, frozen):
+        newly_found = may_freeze & (lively_s >= limits.lively_share * (at_s - lost_s))
+        if np.array_equal(newly_found, frozen):
             return Stillness(frozen, at_s[-1], lively_s[-1], lost_s[-1])
-        frozen = found
+        frozen = newly_found
         lost_s = _lost_s(frozen, passed_s, limits, before)
 
 
 def _lost_s(frozen: Bools, passed_s: Table, limits: QualityLimits, before: Memory) -> Table:
-    """For how long each joint was frozen up to each frame (n, 22), noticing it included."""
+    """Return how long each joint was frozen up to each frame, (n, 22) in s.
+
+    The time until it was detected is included.
+    """
     noticed = frozen & ~np.concatenate((before.frozen[np.newaxis], frozen[:-1]))
     lost_s = passed_s[:, np.newaxis] * frozen + limits.frozen_s * noticed
     lost_s[0] += before.frozen_s
@@ -102,18 +112,18 @@ def jumps(
     usual_s: float,
     limits: QualityLimits,
 ) -> tuple[Bools, Bools]:
-    """Which frames jump against the one before: joints (n - 1, 22), and the hips' place (n - 1,).
+    """Return which joints (n - 1, 22) and hip positions (n - 1,) jumped since the previous frame.
 
-    Times (n,), rotations (n, 22, 4) and places (n, 3) must be usable. Frames that are told to be
-    closer together than usual are a stutter of the clock rather than of the body, so an interval
-    counts as `usual_s` at least.
+    Times (n,), rotations (n, 22, 4) and positions (n, 3) must be valid. Frames whose timestamps are
+    closer together than usual indicate jitter of the clock rather than of the body, so an interval
+    counts as at least `usual_s`.
     """
     passed_s = np.fmax(times_s[1:] - times_s[:-1], usual_s)
     cosine = np.einsum("njk,njk->nj", rotations[1:], rotations[:-1])
     # Beyond half a turn every rotation is within reach.
     half_turn = np.minimum(0.5 * limits.turn_rad_per_s * passed_s, 0.5 * np.pi)
     turned = np.abs(cosine) < np.cos(half_turn)[:, np.newaxis]
-    with np.errstate(over="ignore", invalid="ignore"):  # a place may be any number
+    with np.errstate(over="ignore", invalid="ignore"):  # a position may be any number
         step_m = positions_m[1:] - positions_m[:-1]
         moved_m = np.sqrt(np.einsum("nk,nk->n", step_m, step_m))
         return turned, moved_m > limits.root_m_per_s * passed_s
@@ -121,12 +131,12 @@ def jumps(
 
 @dataclass(frozen=True)
 class Pacing:
-    """Per frame (n,), against the frame before it that has a time.
+    """The timing of each frame (n,), relative to the previous frame with a valid time.
 
-    `interval_s` is NaN where there is none. `gap`: nothing came for too long before this frame.
-    `backwards`: the frame is not later than the one before. `watched_s`: how much of the interval
-    was covered by frames, 0 over a gap. `usual_s` is the interval frames usually have, NaN where
-    that is unknown.
+    `interval_s` is NaN where there is no such frame. `gap`: no frame arrived for too long before
+    this one. `backwards`: the frame is not later than the previous one. `watched_s`: the part of
+    the interval that was covered by frames, 0 over a gap. `usual_s` is the typical interval between
+    frames, NaN where unknown.
     """
 
     interval_s: NDArray[np.float64]
@@ -137,14 +147,14 @@ class Pacing:
 
 
 def is_timed(times_s: NDArray[np.float64], limits: QualityLimits) -> NDArray[np.bool_]:
-    """Frames (n,) whose time can be one."""
-    return np.asarray(np.abs(times_s) <= limits.latest_s)  # NaN is not
+    """Return which frames have a valid time, (n,)."""
+    return np.asarray(np.abs(times_s) <= limits.latest_s)  # False for NaN
 
 
 def pace(
     times_s: NDArray[np.float64], limits: QualityLimits, usual_s: float | None, before: Memory
 ) -> Pacing:
-    """Judge times (n,); `usual_s` None takes the median interval of this span."""
+    """Judge the times (n,) of a span; if `usual_s` is None, use the span's median interval."""
     interval_s = np.full(len(times_s), np.nan)
     timed = is_timed(times_s, limits)
     first = np.nan if before.time_s is None else before.time_s

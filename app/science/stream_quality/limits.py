@@ -1,4 +1,4 @@
-"""What counts as a fault of a stream of poses. Every limit can be set; these are the usual ones."""
+"""Limits beyond which something counts as a fault in a stream of poses, with their defaults."""
 
 import math
 from dataclasses import dataclass
@@ -9,29 +9,29 @@ TOES = (JOINT_INDEX["LeftToes"], JOINT_INDEX["RightToes"])
 
 
 class QualityError(ValueError):
-    """The arrays do not belong together; says which shapes they have and should have."""
+    """The shapes of the arrays do not match; the message names the actual and the required ones."""
 
 
 @dataclass(frozen=True)
 class QualityLimits:
-    """From where on something is a fault.
+    """Limits beyond which something counts as a fault of a stream.
 
-    Gap: no frame for longer than `gap_frames` usual intervals and longer than `gap_s`: two frames
-    that come late are no gap at any display rate.
+    Gap: no frame for longer than `gap_frames` typical intervals and longer than `gap_s`; two late
+    frames are therefore not a gap at any display rate.
 
     Jump: a joint turns faster than `turn_rad_per_s`, or the hips move faster than `root_m_per_s`.
-    Elbows and wrists of people who hurry reach 1300 deg/s; a sprinter runs 12 m/s, a participant in
-    a laboratory does not.
+    Elbows and wrists of people who hurry reach 1300 deg/s; a sprinter runs at 12 m/s, a participant
+    in a laboratory does not.
 
-    Frozen: a rotation that stays the same to the last bit for `frozen_s` while at least `others`
-    joints move, though the joint was lively before: for `known_s` at least, and for `lively_share`
-    of the time, it had changed within `lively_s`. Tracking is never that still. Joints that nobody
-    tracks, or that a solver lets rest now and then, have not been lively. `may_rest` joints rest on
-    the floor with the foot they belong to and are left out.
+    Frozen: a rotation stays the same to the last bit for `frozen_s` while at least `others` joints
+    move, although the joint was lively before: for at least `known_s`, and for `lively_share` of
+    the time, it had changed within the preceding `lively_s`. Tracking is never that still. Joints
+    that are not tracked, or that a solver keeps at rest now and then, have not been lively. The
+    `may_rest` joints rest on the floor with the foot they belong to and are exempt.
 
-    Rotation: a quaternion whose length is off 1 by more than `unit_tolerance` is none. Time: what
-    lies further from zero than `latest_s`, thirty years, is no reading of a clock, and stands for
-    nothing.
+    Rotation: a quaternion whose length deviates from 1 by more than `unit_tolerance` is invalid.
+    Time: a value further from zero than `latest_s`, thirty years, is not a clock reading and is
+    ignored.
     """
 
     gap_frames: float = 2.5
@@ -48,4 +48,4 @@ class QualityLimits:
     latest_s: float = 1e9
 
 
-USUAL = QualityLimits()
+DEFAULT_LIMITS = QualityLimits()

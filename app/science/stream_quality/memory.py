@@ -1,4 +1,4 @@
-"""What the next span of frames must know of those before it."""
+"""State that the examination of a stream carries from one span of frames to the next."""
 
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -11,8 +11,9 @@ from app.science.skeleton import JOINT_COUNT
 
 @dataclass(frozen=True)
 class LastPose:
-    """The newest usable frame: its time and place on the watched time (s), rotations (22, 4) and
-    place of the hips (3,) in m.
+    """The newest valid frame of a stream.
+
+    Its time, its watched time (both s), rotations (22, 4) and the position of the hips (3,) in m.
     """
 
     time_s: float
@@ -27,12 +28,12 @@ def _zeros() -> NDArray[np.float64]:
 
 @dataclass(frozen=True)
 class Memory:
-    """Carried from span to span, so that it does not matter where a recording is cut.
+    """State carried from span to span, so that it does not matter where a recording is cut.
 
-    `time_s` is the time of the newest frame. `watched_s` counts time for which there were frames,
-    gaps left out; on it lies `changed_s` (22,), when each joint last changed. `lively_s` and
-    `frozen_s` (22,) are for how long each joint was lively and frozen so far; `frozen` (22,) says
-    which were frozen last.
+    `time_s` is the time of the newest frame. `watched_s` counts the time covered by frames, gaps
+    left out; `changed_s` (22,) is the watched time at which each joint last changed. `lively_s` and
+    `frozen_s` (22,) are how long each joint has been lively and frozen so far; `frozen` (22,) marks
+    the joints that were frozen in the last frame.
     """
 
     time_s: float | None = None
@@ -45,9 +46,9 @@ class Memory:
 
     @property
     def still_s(self) -> NDArray[np.float64]:
-        """For how long each joint has been the same to the bit, (22,) in s."""
+        """How long each joint has been the same to the last bit, (22,) in s."""
         return self.watched_s - self.changed_s
 
     def without_pose(self) -> "Memory":
-        """For a span that begins with a pose of its own, which is then no jump."""
+        """Return this memory without the last pose, so that the next pose cannot be a jump."""
         return replace(self, pose=None)

@@ -1,4 +1,4 @@
-"""What is wrong with a span of frames, counted."""
+"""Count the faults of a stream over a span of frames."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,19 +9,19 @@ from numpy.typing import NDArray
 
 from app.science.skeleton import JOINT_COUNT, JOINT_NAMES
 from app.science.stream_quality.examination import Examination, examine
-from app.science.stream_quality.limits import USUAL, QualityError, QualityLimits
+from app.science.stream_quality.limits import DEFAULT_LIMITS, QualityError, QualityLimits
 
 Floats = NDArray[np.floating[Any]]
 
 
 @dataclass(frozen=True)
 class StreamQuality:
-    """The faults of one stream over a span.
+    """The number and duration of the faults of one stream over a span.
 
-    `span_s` sums the intervals between frames, `frame_rate_hz` is one over their median (None for
-    less than two frames). `gap_s` sums the intervals that are gaps. `jumps` counts frames: a pose
-    that is off for one frame jumps twice. `frozen_s` (22,) is for how long each joint was frozen.
-    `non_finite`, `non_unit` and `backwards` count frames.
+    `span_s` is the sum of the intervals between frames, `frame_rate_hz` is one over their median
+    (None with fewer than two frames). `gap_s` is the sum of the intervals that are gaps. `jumps`
+    counts frames: a pose that is off for one frame jumps twice. `frozen_s` (22,) is how long each
+    joint was frozen. `non_finite`, `non_unit` and `backwards` count frames.
     """
 
     frames: int
@@ -38,7 +38,7 @@ class StreamQuality:
 
     @property
     def frozen_joints(self) -> tuple[str, ...]:
-        """The joints that were frozen at any time, in the body's order."""
+        """The names of the joints that were frozen at any time, in the skeleton's order."""
         return tuple(
             name for name, time_s in zip(JOINT_NAMES, self.frozen_s, strict=True) if time_s > 0.0
         )
@@ -49,29 +49,29 @@ def assess(
     rotations: Floats,
     positions_m: Floats,
     *,
-    limits: QualityLimits = USUAL,
+    limits: QualityLimits = DEFAULT_LIMITS,
     counted: NDArray[np.bool_] | None = None,
 ) -> StreamQuality:
-    """Count the faults of a whole recording; arguments and errors as of `examine`.
+    """Count the faults of a whole recording; arguments and errors are those of `examine`.
 
-    `counted` (n,) says which frames matter (None: all), such as those of active time. What happens
-    between two frames counts if the earlier one does. Movement of the others is still known: a
-    joint that moved before may be found frozen.
+    `counted` (n,) marks the frames to count (None: all), such as those of active time. A fault
+    between two frames counts if the earlier frame does. The other frames are still examined: a
+    joint that moved in them may be found frozen later.
     """
     if counted is None:
         counted = np.ones(len(times_s), np.bool_)
     if counted.shape != times_s.shape:
         raise QualityError(
-            f"counted {counted.shape} does not fit {len(times_s)} frames: one truth value for each"
-            " is needed."
+            f"counted {counted.shape} does not match {len(times_s)} frames:"
+            " one truth value for each is needed."
         )
     return summarise(examine(times_s, rotations, positions_m, limits=limits), counted, limits)
 
 
 def summarise(
-    found: Examination, counted: NDArray[np.bool_], limits: QualityLimits = USUAL
+    found: Examination, counted: NDArray[np.bool_], limits: QualityLimits = DEFAULT_LIMITS
 ) -> StreamQuality:
-    """Count what an examination found in the frames that matter, (n,)."""
+    """Count the faults of an examination, in the frames marked by `counted` (n,)."""
     pacing = found.pacing
     between = np.concatenate((counted[:1], counted[:-1]))
     forward = between & (pacing.interval_s > 0.0)
@@ -95,7 +95,7 @@ def summarise(
 def _frozen_s(
     found: Examination, between: NDArray[np.bool_], limits: QualityLimits
 ) -> tuple[float, ...]:
-    """Seconds for which each joint was frozen: what it took to find out is part of them."""
+    """Return how long each joint was frozen, in s, the time until it was detected included."""
     if not found.frozen.any():
         return (0.0,) * JOINT_COUNT
     lasting_s = np.where(between, found.pacing.watched_s, 0.0)[:, np.newaxis] * found.frozen
@@ -104,10 +104,10 @@ def _frozen_s(
     return tuple(float(one) for one in lasting_s.sum(axis=0) + waited_s)
 
 
-def together(parts: Sequence[StreamQuality]) -> StreamQuality:
-    """Recordings of several runs of a client as one: counts add up, gaps between runs are unknown.
+def combine(parts: Sequence[StreamQuality]) -> StreamQuality:
+    """Combine the qualities of several client runs: counts add up, gaps between runs are unknown.
 
-    The frame rate is that of the longest run.
+    The frame rate is that of the run with the most frames.
     """
     longest = max(parts, key=lambda part: part.frames, default=None)
     return StreamQuality(

@@ -29,14 +29,14 @@ def test_one_impossible_probe_is_left_out_and_cuts_nothing(place: int) -> None:
     assert [segment.stepped for segment in mapping.segments] == ["", ""]
     others = np.arange(len(probes)) != place
     times_s = probes.client_sent_s
-    expected, _ = fit_clock(probes.taken(others)).to_server(times_s)
+    expected, _ = fit_clock(probes.select(others)).to_server(times_s)
     assert mapping.to_server(times_s)[0] == pytest.approx(expected, abs=1e-4)
 
 
 def test_a_negative_round_trip_is_left_out() -> None:
     """Back before it went: counted, and without influence."""
     probes = simulate(PLAIN, np.random.default_rng(2)).probes
-    expected, _ = fit_clock(probes.taken(np.arange(len(probes)) != 77)).to_server(
+    expected, _ = fit_clock(probes.select(np.arange(len(probes)) != 77)).to_server(
         probes.client_sent_s
     )
     probes.client_received_s[77] -= 0.5
@@ -154,7 +154,7 @@ def test_a_silence_is_bridged_with_a_bound_that_grows_towards_its_middle() -> No
     quiet = replace(PLAIN, duration_s=1200.0)
     probes = simulate(quiet, np.random.default_rng(8)).probes
     heard = (np.arange(len(probes)) < 300) | (np.arange(len(probes)) >= 900)
-    mapping = fit_clock(probes.taken(heard))
+    mapping = fit_clock(probes.select(heard))
     begin_s, end_s = probes.client_sent_s[300], probes.client_sent_s[899]
     times_s = np.linspace(begin_s, end_s, 7)
     server_s, uncertainty_s = mapping.to_server(times_s)

@@ -60,7 +60,7 @@ def test_more_probes_never_widen_the_bound() -> None:
     at_s = np.array([probes.client_sent_s[0] + 5.0])
     widths = []
     for count in (1, 2, 5, 20, 100, 240):
-        (low,), (high,) = fit_clock(probes.taken(np.arange(count))).placed[0].bounds_at(at_s)
+        (low,), (high,) = fit_clock(probes.select(np.arange(count))).placed[0].bounds_at(at_s)
         widths.append(high - low)
     assert widths == sorted(widths, reverse=True)
     assert widths[-1] < 0.6 * widths[0]

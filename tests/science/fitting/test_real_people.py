@@ -187,7 +187,7 @@ def test_gait_is_trimmed_to_where_the_person_is_seen(shared_data: Path) -> None:
 
 def test_one_leg_of_clusters_is_refused(shared_data: Path) -> None:
     """The OptiTrack walk marks one foot, knee and shank, which is no body."""
-    with pytest.raises(FitError, match="Nothing marks the pelvis"):
+    with pytest.raises(FitError, match="the pelvis needs LASI"):
         _fitted(shared_data, "c3d/walkingOptiTrack.c3d")
 
 

@@ -42,11 +42,11 @@ def test_a_grid_is_bilinear_and_goes_on_beyond_its_edge() -> None:
 @pytest.mark.parametrize(
     ("build", "reason"),
     [
-        (lambda: Ramp((0, 0), (0, 0), 1.0, 1.0), "no direction"),
+        (lambda: Ramp((0, 0), (0, 0), 1.0, 1.0), "not a direction"),
         (lambda: Ramp((0, 0), (1, 0), 0.0, 1.0), "above zero"),
         (lambda: Steps((0, 0), (1, 0), (1.0,), ()), "1 edges and 0 rises"),
         (lambda: Steps((0, 0), (1, 0), (2.0, 1.0), (1.0, 1.0)), "out of order"),
-        (lambda: Grid((0, 0), 1.0, np.zeros((1, 5))), "no grid"),
+        (lambda: Grid((0, 0), 1.0, np.zeros((1, 5))), "not a grid"),
         (lambda: Grid((0, 0), 1.0, np.full((2, 2), np.nan)), "finite"),
     ],
 )

@@ -11,8 +11,8 @@ from app.science.stream_quality import (
     QualityError,
     StreamQuality,
     assess,
+    combine,
     examine,
-    together,
 )
 from tests.science.simulation.people import RATE_HZ
 from tests.science.stream_quality.recordings import Recording, generated
@@ -96,12 +96,12 @@ def test_precision_of_the_numbers_does_not_matter() -> None:
 def test_faults_of_runs_add_up() -> None:
     """Two runs together have the faults of both; a gap between them is not known."""
     one, other = quality(spoilt(5)), quality(spoilt(6))
-    both = together([one, other])
+    both = combine([one, other])
     assert both.frames == one.frames + other.frames
     assert both.gaps == one.gaps + other.gaps
     assert both.longest_gap_s == max(one.longest_gap_s, other.longest_gap_s)
     assert both.frozen_s == pytest.approx(np.add(one.frozen_s, other.frozen_s))
-    assert together([]).frames == 0
+    assert combine([]).frames == 0
 
 
 def test_no_frames_have_no_faults() -> None:
@@ -115,11 +115,11 @@ def test_no_frames_have_no_faults() -> None:
 @pytest.mark.parametrize("shape", [(5, 21, 4), (4, 22, 4), (5, 22, 3)])
 def test_arrays_that_do_not_belong_together_are_refused(shape: tuple[int, ...]) -> None:
     """The refusal names the shapes."""
-    with pytest.raises(QualityError, match="do not fit"):
+    with pytest.raises(QualityError, match="do not match"):
         examine(np.zeros(5), np.zeros(shape), np.zeros((5, 3)))
-    with pytest.raises(QualityError, match="do not fit"):
+    with pytest.raises(QualityError, match="do not match"):
         examine(np.zeros(5), np.zeros((5, 22, 4)), np.zeros((4, 3)))
-    with pytest.raises(QualityError, match="does not fit"):
+    with pytest.raises(QualityError, match="does not match"):
         assess(np.zeros(5), np.zeros((5, 22, 4)), np.zeros((5, 3)), counted=np.ones(4, np.bool_))
 
 

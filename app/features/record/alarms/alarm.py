@@ -6,7 +6,7 @@ from datetime import datetime
 from typing import Literal
 
 from app.features.record.alarms.kinds import ALARMS, Severity
-from app.science.stream_quality import USUAL, QualityLimits
+from app.science.stream_quality import DEFAULT_LIMITS, QualityLimits
 
 State = Literal["raised", "cleared"]
 
@@ -133,7 +133,7 @@ class WatchLimits:
     gap_client_s: float = 0.25
     clear_after_s: float = 3.0
     check_every_s: float = 0.5
-    quality: QualityLimits = USUAL
+    quality: QualityLimits = DEFAULT_LIMITS
 
     def at_scale(self, time_scale: float) -> "WatchLimits":
         """Return the limits for a session that runs `time_scale` times as fast as real time.

@@ -15,7 +15,7 @@ from app.features.record.telemetry.encoding import Frames
 from app.features.record.telemetry.movement import Run, phase_runs
 from app.models import Phase, PhaseQuality
 from app.science.skeleton import JOINT_COUNT
-from app.science.stream_quality import StreamQuality, assess, together
+from app.science.stream_quality import StreamQuality, assess, combine
 from app.wire import MAX_TIME_S, StreamName
 
 HISTORY_S = 10.0
@@ -33,8 +33,8 @@ def phase_quality(db: Session, session_id: str, phase_id: int) -> list[PhaseQual
 
 def quality_rows(phase: Phase, runs: Sequence[Run]) -> list[PhaseQuality]:
     """The rows of both streams, from frames that were read already; also where there are none."""
-    target = together([_quality(run.target, _in_phase(run)) for run in runs])
-    actual = together([_quality(run.actual, run.actual.active) for run in runs])
+    target = combine([_quality(run.target, _in_phase(run)) for run in runs])
+    actual = combine([_quality(run.actual, run.actual.active) for run in runs])
     return [_row(phase, StreamName.TARGET, target), _row(phase, StreamName.ACTUAL, actual)]
 
 

@@ -1,4 +1,4 @@
-"""How well predictions hold against walks that a model has not seen."""
+"""Evaluate predictions on walks that the model was not fitted on."""
 
 from app.science.walking.evaluation.evaluation import Evaluation, evaluate, pooled
 from app.science.walking.evaluation.leave_one_out import (

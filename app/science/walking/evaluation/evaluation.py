@@ -1,7 +1,7 @@
-"""Models against walks that they never saw: travel times, as the paper tells them and properly.
+"""Evaluate models on unseen walks by travel time: the paper's figures, and proper scores.
 
-Each walk is predicted from its planned path and its dependencies alone. The same draws serve all
-figures: the first one is the paper's single draw, all of them the distribution.
+Each walk is predicted from its planned path and its dependencies alone. All figures use the same
+draws: the first one is the paper's single draw, all of them are the predicted distribution.
 """
 
 from collections.abc import Callable, Sequence
@@ -23,20 +23,20 @@ from app.science.walking.records import PathFollower, PlannedWalk, WalkingError
 
 DRAWS = 200
 LEAST_FOR_IQR = 4
-"""Walks of one path below which their interquartile range says nothing."""
+"""Fewest walks of a course from which an interquartile range is computed."""
 CYCLE_S, WALKING_SHARE = 100.0, 0.2
-"""The paper's work cycle, a fifth of it walking."""
+"""Duration of the paper's work cycle, and the share of it spent walking."""
 
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """One model on N walks.
+    """The predictions of one model for N walks.
 
     Attributes:
         model: its name.
         draws_s: (N, S) predicted travel times; S = 1 for models that do not draw.
-        crps_s: (N,).
-        lost: draws that did not arrive.
+        crps_s: (N,) score of each prediction.
+        lost: number of draws whose agent did not arrive.
     """
 
     model: str
@@ -46,19 +46,19 @@ class Outcome:
 
     @property
     def single_s(self) -> FloatArray:
-        """(N,) the first draw for each walk."""
+        """The first draw for each walk, (N,)."""
         first: FloatArray = self.draws_s[:, 0]
         return first
 
     @property
     def mean_crps_s(self) -> float:
-        """Over the walks."""
+        """Mean CRPS over the walks."""
         return float(self.crps_s.mean())
 
 
 @dataclass(frozen=True, eq=False)
 class Evaluation:
-    """Several models on the same N walks.
+    """The predictions of several models for the same N walks.
 
     Attributes:
         truth_s: (N,) travel times.
@@ -74,19 +74,19 @@ class Evaluation:
     outcomes: dict[str, Outcome]
 
     def crps_ratio(self, first: str, second: str) -> float:
-        """Mean CRPS of one model over that of another."""
+        """Return the mean CRPS of the first model over that of the second."""
         return self.outcomes[first].mean_crps_s / self.outcomes[second].mean_crps_s
 
     def errors(self, model: str) -> ErrorSummary:
-        """|dt| of single draws, the paper's figures."""
+        """Return |dt| of single draws, as in the paper."""
         return error_summary(self.outcomes[model].single_s, self.truth_s)
 
     def medians(self, model: str) -> ErrorSummary:
-        """|dt| of the predicted distributions' medians."""
+        """Return |dt| of the medians of the predicted distributions."""
         return error_summary(np.median(self.outcomes[model].draws_s, axis=1), self.truth_s)
 
     def comparisons(self) -> list[Comparison]:
-        """Single draws' |dt| of each pair of models."""
+        """Compare each pair of models by the |dt| of single draws."""
         return [
             comparison(
                 pair,
@@ -97,7 +97,10 @@ class Evaluation:
         ]
 
     def iqr_ratios(self, model: str) -> list[float]:
-        """For each course the interquartile range of predictions over that of the walks."""
+        """Return for each course the interquartile range of predictions over that of the walks.
+
+        Courses with too few walks, or without variation, are left out.
+        """
         ratios = []
         for course in sorted(set(self.courses)):
             own = np.array([name == course for name in self.courses])
@@ -107,7 +110,7 @@ class Evaluation:
         return ratios
 
     def coverage(self, model: str) -> tuple[float, ...]:
-        """Share of walks within the central 50 and 90 % of what was predicted for them."""
+        """Return the shares of walks within the central 50 and 90 % of their predictions."""
         pairs = list(zip(self.outcomes[model].draws_s, self.truth_s, strict=True))
         return tuple(
             float(np.mean([covers(draws, truth, share) for draws, truth in pairs]))
@@ -115,7 +118,10 @@ class Evaluation:
         )
 
     def saved_per_cycle_s(self, better: str, worse: str) -> float:
-        """How much less a work cycle's walking is mispredicted, by CRPS over travel time."""
+        """Return by how much the better model reduces the walking-time error of a work cycle.
+
+        The error is the CRPS relative to the travel time.
+        """
         gain_s = self.outcomes[worse].mean_crps_s - self.outcomes[better].mean_crps_s
         return CYCLE_S * WALKING_SHARE * gain_s / float(self.truth_s.mean())
 
@@ -129,21 +135,22 @@ def evaluate(
     draws: int = DRAWS,
     course_of: Callable[[PlannedWalk], str] = lambda entry: entry.walk.note,
 ) -> Evaluation:
-    """Predict walks with several models.
+    """Predict walks with several models and score the predictions.
 
     Args:
-        models: with names that differ.
-        follower: that their maps were made with.
-        walks: none of a person whom the models were fitted on; that is for the caller to ensure.
-        rng: of the draws.
-        draws: for each walk, of models that draw.
-        course_of: which walks are repetitions of one course; by the walk's note.
+        models: with distinct names.
+        follower: the one their maps were made with.
+        walks: of people on whom the models were not fitted; the caller must ensure this.
+        rng: for the draws.
+        draws: number of draws per walk, for models that draw.
+        course_of: returns the course of a walk, by default the walk's note; walks of the same
+            course are repetitions.
 
     Raises:
-        WalkingError: no walks, or a model that cannot predict one of them.
+        WalkingError: there are no walks, or a model cannot predict one of them.
     """
     if not walks:
-        raise WalkingError("There is no walk to evaluate a model on.")
+        raise WalkingError("There are no walks to evaluate a model on.")
     truth_s = np.array([entry.walk.duration_s for entry in walks])
     outcomes = {
         model.name: _outcome(model, follower, walks, truth_s, rng, draws) for model in models
@@ -177,7 +184,7 @@ def _outcome(
 
 
 def pooled(evaluations: Sequence[Evaluation]) -> Evaluation:
-    """Several evaluations of the same models as one, such as the folds of a validation."""
+    """Combine evaluations of the same models into one, such as the folds of a cross-validation."""
     first = evaluations[0]
     outcomes = {}
     for name in first.outcomes:

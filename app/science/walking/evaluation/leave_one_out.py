@@ -1,9 +1,11 @@
-"""How well maps are interpolated: over dependencies by neighbours, between nodes by radial bases.
+"""Measure how well maps are interpolated, by leaving out entries, people or nodes.
 
-As the paper does it: one entry of the densified space is left out and guessed from its neighbours,
-the median over the nodes of guess minus truth is one figure, and mean and deviation are over all
-entries. The entry's own blends are still there, and it is a blend of others itself, so this says
-how smooth the space is and not how a new person is predicted. That is `people_left_out`.
+Over dependencies maps are interpolated by neighbours, between nodes by radial basis functions. As
+in the paper, one entry of the densified space is left out and estimated from its neighbours; the
+median over the nodes of estimate minus truth is one value, and mean and standard deviation are over
+all entries. The blends of the entry are still present, and it may be a blend of others itself, so
+this measures how smooth the space is and not how well a new person is predicted. The latter is
+`people_left_out`.
 """
 
 from dataclasses import dataclass
@@ -22,12 +24,12 @@ from app.science.walking.maps import (
 from app.science.walking.models import person_folds, space_of
 
 NODES = 100
-"""Random nodes of each map at which the radial basis is tried."""
+"""Random nodes of each map at which the radial basis is evaluated."""
 
 
 @dataclass(frozen=True)
 class LeftOut:
-    """Deviations of suitability, in percent of its range.
+    """Deviations of estimated suitability, in percent of its range.
 
     Attributes:
         mean, sd: over the entries.
@@ -40,7 +42,7 @@ class LeftOut:
 
 
 def neighbours_left_out(space: BlendingSpace) -> LeftOut:
-    """Leave each entry out in turn and guess its map from its k nearest others."""
+    """Leave out each entry in turn and estimate its map from its k nearest other entries."""
     from app.science.walking.models.sampling_kernels import blend_rows
 
     count = len(space.z)
@@ -71,7 +73,7 @@ def people_left_out(
     k: int,
     folds: int = 4,
 ) -> LeftOut:
-    """Guess each walk's map from the maps of other people, densified among themselves."""
+    """Estimate each walk's map from the densified maps of other people."""
     from app.science.walking.models.sampling_kernels import blend_rows
 
     values, medians = database.suitability(reading), []
@@ -86,7 +88,7 @@ def people_left_out(
 
 
 def nodes_left_out(space: BlendingSpace, rng: np.random.Generator) -> LeftOut:
-    """Leave nodes out of each map and guess them by the radial basis through the others."""
+    """Leave nodes out of each map and estimate them from the others by radial basis functions."""
     basis = radial_basis(space.grid)
     medians = np.empty(len(space.values))
     for first in range(0, len(space.values), 512):

@@ -1,9 +1,9 @@
-"""Errors of travel times as the paper tells them, and two models compared by them.
+"""Summarise errors of travel times as in the paper, and compare two models by them.
 
-The paper takes one draw and compares |dt|. That punishes honesty: where walks differ, a draw from
-their true distribution is off by about sqrt 2 times as much as the distribution's median, so a
-model that knows nothing of variety wins. `crps` has the score that is judged by.
-SciPy is slow to load, so only what needs it does.
+The paper takes one draw and compares |dt|. That penalises realistic variation: where walks differ,
+a draw from their true distribution is off by about sqrt 2 times as much as the distribution's
+median, so a model that ignores variation wins. The models are therefore judged by the score in
+`crps`. SciPy is slow to import, so only the functions that need it import it.
 """
 
 from collections.abc import Sequence
@@ -15,21 +15,22 @@ from app.science.rotations import FloatArray
 from app.science.walking.records import WalkingError
 
 PERCENTILES = (5.0, 25.0, 50.0, 75.0, 95.0)
-"""As the paper prints them."""
+"""Percentiles of errors that the paper reports."""
 COVERAGES = (0.5, 0.9)
 ALPHA = 0.05
 EFFICIENCY = 0.864
-"""Least asymptotic relative efficiency of the signed-rank test to the t test (Hodges, Lehmann)."""
+"""Lower bound of the signed-rank test's efficiency relative to the t test (Hodges, Lehmann)."""
 
 
 @dataclass(frozen=True)
 class ErrorSummary:
-    """Absolute travel-time errors as the paper tells them.
+    """Absolute travel-time errors, summarised as in the paper.
 
     Attributes:
-        count: how many.
+        count: number of errors.
         percentiles_s: at `PERCENTILES`.
-        shapiro_p: of the hypothesis that they are normal; NaN for fewer than three, or all equal.
+        shapiro_p: p of the Shapiro-Wilk test of normality; NaN for fewer than three errors, or if
+            all are equal.
         mean_signed_s: mean of prediction minus truth.
     """
 
@@ -40,23 +41,24 @@ class ErrorSummary:
 
     @property
     def median_s(self) -> float:
-        """The middle one."""
+        """Median of the absolute errors."""
         return self.percentiles_s[PERCENTILES.index(50.0)]
 
 
 def error_summary(predicted_s: FloatArray, truth_s: FloatArray) -> ErrorSummary:
-    """Summarise errors of one prediction (N,) for each walk; raises WalkingError for none."""
+    """Summarise the errors of one prediction per walk, (N,); raise WalkingError without walks."""
     from scipy import stats
 
     if not len(truth_s) or predicted_s.shape != truth_s.shape:
         raise WalkingError(
-            f"Errors of {predicted_s.shape} predictions for {truth_s.shape} walks make no summary."
+            f"{predicted_s.shape} predictions and {truth_s.shape} walks cannot be summarised: give"
+            " one prediction (N,) for each walk."
         )
     signed = predicted_s - truth_s
     errors = np.abs(signed)
     p = np.nan
     if len(errors) >= 3 and np.ptp(errors) > 0.0:
-        # Its p is only approximate beyond 5000 values, and says zero there anyway.
+        # Its p is only approximate beyond 5000 values, and practically zero there.
         p = float(stats.shapiro(errors[:5000]).pvalue)
     percentiles = tuple(float(value) for value in np.percentile(errors, PERCENTILES))
     return ErrorSummary(len(errors), percentiles, p, float(signed.mean()))
@@ -64,15 +66,15 @@ def error_summary(predicted_s: FloatArray, truth_s: FloatArray) -> ErrorSummary:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Two models on the same walks, by Wilcoxon's signed-rank test.
+    """Two models compared on the same walks by Wilcoxon's signed-rank test.
 
     Attributes:
         first, second: their names.
         p: two-sided.
-        rank_biserial: positive where the first errs more.
-        power: chance to find an effect as large as seen, see `signed_rank_power`.
+        rank_biserial: positive if the first model has larger errors.
+        power: probability of detecting an effect as large as observed, see `signed_rank_power`.
         difference_s: mean of first minus second.
-        ties: walks on which both err alike.
+        ties: walks on which both models have the same error.
     """
 
     first: str
@@ -98,10 +100,10 @@ def comparison(names: tuple[str, str], first_s: FloatArray, second_s: FloatArray
 
 
 def signed_rank_power(pairs: int, effect: float, alpha: float = ALPHA) -> float:
-    """Power of the two-sided signed-rank test, as G*Power computes it (A.R.E. method).
+    """Return the power of the two-sided signed-rank test, as G*Power computes it (A.R.E. method).
 
-    As of a paired t test with EFFICIENCY times as many pairs. Power computed from the effect seen
-    says no more than p does; the paper prints it, so it stands beside the paper's.
+    It is that of a paired t test with EFFICIENCY times as many pairs. Power computed from the
+    observed effect adds no information to p; it is computed because the paper reports it.
 
     Args:
         pairs: N.
@@ -122,5 +124,5 @@ def signed_rank_power(pairs: int, effect: float, alpha: float = ALPHA) -> float:
 
 
 def mean_of(values: Sequence[float]) -> float:
-    """Mean of some numbers, NaN of none."""
+    """Return the mean of numbers; NaN if there are none."""
     return float(np.mean(values)) if len(values) else float("nan")

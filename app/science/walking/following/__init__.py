@@ -1,4 +1,4 @@
-"""The agent that follows a path, steered by three parameters, and the metrics of its walk.
+"""The agent that follows a path, steered by three parameters, and metrics of its walk.
 
 `SteeringFollower` moves one agent for each vector of parameters; `EuclideanMetric` is the paper's.
 The compiler is loaded with the first agent.

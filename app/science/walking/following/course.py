@@ -1,4 +1,4 @@
-"""A course as the agents see it: the path in legs, the numbers of one simulation, its time."""
+"""A course prepared for the agents: the path in legs, the simulation's numbers, its time limit."""
 
 from typing import NamedTuple
 
@@ -12,13 +12,13 @@ EXTRA_S = 1.0
 
 
 class Way(NamedTuple):
-    """A path as the agents see it: P points, P - 1 legs.
+    """A path prepared for the agents: P points, P - 1 legs.
 
     Attributes:
         points: (P, 2).
         units: (P - 1, 2) direction of each leg.
         lengths: (P - 1,).
-        before: (P,) way up to each point.
+        before: (P,) distance along the path up to each point.
     """
 
     points: FloatArray
@@ -28,7 +28,11 @@ class Way(NamedTuple):
 
 
 class Pace(NamedTuple):
-    """Numbers of one simulation: the rules, speed at the start, whether it brakes, most steps."""
+    """The numbers of one simulation.
+
+    They are the rules, the initial speed, whether the agent brakes, and the largest number of
+    steps.
+    """
 
     dt: float
     lookahead: float
@@ -40,7 +44,7 @@ class Pace(NamedTuple):
 
 
 def way_of(path: PlannedPath) -> Way:
-    """The path in legs."""
+    """Divide a path into legs for the agents."""
     legs = np.diff(path.points_m, axis=0)
     lengths = np.linalg.norm(legs, axis=1)
     points = np.ascontiguousarray(path.points_m, dtype=np.float64)
@@ -48,10 +52,11 @@ def way_of(path: PlannedPath) -> Way:
 
 
 def course_of(walk: Walk, path: PlannedPath, dt_s: float) -> Course:
-    """The course by which a walk is re-simulated.
+    """Return the course on which a walk is re-simulated.
 
-    An agent that takes more than twice as long and a second has not arrived: its suitability in
-    time is below exp(-10) by then. A walk that a recording cuts begins, or ends, at speed.
+    An agent has not arrived if it takes longer than twice the walk's time plus a second: its
+    suitability in time is then below exp(-10). If the recording cuts off the start or the end of
+    the walk, the agent starts, or ends, at speed.
     """
     samples = int(np.floor(walk.duration_s / dt_s + 1e-9)) + 1
     begin_m_s = 0.0 if walk.begins_still else float(walk.speeds_m_s[0])

@@ -6,14 +6,14 @@ arrival). At each step of `dt_s`, with parameters v_max, a_max and omega:
     aim      the point of the path `lookahead_m` ahead of the agent's nearest one
     turn     towards it, by at most omega * v * dt: angular velocity is tied to velocity, which
              makes omega the largest curvature (1/m)
-    speed    towards min(v_max, sqrt(2 a_max d)), d the way left, by at most a_max * dt: it can
-             always stop at the goal; never slower than `floor_m_s`. Within a step the
-             acceleration is constant, and d is counted so that braking ends at the goal
+    speed    towards min(v_max, sqrt(2 a_max d)), d the remaining distance, by at most a_max * dt:
+             it can always stop at the goal; never slower than `floor_m_s`. Within a step the
+             acceleration is constant, and d is computed so that braking ends at the goal
     arrival  within `radius_m` of the goal, its time interpolated within the step; then it stays
 
-It begins along the path. What the paper leaves open (step, look-ahead, radius, floor) is fixed in
-`FollowingRules` and printed with every result. An agent that cannot turn enough circles the goal,
-and has not arrived when its time is over.
+It starts in the direction of the path. The values that the paper does not state (step, look-ahead,
+radius, floor) are fixed in `FollowingRules` and printed with every result. An agent that cannot
+turn enough circles around the goal, and has not arrived when its time is over.
 """
 
 from dataclasses import dataclass
@@ -33,7 +33,7 @@ from app.science.walking.records import (
 
 @dataclass(frozen=True)
 class FollowingRules:
-    """What is the same for all agents."""
+    """Settings that are the same for all agents."""
 
     dt_s: float = 1.0 / 60.0
     lookahead_m: float = 0.4
@@ -41,7 +41,7 @@ class FollowingRules:
     floor_m_s: float = 0.02
 
     def __post_init__(self) -> None:
-        """Raises WalkingError where one is not positive."""
+        """Raise WalkingError if a value is not positive."""
         for name in ("dt_s", "lookahead_m", "radius_m", "floor_m_s"):
             if not 0.0 < getattr(self, name) < np.inf:
                 raise WalkingError(f"{name} is {getattr(self, name)}; it must be positive.")
@@ -49,29 +49,30 @@ class FollowingRules:
 
 @dataclass(frozen=True)
 class SteeringFollower:
-    """Follows paths with (v_max, a_max, omega); a `PathFollower`.
+    """Follows paths with parameters (v_max, a_max, omega); a `PathFollower`.
 
     Attributes:
-        rules: fixed for all agents.
+        rules: the same for all agents.
     """
 
     rules: FollowingRules = FollowingRules()
 
     @property
     def parameters(self) -> tuple[SteeringParameter, ...]:
-        """Velocity, acceleration, angular."""
+        """The three parameters: velocity, acceleration, angular."""
         return PAPER_PARAMETERS
 
     @property
     def dt_s(self) -> float:
-        """The step."""
+        """The time step of the simulation, s."""
         return self.rules.dt_s
 
     def follow(self, course: Course, vectors: FloatArray) -> Trajectories:
         """Let one agent for each vector (K, 3) follow the course.
 
         Raises:
-            WalkingError: vectors of another shape or not positive, or a course without samples.
+            WalkingError: the vectors have another shape or are not positive, or the course has no
+                samples.
         """
         vectors = np.ascontiguousarray(vectors, dtype=np.float64)
         if vectors.ndim != 2 or vectors.shape[1] != 3:
@@ -80,11 +81,11 @@ class SteeringFollower:
             raise WalkingError("Velocity, acceleration and angular must be positive numbers.")
         if course.samples < 1 or not 0.0 < course.time_limit_s < np.inf:
             raise WalkingError(
-                f"A course of {course.samples} samples and {course.time_limit_s} s is none."
+                f"A course of {course.samples} samples and {course.time_limit_s} s is invalid."
             )
         if len(course.path.points_m) > 2:
             return self._followed(course, vectors)
-        # Who never turns does not feel omega: on one straight leg, equal v and a walk alike.
+        # On one straight leg omega has no effect: agents with equal v and a are simulated once.
         _, first, like = np.unique(vectors[:, :2], axis=0, return_index=True, return_inverse=True)
         few = self._followed(course, vectors[first])
         return Trajectories(few.xy_m[like], few.arrival_s[like])

@@ -1,6 +1,6 @@
 """The agents of `following` and the distances of `metrics`, compiled.
 
-Agents move one after the other, each to its end.
+Agents are simulated one after the other, each to its end.
 """
 
 import math
@@ -14,7 +14,7 @@ from app.science.walking.following.course import Pace, Way
 
 @compiled
 def _off(x: float, y: float, way: Way, leg: int) -> tuple[float, float]:
-    """Along and squared distance of a place to a leg."""
+    """Return a position's distance along a leg and its squared distance from the leg."""
     dx, dy = x - way.points[leg, 0], y - way.points[leg, 1]
     along = dx * way.units[leg, 0] + dy * way.units[leg, 1]
     along = min(max(along, 0.0), way.lengths[leg])
@@ -24,7 +24,7 @@ def _off(x: float, y: float, way: Way, leg: int) -> tuple[float, float]:
 
 @compiled
 def _progress(x: float, y: float, way: Way, leg: int, lookahead: float) -> tuple[int, float]:
-    """The leg that the agent is on, and how far along it."""
+    """Return the leg that the agent is on, and how far along it."""
     along, apart = _off(x, y, way, leg)
     while leg + 1 < len(way.lengths) and way.lengths[leg] - along <= lookahead:
         next_along, next_apart = _off(x, y, way, leg + 1)
@@ -36,7 +36,7 @@ def _progress(x: float, y: float, way: Way, leg: int, lookahead: float) -> tuple
 
 @compiled
 def _aim(way: Way, leg: int, ahead: float) -> tuple[float, float]:
-    """The point of the path at a way from its start, at most its end."""
+    """Return the point at a distance `ahead` along the path, at most its end."""
     while leg + 1 < len(way.lengths) and way.before[leg + 1] < ahead:
         leg += 1
     along = min(ahead - way.before[leg], way.lengths[leg])
@@ -46,9 +46,10 @@ def _aim(way: Way, leg: int, ahead: float) -> tuple[float, float]:
 
 @compiled
 def _turned(hx: float, hy: float, dx: float, dy: float, most: float) -> tuple[float, float]:
-    """A heading (hx, hy) turned towards (dx, dy) by an angle at most; no trigonometry.
+    """Return a heading (hx, hy) turned towards (dx, dy) by at most an angle, without trigonometry.
 
-    tan(most / 2) by its series: an angle of a few hundredths of a radian is right to 1e-10.
+    tan(most / 2) is computed by its series: for an angle of a few hundredths of a radian the result
+    is accurate to 1e-10.
     """
     distance = math.sqrt(dx * dx + dy * dy)
     if distance < 1e-9:
@@ -67,7 +68,7 @@ def _turned(hx: float, hy: float, dx: float, dy: float, most: float) -> tuple[fl
 
 @compiled
 def _left(x: float, y: float, way: Way, leg: int) -> float:
-    """The way left: to the leg's end and on from there."""
+    """Return the remaining distance: to the leg's end and from there along the path."""
     dx, dy = way.points[leg + 1, 0] - x, way.points[leg + 1, 1] - y
     left: float = math.sqrt(dx * dx + dy * dy) + (way.before[-1] - way.before[leg + 1])
     return left
@@ -75,14 +76,14 @@ def _left(x: float, y: float, way: Way, leg: int) -> float:
 
 @compiled
 def _stoppable(left: float, speed: float, rate: float, dt: float) -> float:
-    """The speed after this step from which braking at a rate ends in the way left."""
+    """Return the speed after this step from which braking ends within the remaining distance."""
     room, change = max(left - 0.5 * speed * dt, 0.0), rate * dt
     return math.sqrt(0.25 * change * change + 2.0 * rate * room) - 0.5 * change
 
 
 @compiled
 def move(way: Way, vector: FloatArray, pace: Pace, places: FloatArray) -> float:
-    """Move one agent; fills `places` (N, 2) and returns its arrival time, NaN for none."""
+    """Move one agent: fill `places` (N, 2) and return its arrival time, NaN without arrival."""
     fastest, change, slope = vector[0], vector[1] * pace.dt, vector[2] * pace.dt
     x, y = way.points[0, 0], way.points[0, 1]
     hx, hy = way.units[0, 0], way.units[0, 1]
@@ -110,7 +111,7 @@ def move(way: Way, vector: FloatArray, pace: Pace, places: FloatArray) -> float:
             share = (before - pace.radius) / (before - apart) if before > pace.radius else 0.0
             return (step - 1 + share) * pace.dt
         if step >= samples:
-            # All samples are told; who is too far to come in time need not go on.
+            # All samples are filled: stop an agent that is too far away to arrive in time.
             swiftest = max(max(speed, fastest), pace.floor)
             if apart - pace.radius > (pace.steps - step + 1) * swiftest * pace.dt:
                 return np.nan
@@ -123,14 +124,14 @@ def move(way: Way, vector: FloatArray, pace: Pace, places: FloatArray) -> float:
 def move_all(
     way: Way, vectors: FloatArray, pace: Pace, places: FloatArray, arrival: FloatArray
 ) -> None:
-    """Move K agents: vectors (K, 3), places (K, N, 2), arrival (K,), the last two filled here."""
+    """Move K agents: vectors (K, 3); fill places (K, N, 2) and arrival (K,)."""
     for agent in range(len(vectors)):
         arrival[agent] = move(way, vectors[agent], pace, places[agent])
 
 
 @compiled
 def distance_sums(reference: FloatArray, places: FloatArray) -> FloatArray:
-    """(K,) sums over N samples of the distance between (N, 2) and each of (K, N, 2)."""
+    """Return the sums (K,) over N samples of the distance between (N, 2) and each of (K, N, 2)."""
     sums = np.zeros(len(places))
     for agent in range(len(places)):
         for sample in range(len(reference)):

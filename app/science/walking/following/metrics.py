@@ -1,7 +1,7 @@
-"""How far an agent's walk is from a person's.
+"""Metrics of the deviation of an agent's walk from a person's.
 
-`EuclideanMetric` is the paper's equation 5. `PaceMetric` looks at progress only, whatever the shape
-of the path: it serves where only distance over time was recorded, and proves that metrics can be
+`EuclideanMetric` is the paper's equation 5. `PaceMetric` compares progress only, whatever the shape
+of the path: it is for recordings of distance over time only, and shows that metrics can be
 exchanged.
 """
 
@@ -15,16 +15,16 @@ from app.science.walking.records import Reference, Trajectories, WalkingError
 
 @dataclass(frozen=True)
 class EuclideanMetric:
-    """Sum over the reference's samples of the distance between both, over the reference's length.
+    """Sum of the distances between agent and reference at its samples, over the reference's length.
 
-    An agent that has arrived earlier waits at its last place. The sum grows with the rate of
-    samples, which cancels in every reading as suitability.
+    An agent that has arrived earlier stays at its last position. The sum grows with the sampling
+    rate, which cancels out when deviations are converted to suitability.
     """
 
     name: str = "euclidean"
 
     def deviations(self, reference: Reference, trajectories: Trajectories) -> FloatArray:
-        """Return (K,) deviations; raises WalkingError for a reference of no length."""
+        """Return the deviations, (K,); raise WalkingError for a reference without length."""
         from app.science.walking.following.following_kernels import distance_sums
 
         _check(reference, trajectories)
@@ -35,12 +35,12 @@ class EuclideanMetric:
 
 @dataclass(frozen=True)
 class PaceMetric:
-    """Mean difference of the distances covered by each time, over the reference's length."""
+    """Mean difference of the distances covered at each time, over the reference's length."""
 
     name: str = "pace"
 
     def deviations(self, reference: Reference, trajectories: Trajectories) -> FloatArray:
-        """Return (K,) deviations; raises WalkingError for a reference of no length."""
+        """Return the deviations, (K,); raise WalkingError for a reference without length."""
         _check(reference, trajectories)
         apart = np.abs(_covered(trajectories.xy_m) - _covered(reference.xy_m))
         deviations: FloatArray = apart.mean(axis=-1) / reference.length_m
@@ -48,7 +48,7 @@ class PaceMetric:
 
 
 def _covered(xy_m: FloatArray) -> FloatArray:
-    """Distance walked (..., N) up to each sample of (..., N, 2)."""
+    """Return the distance walked (..., N) up to each sample of (..., N, 2)."""
     steps = np.linalg.norm(np.diff(xy_m, axis=-2), axis=-1)
     covered = np.zeros(xy_m.shape[:-1])
     np.cumsum(steps, axis=-1, out=covered[..., 1:])

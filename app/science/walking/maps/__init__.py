@@ -1,7 +1,7 @@
-"""Maps of suitability over the steering parameters, and what lies between the recorded ones.
+"""Maps of suitability over the steering parameters, and the interpolation between them.
 
-`maps_of` makes them for all walks of a database, with progress, stop and resume; `blending_space`
-and `multilinear` interpolate between dependencies and between nodes.
+`maps_of` makes the maps of all walks of a database, with progress, stop and resume;
+`blending_space` and `multilinear` interpolate between dependencies and between nodes.
 """
 
 from app.science.walking.maps.blending import ENTRIES, NEIGHBOURS, BlendingSpace, blending_space

@@ -1,7 +1,7 @@
-"""The dependency blending space: maps where their walks' dependencies put them.
+"""The dependency blending space: suitability maps at the positions of their walks' dependencies.
 
-A space is made of the maps of N walks and B blends of them. A question is a vector of dependencies;
-its answer is the weighted sum of the maps of the k nearest entries.
+A space consists of the maps of N walks and B blends of them. A query is a vector of dependencies;
+its result is the weighted sum of the maps of the k nearest entries.
 """
 
 from dataclasses import dataclass
@@ -21,15 +21,15 @@ ENTRIES = 5000
 
 @dataclass(frozen=True, eq=False)
 class BlendingSpace:
-    """Maps over the dependencies.
+    """Suitability maps over the space of dependencies.
 
     Attributes:
         grid: of the maps.
         scaling: of the dependencies.
-        z: (M, m) where each entry is; walks first, blends after them.
-        values: (M, K) its suitability map.
+        z: (M, m) position of each entry; walks first, then blends.
+        values: (M, K) suitability map of each entry.
         blends: parents of the entries after the walks.
-        k: how many neighbours answer.
+        k: number of neighbours that contribute to a result.
     """
 
     grid: ParameterGrid
@@ -40,7 +40,7 @@ class BlendingSpace:
     k: int
 
     def __post_init__(self) -> None:
-        """Raises WalkingError where there are not as many maps as places, or k is too large."""
+        """Raise WalkingError if the maps do not match entries and grid, or k is out of range."""
         if self.values.shape != (len(self.z), self.grid.size):
             raise WalkingError(
                 f"{len(self.z)} entries over {self.grid.size} nodes need maps of that shape, got"
@@ -50,33 +50,34 @@ class BlendingSpace:
 
     @property
     def walks(self) -> int:
-        """N, how many entries are walks themselves."""
+        """N, the number of entries that are walks."""
         return len(self.z) - len(self.blends.parents)
 
     @cached_property
     def tree(self) -> Tree:
-        """Finds neighbours."""
+        """The k-d tree in which neighbours are searched."""
         return tree_of(self.z)
 
     @cached_property
     def masses(self) -> FloatArray:
-        """(M,) integral of each map."""
+        """The integral of each map, (M,)."""
         masses: FloatArray = self.values @ axes_of(self.grid).node_weights
         return masses
 
     @cached_property
     def radial_coefficients(self) -> MapArray:
-        """(M, K) of each map's radial basis functions."""
+        """The coefficients of each map's radial basis functions, (M, K)."""
         return radial_basis(self.grid).coefficients_of_many(self.values)
 
     def neighbours(self, z: FloatArray) -> tuple[IntArray, FloatArray]:
-        """Entries (k,) nearest to z-scores (m,), and their weights (k,)."""
+        """Return the entries (k,) nearest to z-scores (m,), and their weights (k,)."""
         return neighbours(self.tree, z, self.k)
 
     def origins(self, z: FloatArray) -> FloatArray:
-        """(N,) how much of an answer comes from each walk, blends traced to their parents.
+        """Return each walk's share of the result at z-scores (m,), as (N,).
 
-        Up to the clipping of blends, the answer is the walks' maps weighed by this.
+        Shares of blends are passed on to their parents. Apart from the clipping of blends, the
+        result is the sum of the walks' maps weighted by these shares.
         """
         indices, weights = self.neighbours(z)
         own = np.zeros(self.walks)
@@ -97,19 +98,19 @@ def blending_space(
     entries: int = ENTRIES,
     k: int = NEIGHBOURS,
 ) -> BlendingSpace:
-    """Make a space from walks, densified.
+    """Make a blending space from walks, densified by blends.
 
     Args:
         grid: of the maps.
         scaling: of the dependencies.
         vectors: (N, m) dependencies of the walks.
         values: (N, K) their suitability maps.
-        rng: of the blends.
-        entries: how many there shall be, blends included; no blends where the walks are more.
-        k: neighbours; all entries where there are fewer.
+        rng: for the blends.
+        entries: number of entries, blends included; there are no blends if there are more walks.
+        k: number of neighbours; all entries if there are fewer.
 
     Raises:
-        WalkingError: fewer than two walks to blend.
+        WalkingError: there are fewer than two walks to blend.
     """
     z = scaling.z(vectors)
     blends = drawn_blends(z, max(0, entries - len(z)), rng)

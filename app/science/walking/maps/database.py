@@ -1,8 +1,8 @@
-"""The database: walks with their dependencies and maps, as plain tables.
+"""The database of walks with their dependencies and maps, as plain tables.
 
-Everything a model is fitted from, and all that is kept of the walks: no trajectory. Maps are kept
-as deviations and travel times, so that they can be read as suitability anew, for another choice or
-for part of the walks.
+It contains everything from which a model is fitted, and all that is stored of the walks: no
+trajectories. Maps are stored as deviations and travel times, so that they can be converted to
+suitability again, with other options or for part of the walks.
 """
 
 from collections.abc import Iterable, Sequence
@@ -17,12 +17,12 @@ from app.science.walking.maps.suitability import DeviationMap, SuitabilityOption
 from app.science.walking.records import ParameterGrid, PlannedWalk, WalkingError, dependency_vectors
 
 PERSONS = 2
-"""Fewer cannot tell how people differ, nor be told apart for validation."""
+"""Fewest people from which differences between people can be learnt and validated."""
 
 
 @dataclass(frozen=True, eq=False)
 class WalkDatabase:
-    """N walks.
+    """Dependencies and maps of N walks.
 
     Attributes:
         grid: combinations of steering parameters, K of them.
@@ -49,7 +49,7 @@ class WalkDatabase:
     kinds: tuple[str, ...]
 
     def __post_init__(self) -> None:
-        """Raises WalkingError where tables do not fit each other."""
+        """Raise WalkingError if the shapes of the tables do not match."""
         count, shape = len(self.subjects), (len(self.subjects), self.grid.size)
         fits = (
             count > 0
@@ -59,19 +59,19 @@ class WalkDatabase:
             and len(self.sources) == count == len(self.kinds)
         )
         if not fits:
-            raise WalkingError("The tables of a database of walks do not fit each other.")
+            raise WalkingError("The shapes of the tables of a database of walks do not match.")
 
     def __len__(self) -> int:
-        """N."""
+        """Return the number of walks, N."""
         return len(self.subjects)
 
     @property
     def persons(self) -> tuple[str, ...]:
-        """Everybody who walked, sorted."""
+        """The names of all people who walked, sorted."""
         return tuple(sorted(set(self.subjects)))
 
     def only(self, chosen: IntArray | npt.NDArray[np.bool_]) -> "WalkDatabase":
-        """Part of the walks, by indices or flags."""
+        """Return part of the walks, chosen by indices or a mask."""
         at = np.arange(len(self))[chosen]
         return WalkDatabase(
             self.grid,
@@ -88,19 +88,19 @@ class WalkDatabase:
         )
 
     def is_of(self, persons: Iterable[str]) -> npt.NDArray[np.bool_]:
-        """(N,) whether a walk is of one of them."""
+        """Return which walks are of one of these people, (N,)."""
         wanted = set(persons)
         return np.array([subject in wanted for subject in self.subjects])
 
     def suitability(self, options: SuitabilityOptions) -> MapArray:
-        """Read all maps, (N, K)."""
+        """Convert all maps to suitability, (N, K)."""
         values = np.empty((len(self), self.grid.size), dtype=MAP_FLOATS)
         for at in range(len(self)):
             values[at] = self.map_at(at).read(options).values.ravel()
         return values
 
     def map_at(self, at: int) -> DeviationMap:
-        """One walk's map."""
+        """Return the deviation map of one walk."""
         shape = self.grid.shape
         return DeviationMap(
             self.grid,
@@ -114,16 +114,19 @@ class WalkDatabase:
 def database_of(
     entries: Sequence[PlannedWalk], maps: Sequence[DeviationMap], names: Sequence[str]
 ) -> WalkDatabase:
-    """Put entries and their maps into tables.
+    """Build a database from planned walks and their maps.
 
     Raises:
-        WalkingError: no walk, a walk without one of the dependencies, or maps of several kinds.
+        WalkingError: there is no walk, a walk lacks one of the dependencies, or grids or metrics of
+            the maps differ.
     """
     if not entries or len(entries) != len(maps):
-        raise WalkingError(f"{len(entries)} walks with {len(maps)} maps make no database.")
+        raise WalkingError(
+            f"{len(entries)} walks with {len(maps)} maps are not a database: give each walk a map."
+        )
     grid, metric = maps[0].grid, maps[0].metric
     if any(one.grid != grid or one.metric != metric for one in maps):
-        raise WalkingError("Maps over several grids, or by several metrics, cannot be mixed.")
+        raise WalkingError("Maps of different grids or metrics cannot be combined.")
     walks = [entry.walk for entry in entries]
     sources = [walk.source for walk in walks]
     return WalkDatabase(
@@ -142,7 +145,7 @@ def database_of(
 
 
 def check_persons(database: WalkDatabase) -> None:
-    """Raise WalkingError for a database of too few people."""
+    """Raise WalkingError if the walks are of too few people."""
     if len(database.persons) < PERSONS:
         raise WalkingError(
             f"All {len(database)} walks are of one subject, {database.persons[0]!r}. How people"

@@ -1,12 +1,12 @@
-"""Densifying a database: blends of neighbouring walks fill the space between them.
+"""Densify a database: blends of neighbouring walks fill the space between them.
 
 After Kovar and Gleicher (2004), "Automated extraction and parameterization of motions in large data
-sets": a target is drawn evenly from the space, its nearest walks are blended with random weights
-that sum to 1, each from -.1 to 1.1, so that blends reach a little beyond what was captured, and the
-same weights give the blend's dependencies and its map.
+sets": a target is drawn uniformly from the space, its nearest walks are blended with random weights
+that sum to 1, each from -.1 to 1.1, so that blends extend a little beyond the captured walks, and
+the same weights give the blend's dependencies and its map.
 
-A blend knows its parents. Densify the training walks of a fold, never all walks before they are
-parted: blends of a held-out person would be in the training set.
+A blend stores its parents. Densify the training walks of a fold, never all walks before they are
+split: blends of a held-out person would be in the training set.
 """
 
 from dataclasses import dataclass
@@ -19,11 +19,11 @@ from app.science.walking.records import WalkingError
 
 LEAST_WEIGHT, MOST_WEIGHT = -0.1, 1.1
 MAP_FLOATS = np.float32
-"""Suitability, a number from 0 to 1, is kept with seven digits."""
+"""Suitability, a number from 0 to 1, is stored with seven digits."""
 IntArray = npt.NDArray[np.int64]
 MapArray = npt.NDArray[np.float32]
 _AT_ONCE = 512
-"""Blends made together, to keep the memory small."""
+"""Number of blends computed together, to limit the memory."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,8 +31,8 @@ class Blends:
     """B blends of N walks, each of p parents.
 
     Attributes:
-        parents: (B, p) indices into the walks.
-        weights: (B, p) each in [-.1, 1.1], a row sums to 1.
+        parents: (B, p) indices of the walks.
+        weights: (B, p) each in [-.1, 1.1]; a row sums to 1.
     """
 
     parents: IntArray
@@ -56,26 +56,26 @@ class Blends:
         return blended
 
     def as_matrix(self, walks: int) -> FloatArray:
-        """(B, N) how much each walk has of each blend."""
+        """Return the weight of each walk in each blend, (B, N)."""
         matrix = np.zeros((len(self.parents), walks))
         np.add.at(matrix, (np.arange(len(self.parents))[:, None], self.parents), self.weights)
         return matrix
 
 
 def drawn_blends(z: FloatArray, count: int, rng: np.random.Generator) -> Blends:
-    """Draw blends.
+    """Draw random blends of walks.
 
     Args:
-        z: (N, m) where the walks are in the space.
-        count: how many.
-        rng: of the targets and the weights.
+        z: (N, m) positions of the walks in the space.
+        count: number of blends.
+        rng: for the targets and the weights.
 
     Raises:
-        WalkingError: fewer than two walks, or a negative count.
+        WalkingError: there are fewer than two walks, or the count is negative.
     """
     walks, dimensions = z.shape
     if walks < 2 or count < 0:
-        raise WalkingError(f"{count} blends of {walks} walks cannot be made: two or more walks.")
+        raise WalkingError(f"{count} blends of {walks} walks are not possible: give two or more.")
     parents = min(dimensions + 1, walks)
     targets = rng.uniform(z.min(axis=0), z.max(axis=0), size=(count, dimensions))
     nearest = np.empty((count, parents), dtype=np.int64)
@@ -87,7 +87,7 @@ def drawn_blends(z: FloatArray, count: int, rng: np.random.Generator) -> Blends:
 
 
 def drawn_weights(count: int, parents: int, rng: np.random.Generator) -> FloatArray:
-    """Weights (count, parents) evenly from those in [-.1, 1.1] that sum to 1."""
+    """Draw weights (count, parents) uniformly from those in [-.1, 1.1] that sum to 1."""
     weights = np.empty((0, parents))
     while len(weights) < count:
         free = rng.uniform(LEAST_WEIGHT, MOST_WEIGHT, size=(4 * count + 16, parents - 1))

@@ -1,14 +1,14 @@
-"""A map between its nodes: multilinear, or by radial basis functions.
+"""Interpolate a map between its nodes: multilinearly, or by radial basis functions.
 
-Multilinear: each node has a tent, 1 at the node and falling linearly to 0 at the next ones along
-each axis; the map is the sum of tents times node values. It reaches no higher than the highest
-node, is never negative, and blending commutes with it.
+Multilinear: each node has a tent function, 1 at the node and falling linearly to 0 at the next
+nodes along each axis; the map is the sum of tents times node values. It is never higher than the
+highest node, never negative, and blending commutes with it.
 
-Radial basis functions, the paper's: a sum of multiquadrics sqrt((r / eps)^2 + 1) around all nodes,
-its coefficients such that it goes through all of them, with eps = (product of ranges / K)^(1/n),
-which is .19 on the paper's grid. It can swing below zero between nodes; as a density it counts as 0
-there. All maps over a grid share one matrix, so coefficients are one product, and are linear in the
-map: blending commutes with it too.
+Radial basis functions, as in the paper: a sum of multiquadrics sqrt((r / eps)^2 + 1) around all
+nodes, with coefficients such that it interpolates all of them, and with eps = (product of ranges /
+K)^(1/n), which is .19 on the paper's grid. It can fall below zero between nodes; as a density it
+counts as 0 there. All maps over a grid share one matrix, so coefficients are one product, and are
+linear in the map: blending commutes with it too.
 """
 
 import math
@@ -22,17 +22,17 @@ from app.science.walking.maps.densifying import MAP_FLOATS, IntArray, MapArray
 from app.science.walking.records import ParameterGrid, WalkingError
 
 MOST_NODES = 4096
-"""More would need a matrix of more than 130 MB."""
+"""Limit on a grid's nodes: more would need a matrix of more than 130 MB."""
 
 
 @dataclass(frozen=True, eq=False)
 class Axes:
-    """A grid as compiled code sees it.
+    """A grid in the form that compiled code uses.
 
     Attributes:
         values: the axes' values, one axis after the other.
-        shape: (n,) how many each has.
-        node_weights: (K,) integral of each node's tent.
+        shape: (n,) number of values of each axis.
+        node_weights: (K,) integral of each node's tent function.
     """
 
     values: FloatArray
@@ -42,7 +42,7 @@ class Axes:
 
 @lru_cache(maxsize=32)
 def axes_of(grid: ParameterGrid) -> Axes:
-    """The grid's axes; an axis of one value has tents of width and weight 1."""
+    """Return the grid's axes; for an axis of one value, tents have width and weight 1."""
     weights = np.ones(1)
     for values in grid.values:
         weights = np.outer(weights, _tents(np.array(values))).ravel()
@@ -85,17 +85,20 @@ class RadialBasis:
 
     @cached_property
     def inverse(self) -> FloatArray:
-        """(K, K) the inverse of the matrix of basis functions at nodes."""
+        """The inverse (K, K) of the matrix of basis functions at the nodes."""
         matrix = basis_matrix(self.grid.nodes, self.epsilon)
         return np.asarray(np.linalg.inv(matrix), dtype=np.float64)
 
     def coefficients(self, values: FloatArray) -> FloatArray:
-        """Coefficients (..., K) of maps (..., K) of node values."""
+        """Return the coefficients (..., K) of maps of node values (..., K)."""
         found: FloatArray = values @ self.inverse.T
         return found
 
     def coefficients_of_many(self, maps: MapArray) -> MapArray:
-        """Coefficients (N, K) of many maps, in the maps' own precision, some at a time."""
+        """Return the coefficients (N, K) of many maps, in the maps' own precision.
+
+        They are computed in batches to limit the memory.
+        """
         found = np.empty(maps.shape, dtype=MAP_FLOATS)
         for first in range(0, len(maps), 1024):
             part = slice(first, first + 1024)
@@ -103,7 +106,7 @@ class RadialBasis:
         return found
 
     def at(self, coefficients: FloatArray, points: FloatArray) -> FloatArray:
-        """Evaluate at points (P, n)."""
+        """Evaluate the interpolation at points (P, n)."""
         from app.science.walking.maps.interpolation_kernels import radial_at
 
         axes = axes_of(self.grid)
@@ -116,7 +119,7 @@ class RadialBasis:
         )
 
     def leave_one_out(self, values: FloatArray) -> FloatArray:
-        """What each node's value (..., K) would be mistaken by, were it left out; truth - guess.
+        """Return the error of each node's value (..., K) if it were left out: truth minus estimate.
 
         Rippa (1999), "An algorithm for selecting a good value for the parameter c in radial basis
         function interpolation": the i-th error is c_i / (A^-1)_ii, without solving K times.
@@ -127,23 +130,23 @@ class RadialBasis:
 
 @lru_cache(maxsize=4)
 def radial_basis(grid: ParameterGrid) -> RadialBasis:
-    """The paper's basis on a grid; raises WalkingError for one with too many nodes."""
+    """Return the paper's basis on a grid; raise WalkingError if the grid has too many nodes."""
     if grid.size > MOST_NODES:
         raise WalkingError(
             f"Radial basis functions over {grid.size} nodes need too much memory, {MOST_NODES} are"
-            " possible: take the multilinear interpolation, or a coarser grid."
+            " possible: use the multilinear interpolation, or a coarser grid."
         )
     return RadialBasis(grid, width_of(grid))
 
 
 def width_of(grid: ParameterGrid) -> float:
-    """(product of ranges / K)^(1/n) over the axes that have more than one value."""
+    """Return (product of ranges / K)^(1/n), over the axes that have more than one value."""
     ranges = [values[-1] - values[0] for values in grid.values if len(values) > 1]
     return float((math.prod(ranges) / grid.size) ** (1.0 / len(ranges))) if ranges else 1.0
 
 
 def basis_matrix(nodes: FloatArray, epsilon: float) -> FloatArray:
-    """(K, K) multiquadrics between all nodes (K, n)."""
+    """Return the multiquadrics between all nodes (K, n), as a matrix (K, K)."""
     squares = ((nodes[:, None, :] - nodes[None, :, :]) ** 2).sum(axis=-1)
     matrix: FloatArray = np.sqrt(squares / epsilon**2 + 1.0)
     return matrix

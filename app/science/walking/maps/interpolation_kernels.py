@@ -1,4 +1,4 @@
-"""Both interpolations at points, compiled."""
+"""Multilinear and radial interpolation at points, compiled."""
 
 import math
 
@@ -13,7 +13,7 @@ from app.science.walking.maps.densifying import IntArray
 def multilinear_point(
     grid: FloatArray, axis_values: FloatArray, shape: IntArray, point: FloatArray
 ) -> float:
-    """A map (K,) at one point (n,): the mean of its cell's corners, weighed by nearness."""
+    """Return a map (K,) at one point (n,): its cell's corners, weighted by proximity."""
     n = len(shape)
     lows, shares = np.empty(n, dtype=np.int64), np.empty(n)
     first = 0
@@ -41,7 +41,7 @@ def multilinear_point(
 def multilinear_at(
     grid: FloatArray, axis_values: FloatArray, shape: IntArray, points: FloatArray
 ) -> FloatArray:
-    """A map (K,) at points (P, n)."""
+    """Return a map (K,) at points (P, n)."""
     found = np.empty(len(points))
     for at in range(len(points)):
         found[at] = multilinear_point(grid, axis_values, shape, points[at])
@@ -52,7 +52,7 @@ def multilinear_at(
 def _squares(
     axis_values: FloatArray, shape: IntArray, inverse_width: float, point: FloatArray
 ) -> FloatArray:
-    """Squared distances along each axis from a point to the axis's values, in widths."""
+    """Return squared distances from a point to the values of each axis, in units of the width."""
     squares, at = np.empty(len(axis_values)), 0
     for axis in range(len(shape)):
         for _ in range(shape[axis]):
@@ -70,10 +70,11 @@ def radial_point(
     inverse_width: float,
     point: FloatArray,
 ) -> float:
-    """Multiquadrics with coefficients (K,) at one point (n,).
+    """Return the sum of multiquadrics with coefficients (K,) at one point (n,).
 
-    Squares are taken once for each value of an axis. Along the last axis each node has its own sum,
-    which lets the processor take several square roots at once and still add in a fixed order.
+    Squares are computed once for each value of an axis. Along the last axis each node has its own
+    sum, which lets the processor compute several square roots simultaneously and still add in a
+    fixed order.
     """
     n, last = len(shape), shape[-1]
     squares = _squares(axis_values, shape, inverse_width, point)
@@ -108,7 +109,7 @@ def radial_at(
     inverse_width: float,
     points: FloatArray,
 ) -> FloatArray:
-    """The same at points (P, n)."""
+    """Return the sums of multiquadrics with coefficients (K,) at points (P, n)."""
     found = np.empty(len(points))
     for at in range(len(points)):
         found[at] = radial_point(coefficients, axis_values, shape, inverse_width, points[at])

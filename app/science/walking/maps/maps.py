@@ -1,8 +1,9 @@
-"""Maps of whole databases: in parallel, with progress, stop and resume.
+"""Compute the maps of whole databases: in parallel, with progress, stop and resume.
 
-`maps_of` is an iterator: whoever takes its maps keeps them, and goes on later by naming those that
-are `done`. A map depends on nothing but its entry, so an interrupted run gives the same maps as one
-in one go, whatever the number of threads. Threads suffice, since compiled agents hold no lock.
+`maps_of` is an iterator: the caller stores its maps, and can resume later by passing the indices
+that are `done`. A map depends on its entry only, so an interrupted run gives the same maps as an
+uninterrupted one, whatever the number of threads. Threads are sufficient, since compiled agents do
+not hold Python's global lock.
 """
 
 import os
@@ -24,12 +25,12 @@ from app.science.walking.records import (
 )
 
 AHEAD = 2
-"""Maps begun ahead of the one that is taken next, for each thread."""
+"""Number of maps per thread that are started before they are requested."""
 
 
 @dataclass(frozen=True)
 class MapMaker:
-    """What maps are made with; the defaults are the paper's.
+    """Computes maps with a grid, a follower and a metric; the defaults are the paper's.
 
     Attributes:
         grid: combinations of the follower's parameters.
@@ -42,14 +43,14 @@ class MapMaker:
     metric: Metric = field(default_factory=EuclideanMetric)
 
     def __post_init__(self) -> None:
-        """Raises WalkingError where the grid is not over the follower's parameters."""
+        """Raise WalkingError if the grid's parameters differ from the follower's."""
         names = [parameter.name for parameter in self.grid.parameters]
         wanted = [parameter.name for parameter in self.follower.parameters]
         if names != wanted:
             raise WalkingError(f"The follower is steered by {wanted}, the grid is over {names}.")
 
     def map_of(self, entry: PlannedWalk) -> DeviationMap:
-        """Re-simulate one walk with every combination."""
+        """Re-simulate one walk with every combination of parameters."""
         reference = reference_of(entry.walk, self.follower.dt_s)
         course = course_of(entry.walk, entry.path, self.follower.dt_s)
         trajectories = self.follower.follow(course, self.grid.nodes)
@@ -72,14 +73,14 @@ def maps_of(
     progress: Callable[[int, int], None] | None = None,
     stop: Callable[[], bool] | None = None,
 ) -> Iterator[tuple[int, DeviationMap]]:
-    """Make the maps of a database, in its order.
+    """Compute the maps of a database, in its order.
 
     Args:
-        entries, maker: the database, and what its maps are made with.
+        entries, maker: the database, and how its maps are computed.
         done: indices of entries whose maps exist already.
-        threads: how many at once, all processors by default.
-        progress: told (finished, of all) after each map, those done before included.
-        stop: asked before each map; True ends the iterator, and no further map is begun.
+        threads: number of threads, by default one for each processor.
+        progress: called with (finished, total) after each map, including those already done.
+        stop: called before each map; if it returns True the iterator ends, and no map is started.
 
     Yields:
         (index, map) of each entry that was not done.

@@ -1,8 +1,9 @@
-"""The nearest walks in the space of dependencies, and how much each counts.
+"""Find the nearest walks in the space of dependencies, and their weights.
 
-Of the k nearest, the i-th counts w_i = 1 - d_i / d_k, over the sum of these: linear in distance,
-the farthest not at all. That makes the result continuous in the question: whoever enters the circle
-of neighbours enters with weight 0. Where all k are equally far, they count the same.
+Of the k nearest, the i-th has weight w_i = 1 - d_i / d_k, divided by the sum of all: linear in
+distance, zero for the farthest. That makes the result a continuous function of the query: a walk
+that becomes one of the neighbours starts with weight 0. If all k are equally far, they have the
+same weight.
 """
 
 from dataclasses import dataclass
@@ -14,19 +15,20 @@ from app.science.walking.maps.densifying import IntArray
 from app.science.walking.records import WalkingError
 
 LEAF = 16
-"""Points in a leaf of the tree."""
+"""Largest number of points in a leaf of the tree."""
 
 
 @dataclass(frozen=True, eq=False)
 class Tree:
-    """A k-d tree over N points of m numbers, as arrays that compiled code walks through.
+    """A k-d tree over N points of m numbers, as arrays for compiled code.
 
     Node i splits along `axes[i]` at `splits[i]`: smaller points are below node `lows[i]`, the
-    others below the next of it. A leaf has axis -1 and holds points `firsts[i]` to `lasts[i]`.
+    others below the node after it. A leaf has axis -1 and contains points `firsts[i]` to
+    `lasts[i]`.
 
     Attributes:
         points: (N, m) in the order of the leaves.
-        order: (N,) which point of the caller each one is.
+        order: (N,) index of each point in the caller's order.
         axes, lows, firsts, lasts: (nodes,).
         splits: (nodes,).
     """
@@ -41,9 +43,9 @@ class Tree:
 
 
 def tree_of(points: FloatArray) -> Tree:
-    """Build the tree; raises WalkingError without points."""
+    """Build a k-d tree of points (N, m); raise WalkingError if there are none."""
     if points.ndim != 2 or not len(points):
-        raise WalkingError(f"Neighbours are found among points (N, m), got {points.shape}.")
+        raise WalkingError(f"Neighbours are searched among points (N, m), got {points.shape}.")
     order = np.arange(len(points))
     nodes: list[list[float]] = [[-1, 0.0, -1, 0, len(points)]]
     waiting = [0]
@@ -67,7 +69,7 @@ def tree_of(points: FloatArray) -> Tree:
 
 
 def neighbours(tree: Tree, z: FloatArray, k: int) -> tuple[IntArray, FloatArray]:
-    """The k nearest points of a question (m,), in no order.
+    """Return the k nearest points to z-scores (m,), unordered.
 
     Returns:
         Their indices (k,) and weights (k,), which sum to 1.
@@ -96,6 +98,6 @@ def neighbours(tree: Tree, z: FloatArray, k: int) -> tuple[IntArray, FloatArray]
 
 
 def check_k(k: int, points: int) -> None:
-    """Raise WalkingError for a number of neighbours that there are not."""
+    """Raise WalkingError unless `k` is between 1 and the number of points."""
     if not 1 <= k <= points:
-        raise WalkingError(f"{k} neighbours of {points} cannot be taken: 1 to {points}.")
+        raise WalkingError(f"{k} neighbours of {points} are not possible: give 1 to {points}.")

@@ -1,4 +1,7 @@
-"""The search of `neighbours`, compiled: down the tree, nearer side first, best k in a heap."""
+"""The neighbour search of `neighbours`, compiled.
+
+It descends the tree, nearer side first, and stores the best k in a heap.
+"""
 
 import math
 
@@ -7,7 +10,7 @@ from app.science.rotations import FloatArray
 from app.science.walking.maps.densifying import IntArray
 
 STACK = 128
-"""Deeper than any tree over a database that fits into memory."""
+"""Size of the search stack, sufficient for any tree that fits into memory."""
 
 
 @compiled
@@ -29,7 +32,7 @@ def _sift(far: FloatArray, indices: IntArray, count: int) -> None:
 
 @compiled
 def _lift(far: FloatArray, indices: IntArray, at: int) -> None:
-    """Restore the heap after one was put at its end."""
+    """Restore the heap after an element was appended at `at`."""
     while at > 0:
         parent = (at - 1) // 2
         if far[parent] >= far[at]:
@@ -102,7 +105,7 @@ def nearest(
 
 @compiled
 def weigh(far: FloatArray) -> None:
-    """Turn distances (k,), in place, into weights 1 - d / d_k that sum to 1."""
+    """Convert distances (k,), in place, to weights 1 - d / d_k, normalised to sum to 1."""
     farthest = 0.0
     for apart in far:
         farthest = max(farthest, apart)

@@ -1,14 +1,15 @@
-"""Maps of deviation over the parameter grid, and their reading as suitability.
+"""Maps of deviation over the parameter grid, and their conversion to suitability.
 
-A `DeviationMap` is what was computed: for each combination its deviation from the reference and
-its travel time. It is kept. A `SuitabilityMap`, higher is better, is one reading of it:
+A `DeviationMap` is the result of the simulation: for each combination its deviation from the
+reference and its travel time. It is stored. A `SuitabilityMap`, higher is better, is one reading of
+it:
 
     s = 1 - m / max(m)                        the paper's
     s = (max(m) - m) / (max(m) - min(m))      min-max: the best combination always has 1
     s = s * exp(-|T - T_ref| / tau)           time-aware, 0 for agents that did not arrive
-    s = s^p,  0 where s < threshold           to mute what is barely suitable
+    s = s^p,  0 where s < threshold           to suppress combinations that are barely suitable
 
-Readings are cheap, so that they can be chosen by validation without simulating again.
+Readings are fast to compute, so that they can be chosen by validation without simulating again.
 """
 
 from dataclasses import dataclass
@@ -21,18 +22,18 @@ from app.science.rotations import FloatArray
 from app.science.walking.records import BoolArray, ParameterGrid, WalkingError
 
 TIME_CONSTANT_S = 0.1
-"""tau of the time-aware reading."""
+"""Time constant tau of the time-aware reading."""
 
 
 @dataclass(frozen=True)
 class SuitabilityOptions:
-    """How deviations are read as suitability; the defaults are the paper's.
+    """How deviations are converted to suitability; the defaults are the paper's.
 
     Attributes:
         normalisation: by the largest deviation, or between smallest and largest.
         power: p > 0 of the result.
         threshold: suitability below it counts as 0, in [0, 1).
-        time_constant_s: tau, None to leave travel time out.
+        time_constant_s: tau, None to ignore travel time.
     """
 
     normalisation: Literal["max", "min-max"] = "max"
@@ -41,13 +42,15 @@ class SuitabilityOptions:
     time_constant_s: float | None = None
 
     def __post_init__(self) -> None:
-        """Raises WalkingError for a value out of its range."""
+        """Raise WalkingError if a value is out of its range."""
         if not 0.0 < self.power < np.inf:
             raise WalkingError(f"The power is {self.power}; it must be positive.")
         if not 0.0 <= self.threshold < 1.0:
-            raise WalkingError(f"The threshold is {self.threshold}; it lies in [0, 1).")
+            raise WalkingError(f"The threshold is {self.threshold}; it must be in [0, 1).")
         if self.time_constant_s is not None and not 0.0 < self.time_constant_s < np.inf:
-            raise WalkingError(f"The time constant is {self.time_constant_s} s; it is positive.")
+            raise WalkingError(
+                f"The time constant is {self.time_constant_s} s; it must be positive."
+            )
 
 
 PAPER = SuitabilityOptions()
@@ -73,26 +76,28 @@ class DeviationMap:
     reference_s: float
 
     def __post_init__(self) -> None:
-        """Raises WalkingError where shapes differ or a deviation is not a distance."""
+        """Raise WalkingError if shapes differ, or a deviation is negative or not finite."""
         if self.deviations.shape != self.grid.shape or self.arrival_s.shape != self.grid.shape:
             raise WalkingError(
                 f"A map over a grid {self.grid.shape} cannot have deviations"
                 f" {self.deviations.shape} and arrivals {self.arrival_s.shape}."
             )
         if not (np.isfinite(self.deviations).all() and (self.deviations >= 0.0).all()):
-            raise WalkingError(f"Metric {self.metric} gave deviations that are no distances.")
+            raise WalkingError(
+                f"Metric {self.metric} gave deviations that are negative or not finite."
+            )
 
     @cached_property
     def arrived(self) -> BoolArray:
-        """`grid.shape`: whether each agent came to the goal in time."""
+        """Whether each agent reached the goal in time, in `grid.shape`."""
         return np.isfinite(self.arrival_s)
 
     def read(self, options: SuitabilityOptions = PAPER) -> "SuitabilityMap":
-        """Turn the deviations into suitability."""
+        """Convert the deviations to suitability."""
         worst, best = float(self.deviations.max()), float(self.deviations.min())
         floor = best if options.normalisation == "min-max" else 0.0
         span = worst - floor
-        # Where all combinations deviate alike, none is better than another.
+        # If all combinations deviate equally, none is better than another.
         values = (worst - self.deviations) / span if span > 0.0 else np.ones(self.grid.shape)
         if options.time_constant_s is not None:
             late_s = np.abs(np.where(self.arrived, self.arrival_s, np.inf) - self.reference_s)
@@ -104,7 +109,7 @@ class DeviationMap:
 
 @dataclass(frozen=True, eq=False)
 class SuitabilityMap:
-    """How well each combination reproduces a walk.
+    """How well each combination of parameters reproduces a walk.
 
     Attributes:
         grid: the combinations.
@@ -120,9 +125,9 @@ class SuitabilityMap:
 
     @cached_property
     def best(self) -> FloatArray:
-        """The most suitable combination (n,); of equals the one with the largest last parameters.
+        """The most suitable combination (n,); of ties the one with the largest last parameters.
 
-        On a straight walk angular velocity does not matter: the tie goes to the largest.
+        On a straight walk the angular velocity has no effect: the tie goes to the largest.
         """
         backwards = self.values.ravel()[::-1]
         return self.grid.node(self.grid.size - 1 - int(np.argmax(backwards)))

@@ -1,7 +1,7 @@
 """Models of how people walk: fitting, sampling, prediction.
 
-`fitted` chooses and fits a model to a `WalkDatabase`, `restored` brings a stored one back, and
-`Predictor` says how long people take on a path.
+`fitted` chooses and fits a model to a `WalkDatabase`, `restored` rebuilds a stored one, and
+`Predictor` predicts how long people take on a path.
 """
 
 from app.science.walking.models.annealing import StaticFit

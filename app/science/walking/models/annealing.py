@@ -1,9 +1,9 @@
-"""The static model's one combination: the smallest mean deviation over all walks.
+"""Find the static model's single combination: the smallest mean deviation over all walks.
 
 By simulated annealing as in Wolinski et al. (2014), "Parameter estimation and comparative
 evaluation of crowd simulations". The mean deviation is known at the grid's nodes; between them it
-is interpolated by radial basis functions, so that one step costs microseconds. What is found is
-never worse, by that function, than the best node, which checks the search.
+is interpolated by radial basis functions, so that one step takes microseconds. The result is never
+worse, by that function, than the best node.
 """
 
 import math
@@ -18,21 +18,21 @@ from app.science.walking.records import ParameterGrid
 
 STEPS = 4000
 HOT, COLD = 0.5, 1e-4
-"""Temperatures at start and end, as shares of the spread of the first values."""
+"""Temperatures at start and end, relative to the standard deviation of the first values."""
 RETURN = 0.7
-"""Share of the steps after which it goes on from the best vector met."""
+"""Share of the steps after which the search continues from the best vector found."""
 WIDE, NARROW = 0.4, 0.01
-"""Widths of a step at start and end, as shares of each axis."""
+"""Widths of a step at start and end, relative to each axis."""
 
 
 @dataclass(frozen=True, eq=False)
 class StaticFit:
-    """What was found.
+    """The result of fitting the static model.
 
     Attributes:
-        vector: (n,) by annealing.
+        vector: (n,) found by annealing.
         deviation: its mean deviation.
-        node: (n,) the grid's best.
+        node: (n,) the grid's best node.
         node_deviation: its mean deviation.
     """
 
@@ -43,7 +43,7 @@ class StaticFit:
 
 
 def static_fit(database: WalkDatabase, rng: np.random.Generator, steps: int = STEPS) -> StaticFit:
-    """Find one combination for all walks of a database."""
+    """Find the best single combination of parameters for all walks of a database."""
     grid = database.grid
     mean = database.deviations.astype(np.float64).mean(axis=0)
     best = grid.size - 1 - int(np.argmin(mean[::-1]))
@@ -68,10 +68,10 @@ def annealed(
     rng: np.random.Generator,
     steps: int = STEPS,
 ) -> tuple[FloatArray, float]:
-    """Minimise a function of a vector (n,) within a grid's bounds.
+    """Minimise a function of a vector (n,) within a grid's bounds by simulated annealing.
 
     Returns:
-        The best vector met, and its value.
+        The best vector found, and its value.
     """
     low = np.array([values[0] for values in grid.values])
     range_ = np.array([values[-1] for values in grid.values]) - low
@@ -84,7 +84,7 @@ def annealed(
     for step in range(steps):
         done = step / max(1, steps - 1)
         if step == int(RETURN * steps):
-            at, value = best, best_value  # cold by now: it may have settled in a lesser valley
+            at, value = best, best_value  # it is cold by now and may be in a local minimum
         temperature = spread * HOT * (COLD / HOT) ** done
         width = WIDE * (NARROW / WIDE) ** done
         trial = low + _folded((at - low) / np.where(range_ > 0, range_, 1.0), width, rng) * range_
@@ -97,7 +97,7 @@ def annealed(
 
 
 def _folded(share: FloatArray, width: float, rng: np.random.Generator) -> FloatArray:
-    """A step from a place in the unit cube, folded back at its faces."""
+    """Return a random step from a position in the unit cube, reflected at its faces."""
     moved = np.abs(share + width * rng.standard_normal(len(share))) % 2.0
     folded: FloatArray = np.where(moved > 1.0, 2.0 - moved, moved)
     return folded

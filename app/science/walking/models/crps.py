@@ -1,9 +1,9 @@
-"""How well draws tell what happened: the continuous ranked probability score, and coverage.
+"""How well draws predict an outcome: the continuous ranked probability score, and coverage.
 
     CRPS(F, t) = E|T - t| - E|T - T'| / 2,   T and T' independent from F
 
-The score is proper: the truth has the smallest expected one. For one number instead of a
-distribution it is |dt|, so that all models are on one scale, in seconds. Models are
+The score is proper: the true distribution has the smallest expected score. For a single number
+instead of a distribution it is |dt|, so that all models are on one scale, in seconds. Models are
 chosen by it, and evaluations compare by it.
 """
 
@@ -13,7 +13,7 @@ from app.science.rotations import FloatArray
 
 
 def crps_s(draws_s: FloatArray, truth_s: float) -> float:
-    """CRPS of draws (S,) against what happened; |dt| for a single one."""
+    """Return the CRPS of draws (S,) for the true value; |dt| for a single draw."""
     ordered = np.sort(draws_s)
     count = len(ordered)
     ranks = 2.0 * np.arange(count) - count + 1.0
@@ -23,12 +23,12 @@ def crps_s(draws_s: FloatArray, truth_s: float) -> float:
 
 
 def covers(draws_s: FloatArray, truth_s: float, share: float) -> bool:
-    """Whether the central interval of draws that holds `share` of them holds the truth."""
+    """Return whether the central interval with this share of the draws contains the true value."""
     low, high = np.quantile(draws_s, [(1.0 - share) / 2.0, (1.0 + share) / 2.0])
     return bool(low <= truth_s <= high)
 
 
 def iqr(values: FloatArray) -> float:
-    """Interquartile range."""
+    """Return the interquartile range."""
     first, third = np.quantile(values, (0.25, 0.75))
     return float(third - first)

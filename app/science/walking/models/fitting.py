@@ -1,4 +1,4 @@
-"""From a database to the three models."""
+"""Fit the static, the adaptive and the probabilistic model to a database."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -26,19 +26,19 @@ from app.science.walking.models.steering_models import (
 from app.science.walking.records import scaling_of
 
 LEAST_TO_CHOOSE = 8
-"""Fewer people left out in turn tell readings apart by chance: then it is the time-aware one."""
+"""Fewest people from which a reading is chosen; below, the time-aware reading is used."""
 
 
 @dataclass(frozen=True)
 class FitOptions:
-    """How a model is fitted; the defaults are the paper's, but for the reading.
+    """How a model is fitted; the defaults are the paper's, except for the reading.
 
     Attributes:
         seed: of the blends, the folds and the annealing; the same seed gives the same model.
-        k: neighbours.
+        k: number of neighbours.
         entries: of the densified space.
-        reading: of maps as suitability; None to choose by people left out, where there are
-            `LEAST_TO_CHOOSE` of them.
+        reading: of maps as suitability; None to choose it by leaving people out, if there are at
+            least `LEAST_TO_CHOOSE` of them.
     """
 
     seed: int = 1
@@ -49,13 +49,13 @@ class FitOptions:
 
 @dataclass(frozen=True, eq=False)
 class FittedWalking:
-    """A fitted model.
+    """The three models fitted to a database.
 
     Attributes:
-        database: what it was fitted from.
-        options: as asked for.
-        reading: the one that was chosen, or given.
-        scores: of all readings tried, best first; none where none were.
+        database: the walks they were fitted to.
+        options: as given.
+        reading: the reading that was chosen, or given.
+        scores: of all readings that were compared, best first; empty if none were.
         space: of P_adapt and P_prob.
         static: P_stat.
     """
@@ -69,22 +69,22 @@ class FittedWalking:
 
     @property
     def stat(self) -> StaticModel:
-        """P_stat."""
+        """The static model, P_stat."""
         return StaticModel(self.static.vector)
 
     @property
     def adapt(self) -> AdaptiveModel:
-        """P_adapt."""
+        """The adaptive model, P_adapt."""
         return AdaptiveModel(self.space)
 
     @property
     def prob(self) -> ProbabilisticModel:
-        """P_prob."""
+        """The probabilistic model, P_prob."""
         return ProbabilisticModel(self.space)
 
     @property
     def models(self) -> tuple[SteeringModel, ...]:
-        """All three, in the paper's order."""
+        """All three models, in the paper's order."""
         return self.stat, self.adapt, self.prob
 
 
@@ -93,7 +93,7 @@ def fitted(
     options: FitOptions = FitOptions(),
     readings: Sequence[SuitabilityOptions] = READINGS,
 ) -> FittedWalking:
-    """Fit all three models; raises WalkingError for walks of one person alone."""
+    """Fit all three models; raise WalkingError if all walks are of one person."""
     check_persons(database)
     seeds = np.random.default_rng(options.seed).spawn(3)
     scores: tuple[ReadingScore, ...] = ()
@@ -117,7 +117,7 @@ def restored(
     scores: Sequence[ReadingScore],
     static: StaticFit,
 ) -> FittedWalking:
-    """The same model again, from what is kept of it: blends are drawn anew with the same seed."""
+    """Rebuild a fitted model from its stored parts; the same seed gives the same blends."""
     seed = np.random.default_rng(options.seed).spawn(3)[1]
     space = space_of(database, reading, seed, entries=options.entries, k=options.k)
     return FittedWalking(database, options, reading, tuple(scores), space, static)
@@ -131,7 +131,7 @@ def space_of(
     entries: int = ENTRIES,
     k: int = NEIGHBOURS,
 ) -> BlendingSpace:
-    """The densified space of a database under one reading."""
+    """Return the densified space of a database for one reading."""
     scaling = scaling_of(database.names, database.vectors)
     values = database.suitability(reading)
     return blending_space(

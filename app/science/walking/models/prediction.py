@@ -1,9 +1,9 @@
-"""From a model and a path to a distribution of travel times, and to walkers.
+"""Predict a distribution of travel times, and walks, from a model and a path.
 
-Vectors are drawn, and an agent walks the path with each. Agents that do not arrive, because their
-turns are too wide or their pace too slow, are no walk; they are drawn again, which makes the
-prediction one of walks that arrive, and are counted. A model that does not draw gives its next best
-vector instead, where it has one.
+Vectors of parameters are drawn, and an agent walks the path with each. Agents that do not arrive,
+because their turns are too wide or they are too slow, give no walk; they are drawn again and
+counted, so the prediction is conditional on arrival. A model that does not draw gives its next best
+vector instead, if it has one.
 """
 
 from collections.abc import Mapping
@@ -23,18 +23,18 @@ from app.science.walking.records import (
 )
 
 EXTRA_S, SLOWEST_S_PER_M = 10.0, 12.0
-"""An agent is given 10 s, and 12 s for each metre: slower than the grid's slowest."""
+"""Time limit of an agent: 10 s, plus 12 s per metre, slower than the grid's slowest."""
 ROUNDS, ALTERNATIVES = 20, 200
 
 
 @dataclass(frozen=True, eq=False)
 class Prediction:
-    """Walks that a model expects on a path.
+    """Walks that a model predicts on a path.
 
     Attributes:
-        vectors: (S, n) steering parameters of those that arrived.
+        vectors: (S, n) steering parameters of the agents that arrived.
         durations_s: (S,) their travel times.
-        lost: how many were drawn that did not arrive.
+        lost: number of draws whose agent did not arrive.
     """
 
     vectors: FloatArray
@@ -44,12 +44,12 @@ class Prediction:
 
 @dataclass(frozen=True, eq=False)
 class Predictor:
-    """Predicts with one model and one follower.
+    """Predicts walks with one model and one follower.
 
     Attributes:
         model: gives the vectors.
         follower: the one that the model's maps were made with.
-        begin_m_s, brakes: 0 and True from rest to rest; else the walk is part of a longer one.
+        begin_m_s, brakes: 0 and True from rest to rest; otherwise the walk is part of a longer one.
     """
 
     model: SteeringModel
@@ -67,7 +67,7 @@ class Predictor:
         """Draw `count` walks along a path; models that do not draw give one.
 
         Raises:
-            WalkingError: after `ROUNDS` rounds too few have arrived.
+            WalkingError: too few agents have arrived after `ROUNDS` rounds.
         """
         found = (
             self._drawn(path, dependencies, count, rng)
@@ -117,13 +117,13 @@ class Predictor:
         return Prediction(vectors[:0], arrival_s[:0], len(vectors))
 
     def walked(self, path: PlannedPath, vectors: FloatArray, samples: int) -> Trajectories:
-        """Let agents with vectors (S, n) walk a path from rest to rest."""
+        """Let agents with vectors (S, n) walk a path, from this predictor's initial speed."""
         limit_s = EXTRA_S + SLOWEST_S_PER_M * path.length_m
         course = Course(path, samples, limit_s, self.begin_m_s, self.brakes)
         return self.follower.follow(course, vectors)
 
 
 def predictor_for(walk: Walk, model: SteeringModel, follower: PathFollower) -> Predictor:
-    """Predict a walk as it was recorded: one cut from a longer one begins, or ends, at speed."""
+    """Return a predictor for a recorded walk, which starts or ends at speed if it was cut off."""
     begin_m_s = 0.0 if walk.begins_still else float(walk.speeds_m_s[0])
     return Predictor(model, follower, begin_m_s, walk.ends_still)

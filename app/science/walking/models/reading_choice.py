@@ -1,12 +1,12 @@
-"""Which reading of maps predicts best, decided on the training people alone.
+"""Choose the reading of maps that predicts best, using the training people only.
 
-Each person is left out in turn (or in groups), and every walk of theirs is predicted from the
-others' maps. A walk's own map has the travel time of every combination on its own path, so nothing
-is simulated again: the others' blended suitability is drawn from, and each draw's travel time is
-read from the walk's map. Between nodes it is the pace 1 / T that is interpolated, nearly linear in
-speed; combinations that do not arrive have pace 0 and are left out.
+Each person is left out in turn (or in groups), and all their walks are predicted from the others'
+maps. A walk's own map contains the travel time of every combination on its own path, so no new
+simulation is needed: vectors are drawn from the others' blended suitability, and each draw's travel
+time is looked up in the walk's map. Between nodes the pace 1 / T is interpolated, which is nearly
+linear in speed; combinations that do not arrive have pace 0 and are left out.
 
-Readings are then compared by mean CRPS. People who are predicted later never took part.
+Readings are then compared by mean CRPS. People whose walks are predicted later are never involved.
 """
 
 from collections.abc import Sequence
@@ -35,7 +35,7 @@ from app.science.walking.records import scaling_of
 DRAWS = 200
 FOLDS = 4
 SLOWEST_PACE = 1e-3
-"""1/s; slower is not arrived."""
+"""Pace in 1/s below which an agent counts as not arrived."""
 READINGS: tuple[SuitabilityOptions, ...] = (
     PAPER,
     SuitabilityOptions(power=4.0),
@@ -48,12 +48,12 @@ READINGS: tuple[SuitabilityOptions, ...] = (
     SuitabilityOptions(power=4.0, time_constant_s=0.1),
     SuitabilityOptions(normalisation="min-max", power=2.0, time_constant_s=0.1),
 )
-"""Those that are tried."""
+"""The readings that are compared."""
 
 
 @dataclass(frozen=True)
 class ReadingScore:
-    """How a reading predicts people who were left out.
+    """How well a reading predicts the walks of people who were left out.
 
     Attributes:
         options: the reading.
@@ -67,7 +67,7 @@ class ReadingScore:
 def person_folds(
     database: WalkDatabase, rng: np.random.Generator, folds: int = FOLDS
 ) -> list[tuple[str, ...]]:
-    """Share people out over folds, about equally many in each; all walks of one stay together."""
+    """Divide people into folds of about equal size; all walks of a person are in one fold."""
     check_persons(database)
     shuffled = list(rng.permutation(np.array(database.persons, dtype=object)))
     count = min(folds, len(shuffled))
@@ -82,7 +82,7 @@ def ranked_readings(
     entries: int = ENTRIES,
     k: int = NEIGHBOURS,
 ) -> list[ReadingScore]:
-    """Score readings, best first; raises WalkingError for one person alone."""
+    """Score readings, best first; raise WalkingError if all walks are of one person."""
     parts = [
         (np.flatnonzero(database.is_of(fold)), np.flatnonzero(~database.is_of(fold)))
         for fold in person_folds(database, rng)
@@ -111,9 +111,12 @@ def _origins(
     entries: int,
     k: int,
 ) -> FloatArray:
-    """(left out, kept) how much each kept walk answers for each one left out."""
+    """Return the share of each training walk in the result for each walk left out.
+
+    The result is (walks left out, training walks).
+    """
     scaling = scaling_of(database.names, database.vectors[kept])
-    # Where each walk is does not depend on its map: one empty map stands for all.
+    # The positions of walks do not depend on their maps, so empty maps are sufficient.
     nothing = np.zeros((len(kept), database.grid.size), dtype=np.float32)
     space: BlendingSpace = blending_space(
         database.grid,
@@ -128,7 +131,7 @@ def _origins(
 
 
 def _score(database: WalkDatabase, at: int, blended: FloatArray, uniforms: FloatArray) -> float:
-    """CRPS of a walk by a blended map (K,)."""
+    """Return the CRPS of the prediction of one walk by a blended map (K,)."""
     from app.science.walking.maps.interpolation_kernels import multilinear_at
     from app.science.walking.models.sampling_kernels import tent_draws
 

@@ -1,16 +1,17 @@
-"""Drawing steering parameters for a question to the database.
+"""Draw steering parameters for a query to the database.
 
-The blended map of a question is f = sum over neighbours of w_i S_i. Read as a density, it is drawn
-from in two ways.
+The blended map of a query is f = sum over neighbours of w_i S_i. Interpreted as a density, it is
+drawn from in two ways.
 
 `mixture`, the default: S_i is a sum of tents around its nodes, so f is a mixture over neighbours,
-nodes and tents. A neighbour is picked by w_i times its map's mass, a node by its value times its
-tent's mass, and a place in the tent directly. Nothing is blended, nothing rejected, and the result
-has exactly the density of the blended multilinear map.
+nodes and tents. A neighbour is chosen by w_i times its map's mass, a node by its value times its
+tent's mass, and a position in the tent directly. Nothing is blended or rejected, and the result has
+exactly the density of the blended multilinear map.
 
-`rejection`, the paper's: blend the maps, interpolate by radial basis functions (or multilinearly),
-propose evenly, accept below f. The largest value of f between nodes is taken as 1.02 times the
-largest at a node, which holds for the multilinear map and, up to swings, for the radial one.
+`rejection`, as in the paper: blend the maps, interpolate by radial basis functions (or
+multilinearly), propose uniformly, accept below f. The largest value of f between nodes is assumed
+to be 1.02 times the largest at a node, which is valid for the multilinear map and, apart from
+overshoots, for the radial one.
 """
 
 from collections.abc import Callable
@@ -32,12 +33,12 @@ Interpolation = Literal["multilinear", "radial"]
 
 @dataclass(frozen=True, eq=False)
 class Density:
-    """The answer to one question, prepared to be drawn from many times.
+    """The blended map of one query, prepared for many draws.
 
     Attributes:
-        space: where from.
+        space: the space from which it was blended.
         grid_values: (K,) the blended map at nodes.
-        coefficients: (K,) of radial basis functions; empty where they are not asked for.
+        coefficients: (K,) of radial basis functions; empty if these are not used.
     """
 
     space: BlendingSpace
@@ -46,11 +47,11 @@ class Density:
 
     @cached_property
     def cumulative(self) -> FloatArray:
-        """(K,) masses of the nodes' tents, added up."""
+        """The cumulative masses of the nodes' tents, (K,)."""
         return np.cumsum(self.grid_values * axes_of(self.space.grid).node_weights)
 
     def draw(self, count: int, rng: np.random.Generator) -> FloatArray:
-        """Vectors (count, n) from the blended multilinear map, without rejection."""
+        """Draw vectors (count, n) from the blended multilinear map, without rejection."""
         from app.science.walking.models.sampling_kernels import tent_draws
 
         axes = axes_of(self.space.grid)
@@ -60,10 +61,10 @@ class Density:
         return vectors
 
     def draw_by_rejection(self, count: int, rng: np.random.Generator) -> FloatArray:
-        """Vectors (count, n) by the paper's way; radial where there are coefficients.
+        """Draw vectors (count, n) by rejection, as in the paper; radial if there are coefficients.
 
         Raises:
-            WalkingError: nothing was accepted within `MOST_PROPOSALS` proposals.
+            WalkingError: too few proposals were accepted out of `MOST_PROPOSALS`.
         """
         from app.science.walking.models.sampling_kernels import reject
 
@@ -75,7 +76,7 @@ class Density:
         rows = max(PROPOSALS, min(4 * count, 100_000))
         while done < count:
             if tried >= MOST_PROPOSALS:
-                raise WalkingError(f"{tried} proposals were all refused: the map is too narrow.")
+                raise WalkingError(f"{tried} proposals were not enough: the map is too narrow.")
             uniforms = rng.random((rows, len(axes.shape) + 1))
             done = reject(used, axes.values, axes.shape, width, bound, uniforms, vectors, done)
             tried += rows
@@ -85,10 +86,10 @@ class Density:
 def density_of(
     space: BlendingSpace, z: FloatArray, interpolation: Interpolation = "multilinear"
 ) -> Density:
-    """Prepare a question, given as z-scores (m,).
+    """Return the density for a query, given as z-scores (m,).
 
     Raises:
-        WalkingError: no neighbour's map has anything suitable.
+        WalkingError: all neighbours' maps are zero.
     """
     from app.science.walking.models.sampling_kernels import blend_rows
 
@@ -104,12 +105,12 @@ def density_of(
 
 @dataclass(frozen=True, eq=False)
 class MixtureSampler:
-    """Draws for questions that are asked once."""
+    """Draws single vectors, each for a different query."""
 
     space: BlendingSpace
 
     def draw_one(self, z: FloatArray, rng: np.random.Generator) -> FloatArray:
-        """One vector (n,) for z-scores (m,); raises WalkingError where nothing is suitable."""
+        """Draw one vector (n,) for z-scores (m,); raise WalkingError if nothing is suitable."""
         dimensions = len(self.space.grid.shape)
         vector = np.empty(dimensions)
         if not self._draw(z, rng.random(2 + 2 * dimensions), vector):
@@ -118,7 +119,7 @@ class MixtureSampler:
 
     @cached_property
     def _draw(self) -> Callable[[FloatArray, FloatArray, FloatArray], bool]:
-        """The compiled draw with all that does not change looked up once."""
+        """The compiled draw, with its constant arguments looked up once."""
         from app.science.walking.models.sampling_kernels import mixture_draw
 
         space, axes, tree = self.space, axes_of(self.space.grid), self.space.tree
@@ -151,8 +152,8 @@ class MixtureSampler:
 
 
 def nothing_suitable() -> WalkingError:
-    """The error for maps that are all zero."""
+    """Return the error for maps that are all zero."""
     return WalkingError(
-        "No neighbour's map has a suitable combination: take a lower threshold or power, or widen"
+        "No neighbour's map has a suitable combination: use a lower threshold or power, or widen"
         " the grid."
     )

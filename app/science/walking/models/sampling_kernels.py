@@ -1,4 +1,4 @@
-"""Draws from maps, compiled. Chance comes in as uniform numbers; nothing here is random itself."""
+"""Draw from maps, compiled; deterministic, as random numbers are passed in as uniforms."""
 
 import math
 
@@ -30,7 +30,7 @@ def _from_tents(
         left = axis_values[first + at - 1] if at > 0 else own
         right = axis_values[first + at + 1] if at + 1 < shape[axis] else own
         side = uniforms[first_uniform + 2 * axis] * (right - left)
-        # The density falls linearly from the node outwards.
+        # The density decreases linearly from the node outwards.
         away = 1.0 - math.sqrt(uniforms[first_uniform + 2 * axis + 1])
         vector[axis] = (
             own - away * (own - left) if side < own - left else own + away * (right - own)
@@ -39,7 +39,7 @@ def _from_tents(
 
 @compiled
 def _picked(parts: FloatArray, uniform: float) -> int:
-    """An index, as likely as its part of the sum; -1 where all are zero."""
+    """Return a random index with probability proportional to its part; -1 if all are zero."""
     left, chosen = uniform * parts.sum(), -1
     for at in range(len(parts)):
         if parts[at] > 0.0:
@@ -52,7 +52,7 @@ def _picked(parts: FloatArray, uniform: float) -> int:
 
 @compiled
 def _picked_node(row: MapArray, node_weights: FloatArray, left: float) -> int:
-    """The node of a map at which its masses, added up, pass `left`."""
+    """Return the node of a map at which its cumulative mass exceeds `left`."""
     chosen = 0
     for node in range(len(node_weights)):
         own = row[node] * node_weights[node]
@@ -83,7 +83,10 @@ def mixture_draw(
     uniforms: FloatArray,
     vector: FloatArray,
 ) -> bool:
-    """Draw one vector (n,): a neighbour, a node of its map, a place in the node's tents."""
+    """Draw one vector (n,): choose a neighbour, a node of its map, and a position in its tents.
+
+    Returns False if all maps are zero.
+    """
     indices, weights = np.empty(k, dtype=np.int64), np.empty(k)
     nearest(points, order, axes, splits, lows, firsts, lasts, z, indices, weights)
     weigh(weights)
@@ -99,10 +102,11 @@ def mixture_draw(
 
 @compiled
 def blend_rows(indices: IntArray, weights: FloatArray, values: MapArray) -> FloatArray:
-    """(K,) weighted sum of some rows of (N, K); eight at a time, since memory is what it waits for.
+    """Return the weighted sum (K,) of the rows `indices` of (N, K).
 
-    Eight rows are added with the maps' own seven digits, the eights with full precision. Where rows
-    are missing at the end, the last one takes part with weight 0.
+    Memory bandwidth is the bottleneck, so eight rows are read at a time. Eight rows are added in
+    the maps' single precision, and these sums in double precision. If rows are missing at the end,
+    the last one is used with weight 0.
     """
     count, blended = len(indices), np.zeros(values.shape[1])
     for first in range(0, count, 8):
@@ -152,10 +156,10 @@ def reject(
     vectors: FloatArray,
     done: int,
 ) -> int:
-    """Acceptance and rejection; an `inverse_width` of 0 stands for the multilinear map.
+    """Draw by rejection sampling; an `inverse_width` of 0 selects the multilinear map.
 
-    Each row of uniforms (T, n + 1) is one proposal. Fills vectors from `done` on and returns how
-    many are filled now.
+    Each row of uniforms (T, n + 1) is one proposal. Fills vectors from `done` on and returns the
+    new number of filled vectors.
     """
     n = len(shape)
     point = np.empty(n)

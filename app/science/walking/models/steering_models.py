@@ -1,10 +1,11 @@
-"""The three models of how a person steers, behind one interface.
+"""The three models of how a person steers, with a common interface.
 
     P_stat   one combination for everybody and every path
     P_adapt  the most suitable combination for this path and person
-    P_prob   a draw from all combinations, as suitable as they are
+    P_prob   a draw from all combinations, with probability proportional to suitability
 
-The first two are the paper's state of the art and its half-way house; all need the same data.
+The first is the paper's state of the art and the second an intermediate step; all use the same
+data.
 """
 
 from collections.abc import Mapping
@@ -22,22 +23,22 @@ _HALVINGS, _LEVEL = 12, 1e-3
 
 
 class SteeringModel(Protocol):
-    """Gives steering parameters for a walk that is still to be walked."""
+    """Protocol of a model that gives steering parameters for a future walk."""
 
     @property
     def name(self) -> str:
-        """A short key."""
+        """Short key of the model."""
         ...
 
     @property
     def draws(self) -> bool:
-        """Whether vectors differ from each other."""
+        """Whether vectors are random draws, which differ from each other."""
         ...
 
     def vectors(
         self, dependencies: Mapping[str, float], count: int, rng: np.random.Generator
     ) -> FloatArray:
-        """Return (count, n) vectors, of a model that does not draw the best ones, best first.
+        """Return vectors (count, n); a model that does not draw returns the best ones, best first.
 
         Raises:
             WalkingError: a dependency is missing.
@@ -47,7 +48,7 @@ class SteeringModel(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class StaticModel:
-    """P_stat: always the same."""
+    """P_stat: the same vector for every walk."""
 
     vector: FloatArray
     name: str = "stat"
@@ -56,14 +57,14 @@ class StaticModel:
     def vectors(
         self, dependencies: Mapping[str, float], count: int, rng: np.random.Generator
     ) -> FloatArray:
-        """The one vector, `count` times."""
+        """Return the constant vector, `count` times."""
         del dependencies, rng
         return np.tile(self.vector, (count, 1))
 
 
 @dataclass(frozen=True, eq=False)
 class AdaptiveModel:
-    """P_adapt: the largest value of the blended map, interpolated by radial basis functions."""
+    """P_adapt: the maximum of the blended map, interpolated by radial basis functions."""
 
     space: BlendingSpace
     name: str = "adapt"
@@ -72,11 +73,11 @@ class AdaptiveModel:
     def vectors(
         self, dependencies: Mapping[str, float], count: int, rng: np.random.Generator
     ) -> FloatArray:
-        """The most suitable vector for these dependencies, and after it the next best nodes."""
+        """Return the most suitable vector for these dependencies, then the next best nodes."""
         del rng
         space = self.space
         density = density_of(space, space.scaling.z(space.scaling.vector(dependencies)), "radial")
-        # Backwards, so that of equal nodes the one with the largest last parameters comes first.
+        # Reversed, so that of equal nodes the one with the largest last parameters is first.
         order = np.argsort(-density.grid_values[::-1], kind="stable")[: max(1, count - 1)]
         nodes = space.grid.nodes[space.grid.size - 1 - order]
         best = self._uphill(density, nodes[0].copy())
@@ -84,10 +85,10 @@ class AdaptiveModel:
         return found
 
     def _uphill(self, density: Density, at: FloatArray) -> FloatArray:
-        """From a node uphill, with steps of half a cell that halve where none leads up.
+        """Climb from a node to a maximum; steps of half a cell are halved where none leads up.
 
-        Along an axis on which the map is level it stays, since there only the interpolation's own
-        ripples lead up: on a straight walk the angular velocity is the largest.
+        Along an axis on which the map is constant the value stays unchanged, since there only the
+        interpolation's own ripples lead up: on a straight walk the angular velocity is the largest.
         """
         grid = self.space.grid
         basis = radial_basis(grid)
@@ -110,7 +111,7 @@ class AdaptiveModel:
 
 
 def _level(values: FloatArray) -> BoolArray:
-    """For each axis whether the map is the same all along it, through its highest node."""
+    """Return for each axis whether the map is constant along it, through its highest node."""
     best = np.unravel_index(int(np.argmax(values)), values.shape)
     level = []
     for axis in range(values.ndim):
@@ -126,7 +127,7 @@ class ProbabilisticModel:
     Attributes:
         space: the maps.
         sampler: mixture, or the paper's rejection.
-        interpolation: of the rejection; the mixture is multilinear.
+        interpolation: for rejection; the mixture is always multilinear.
     """
 
     space: BlendingSpace
@@ -138,7 +139,7 @@ class ProbabilisticModel:
     def vectors(
         self, dependencies: Mapping[str, float], count: int, rng: np.random.Generator
     ) -> FloatArray:
-        """Draws for these dependencies; the same rng gives the same."""
+        """Draw vectors for these dependencies; reproducible by the rng's seed."""
         z = self.space.scaling.z(self.space.scaling.vector(dependencies))
         if self.sampler == "rejection":
             return density_of(self.space, z, self.interpolation).draw_by_rejection(count, rng)

@@ -1,7 +1,7 @@
-"""Short paths around obstacles.
+"""Plan short paths around obstacles.
 
-`LazyThetaPlanner` plans in a `Scene`; `sees` says whether a straight line is free. The compiler is
-loaded at the first question.
+`LazyThetaPlanner` plans in a `Scene`; `sees` returns whether a straight line is free. The compiler
+is loaded with the first call.
 """
 
 from app.science.walking.planning.grid_planner import LazyThetaPlanner

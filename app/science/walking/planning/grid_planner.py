@@ -1,8 +1,8 @@
-"""The planner: Lazy Theta* on a lattice of one centimetre, then pulled tight.
+"""The planner: Lazy Theta* on a lattice of one centimetre, with the path then pulled tight.
 
 Nash, Koenig and Tovey (2010), "Lazy Theta*: any-angle path planning and path length analysis in
 3D". Lines of sight are checked against the obstacles themselves and not against the lattice, so a
-path never cuts a corner; start and goal are where they are and not on the nearest node.
+path never cuts a corner; start and goal are at their exact positions and not at the nearest node.
 """
 
 import math
@@ -28,10 +28,10 @@ from app.science.walking.scene import (
 
 CELL_M = 0.01
 MOST_NODES = 16_000_000
-"""A floor of 40 x 40 m; a search then holds about 800 MB."""
+"""A floor of 40 x 40 m; a search then needs about 800 MB of memory."""
 SAME_M = 1e-6
 BESIDE_M, MOST_PULLS = 0.15, 8
-"""Corners so near to a path's bend are tried instead of it, and how often."""
+"""Distance within which corners may replace a path's bend, and the number of attempts."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +43,7 @@ class _Floor:
 
     @cached_property
     def lattice(self) -> Lattice:
-        """Made when first needed: who sees the goal needs none."""
+        """The lattice of nodes, made on first use: if the goal is in sight it is not needed."""
         from app.science.walking.planning.lattice_kernels import block
 
         left, near, _, _ = self.scene.bounds_m
@@ -60,30 +60,32 @@ class LazyThetaPlanner:
     """Plans paths in one scene.
 
     Attributes:
-        scene: where.
-        cell_m: how far apart the lattice's nodes are.
+        scene: the floor and its obstacles.
+        cell_m: distance between the lattice's nodes.
     """
 
     scene: Scene
     cell_m: float = CELL_M
 
     def __post_init__(self) -> None:
-        """Raises SceneError where the lattice would not fit into memory."""
+        """Raise SceneError if the cell size is invalid or the lattice would not fit into memory."""
         if not self.cell_m > 0.0:
-            raise SceneError(f"A lattice of cells of {self.cell_m} m is none: take .01.")
+            raise SceneError(
+                f"Lattice cells of {self.cell_m} m are invalid: give a positive size, such as 0.01."
+            )
         rows, columns = _shape(self.scene, self.cell_m)
         if rows * columns > MOST_NODES:
             raise SceneError(
                 f"A lattice of {self.cell_m} m over scene {self.scene.name!r} has {rows * columns}"
-                f" nodes, at most {MOST_NODES} are possible: take wider cells or a smaller floor."
+                f" nodes, at most {MOST_NODES} are possible: use larger cells or a smaller floor."
             )
 
     def plan(self, start_m: Point, goal_m: Point) -> PlannedPath:
-        """Find the way from a start to a goal.
+        """Plan a path from a start to a goal.
 
         Raises:
-            SceneError: start or goal is out of bounds, inside an obstacle, or both are the same
-                place; or obstacles leave no way between them.
+            SceneError: start or goal is out of bounds or inside an obstacle, both are at the same
+                position, or obstacles leave no path between them.
         """
         from app.science.walking.planning import planner_kernels as kernels
 
@@ -121,15 +123,15 @@ class LazyThetaPlanner:
 
 
 def _shape(scene: Scene, cell_m: float) -> tuple[int, int]:
-    """Rows and columns of a scene's lattice."""
+    """Return the numbers of rows and columns of a scene's lattice."""
     left, near, right, far = scene.bounds_m
-    # A hair more than the bounds counts as within: 4 m are 400 cells, not 399.999.
+    # Tolerate rounding at the bounds: 4 m are 400 cells, not 399.999.
     rows = math.floor((far - near) / cell_m + SAME_M) + 1
     return rows, math.floor((right - left) / cell_m + SAME_M) + 1
 
 
 def _with_ends(lattice: Lattice, start: int, goal: int, ends: FloatArray) -> Lattice:
-    """A copy in which two nodes are free and stand for start and goal, exactly there."""
+    """Return a copy in which the nodes of start and goal are free and at the exact positions."""
     state, places = lattice.state.copy(), lattice.places.copy()
     flat = places.reshape(-1, 2)
     state.reshape(-1)[[start, goal]] = FREE
@@ -138,7 +140,7 @@ def _with_ends(lattice: Lattice, start: int, goal: int, ends: FloatArray) -> Lat
 
 
 def check_ends(scene: Scene, start_m: Point, goal_m: Point) -> None:
-    """Raise SceneError where nobody can walk from the one to the other by their places alone."""
+    """Raise SceneError if a person cannot stand at start or goal, or if both are the same."""
     scene.check_point(start_m, "The start")
     scene.check_point(goal_m, "The goal")
     if math.dist(start_m, goal_m) < SAME_M:
@@ -146,20 +148,20 @@ def check_ends(scene: Scene, start_m: Point, goal_m: Point) -> None:
 
 
 def no_way(scene: Scene, start_m: Point, goal_m: Point) -> SceneError:
-    """The error for a scene that is closed between two places."""
+    """Return the error for a scene in which obstacles block every path between two points."""
     return SceneError(
         f"In scene {scene.name!r} there is no way from ({start_m[0]:.2f}, {start_m[1]:.2f}) to"
         f" ({goal_m[0]:.2f}, {goal_m[1]:.2f}) m: obstacles, widened by {scene.clearance_m:g} m,"
-        " close it. Open a gap, or lower the scene's clearance."
+        " block it. Open a gap, or lower the scene's clearance."
     )
 
 
 def _pulled_tight(points_m: FloatArray, floor: _Floor) -> FloatArray:
-    """Pull a path round the corners that hold it, as if it were a string.
+    """Shorten a path around the corners that it passes, like a string that is pulled tight.
 
-    A path on a lattice bends beside the corner it goes round, or short of it in the open. The
-    shortest way that leaves the obstacles on the same sides bends at corners inside the triangles
-    of neighbouring points, and so on until nothing changes.
+    A path on a lattice bends next to the corner that it passes, or short of it in the open. The
+    shortest path that leaves the obstacles on the same sides bends at corners inside the triangles
+    of neighbouring points; this is repeated until nothing changes.
     """
     corners = passable(floor.corners, floor.corners, floor.scene.bounds_m)
     for _ in range(MOST_PULLS):
@@ -173,7 +175,7 @@ def _pulled_tight(points_m: FloatArray, floor: _Floor) -> FloatArray:
 
 
 def _near_bends(corners: FloatArray, points_m: FloatArray) -> BoolArray:
-    """Which corners lie right beside a bend, or in the triangle of it and its neighbours."""
+    """Return which corners are close to a bend, or in the triangle of it and its neighbours."""
     found = np.zeros(len(corners), dtype=np.bool_)
     for before, bend, after in zip(points_m[:-2], points_m[1:-1], points_m[2:], strict=True):
         triangle = np.array([before, bend, after])

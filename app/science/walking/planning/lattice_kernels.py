@@ -1,4 +1,4 @@
-"""Nodes of a lattice among obstacles, compiled; see `outlines` for what they are."""
+"""Mark the nodes of a lattice that obstacles block, compiled; see `outlines` for the data types."""
 
 import numpy as np
 
@@ -7,12 +7,12 @@ from app.science.rotations import FloatArray
 from app.science.walking.scene import BLOCKED, FREE, MOVED, TOUCH_M, Lattice, Outlines
 
 EDGE_CELLS = 0.75
-"""Nodes less than that inside an outline are moved onto it."""
+"""Nodes less deep inside an outline than this are moved onto it."""
 
 
 @compiled
 def _depth(x: float, y: float, planes: FloatArray, count: int) -> tuple[float, int]:
-    """How deep a place is inside an outline (negative outside), and the edge nearest to it."""
+    """Return how deep a point is inside an outline (negative outside), and the nearest edge."""
     depth, nearest = np.inf, 0
     for edge in range(count):
         own = planes[edge, 2] - planes[edge, 0] * x - planes[edge, 1] * y
@@ -23,7 +23,7 @@ def _depth(x: float, y: float, planes: FloatArray, count: int) -> tuple[float, i
 
 @compiled
 def _block_one(lattice: Lattice, planes: FloatArray, count: int, box: FloatArray) -> None:
-    """Block the nodes inside one outline; those right at its edge move onto the edge."""
+    """Block the nodes inside one outline; move those close to its edge onto the edge."""
     state, places, cell_m = lattice.state, lattice.places, lattice.cell_m
     rows, columns = state.shape
     left, near = lattice.left, lattice.near
@@ -47,10 +47,10 @@ def _block_one(lattice: Lattice, planes: FloatArray, count: int, box: FloatArray
 
 @compiled
 def block(lattice: Lattice, outlines: Outlines) -> None:
-    """Mark the nodes of a lattice that lie inside an obstacle.
+    """Mark the nodes of a lattice that lie inside an obstacle as blocked.
 
     Nodes less than three quarters of a cell inside are moved to the outline instead: so there is a
-    way through gaps that are narrower than a cell, and paths lie close to what they go round.
+    path through gaps that are narrower than a cell, and paths lie close to the obstacles they pass.
     """
     state, places, counts = lattice.state, lattice.places, outlines.counts
     rows, columns = state.shape

@@ -1,6 +1,6 @@
-"""Lines of sight and Lazy Theta*, compiled; see `outlines` for what they work on.
+"""Lines of sight and Lazy Theta*, compiled; see `outlines` for the data types.
 
-A segment is blocked where it passes through the inside of an outline; it may touch corners and
+A segment is blocked if it passes through the interior of an outline; it may touch corners and
 edges.
 """
 
@@ -15,7 +15,7 @@ from app.science.walking.scene import CLOSED, FREE, TOUCH_M, IntArray, Lattice, 
 
 @compiled
 def _overlap(ax: float, ay: float, bx: float, by: float, planes: FloatArray, count: int) -> float:
-    """The share of the segment that lies inside one outline, not positive for none."""
+    """Return the share of a segment that lies inside one outline; not positive if there is none."""
     enters, leaves = 0.0, 1.0
     for edge in range(count):
         nx, ny = planes[edge, 0], planes[edge, 1]
@@ -34,7 +34,7 @@ def _overlap(ax: float, ay: float, bx: float, by: float, planes: FloatArray, cou
 
 @compiled
 def sees(ax: float, ay: float, bx: float, by: float, outlines: Outlines) -> bool:
-    """Whether the straight line from a to b passes through no obstacle; exact."""
+    """Return whether the straight line from a to b passes through no obstacle; exact."""
     left, right = min(ax, bx), max(ax, bx)
     near, far = min(ay, by), max(ay, by)
     for at in range(len(outlines.counts)):
@@ -48,7 +48,7 @@ def sees(ax: float, ay: float, bx: float, by: float, outlines: Outlines) -> bool
 
 @compiled
 def _push(keys: FloatArray, items: IntArray, size: int, key: float, item: int) -> None:
-    """Put an item on the heap; there must be room."""
+    """Push an item onto the heap, whose arrays must have room for it."""
     at = size
     while at > 0:
         above = (at - 1) >> 1
@@ -61,7 +61,7 @@ def _push(keys: FloatArray, items: IntArray, size: int, key: float, item: int) -
 
 @compiled
 def _pop(keys: FloatArray, items: IntArray, size: int) -> int:
-    """Take the item with the least key off a heap that is not empty."""
+    """Pop the item with the smallest key from a non-empty heap."""
     top = items[0]
     last = size - 1
     key, item = keys[last], items[last]
@@ -94,7 +94,10 @@ def _settle(
     parent: IntArray,
     outlines: Outlines,
 ) -> bool:
-    """Give a node whose parent does not see it the best expanded neighbour that does."""
+    """Check that a node's parent sees it, else replace it by the best expanded neighbour.
+
+    Returns whether the node has a parent.
+    """
     places, columns = lattice.places, lattice.state.shape[1]
     x, y = places[row, column, 0], places[row, column, 1]
     above = parent[row, column]
@@ -126,7 +129,7 @@ def _reach(
     items: IntArray,
     size: int,
 ) -> int:
-    """Offer a node's neighbours the way by its parent; returns the heap's new size."""
+    """Update a node's neighbours with the path through its parent; return the heap's new size."""
     state, places = lattice.state, lattice.places
     rows, columns = state.shape
     gx, gy = places[goal // columns, goal % columns, 0], places[goal // columns, goal % columns, 1]
@@ -149,16 +152,16 @@ def _reach(
 def lazy_theta(lattice: Lattice, start: int, goal: int, outlines: Outlines) -> IntArray:
     """Search a path over a lattice (Nash, Koenig and Tovey 2010, Lazy Theta*).
 
-    A node's parent is taken to see it until the node is expanded; only then one line of sight is
-    checked, and where it is blocked the best expanded neighbour becomes the parent.
+    A node's parent is assumed to see it until the node is expanded; only then one line of sight is
+    checked, and if it is blocked the best expanded neighbour becomes the parent.
 
     Args:
-        lattice: its states are used up.
+        lattice: its states are modified.
         start, goal: two different nodes, row * columns + column.
         outlines: the obstacles.
 
     Returns:
-        Nodes from start to goal; none where there is no way.
+        Nodes from start to goal; empty if there is no path.
     """
     state = lattice.state
     columns = state.shape[1]
@@ -173,7 +176,7 @@ def lazy_theta(lattice: Lattice, start: int, goal: int, outlines: Outlines) -> I
         if state[row, column] != FREE:
             continue
         if not _settle(row, column, lattice, far, parent, outlines):
-            continue  # another neighbour may still come to it
+            continue  # it may still be reached from another neighbour
         state[row, column] = CLOSED
         if node == goal:
             return _unwound(parent.ravel(), start, goal)
@@ -199,7 +202,7 @@ def _unwound(parent: IntArray, start: int, goal: int) -> IntArray:
 
 @compiled
 def mutual_sight(points: FloatArray, outlines: Outlines) -> FloatArray:
-    """(P, P) distances between points that see each other, infinite between the others."""
+    """Return the distances (P, P) between points that see each other, inf between the others."""
     count = len(points)
     lengths = np.full((count, count), np.inf)
     for a in range(count):

@@ -1,7 +1,4 @@
-"""Which points see each other, and the shortest way over them.
-
-Dijkstra on the visibility graph.
-"""
+"""The shortest path over points among obstacles, by Dijkstra on the visibility graph."""
 
 import heapq
 
@@ -11,19 +8,19 @@ from app.science.rotations import FloatArray
 from app.science.walking.scene import IntArray, Outlines, contains
 
 HIDDEN_M = 1e-7
-"""A corner deeper than that inside another outline is never passed."""
+"""Depth inside another outline from which on a corner is left out of the graph."""
 Bounds = tuple[float, float, float, float]
 
 
 def sees(ax: float, ay: float, bx: float, by: float, outlines: Outlines) -> bool:
-    """Whether the straight line from a to b passes through no obstacle; exact."""
+    """Return whether the straight line from a to b passes through no obstacle; exact."""
     from app.science.walking.planning import planner_kernels as kernels
 
     return kernels.sees(ax, ay, bx, by, outlines)
 
 
 def passable(places: list[FloatArray], corners: list[FloatArray], bounds_m: Bounds) -> FloatArray:
-    """Those of some places (each (K, 2)) that are within bounds and inside no outline."""
+    """Return those of some points (each array (K, 2)) that are within bounds and in no outline."""
     joined = np.concatenate([np.empty((0, 2)), *places])
     kept = (joined >= bounds_m[:2]).all(axis=1) & (joined <= bounds_m[2:]).all(axis=1)
     for own in corners:
@@ -33,7 +30,10 @@ def passable(places: list[FloatArray], corners: list[FloatArray], bounds_m: Boun
 
 
 def shortest_way(points_m: FloatArray, outlines: Outlines) -> FloatArray | None:
-    """Return the points (Q, 2) of the shortest way from the first to the second; None if closed."""
+    """Return the points (Q, 2) of the shortest path from the first point to the second.
+
+    None if obstacles block every path.
+    """
     from app.science.walking.planning import planner_kernels as kernels
 
     lengths = kernels.mutual_sight(points_m, outlines)
@@ -59,7 +59,7 @@ def _unwound(points_m: FloatArray, parent: IntArray) -> FloatArray:
         at = int(parent[at])
         order.append(at)
     way = points_m[order[::-1]]
-    # Two points of the graph may be one place, as where obstacles share a corner.
+    # Points of the graph may coincide, for example where obstacles share a corner.
     apart = np.linalg.norm(np.diff(way, axis=0), axis=1) > 0.0
     chosen: FloatArray = way[np.concatenate([[True], apart])]
     return chosen

@@ -1,7 +1,7 @@
-"""From captures and tracks to walks.
+"""Extract walks from captures and tracks.
 
-`track_of_motion` finds a person on the floor in a capture, `walks_of` cuts a track into walks and
-`planned_walk` gives each the path it was planned on; `census` counts what there is.
+`track_of_motion` extracts a person's track on the floor from a capture, `walks_of` cuts a track
+into walks and `planned_walk` plans a path for each; `census` counts path lengths.
 """
 
 from app.science.walking.recording.capture_tracks import Followed, track_of_motion

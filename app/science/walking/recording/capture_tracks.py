@@ -1,4 +1,4 @@
-"""One door from any captured movement to a track: skeletons, rigid bodies, markers."""
+"""Convert any captured movement to a track on the floor: skeletons, rigid bodies, markers."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -17,20 +17,20 @@ from app.science.walking.recording.tracks import (
 from app.science.walking.records import Track, WalkingError
 
 PELVIS = (("LASI", "RASI", "LPSI", "RPSI"), ("LFWT", "RFWT", "LBWT", "RBWT"))
-"""Names of the four markers of a pelvis, by the two usual marker sets."""
+"""Names of the four pelvis markers in the two usual marker sets."""
 
 
 @dataclass(frozen=True)
 class Followed:
-    """What of a capture is taken as the person's place, where the capture leaves a choice.
+    """Which part of a capture is taken as the person's position, where there is a choice.
 
     Attributes:
-        joint_map: of a skeleton; None to read it from the joints' names.
-        point: of a skeleton; None for the centre of mass where all joints it needs are there,
-            else the hips.
-        body: the rigid body worn on the belt; None where there is but one.
+        joint_map: of a skeleton; None to derive it from the joints' names.
+        point: of a skeleton; None for the centre of mass if all joints it needs are present, else
+            the hips.
+        body: the rigid body worn on the belt; None if there is only one.
         torso_depth_m, off_skin_m: of the person at the belt.
-        markers: whose middle is followed; None for the four of the pelvis.
+        markers: the markers whose mean is tracked; None for the four of the pelvis.
     """
 
     joint_map: Mapping[str, str] | None = None
@@ -50,7 +50,7 @@ def track_of_motion(
     """Make a track of a captured movement.
 
     Raises:
-        WalkingError: the capture holds several bodies or no pelvis and none is named, a name is
+        WalkingError: the capture contains several bodies or no pelvis and none is named, a name is
             not in it, or the person was not seen for too long.
     """
     if isinstance(motion, RigMotion):
@@ -80,5 +80,5 @@ def _pelvis(motion: MarkerMotion) -> tuple[str, ...]:
             return names
     raise WalkingError(
         f"No pelvis markers ({', '.join(PELVIS[0])}) are among {', '.join(motion.names)}: name the"
-        " markers whose middle is to be followed."
+        " markers whose mean is to be tracked."
     )

@@ -1,4 +1,4 @@
-"""How long paths are: which lengths a database of walks has to cover.
+"""Count path lengths, to see which lengths a database of walks has to cover.
 
 The paper counts 3197 planned paths of an assembly line in the intervals of Methods-Time
 Measurement, finds three quarters up to about 2 m, and leaves out the longest 5 % (above 4 m).
@@ -20,13 +20,14 @@ class Census:
     """Frequencies of path lengths.
 
     Attributes:
-        count: how many paths.
-        edges_m: (B + 1,) bounds of the intervals; a length on a bound belongs to the one above.
-        counts: (B,) how many in each.
-        share_up_to: (B,) share of all up to each interval's upper bound.
+        count: number of paths.
+        edges_m: (B + 1,) bounds of the intervals; a length on a bound belongs to the interval
+            above.
+        counts: (B,) number of paths in each interval.
+        share_up_to: (B,) share of all paths up to each interval's upper bound.
         quartiles_m: first, second and third.
-        cutoff_m: the length that `cutoff` of the paths exceed.
-        total_m: all lengths together.
+        cutoff_m: the length that a share of `cutoff` of the paths exceeds.
+        total_m: sum of all lengths.
     """
 
     count: int
@@ -42,14 +43,15 @@ def census(lengths_m: Sequence[float], width_m: float = WIDTH_M, cutoff: float =
     """Count lengths in intervals of equal width from 0.
 
     Raises:
-        WalkingError: no lengths, lengths that are not positive, or more than 10 000 intervals.
+        WalkingError: there are no lengths, a length is not positive, or there would be more than 10
+            000 intervals.
     """
     lengths = np.array(lengths_m, dtype=np.float64)
     if not len(lengths) or not (np.isfinite(lengths).all() and (lengths > 0.0).all()):
         raise WalkingError("A census needs lengths, each a positive number of metres.")
     intervals = float(lengths.max()) / width_m if width_m > 0.0 else np.inf
     if intervals > 10_000 or not 0.0 <= cutoff < 1.0:
-        raise WalkingError(f"Intervals of {width_m} m and a cutoff of {cutoff} make no census.")
+        raise WalkingError(f"Intervals of {width_m} m or a cutoff of {cutoff} is invalid.")
     edges = np.arange(int(intervals) + 2) * width_m
     counts, _ = np.histogram(lengths, edges)
     first, second, third = np.quantile(lengths, (0.25, 0.5, 0.75))

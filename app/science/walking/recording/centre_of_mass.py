@@ -1,9 +1,9 @@
-"""The centre of mass of a captured skeleton, by the masses of de Leva (1996).
+"""Compute the centre of mass of a captured skeleton, with the masses of de Leva (1996).
 
-Each segment's centre lies between two joints. Trunk landmarks are taken on the line from the middle
-of the hip joints to the neck's: navel at .26, lower end of the breastbone at .61. Head and hands
-count at their joints, a foot without toes at the ankle. For a person who walks upright the place on
-the floor is then right to some millimetres.
+Each segment's centre lies between two joints. Trunk landmarks are placed on the line from the
+middle of the hip joints to the neck: navel at .26, lower end of the breastbone at .61. The masses
+of head and hands are placed at their joints, that of a foot without toes at the ankle. For a person
+who walks upright the position on the floor is then accurate to a few millimetres.
 """
 
 from collections.abc import Mapping
@@ -32,7 +32,7 @@ _LIMBS = {
 _SIDES = ("Left", "Right")
 _PAIRED = ("UpperArm", "LowerArm", "Hand", "UpperLeg", "LowerLeg", "Foot")
 NEEDED = ("Neck", *(side + joint for side in _SIDES for joint in _PAIRED))
-"""Body joints without which there is no centre of mass."""
+"""Body joints that are needed for the centre of mass."""
 
 
 def centre_of_mass(motion: RigMotion, joint_map: Mapping[str, str]) -> FloatArray:
@@ -40,16 +40,16 @@ def centre_of_mass(motion: RigMotion, joint_map: Mapping[str, str]) -> FloatArra
 
     Args:
         motion: of a whole body.
-        joint_map: body joint -> rig joint, as `propose_joint_map` reads it from names.
+        joint_map: body joint -> rig joint, as `propose_joint_map` derives it from names.
 
     Raises:
-        WalkingError: a joint of `NEEDED` is not mapped; follow the hips instead.
+        WalkingError: a joint of `NEEDED` is not mapped; the hips can be tracked instead.
     """
     missing = [joint for joint in NEEDED if joint not in joint_map]
     if missing:
         raise WalkingError(
             f"The centre of mass needs {', '.join(missing)}, which the skeleton does not have or"
-            " the joint map does not name: map them, or follow the hips instead."
+            " the joint map does not name: map them, or track the hips instead."
         )
     positions, _ = motion.world()
     at = {joint: positions[:, motion.rig.index(name)] for joint, name in joint_map.items()}

@@ -1,12 +1,13 @@
-"""Walks out of a long track: cut where the person stands still.
+"""Cut a long track into walks, at the times when the person stands still.
 
-A person stands where the smoothed speed stays under a threshold for a while. What lies between
-standings and leads far enough is a walk; its travel time is from the last slow sample before to
-the first slow sample after. Where the track begins or ends amid a walk, the walk says so.
+A person stands where the smoothed speed stays below a threshold for a while. The time between two
+standings is a walk if the person gets far enough; its travel time is from the last slow sample
+before to the first slow sample after. If the track begins or ends during a walk, the walk is marked
+accordingly.
 
 Tracks are smoothed as in the paper. It filters its captures of 120 Hz with `gaussian_filter1d`,
-sigma = 2 samples, so that the jerks of each step matter less. At other rates sigma is the same
-time, 1/60 s.
+sigma = 2 samples, to reduce the jerks of single steps. At other rates sigma is the same time, 1/60
+s.
 """
 
 from dataclasses import dataclass
@@ -18,13 +19,14 @@ from app.science.walking.records import BoolArray, Track, Walk, WalkingError
 
 SIGMA_S = 2.0 / 120.0
 REACH = 4.0
-"""The filter ends that many sigma away, as SciPy's does."""
+"""The filter is truncated at this many sigma, as SciPy's is."""
 
 
 def evenly(track: Track) -> tuple[FloatArray, FloatArray]:
-    """Times and places of a track at a constant rate, its own by the median step.
+    """Resample a track at a constant rate, given by its median interval.
 
-    Loggers seldom keep one; a filter over samples needs it.
+    Returns times and positions. Loggers seldom have a constant rate, and the smoothing filter needs
+    one.
     """
     times_s, rate_hz = track.times_s, track.rate_hz
     count = max(2, round((times_s[-1] - times_s[0]) * rate_hz) + 1)
@@ -34,10 +36,10 @@ def evenly(track: Track) -> tuple[FloatArray, FloatArray]:
 
 
 def smoothed(xy_m: FloatArray, rate_hz: float, sigma_s: float = SIGMA_S) -> FloatArray:
-    """Filter places (N, 2) at a constant rate.
+    """Smooth positions (N, 2) sampled at a constant rate.
 
-    At its ends a track is continued by turning it about its last point: that point stays, and so
-    does the speed of somebody whom the recording cuts amid a walk.
+    At its ends a track is continued by its point reflection about the last point: that point is
+    unchanged, and so is the speed of a person whom the recording cuts off during a walk.
     """
     from scipy.ndimage import gaussian_filter1d
 
@@ -52,12 +54,12 @@ def smoothed(xy_m: FloatArray, rate_hz: float, sigma_s: float = SIGMA_S) -> Floa
 
 @dataclass(frozen=True)
 class SegmentationRules:
-    """When a person stands, and what is a walk; printed with every result.
+    """When a person stands, and what counts as a walk; printed with every result.
 
     Attributes:
-        still_m_s: slower is still.
-        still_s: standing lasts at least that; shorter pauses belong to the walk.
-        shortest_m: a walk's start and goal are at least that far apart.
+        still_m_s: lower speeds count as still.
+        still_s: shortest standing; shorter pauses belong to the walk.
+        shortest_m: smallest distance between a walk's start and goal.
         sigma_s: smoothing.
     """
 
@@ -67,7 +69,7 @@ class SegmentationRules:
     sigma_s: float = SIGMA_S
 
     def __post_init__(self) -> None:
-        """Raises WalkingError where a value is negative or not a number."""
+        """Raise WalkingError if a value is negative or not finite."""
         for name in ("still_m_s", "still_s", "shortest_m", "sigma_s"):
             if not 0.0 <= getattr(self, name) < np.inf:
                 raise WalkingError(f"{name} is {getattr(self, name)}; it must be 0 or more.")
@@ -77,16 +79,16 @@ USUAL = SegmentationRules()
 
 
 def walks_of(track: Track, rules: SegmentationRules = USUAL) -> list[Walk]:
-    """Cut a track into its walks; none where the person only stands.
+    """Cut a track into its walks; empty if the person only stands.
 
-    Walks shorter than `shortest_m` as the crow flies are left out: steps on the spot, and ways
-    that lead back to where they began, which no path between two points describes.
+    Walks whose start and goal are closer than `shortest_m` are left out: steps on the spot, and
+    walks that return to where they began, which no path between two points describes.
     """
     times_s, places = evenly(track)
     places = smoothed(places, track.rate_hz, rules.sigma_s)
     walks = []
     for first, last in _moving(times_s, places, rules):
-        # The slow samples around it are its start and its goal.
+        # The slow samples before and after it are its start and its goal.
         begin, end = max(0, first - 1), min(len(times_s) - 1, last + 1)
         if np.linalg.norm(places[end] - places[begin]) >= rules.shortest_m:
             walks.append(
@@ -107,13 +109,13 @@ def walks_of(track: Track, rules: SegmentationRules = USUAL) -> list[Walk]:
 def _moving(
     times_s: FloatArray, places: FloatArray, rules: SegmentationRules
 ) -> list[tuple[int, int]]:
-    """First and last sample of each stretch between standings."""
+    """Return the first and last sample of each stretch between standings."""
     step_s = float(times_s[1] - times_s[0])
     speeds = np.linalg.norm(np.gradient(places, step_s, axis=0), axis=1)
     slow = np.asarray(speeds < rules.still_m_s, dtype=np.bool_)
     stands = np.zeros(len(slow), dtype=np.bool_)
     for first, last in _runs(slow):
-        # A recording that begins or ends in rest need not show half a second of it.
+        # A recording may begin or end with less than half a second of standing.
         at_end = first == 0 or last == len(slow) - 1
         if at_end or (last - first) * step_s >= rules.still_s:
             stands[first : last + 1] = True
@@ -121,6 +123,6 @@ def _moving(
 
 
 def _runs(flags: BoolArray) -> list[tuple[int, int]]:
-    """First and last index of each run of true values."""
+    """Return the first and last index of each run of true values."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(np.int8)))
     return [(int(a), int(b) - 1) for a, b in edges.reshape(-1, 2)]

@@ -1,4 +1,4 @@
-"""Tracks on the floor out of any capture: skeletons, trackers on a belt, markers.
+"""Tracks on the floor from any capture: skeletons, trackers on a belt, markers.
 
 The world's (x, y, z), y up, is the floor's (x, -z): x to the right, y ahead.
 """
@@ -15,14 +15,14 @@ from app.science.walking.recording.centre_of_mass import centre_of_mass
 from app.science.walking.records import Kind, Track, WalkingError
 
 LONGEST_GAP_S = 0.1
-"""A longer gap is not filled: a person may turn in it."""
+"""A longer gap is not filled, because a person may turn in it."""
 TORSO_DEPTH_M = 0.24
-"""Depth of an adult's trunk at the navel, where nobody measured it."""
+"""Depth of an adult's trunk at the navel, used if it was not measured."""
 
 
 @dataclass(frozen=True)
 class Walker:
-    """Who was captured: what every track says of its person and its source."""
+    """The captured person and the source of the capture, as stored with every track."""
 
     subject: str
     source: str
@@ -31,17 +31,18 @@ class Walker:
 
 
 def on_floor(world_m: FloatArray) -> FloatArray:
-    """Places (..., 2) on the floor of points (..., 3) in the world."""
+    """Return the positions (..., 2) on the floor of points (..., 3) in the world."""
     return np.stack([world_m[..., 0], -world_m[..., 2]], axis=-1)
 
 
 def track_of_points(times_s: FloatArray, xy_m: FloatArray, walker: Walker) -> Track:
-    """Make a track of places (N, 2); NaN marks what was not seen.
+    """Make a track of positions (N, 2); NaN marks samples that were not seen.
 
-    What was not seen at the beginning and at the end is cut off, short gaps are bridged straight.
+    Unseen samples at the beginning and at the end are cut off, short gaps are interpolated
+    linearly.
 
     Raises:
-        WalkingError: fewer than two places were seen, or a gap is longer than `LONGEST_GAP_S`.
+        WalkingError: fewer than two positions were seen, or a gap is longer than `LONGEST_GAP_S`.
     """
     times_s, xy_m = bridged(times_s, xy_m, f"The track of {walker.subject!r} ({walker.source})")
     return Track(times_s, xy_m, walker.subject, walker.source, walker.kind, walker.stature_m)
@@ -57,16 +58,16 @@ def track_of_rig(
 
     Args:
         motion: the capture.
-        joint_map: body joint -> rig joint, as `propose_joint_map` reads it from names.
-        walker: who it is.
-        follow: what of the body; an upper body without legs has only hips.
+        joint_map: body joint -> rig joint, as `propose_joint_map` derives it from names.
+        walker: the captured person.
+        follow: the point of the body; for an upper body without legs only the hips are possible.
 
     Raises:
         WalkingError: joints that are needed are not mapped.
     """
     if follow == "hips":
         if "Hips" not in joint_map:
-            raise WalkingError("The skeleton's hips are not mapped: name the joint that they are.")
+            raise WalkingError("The skeleton's hips are not mapped: name their joint.")
         positions, _ = motion.world()
         world_m = positions[:, motion.rig.index(joint_map["Hips"])]
     else:
@@ -84,18 +85,19 @@ def track_of_belt(
     off_skin_m: float = 0.0,
     inward: tuple[float, float, float] = (0.0, 0.0, 1.0),
 ) -> Track:
-    """Make a track of the trunk's middle behind a tracker that is worn on a belt over the navel.
+    """Make a track of the middle of the trunk from a tracker worn on a belt over the navel.
 
     Args:
-        motion: the tracker's movement, maybe among others.
+        motion: the tracker's movement, possibly among others.
         body: its name.
-        walker: who wears it.
+        walker: the person who wears it.
         torso_depth_m: front to back at the belt; half of it lies between skin and middle.
-        off_skin_m: how far the tracker's origin is from the skin.
-        inward: the tracker's own axis that points into the body, its z as a rule.
+        off_skin_m: distance of the tracker's origin from the skin.
+        inward: the tracker's own axis that points into the body, usually its z.
 
     Raises:
-        WalkingError: no such body, a depth that is none, or the tracker was out of sight too long.
+        WalkingError: there is no such body, a depth is invalid, or the tracker was out of sight for
+            too long.
     """
     if body not in motion.names:
         raise WalkingError(f"No body {body!r} was tracked; there are {', '.join(motion.names)}.")
@@ -111,10 +113,10 @@ def track_of_belt(
 
 
 def track_of_markers(motion: MarkerMotion, names: tuple[str, ...], walker: Walker) -> Track:
-    """Make a track of the middle of some markers, such as the four of the pelvis.
+    """Make a track of the mean of several markers, such as the four of the pelvis.
 
     Raises:
-        WalkingError: a name is no marker, or not all were seen for too long.
+        WalkingError: there is no marker of a name, or the markers were not all seen for too long.
     """
     unknown = [name for name in names if name not in motion.names]
     if unknown or not names:
@@ -130,21 +132,23 @@ def track_of_markers(motion: MarkerMotion, names: tuple[str, ...], walker: Walke
 def bridged(
     times_s: FloatArray, xy_m: FloatArray, what: str, longest_s: float = LONGEST_GAP_S
 ) -> tuple[FloatArray, FloatArray]:
-    """Fill short gaps of places (N, 2) straight; `what` begins the message of an error.
+    """Fill short gaps in positions (N, 2) linearly; `what` begins the message of an error.
 
     Raises:
-        WalkingError: fewer than two places were seen, or a gap is longer than `longest_s`.
+        WalkingError: fewer than two positions were seen, or a gap is longer than `longest_s`.
     """
     seen = np.flatnonzero(np.isfinite(xy_m).all(axis=1))
     if len(seen) < 2:
-        raise WalkingError(f"{what} has {len(seen)} place(s) that were seen; it needs two or more.")
+        raise WalkingError(
+            f"{what} has {len(seen)} position(s) that were seen; at least two are needed."
+        )
     gaps = np.diff(times_s[seen])
     missed = np.flatnonzero((np.diff(seen) > 1) & (gaps > longest_s))
     if len(missed):
         at = int(missed[0])
         raise WalkingError(
             f"{what} was not seen for {gaps[at]:.2f} s from {times_s[seen[at]]:.2f} s on. Gaps up"
-            f" to {longest_s:g} s are filled: cut the recording there."
+            f" to {longest_s:g} s are filled; for a longer gap, cut the recording there."
         )
     kept = slice(seen[0], seen[-1] + 1)
     columns = [np.interp(times_s[kept], times_s[seen], xy_m[seen, axis]) for axis in (0, 1)]

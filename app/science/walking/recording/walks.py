@@ -1,4 +1,4 @@
-"""From walks to entries of the database: the planned path, and what the walk depends on."""
+"""Make database entries from walks: the planned path, and the dependencies."""
 
 from collections.abc import Mapping
 
@@ -21,7 +21,7 @@ NONE: Mapping[str, float] = {}
 def dependencies_of(
     path: PlannedPath, stature_m: float | None = None, others: Mapping[str, float] = NONE
 ) -> dict[str, float]:
-    """What a walk along a path depends on, for an entry and for a question to the model alike.
+    """Return the dependencies of a walk along a path, for an entry or for a query to the model.
 
     Args:
         path: as planned.
@@ -29,7 +29,7 @@ def dependencies_of(
         others: any further numbers by name, such as a load in kilograms.
 
     Raises:
-        WalkingError: another number has one of the three names, or a stature cannot be.
+        WalkingError: one of `others` has one of the three names, or the stature is impossible.
     """
     check_stature(stature_m)
     own = {LENGTH: path.length_m, TURNING: turning_per_m(path.points_m)}
@@ -42,10 +42,10 @@ def dependencies_of(
 
 
 def planned_walk(walk: Walk, planner: Planner, others: Mapping[str, float] = NONE) -> PlannedWalk:
-    """Plan the path between a walk's own start and goal, and make it an entry.
+    """Plan the path between a walk's own start and goal, and make a database entry of both.
 
     Raises:
-        SceneError: the planner finds none.
+        SceneError: the planner finds no path.
     """
     path = planner.plan(walk.start_m, walk.goal_m)
     return PlannedWalk(walk, path, dependencies_of(path, walk.stature_m, others))

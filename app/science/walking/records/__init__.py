@@ -1,6 +1,6 @@
-"""The records that all of walking exchanges: tracks, walks, planned paths, parameters, protocols.
+"""The data types that all of walking shares: tracks, walks, paths, parameters, protocols.
 
-A record that exists is valid; what is not raises `WalkingError`. Metres, seconds, radians.
+Every instance is valid; invalid arguments raise `WalkingError`. Metres, seconds, radians.
 """
 
 from app.science.walking.records.dependencies import Scaling, dependency_vectors, scaling_of

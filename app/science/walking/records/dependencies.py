@@ -1,8 +1,8 @@
-"""Dependencies as a space: each number on the scale of its own spread.
+"""Scale dependencies to a common space: each number by its own standard deviation.
 
-A metre of path, a radian a metre and a metre of stature cannot be compared. So distances between
-walks are taken on z-scores, (d - mean) / sd over the walks of the database. A dependency that is
-the same for all of them says nothing, and weighs nothing.
+A metre of path, a radian per metre and a metre of stature cannot be compared. Distances between
+walks are therefore computed on z-scores, (d - mean) / sd over the walks of the database. A
+dependency that is the same for all of them carries no information and has weight zero.
 """
 
 from collections.abc import Mapping, Sequence
@@ -14,17 +14,17 @@ from app.science.rotations import FloatArray
 from app.science.walking.records.model import WalkingError
 
 SAME_SD = 1e-9
-"""Below that a dependency is the same for all walks."""
+"""Relative standard deviation below which a dependency counts as constant."""
 
 
 @dataclass(frozen=True, eq=False)
 class Scaling:
-    """The scales of m dependencies.
+    """The means and scales of m dependencies.
 
     Attributes:
         names: of the dependencies, in the order of a vector's columns.
         means: (m,) in their own units.
-        inverse_sds: (m,) one over the standard deviation; 0 where all walks are alike.
+        inverse_sds: (m,) one over the standard deviation; 0 if all walks have the same value.
     """
 
     names: tuple[str, ...]
@@ -32,10 +32,10 @@ class Scaling:
     inverse_sds: FloatArray
 
     def vector(self, dependencies: Mapping[str, float]) -> FloatArray:
-        """The numbers (m,) in their own units; others than `names` are ignored.
+        """Return the numbers (m,) in their own units; names other than `names` are ignored.
 
         Raises:
-            WalkingError: one is missing, or not finite.
+            WalkingError: a dependency is missing, or not finite.
         """
         missing = [name for name in self.names if name not in dependencies]
         if missing:
@@ -48,16 +48,16 @@ class Scaling:
         return values
 
     def z(self, vectors: FloatArray) -> FloatArray:
-        """z-scores of vectors (..., m)."""
+        """Return the z-scores of vectors (..., m)."""
         scores: FloatArray = (vectors - self.means) * self.inverse_sds
         return scores
 
 
 def scaling_of(names: Sequence[str], vectors: FloatArray) -> Scaling:
-    """Take the scales from the database's own vectors (N, m).
+    """Compute the scaling from the database's own vectors (N, m).
 
     Raises:
-        WalkingError: no walk, or not a column for each name.
+        WalkingError: there is no walk, or the number of columns differs from that of names.
     """
     if vectors.ndim != 2 or vectors.shape[1] != len(names) or not len(vectors) or not names:
         raise WalkingError(f"{len(names)} dependencies need vectors (N, m), got {vectors.shape}.")
@@ -71,7 +71,7 @@ def scaling_of(names: Sequence[str], vectors: FloatArray) -> Scaling:
 def dependency_vectors(
     names: Sequence[str], walks: Sequence[Mapping[str, float]], sources: Sequence[str]
 ) -> FloatArray:
-    """Dependencies of N walks as (N, m).
+    """Return the dependencies of N walks as vectors (N, m).
 
     Raises:
         WalkingError: a walk lacks one; the message names its source.

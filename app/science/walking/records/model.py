@@ -1,10 +1,10 @@
-"""The records of walking: what was tracked, one walk from rest to rest, the path planned for it.
+"""The data types of walking: tracks, walks from rest to rest, and their planned paths.
 
-A `Track` is a person's place on the floor over time. Cut where the person stands still, and
-smoothed, it gives `Walk`s. The planner lays a `PlannedPath` between a walk's start and goal; with
-the numbers that a walk is said to depend on (length, turning, stature, or any other) that is a
-`PlannedWalk`, an entry of the database. Dependencies come from the planned path and not from the
-walked one, since a path still to be walked has nothing else.
+A `Track` is a person's position on the floor over time. Cut where the person stands still, and
+smoothed, it gives `Walk`s. The planner plans a `PlannedPath` between a walk's start and goal; with
+the numbers on which a walk is assumed to depend (length, turning, stature, or any other) that is a
+`PlannedWalk`, an entry of the database. Dependencies are computed from the planned path and not
+from the actual one, since for a future walk only the planned path is known.
 
 The floor is seen from above: x to the right, y ahead, which is (x, -z) of the world's y-up frame.
 """
@@ -19,29 +19,30 @@ import numpy as np
 from app.science.rotations import FloatArray
 
 Kind = Literal["human", "synthetic"]
-"""Whether a person walked or a program; it stays with everything derived from a walk."""
+"""Whether a person or a program walked; stored with all data derived from a walk."""
 LENGTH, TURNING, STATURE = "length_m", "turning_per_m", "stature_m"
-"""Names of the paper's three dependencies: metres, radians a metre, metres."""
+"""Names of the paper's three dependencies, in metres, radians per metre and metres."""
 
 
 class WalkingError(ValueError):
-    """A walk, a scene or a model cannot be; the message says what is wrong and what to do."""
+    """A walk, a scene or a model is invalid; the message says what is wrong and what to do."""
 
 
 @dataclass(frozen=True, eq=False)
 class Track:
-    """One person's place on the floor over time.
+    """One person's position on the floor over time.
 
     Attributes:
         times_s: (N,) increasing.
         xy_m: (N, 2) finite.
-        subject: who walked; walks of one subject are never split between training and test.
-        source: where it comes from, such as a file's name.
+        subject: the person; walks of one subject are never split between training and test.
+        source: origin of the data, such as a file's name.
         kind: human or synthetic.
-        stature_m: the person's height, None where unknown.
+        stature_m: the person's height, None if unknown.
 
     Raises:
-        WalkingError: fewer than two points, positions that are not finite, times that do not grow.
+        WalkingError: there are fewer than two points, positions are not finite, or times do not
+            increase.
     """
 
     times_s: FloatArray
@@ -52,13 +53,13 @@ class Track:
     stature_m: float | None = None
 
     def __post_init__(self) -> None:
-        """Refuse what is no track."""
+        """Validate the track."""
         _check_course(self.times_s, self.xy_m, f"The track of {self.subject!r} ({self.source})")
         check_stature(self.stature_m)
 
     @property
     def rate_hz(self) -> float:
-        """Samples a second by the median step."""
+        """Sampling rate, from the median interval."""
         return float(1.0 / np.median(np.diff(self.times_s)))
 
 
@@ -70,9 +71,9 @@ class Walk:
         times_s: (N,) from 0, increasing.
         xy_m: (N, 2) the centre of mass on the floor.
         subject, source, kind, stature_m: as of its track.
-        begins_still, ends_still: whether the person stood before and after. Where a recording
-            begins or ends amid the walk, its agent begins at speed or does not brake.
-        note: what its reader should know, such as the name of the scene's path.
+        begins_still, ends_still: whether the person stood before and after. If a recording
+            begins or ends during the walk, its agent starts at speed or does not brake.
+        note: information for the reader, such as the name of the scene's path.
     """
 
     times_s: FloatArray
@@ -90,16 +91,16 @@ class Walk:
         _check_course(self.times_s, self.xy_m, f"The walk of {self.subject!r} ({self.source})")
         check_stature(self.stature_m)
         if self.times_s[0] != 0.0:
-            raise WalkingError(f"A walk's time begins at 0, not at {self.times_s[0]:g} s.")
+            raise WalkingError(f"A walk's times must begin at 0, not at {self.times_s[0]:g} s.")
 
     @property
     def duration_s(self) -> float:
-        """The travel time."""
+        """Travel time of the walk."""
         return float(self.times_s[-1])
 
     @cached_property
     def arc_m(self) -> FloatArray:
-        """(N,) distance walked up to each sample."""
+        """Distance walked up to each sample, (N,)."""
         return arc_of(self.xy_m)
 
     @property
@@ -109,22 +110,22 @@ class Walk:
 
     @cached_property
     def speeds_m_s(self) -> FloatArray:
-        """(N,) speed at each sample by central differences."""
+        """Speed at each sample by central differences, (N,)."""
         velocity = np.gradient(self.xy_m, self.times_s, axis=0)
         return np.asarray(np.linalg.norm(velocity, axis=1), dtype=np.float64)
 
     @property
     def start_m(self) -> tuple[float, float]:
-        """Where the walk begins."""
+        """Position at which the walk begins."""
         return float(self.xy_m[0, 0]), float(self.xy_m[0, 1])
 
     @property
     def goal_m(self) -> tuple[float, float]:
-        """Where the walk ends."""
+        """Position at which the walk ends."""
         return float(self.xy_m[-1, 0]), float(self.xy_m[-1, 1])
 
     def at(self, times_s: FloatArray) -> FloatArray:
-        """Places (T, 2) at any times; before the start and after the end the person stands."""
+        """Return positions (T, 2) at any times; outside the walk's time, its start or its goal."""
         columns = [np.interp(times_s, self.times_s, self.xy_m[:, axis]) for axis in (0, 1)]
         return np.stack(columns, axis=-1)
 
@@ -134,13 +135,13 @@ class PlannedPath:
     """A polyline from start to goal, free of obstacles.
 
     Attributes:
-        points_m: (P, 2), P >= 2, no two neighbours equal.
+        points_m: (P, 2), P >= 2, consecutive points distinct.
     """
 
     points_m: FloatArray
 
     def __post_init__(self) -> None:
-        """Raises WalkingError for fewer than two points, repeated points, or not finite ones."""
+        """Raise WalkingError for fewer than two points, repeated points, or points not finite."""
         points = self.points_m
         if points.ndim != 2 or points.shape[1] != 2 or len(points) < 2:
             raise WalkingError(f"A path needs two points or more, (P, 2), got {points.shape}.")
@@ -151,7 +152,7 @@ class PlannedPath:
 
     @cached_property
     def arc_m(self) -> FloatArray:
-        """(P,) distance along the path of each point."""
+        """Distance along the path up to each point, (P,)."""
         return arc_of(self.points_m)
 
     @property
@@ -162,12 +163,12 @@ class PlannedPath:
 
 @dataclass(frozen=True, eq=False)
 class PlannedWalk:
-    """A walk, the path planned for it, and what it depends on: an entry of the database.
+    """A walk, the path planned for it, and its dependencies: an entry of the database.
 
     Attributes:
         walk: the reference.
         path: from the walk's start to its goal.
-        dependencies: name to number; `LENGTH`, `TURNING`, `STATURE` and whatever else was given.
+        dependencies: name -> number; `LENGTH`, `TURNING`, `STATURE` and any others that were given.
     """
 
     walk: Walk
@@ -175,20 +176,20 @@ class PlannedWalk:
     dependencies: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        """Raises WalkingError naming a dependency that is not finite."""
+        """Raise WalkingError if a dependency is not finite; the message names it."""
         for name, value in self.dependencies.items():
             if not np.isfinite(value):
                 raise WalkingError(f"Dependency {name} is {value}; give a finite number.")
 
 
 def arc_of(points_m: FloatArray) -> FloatArray:
-    """(N,) distance along a line (N, 2) up to each of its points."""
+    """Return the distance along a line (N, 2) up to each of its points, (N,)."""
     steps = np.linalg.norm(np.diff(points_m, axis=0), axis=1)
     return np.concatenate([[0.0], np.cumsum(steps)])
 
 
 def check_stature(stature_m: float | None) -> None:
-    """Raise WalkingError for a height that no walking person has."""
+    """Raise WalkingError unless a stature is None or between 0.5 and 2.6 m."""
     if stature_m is not None and not 0.5 <= stature_m <= 2.6:
         raise WalkingError(f"Stature {stature_m} is not between 0.5 and 2.6 m: give metres.")
 
@@ -196,7 +197,7 @@ def check_stature(stature_m: float | None) -> None:
 def _check_course(times_s: FloatArray, xy_m: FloatArray, what: str) -> None:
     if times_s.ndim != 1 or xy_m.shape != (len(times_s), 2):
         raise WalkingError(
-            f"{what} has times {times_s.shape} and places {xy_m.shape}: (N,), (N, 2)."
+            f"{what} has times {times_s.shape} and positions {xy_m.shape}: give (N,), (N, 2)."
         )
     if len(times_s) < 2:
         raise WalkingError(f"{what} has {len(times_s)} point(s); a walk needs at least two.")
@@ -210,4 +211,4 @@ def _check_course(times_s: FloatArray, xy_m: FloatArray, what: str) -> None:
     steps = np.diff(times_s)
     if not (steps > 0.0).all():
         at = int(np.argmin(steps > 0.0))
-        raise WalkingError(f"{what} has times that do not grow, at index {at + 1}.")
+        raise WalkingError(f"{what} has times that do not increase, at index {at + 1}.")

@@ -2,8 +2,8 @@
 
 A planner is steered by a vector of numbers, each between bounds. The paper's are maximum velocity,
 maximum acceleration, and the slope of the line that limits angular velocity by velocity, each on
-ten values from .1 to 2 ("i * .21" in its equations 7 to 9 is the rounded step of 1.9 / 9). Nothing
-here knows these three: any follower names its own.
+ten values from .1 to 2 ("i * .21" in its equations 7 to 9 is the rounded step of 1.9 / 9). The grid
+is independent of these three: each follower defines its own parameters.
 """
 
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from app.science.walking.records.model import WalkingError
 
 @dataclass(frozen=True)
 class SteeringParameter:
-    """A number that steers: its name, its unit, and its bounds (low < high)."""
+    """A steering parameter: its name, its unit, and its bounds (low < high)."""
 
     name: str
     unit: str
@@ -25,7 +25,7 @@ class SteeringParameter:
     high: float
 
     def __post_init__(self) -> None:
-        """Raises WalkingError where the bounds are no interval."""
+        """Raise WalkingError unless the bounds are finite and in order."""
         if not (np.isfinite([self.low, self.high]).all() and self.low < self.high):
             raise WalkingError(
                 f"Parameter {self.name} has bounds {self.low} to {self.high}: give low < high."
@@ -38,14 +38,14 @@ class ParameterGrid:
 
     Attributes:
         parameters: n of them, in the order of a vector's columns.
-        values: for each parameter its increasing values within its bounds; one value fixes it.
+        values: the increasing values of each parameter, within its bounds; a single value fixes it.
     """
 
     parameters: tuple[SteeringParameter, ...]
     values: tuple[tuple[float, ...], ...]
 
     def __post_init__(self) -> None:
-        """Raises WalkingError for values that are missing, out of bounds or out of order."""
+        """Raise WalkingError if values are missing, out of bounds or out of order."""
         if len(self.parameters) != len(self.values) or not self.parameters:
             raise WalkingError("A grid needs parameters, and a list of values for each.")
         for parameter, values in zip(self.parameters, self.values, strict=True):
@@ -53,13 +53,13 @@ class ParameterGrid:
             inside = len(column) and (column >= parameter.low).all()
             if not inside or (column > parameter.high).any() or (np.diff(column) <= 0.0).any():
                 raise WalkingError(
-                    f"The grid's values of {parameter.name} must grow and lie from {parameter.low}"
-                    f" to {parameter.high} {parameter.unit}; they are {values}."
+                    f"The grid's values of {parameter.name} must increase and be from"
+                    f" {parameter.low} to {parameter.high} {parameter.unit}; they are {values}."
                 )
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """How many values each parameter has: the shape of a map."""
+        """Number of values of each parameter: the shape of a map."""
         return tuple(len(values) for values in self.values)
 
     @property
@@ -69,14 +69,14 @@ class ParameterGrid:
 
     @cached_property
     def nodes(self) -> FloatArray:
-        """(K, n) all combinations, the last parameter fastest: `nodes.reshape(*shape, n)`."""
+        """All combinations (K, n), the last parameter fastest: `nodes.reshape(*shape, n)`."""
         mesh = np.meshgrid(*(np.array(values) for values in self.values), indexing="ij")
         nodes = np.stack([axis.ravel() for axis in mesh], axis=-1)
         nodes.flags.writeable = False
         return nodes
 
     def node(self, index: int) -> FloatArray:
-        """The vector (n,) of a flat index, as `argmax` of a map gives it."""
+        """Return the vector (n,) at a flat index, such as the `argmax` of a map."""
         vector: FloatArray = self.nodes[index]
         return vector
 
@@ -90,9 +90,9 @@ def regular_grid(parameters: tuple[SteeringParameter, ...], count: int = 10) -> 
 VELOCITY = SteeringParameter("velocity", "m/s", 0.1, 2.0)
 """Maximum speed."""
 ACCELERATION = SteeringParameter("acceleration", "m/s^2", 0.1, 2.0)
-"""Largest rate of change of speed, to both sides."""
+"""Largest rate of change of speed, when accelerating and when braking."""
 ANGULAR = SteeringParameter("angular", "1/m", 0.1, 2.0)
-"""Angular velocity allowed for each metre a second of speed: the largest curvature."""
+"""Angular velocity allowed per metre per second of speed: the largest curvature."""
 PAPER_PARAMETERS = (VELOCITY, ACCELERATION, ANGULAR)
 PAPER_GRID = regular_grid(PAPER_PARAMETERS)
 """The paper's 10 x 10 x 10 combinations, its equations 6 to 9."""

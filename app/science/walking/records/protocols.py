@@ -1,11 +1,11 @@
-"""What can be exchanged: the planner, the follower of its path, and the measure of deviation.
+"""Protocols of the exchangeable parts: planner, path follower, and metric of deviation.
 
     Planner       scene, start, goal      -> PlannedPath
-    PathFollower  path, K vectors         -> Trajectories   (the steering parameters enter here)
+    PathFollower  path, K vectors         -> Trajectories   (uses the steering parameters)
     Metric        reference, Trajectories -> K deviations, smaller is better
 
-A follower names its steering parameters; a grid is made over those. All K agents are simulated at
-once at steps of `dt_s`, from time 0. The reference is sampled at the same steps.
+A follower defines its steering parameters; a grid is made over those. All K agents are simulated
+together at steps of `dt_s`, from time 0. The reference is sampled at the same steps.
 """
 
 from dataclasses import dataclass
@@ -23,22 +23,22 @@ BoolArray = npt.NDArray[np.bool_]
 
 
 class Planner(Protocol):
-    """Lays paths in one scene; deterministic."""
+    """Protocol of a planner of paths in one scene; deterministic."""
 
     def plan(self, start_m: Point, goal_m: Point) -> PlannedPath:
-        """Return the path; raises SceneError where there is none."""
+        """Return the path between two points; raise SceneError if there is none."""
         ...
 
 
 @dataclass(frozen=True)
 class Course:
-    """How an agent is to follow a path, besides its steering parameters.
+    """How an agent is to follow a path, apart from its steering parameters.
 
     Attributes:
-        path: what to follow.
-        samples: positions to report, at 0, dt, 2 dt, ...: as many as the reference has.
-        time_limit_s: an agent that has not arrived by then has not arrived.
-        initial_speed_m_s: 0 for who stands, else the speed at which the recording begins.
+        path: the path to follow.
+        samples: number of positions to return, at 0, dt, 2 dt, ...: as many as the reference has.
+        time_limit_s: an agent that takes longer has not arrived.
+        initial_speed_m_s: 0 for a start from rest, else the speed at which the recording begins.
         brakes: whether the agent stops at the goal, or passes it at speed.
     """
 
@@ -51,10 +51,10 @@ class Course:
 
 @dataclass(frozen=True, eq=False)
 class Trajectories:
-    """What K agents did on one course.
+    """The movements of K agents on one course.
 
     Attributes:
-        xy_m: (K, samples, 2) places; an agent that has arrived stays where it did.
+        xy_m: (K, samples, 2) positions; an agent that has arrived stays at its last position.
         arrival_s: (K,) travel times, NaN for agents that did not arrive in time.
     """
 
@@ -63,12 +63,12 @@ class Trajectories:
 
     @property
     def arrived(self) -> BoolArray:
-        """(K,) whether each agent came to the goal."""
+        """Whether each agent reached the goal in time, (K,)."""
         return np.isfinite(self.arrival_s)
 
 
 class PathFollower(Protocol):
-    """Moves agents along a path; deterministic."""
+    """Protocol of a simulation that moves agents along a path; deterministic."""
 
     @property
     def parameters(self) -> tuple[SteeringParameter, ...]:
@@ -77,7 +77,7 @@ class PathFollower(Protocol):
 
     @property
     def dt_s(self) -> float:
-        """The time between samples."""
+        """The time between samples, s."""
         ...
 
     def follow(self, course: Course, vectors: FloatArray) -> Trajectories:
@@ -103,15 +103,15 @@ class Reference:
 
 
 class Metric(Protocol):
-    """How far agents are from a reference."""
+    """Protocol of a measure of how far agents deviate from a reference."""
 
     @property
     def name(self) -> str:
-        """A short key, kept with maps made by it."""
+        """Short key, stored with the maps made by this metric."""
         ...
 
     def deviations(self, reference: Reference, trajectories: Trajectories) -> FloatArray:
-        """Return (K,) deviations, 0 for equal; `trajectories` has the reference's samples."""
+        """Return the deviations (K,), 0 for equal; `trajectories` has the reference's samples."""
         ...
 
 

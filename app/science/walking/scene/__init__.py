@@ -1,7 +1,7 @@
-"""The floor that is walked on: bounds, obstacles, places and paths.
+"""Scenes in which people walk: bounds, obstacles, places and paths.
 
-`open_scene` is an empty floor and `straight_scene`, `pole_scene` are the paper's laboratory.
-`outlines_of` gives the convex obstacles as planners see them.
+`open_scene` is an empty floor, and `straight_scene` and `pole_scene` are the paper's laboratory.
+`outlines_of` converts convex obstacles for the planners.
 """
 
 from app.science.walking.scene.laboratory import (

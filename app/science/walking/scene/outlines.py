@@ -1,4 +1,4 @@
-"""Obstacles and grids in the form that compiled planners take."""
+"""Obstacles and lattices as arrays for the compiled planners."""
 
 from typing import NamedTuple
 
@@ -11,9 +11,9 @@ from app.science.walking.scene.shapes import half_planes
 IntArray = npt.NDArray[np.int64]
 ByteArray = npt.NDArray[np.uint8]
 TOUCH_M = 1e-9
-"""How deep a segment may go into an outline and still count as touching it."""
+"""Depth inside an outline up to which a segment only counts as touching it."""
 FREE, BLOCKED, CLOSED, MOVED = 0, 1, 2, 3
-"""States of a node: expanded ones are closed; moved ones still have to be checked."""
+"""States of a node: closed ones have been expanded; moved ones are still to be checked."""
 
 
 class Outlines(NamedTuple):
@@ -21,7 +21,7 @@ class Outlines(NamedTuple):
 
     Attributes:
         planes: (M, E, 3) n_x, n_y, d, padded to the longest outline.
-        counts: (M,) how many edges each has.
+        counts: (M,) number of edges of each.
         boxes: (M, 4) left, near, right, far of each.
     """
 
@@ -35,9 +35,9 @@ class Lattice(NamedTuple):
 
     Attributes:
         state: (rows y, columns x) free, blocked or expanded.
-        places: (rows, columns, 2) where each node is; at outlines they are off the lattice.
-        left, near: where node (0, 0) would be.
-        cell_m: how far apart nodes are.
+        places: (rows, columns, 2) position of each node; at outlines they are off the lattice.
+        left, near: regular position of node (0, 0).
+        cell_m: distance between nodes.
     """
 
     state: ByteArray
@@ -48,7 +48,7 @@ class Lattice(NamedTuple):
 
 
 def outlines_of(corners_m: list[FloatArray]) -> Outlines:
-    """Pack outlines given by their corners."""
+    """Pack outlines, given by their corners, into arrays."""
     most = max((len(corners) for corners in corners_m), default=1)
     planes = np.zeros((len(corners_m), most, 3))
     boxes = np.zeros((len(corners_m), 4))

@@ -1,9 +1,9 @@
-"""A scene: the floor people walk on, what stands in the way, and the places they walk between.
+"""A scene: the floor on which people walk, its obstacles, and the places between which they walk.
 
 An agent is a point, its centre of mass, so obstacles are widened by a `clearance_m`, about half a
-body's width. People do stand nearer than that to a rack they reach into. So an obstacle that a
-path's start or goal is nearer to keeps only that distance, for that path; a start or goal inside
-an obstacle is refused.
+body's width. People do stand closer than that to a rack into which they reach. If a path's start or
+goal is closer to an obstacle, that obstacle is widened only by this distance, for that path; a
+start or goal inside an obstacle is rejected.
 """
 
 from collections.abc import Mapping
@@ -25,24 +25,24 @@ from app.science.walking.scene.shapes import (
 )
 
 CLEARANCE_M = 0.2
-"""Unless the scene says otherwise. The paper gives none."""
+"""Default clearance of a scene. The paper does not state one."""
 NEAR_M = 1e-6
-"""Who touches an obstacle still gets off it by that."""
+"""Smallest distance kept from an obstacle that a start or goal touches."""
 
 
 class SceneError(WalkingError):
-    """A scene, or a path in it, is impossible: a goal inside an obstacle, no way, a bad outline."""
+    """A scene, or a path in it, is impossible: a goal in an obstacle, no path, a bad outline."""
 
 
 @dataclass(frozen=True, eq=False)
 class Obstacle:
-    """Something nobody walks through: convex corners (K, 2), counter-clockwise."""
+    """An obstacle with convex corners (K, 2), counter-clockwise."""
 
     name: str
     corners_m: FloatArray
 
     def __post_init__(self) -> None:
-        """Raises SceneError for an outline that is not convex or has no area."""
+        """Raise SceneError if the outline is not convex or has no area."""
         corners = self.corners_m
         if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3:
             raise SceneError(f"Obstacle {self.name!r} needs three corners or more.")
@@ -63,7 +63,7 @@ class Obstacle:
 
 @dataclass(frozen=True)
 class ScenePath:
-    """A walk that people are asked for, between two places of the scene."""
+    """A walk that people are asked to do, between two places of the scene."""
 
     name: str
     start: str
@@ -72,16 +72,16 @@ class ScenePath:
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """A floor with obstacles.
+    """A floor with obstacles, named places and paths.
 
     Attributes:
-        name, title: key, and what people call it.
-        bounds_m: (left, near, right, far) of the rectangle that is walked on.
-        obstacles: none, or several; they may overlap.
-        places: name to point.
+        name, title: key, and displayed name.
+        bounds_m: (left, near, right, far) of the rectangle in which people walk.
+        obstacles: any number; they may overlap.
+        places: name -> point.
         paths: in the order in which people walk them.
-        clearance_m: how far the centre of mass keeps from obstacles.
-        about: where the geometry comes from, and what was assumed.
+        clearance_m: smallest distance between the centre of mass and obstacles.
+        about: the source of the geometry, and its assumptions.
     """
 
     name: str
@@ -94,12 +94,12 @@ class Scene:
     about: str = ""
 
     def __post_init__(self) -> None:
-        """Raises SceneError for bounds, places or paths that cannot be."""
+        """Raise SceneError if bounds, places or paths are invalid."""
         left, near, right, far = self.bounds_m
         if not (np.isfinite(self.bounds_m).all() and left < right and near < far):
             raise SceneError(f"Bounds {self.bounds_m} must be left < right, near < far, in metres.")
         if not 0.0 <= self.clearance_m < np.inf:
-            raise SceneError(f"The clearance is {self.clearance_m} m; it is 0 or more.")
+            raise SceneError(f"The clearance is {self.clearance_m} m; it must be 0 or more.")
         for name, point in self.places.items():
             self.check_point(point, f"Place {name!r}")
         for path in self.paths:
@@ -109,7 +109,7 @@ class Scene:
                     raise SceneError(f"Path {path.name!r} names {place!r}; places are {known}.")
 
     def check_point(self, point_m: Point, what: str) -> None:
-        """Raise SceneError where a person cannot stand; `what` begins the message."""
+        """Raise SceneError if a person cannot stand there; `what` begins the message."""
         left, near, right, far = self.bounds_m
         x, y = point_m
         if not np.isfinite(point_m).all():
@@ -127,7 +127,7 @@ class Scene:
                 )
 
     def widened_obstacles(self, *standing_m: Point) -> list[FloatArray]:
-        """Outlines an agent keeps out of, given where it begins and ends."""
+        """Return the outlines that an agent must not enter, given its start and goal."""
         if not any(self.crowds(point) for point in standing_m):
             return self._roomy
         return [
@@ -136,7 +136,7 @@ class Scene:
         ]
 
     def crowds(self, point_m: Point) -> bool:
-        """Whether somebody standing there is within the clearance of an obstacle."""
+        """Return whether a person standing there is within the clearance of an obstacle."""
         return any(contains(corners, np.array(point_m)) for corners in self._roomy)
 
     @cached_property
@@ -147,19 +147,19 @@ class Scene:
         clearance_m = self.clearance_m
         for point in standing_m:
             if contains(widened(obstacle.corners_m, clearance_m), np.array(point)):
-                # A widened outline is up to 2 % wider than its clearance, at corners.
+                # At corners a widened outline is up to 2 % wider than its clearance.
                 apart_m = distance_m(obstacle.corners_m, point)
                 clearance_m = max(0.0, min(clearance_m, 0.98 * apart_m - NEAR_M))
         return clearance_m
 
 
 def open_scene(*points_m: Point, margin_m: float = 0.5, name: str = "open floor") -> Scene:
-    """Make an empty floor around some points."""
+    """Make a scene without obstacles around some points."""
     array = np.array(points_m)
     (left, near), (right, far) = array.min(axis=0) - margin_m, array.max(axis=0) + margin_m
     return Scene(name, (float(left), float(near), float(right), float(far)))
 
 
 def box(name: str, centre_m: Point, size_m: Point, turned_deg: float = 0.0) -> Obstacle:
-    """Make a rectangular obstacle of width and depth, turned about its centre."""
+    """Make a rectangular obstacle of given width and depth, turned about its centre."""
     return Obstacle(name, box_corners(centre_m, size_m, turned_deg))

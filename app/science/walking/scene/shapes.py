@@ -1,7 +1,8 @@
 """Convex outlines on the floor: boxes, discs, walls, and outlines widened by a clearance.
 
-Corners run counter-clockwise, (K, 2). A disc is the regular polygon around it, so that nothing is
-ever made smaller than it is. Inside means n . p < d for every edge with outward normal n.
+Corners are counter-clockwise, (K, 2). A disc is approximated by the regular polygon around it, so
+that an obstacle is never smaller than its true shape. Inside means n . p < d for every edge with
+outward normal n.
 """
 
 import math
@@ -12,13 +13,13 @@ from app.science.rotations import FloatArray
 from app.science.walking.records import BoolArray, Point
 
 SIDES = 16
-"""Corners of a disc: at the corners it is 2 % wider than the circle."""
+"""Number of corners of a disc; at the corners it is 2 % wider than the circle."""
 FLAT_M2 = 1e-9
-"""An outline with less area is none."""
+"""Area below which an outline counts as having none."""
 
 
 def box_corners(centre_m: Point, size_m: Point, turned_deg: float = 0.0) -> FloatArray:
-    """Make a rectangle of width and depth, turned counter-clockwise about its centre."""
+    """Make a rectangle of given width and depth, turned counter-clockwise about its centre."""
     half = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * np.array(size_m) / 2.0
     turn = math.radians(turned_deg)
     spin = np.array([[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
@@ -35,7 +36,7 @@ def disc_corners(centre_m: Point, radius_m: float) -> FloatArray:
 
 
 def wall_corners(start_m: Point, end_m: Point, thickness_m: float) -> FloatArray:
-    """Make a wall between two points, half its thickness to each side."""
+    """Make a wall between two points, with half its thickness on each side."""
     (x0, y0), (x1, y1) = start_m, end_m
     centre = ((x0 + x1) / 2.0, (y0 + y1) / 2.0)
     turned_deg = math.degrees(math.atan2(y1 - y0, x1 - x0))
@@ -43,7 +44,7 @@ def wall_corners(start_m: Point, end_m: Point, thickness_m: float) -> FloatArray
 
 
 def convex_hull(points_m: FloatArray) -> FloatArray:
-    """The hull's corners counter-clockwise, without points amid an edge (monotone chain)."""
+    """Return the hull's corners counter-clockwise, without points on an edge (monotone chain)."""
     ordered = np.unique(points_m, axis=0)
     lower, upper = _chain(ordered), _chain(ordered[::-1])
     return np.array(lower[:-1] + upper[:-1])
@@ -63,9 +64,9 @@ def _cross(a: FloatArray, b: FloatArray, c: FloatArray) -> float:
 
 
 def widened(corners_m: FloatArray, clearance_m: float) -> FloatArray:
-    """Every place nearer to the outline than the clearance, and the outline itself.
+    """Return the outline widened by the clearance on all sides.
 
-    The Minkowski sum with a disc's polygon: a little more at corners, never less.
+    It is the Minkowski sum with a disc's polygon: a little wider at corners, never narrower.
     """
     if clearance_m <= 0.0:
         return corners_m
@@ -74,7 +75,7 @@ def widened(corners_m: FloatArray, clearance_m: float) -> FloatArray:
 
 
 def half_planes(corners_m: FloatArray) -> FloatArray:
-    """(K, 3) rows (n_x, n_y, d) with unit outward normals."""
+    """Return rows (n_x, n_y, d) of each edge with unit outward normals, (K, 3)."""
     edges = np.roll(corners_m, -1, axis=0) - corners_m
     normals = np.stack([edges[:, 1], -edges[:, 0]], axis=-1)
     normals = normals / np.linalg.norm(normals, axis=1, keepdims=True)
@@ -83,14 +84,14 @@ def half_planes(corners_m: FloatArray) -> FloatArray:
 
 
 def contains(corners_m: FloatArray, points_m: FloatArray, *, margin_m: float = 0.0) -> BoolArray:
-    """Whether each point (..., 2) lies inside by more than the margin."""
+    """Return whether each point (..., 2) lies inside by more than the margin."""
     planes = half_planes(corners_m)
     depths = planes[:, 2] - np.asarray(points_m) @ planes[:, :2].T
     return np.asarray(depths.min(axis=-1) > margin_m, dtype=np.bool_)
 
 
 def distance_m(corners_m: FloatArray, point_m: Point) -> float:
-    """Distance of a point to an outline, 0 inside."""
+    """Return the distance of a point from an outline, 0 inside."""
     if contains(corners_m, np.array(point_m)):
         return 0.0
     starts, point = corners_m, np.array(point_m)
@@ -101,13 +102,13 @@ def distance_m(corners_m: FloatArray, point_m: Point) -> float:
 
 
 def area_m2(corners_m: FloatArray) -> float:
-    """Area; negative where the corners run clockwise."""
+    """Return the area; negative if the corners are clockwise."""
     x, y = corners_m[:, 0], corners_m[:, 1]
     return float((x * np.roll(y, -1) - y * np.roll(x, -1)).sum() / 2.0)
 
 
 def is_convex(corners_m: FloatArray) -> bool:
-    """Whether counter-clockwise corners never turn to the right."""
+    """Return whether counter-clockwise corners never turn to the right."""
     edges = np.roll(corners_m, -1, axis=0) - corners_m
     after = np.roll(edges, -1, axis=0)
     turns = edges[:, 0] * after[:, 1] - edges[:, 1] * after[:, 0]

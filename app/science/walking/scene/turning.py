@@ -1,9 +1,9 @@
 """How much a path turns: the integral of |curvature| along it, per metre.
 
-The paper sums |curvature| over the samples of a capture. At the rate of a capture that measures
-jitter: it gives hundreds on straight walks. Here the path is resampled by its own length at one
-centimetre, smoothed as the paper smooths, and the turning of its direction is added up, without
-the first and last 5 cm, where a direction means little. Radians a metre.
+The paper sums |curvature| over the samples of a capture. At a capture's sampling rate that measures
+jitter: it gives hundreds on straight walks. Here the path is resampled at equal distances of one
+centimetre, smoothed as in the paper, and the changes of its direction are added up, without the
+first and last 5 cm, where the direction is unreliable. Radians per metre.
 """
 
 import numpy as np
@@ -30,7 +30,7 @@ def by_length(points_m: FloatArray, spacing_m: float = SPACING_M) -> FloatArray:
 
 
 def total_turning(points_m: FloatArray) -> float:
-    """Add up how far a line's direction turns, to whichever side; radians."""
+    """Return the sum of the absolute changes of a line's direction, in radians."""
     from scipy.ndimage import gaussian_filter1d
 
     even = gaussian_filter1d(by_length(points_m), SIGMA_SAMPLES, axis=0, mode="nearest")
@@ -44,6 +44,6 @@ def total_turning(points_m: FloatArray) -> float:
 
 
 def turning_per_m(points_m: FloatArray) -> float:
-    """Total turning over the line's length."""
+    """Return the total turning of a line divided by its length."""
     length = float(np.linalg.norm(np.diff(points_m, axis=0), axis=1).sum())
     return total_turning(points_m) / length if length > 0.0 else total_turning(points_m)

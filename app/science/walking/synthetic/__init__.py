@@ -1,4 +1,4 @@
-"""Made-up people who walk: populations with known parameters, for trials and demonstrations."""
+"""Synthetic people who walk: populations with known parameters, for tests and demonstrations."""
 
 from app.science.walking.synthetic.populations import POPULATIONS, Population, person_of, walk_along
 from app.science.walking.synthetic.synthetic_walks import (

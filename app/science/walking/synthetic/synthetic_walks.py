@@ -1,8 +1,8 @@
-"""Databases of made-up walks: a population sent through scenes.
+"""Databases of synthetic walks: a population walks through scenes.
 
-Each person walks every path of every scene some times. Start and goal are some centimetres beside
-the scene's places, as a person's are. Tracks are cut and smoothed as captured ones are, and planned
-from their own start to their own goal.
+Each person walks every path of every scene a given number of times. Start and goal are a few
+centimetres from the scene's places, as in people. Tracks are cut and smoothed as captured ones are,
+and planned from their own start to their own goal.
 """
 
 from collections.abc import Iterator, Sequence
@@ -25,18 +25,18 @@ from app.science.walking.scene import (
 from app.science.walking.synthetic.populations import Person, Population, person_of, walk_along
 
 BESIDE_M = 0.02
-"""How far, one sd along each axis, a person starts and ends beside a place."""
+"""Standard deviation, along each axis, of a person's start and end from a place."""
 
 
 @dataclass(frozen=True)
 class Sample:
-    """Whom of a population, and how often.
+    """How many people of a population walk, and how often.
 
     Attributes:
-        people: how many persons.
+        people: number of people.
         repetitions: of each path by each person.
-        seed: another one gives other people.
-        prefix: before their names, so that two samples never share a person.
+        seed: a different seed gives different people.
+        prefix: put before their names, so that two samples never share a person.
     """
 
     people: int
@@ -46,7 +46,7 @@ class Sample:
 
 
 def laboratory_scenes() -> list[Scene]:
-    """The sixteen scenes of the paper's database."""
+    """Return the sixteen scenes of the paper's database."""
     return [straight_scene(length) for length in STRAIGHT_M] + [
         pole_scene(turn, distance) for turn in POLE_DEG for distance in POLE_M
     ]
@@ -55,10 +55,10 @@ def laboratory_scenes() -> list[Scene]:
 def synthetic_walks(
     population: Population, scenes: Sequence[Scene], sample: Sample
 ) -> Iterator[PlannedWalk]:
-    """Make walks, person by person; each one's note names its scene and path.
+    """Generate walks, person by person; the note of each names its scene and path.
 
     Raises:
-        WalkingError: nobody, or no path.
+        WalkingError: there are no people, or no paths.
     """
     if sample.people < 1 or sample.repetitions < 1 or not any(scene.paths for scene in scenes):
         raise WalkingError("A population needs people, repetitions and a scene with paths.")
@@ -87,7 +87,7 @@ class _Way:
             yield planned_walk(noted, self.planner)
 
     def _beside(self, place: Point, rng: np.random.Generator) -> Point:
-        """A place nearby where a person can stand."""
+        """Return a random position near a place, at which a person can stand."""
         for _ in range(50):
             x, y = np.array(place) + BESIDE_M * rng.standard_normal(2)
             try:
@@ -99,7 +99,7 @@ class _Way:
 
 
 def straight_path(length_m: float) -> PlannedPath:
-    """A straight path of some length, for questions without a scene."""
+    """Return a straight path of a given length, for queries without a scene."""
     if not 0.0 < length_m < np.inf:
-        raise WalkingError(f"A path of {length_m} m is none.")
+        raise WalkingError(f"A path of {length_m} m is invalid: give a positive length.")
     return PlannedPath(np.array([[0.0, 0.0], [0.0, length_m]]))

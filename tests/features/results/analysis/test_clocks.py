@@ -154,7 +154,7 @@ def test_a_run_after_a_restart_within_a_run_keeps_utc(database: Database) -> Non
     probes = _stored(database, session_id, restarting).probes
     behind = np.arange(len(probes)) > 400
     with database.writing() as db:
-        again = _later(probes.taken(behind), 0.0, 1000.0, 1000.0)
+        again = _later(probes.select(behind), 0.0, 1000.0, 1000.0)
         store_probes(db, session_id, again, epoch=2)
     with database.reading() as db:
         clocks = run_clocks(db, session_id)

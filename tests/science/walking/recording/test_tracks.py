@@ -103,7 +103,7 @@ def test_short_gaps_are_bridged_and_long_ones_refused() -> None:
     places[60:160] = np.nan
     with pytest.raises(WalkingError, match=r"1\.01 s from 0\.59 s"):
         bridged(times_s, places, "A track")
-    with pytest.raises(WalkingError, match=r"0 place\(s\)"):
+    with pytest.raises(WalkingError, match=r"0 position\(s\)"):
         bridged(times_s, np.full((200, 2), np.nan), "A track")
 
 
