@@ -1,8 +1,8 @@
-"""Alembic's environment: all steps in one transaction, with a limit on how long it waits for locks.
+"""Alembic's environment: all migrations in one transaction, with a limit on waiting for locks.
 
-Whoever is interrupted finds the schema from before, whole. Alembic believes that SQLite cannot undo
-a changed schema, because Python's driver used to commit before such statements; ours leaves
-transactions to `app.database`, so it can.
+If it is interrupted, the previous schema is intact. Alembic assumes that SQLite cannot roll back
+schema changes, because Python's driver used to commit before such statements; here `app.database`
+controls transactions, so it can.
 """
 
 from typing import Any
@@ -17,9 +17,10 @@ LOCK_TIMEOUT = "10s"
 
 
 def run() -> None:
-    """Migrate the database whose address `alembic_config` put into the attributes.
+    """Migrate the database at the address that `alembic_config` put into the attributes.
 
-    An `engine` there is used instead, and left open: what is in memory would be gone with it.
+    An `engine` given there is used instead, and left open: an in-memory database would be lost with
+    it.
     """
     attributes = context.config.attributes
     url: Any = attributes.get("url") or context.config.get_main_option("sqlalchemy.url")
@@ -52,8 +53,8 @@ def _prepare(connection: Connection) -> None:
         connection.execute(text(f"SET lock_timeout = '{LOCK_TIMEOUT}'"))
         connection.commit()
     elif connection.dialect.name == "sqlite":
-        # Changing a table on SQLite is making it anew: dropping the old one must not count as
-        # deleting what others refer to. It can only be set outside of a transaction.
+        # On SQLite, altering a table means recreating it: dropping the old one must not count as
+        # deleting referenced rows. This can only be set outside a transaction.
         connection.connection.cursor().execute("PRAGMA foreign_keys=OFF")
 
 

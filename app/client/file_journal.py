@@ -1,14 +1,15 @@
-"""A journal in files: what was not acknowledged survives the process, and need not be in memory.
+"""A journal in files: unacknowledged messages survive the process, and need not be in memory.
 
     journal = FileJournal(folder=Path("journal") / session_id)
 
-Messages are appended to segments of a few megabytes; a segment goes once all of it is acknowledged.
-A process that opens the folder again finds what was left, under the epoch it was made in, and
-`TelemetryClient` sends it before anything new. The last record may be torn by the end of the
-process: it had not been handed over, and is left out.
+Messages are appended to segments of a few megabytes; a segment is deleted once all of it is
+acknowledged. A process that opens the folder again finds the remaining messages, under their
+original epoch, and `TelemetryClient` sends them before anything new. The last record may be
+truncated if the process ended while writing it: it had not been accepted yet, and is skipped.
 
-A record survives a kill as soon as `add` returns, and the end of the machine's power only once the
-system has written it, some seconds later; `sync=True` waits for that at every message.
+A record survives the death of the process as soon as `add` returns, but a power failure only once
+the operating system has written it, some seconds later; `sync=True` waits for that at every
+message.
 """
 
 import os
@@ -25,15 +26,15 @@ SEGMENT_BYTES = 8 * 1024 * 1024
 MEMORY_BYTES = 16 * 1024 * 1024
 SUFFIX = ".journal"
 _HEAD = struct.Struct("<II")
-"""Length and CRC-32 of a record."""
+"""The head of a record: its length and CRC-32."""
 _FIELDS = struct.Struct("<BBIQ")
-"""1 for bytes, 2 for text; length of the stream's name; epoch; seq_end. Name and message follow."""
+"""Fields: 1 for bytes, 2 for text; length of the stream's name; epoch; seq_end; then the data."""
 _BYTES, _TEXT = 1, 2
 
 
 @dataclass(frozen=True)
 class Filed(Entry):
-    """An entry whose message is only in its segment."""
+    """An entry whose message is stored only in its segment."""
 
     path: Path
     offset: int
@@ -47,7 +48,7 @@ class Filed(Entry):
 
 @dataclass
 class FileJournal(Journal):
-    """See `Journal`. `memory_bytes` is how much is kept at hand as well."""
+    """A `Journal` in files, of which up to `memory_bytes` are also kept in memory."""
 
     folder: Path = field(kw_only=True)
     segment_bytes: int = SEGMENT_BYTES
@@ -70,7 +71,7 @@ class FileJournal(Journal):
                 path.unlink()
 
     def add(self, entry: Entry) -> None:
-        """Write a message down, then keep it until it is acknowledged."""
+        """Write a message to its file and keep it until it is acknowledged."""
         path, offset, length = self._write(entry)
         self._last_places[path] = self.end
         if self._at_hand_bytes + length > self.memory_bytes:
@@ -81,12 +82,12 @@ class FileJournal(Journal):
         super().add(entry)
 
     def at(self, place: int) -> Entry | None:
-        """The message at a place, read from its file if it is not in memory."""
+        """Return the message at a place, read from its file if it is not in memory."""
         entry = self._entries.get(place)
         return _loaded(entry) if isinstance(entry, Filed) else entry
 
     def acknowledge(self, positions: Iterable[tuple[str, int, int]]) -> None:
-        """Forget what is stored; segments of which nothing is left are deleted."""
+        """Remove the messages that are stored on the server, and delete empty segments."""
         first = self.first
         super().acknowledge(positions)
         for place in range(first, self.first):
@@ -98,13 +99,13 @@ class FileJournal(Journal):
                 path.unlink(missing_ok=True)
 
     def close(self) -> None:
-        """Close the file; everything in it is found again."""
+        """Close the file; its messages are read again when the journal is reopened."""
         if self._file is not None:
             self._file.close()
             self._file = None
 
     def _write(self, entry: Entry) -> tuple[Path, int, int]:
-        """Append a record; its file, and where in it the message lies."""
+        """Append a record; return its file, and the offset and length of its message."""
         if self._file is None or self._file.tell() >= self.segment_bytes:
             self.close()
             self._segment += 1
@@ -120,7 +121,7 @@ class FileJournal(Journal):
         return Path(self._file.name), offset, len(message)
 
     def _append(self, file: BinaryIO, record: bytes) -> None:
-        """Write all of a record or nothing: what stands behind a torn one is never found."""
+        """Write a complete record or nothing: records after a truncated one could not be read."""
         begin = file.tell()
         try:
             if file.write(record) < len(record):
@@ -138,7 +139,7 @@ class FileJournal(Journal):
 
 
 def _read(path: Path) -> Iterator[Filed]:
-    """The whole records of a segment, up to the first that is torn."""
+    """Yield the complete records of a segment, up to the first truncated one."""
     with path.open("rb") as file:
         while len(head := file.read(_HEAD.size)) == _HEAD.size:
             length, crc = _HEAD.unpack(head)

@@ -1,8 +1,8 @@
-"""The HTTP side: an operator's and a tablet's calls, with the server's own words in every error.
+"""HTTP clients of an operator and a tablet, whose errors contain the server's own message.
 
-A device on a lab's network calls again when nobody answers: its calls are made so that repeating
-them does no harm. A command keeps its id and a form its key over all attempts, so an attempt whose
-answer got lost is answered like the first.
+A device on a lab's network retries a request that gets no response: all its requests are
+idempotent. A command keeps its id and a form its key over all attempts, so that an attempt whose
+response was lost is answered like the first.
 """
 
 import asyncio
@@ -23,7 +23,7 @@ SERVER_AT_FAULT = 500
 
 
 class ServerRefusedError(RuntimeError):
-    """The server said no; the message holds its reason and remedy, `code` its error code."""
+    """The server refused a request; the message contains its reason and remedy, `code` its code."""
 
     def __init__(self, status: int, error: Json) -> None:
         super().__init__(as_sentences(error.get("message", "refused"), error.get("remedy") or ""))
@@ -33,11 +33,11 @@ class ServerRefusedError(RuntimeError):
 
 
 class UnreachableError(RuntimeError):
-    """Nobody answers at the address."""
+    """No server responds at the address."""
 
 
 async def call(client: AsyncClient, method: str, path: str, body: Json | None = None) -> Any:
-    """One request; the decoded JSON, or None where there is none.
+    """Send a request; return the decoded JSON, or None if the response has no content.
 
     Raises ServerRefusedError or UnreachableError.
     """
@@ -56,10 +56,11 @@ async def call_again(
     *,
     patience_s: float = PATIENCE_S,
 ) -> Any:
-    """`call` until it is answered; only for calls that may be repeated.
+    """Repeat `call` until it gets a response; only for idempotent requests.
 
-    Raises ServerRefusedError at once where the server says no, and what `call` raised last when the
-    server cannot be reached, or cannot do its part (status 5xx), for longer than `patience_s`.
+    Raises ServerRefusedError immediately if the server refuses the request. If the server cannot be
+    reached, or fails (status 5xx), for longer than `patience_s`, it raises the last error of
+    `call`.
     """
     give_up_s = time.monotonic() + patience_s
     attempt = 0
@@ -86,32 +87,32 @@ def _decoded(response: Response) -> Any:
 
 @dataclass(frozen=True)
 class Operator:
-    """An experimenter's calls for one session."""
+    """An operator's requests for one session."""
 
     client: AsyncClient
     session_id: str
 
     async def view(self) -> Json:
-        """The session as the cockpit shows it."""
+        """Return the session as the cockpit shows it."""
         view: Json = await call_again(self.client, "GET", f"/api/sessions/{self.session_id}")
         return view
 
     async def command(self, view: Json, kind: str, **fields: Any) -> Json:
-        """Send a command, decided on `view`; the same command however often it must be sent."""
+        """Send a command based on `view`; every retry has the same command id."""
         return await self._send(kind, {"expected_version": view["version"], **fields})
 
     async def stop(self, kind: str, **fields: Any) -> Json:
-        """Pause, abort or withdraw, whatever has happened since the session was looked at."""
+        """Pause, abort or withdraw, even if the session has changed in the meantime."""
         return await self._send(kind, fields)
 
     async def _send(self, kind: str, fields: Json) -> Json:
         body = {"command_id": str(uuid.uuid4()), "type": kind, **fields}
         path = f"/api/sessions/{self.session_id}/commands"
-        answered: Json = await call_again(self.client, "POST", path, body)
-        return answered
+        result: Json = await call_again(self.client, "POST", path, body)
+        return result
 
     async def pair(self, device: str, client: AsyncClient, name: str) -> Json:
-        """Show a code and use it from the device's own client."""
+        """Request a pairing code and use it from the device's own client."""
         path = f"/api/sessions/{self.session_id}/pairings"
         while True:
             shown = await call_again(self.client, "POST", path, {"device": device})
@@ -119,7 +120,8 @@ class Operator:
             try:
                 paired: Json = await call_again(client, "POST", "/api/devices/pair", use)
             except ServerRefusedError as error:
-                # Used up by an attempt whose answer got lost: the next code replaces that pairing.
+                # The code was used by an attempt whose response was lost; a new one replaces that
+                # pairing.
                 if error.status != CODE_USED:
                     raise
             else:
@@ -128,24 +130,24 @@ class Operator:
 
 @dataclass(frozen=True)
 class Tablet:
-    """A tablet's calls; its client holds the pairing cookie."""
+    """A tablet's requests; its client has the pairing cookie."""
 
     client: AsyncClient
 
     async def state(self) -> Json:
-        """What to show now."""
+        """Return what the tablet should show now."""
         state: Json = await call_again(self.client, "GET", "/api/tablet/state")
         return state
 
     async def acknowledge(self, step_index: int) -> Json:
-        """Consent given or instructions read."""
+        """Confirm that consent was given or instructions were read."""
         state: Json = await call_again(
             self.client, "POST", "/api/tablet/acknowledge", {"step_index": step_index}
         )
         return state
 
     async def consent(self, step_index: int, given: Json) -> Json:
-        """Consent with ticked lines and a signature."""
+        """Send a consent with its ticked statements and signature."""
         body = {"step_index": step_index, **given}
         state: Json = await call_again(self.client, "POST", "/api/tablet/consent", body)
         return state

@@ -1,9 +1,9 @@
-"""What was sent and is not known to be on the server's disk.
+"""A journal of sent messages that are not yet acknowledged as being on the server's disk.
 
-Everything goes into the journal first, in order, and leaves it when it is acknowledged. After a
-reconnect what is left is sent again, in the same order. The journal is bounded: when it is full the
-producer has to wait, which it can see; nothing is ever dropped. This one lives in memory and dies
-with its process; `FileJournal` does not.
+Every message goes into the journal first, in order, and leaves it when it is acknowledged. After a
+reconnect the remaining messages are resent in the same order. The journal is bounded: when it is
+full the producer has to wait (`is_full`); nothing is ever dropped. This one is in memory and lost
+with its process; `FileJournal` is not.
 """
 
 from collections.abc import Iterable, Iterator
@@ -14,7 +14,7 @@ DEFAULT_LIMIT_BYTES = 256 * 1024 * 1024
 
 @dataclass(frozen=True)
 class Entry:
-    """A message with the seqs it carries."""
+    """A message and the end of its range of seqs."""
 
     stream: str
     epoch: int
@@ -23,16 +23,16 @@ class Entry:
 
     @property
     def size_bytes(self) -> int:
-        """What it counts for against the journal's limit."""
+        """The bytes that it counts for against the journal's limit."""
         return len(self.message)
 
 
 @dataclass
 class Journal:
-    """Unacknowledged messages, oldest first, each under its place: 0, 1, 2, ... since the start.
+    """Unacknowledged messages, oldest first, each at its place: 0, 1, 2, ... since the start.
 
-    An acknowledged message behind one that is not stays until that one leaves, so that forgetting
-    costs no more than what is forgotten; sending it again would do no harm.
+    An acknowledged message after an unacknowledged one stays until that one leaves, so that
+    removing messages takes time proportional to their number only; resending it would do no harm.
     """
 
     limit_bytes: int = DEFAULT_LIMIT_BYTES
@@ -50,7 +50,7 @@ class Journal:
 
     @property
     def waiting_bytes(self) -> int:
-        """How much is kept."""
+        """The total size of the messages in the journal."""
         return self._bytes
 
     def __len__(self) -> int:
@@ -61,31 +61,34 @@ class Journal:
         return iter(tuple(entry for entry in entries if entry is not None))
 
     def at(self, place: int) -> Entry | None:
-        """The message at a place, None if it has left or has not come."""
+        """Return the message at a place; None if it was removed or does not exist yet."""
         return self._entries.get(place)
 
     def stored_up_to(self, stream: str, epoch: int) -> int:
-        """The first seq that is not known to be stored."""
+        """Return the first seq that is not known to be stored on the server."""
         return self._stored.get((stream, epoch), 0)
 
     @property
     def produced(self) -> dict[tuple[str, int], int]:
-        """How far the client itself has come: the next seq of every (stream, epoch)."""
+        """The next seq that the client will produce for every (stream, epoch)."""
         return dict(self._produced)
 
     def produced_up_to(self, stream: str, epoch: int, next_seq: int) -> None:
-        """The client has made all of `seq < next_seq`, whether or not it is journaled yet."""
+        """Record that the client has produced all of `seq < next_seq`, journaled or not."""
         self._produced[stream, epoch] = next_seq
 
     def add(self, entry: Entry) -> None:
-        """Keep a message until it is acknowledged."""
+        """Add a message, which stays until it is acknowledged."""
         self._entries[self.end] = entry
         self.produced_up_to(entry.stream, entry.epoch, entry.seq_end)
         self._bytes += entry.size_bytes
         self.end += 1
 
     def acknowledge(self, positions: Iterable[tuple[str, int, int]]) -> None:
-        """Forget what is stored: (stream, epoch, next_seq) says that all seq < next_seq is."""
+        """Remove messages that are stored on the server.
+
+        A position (stream, epoch, next_seq) means that all of seq < next_seq is stored.
+        """
         for stream, epoch, next_seq in positions:
             key = (stream, epoch)
             self._stored[key] = max(next_seq, self.stored_up_to(stream, epoch))

@@ -1,4 +1,4 @@
-"""A headset's WebSocket: sends through the journal, reconnects, follows the session."""
+"""A headset's WebSocket client: sends through the journal, reconnects, follows the session."""
 
 import asyncio
 import contextlib
@@ -43,29 +43,29 @@ OPEN_TIMEOUT_S = 10.0
 
 @dataclass
 class Announcer:
-    """Tells how far the client itself has come, so that the server knows what it does not have.
+    """Reports how much the client has produced, so that the server knows what is missing.
 
-    Of everything once a connection is open, then once a second of what has changed.
+    It reports all streams when a connection opens, and once a second those that have changed.
     """
 
     socket: ClientConnection
     journal: Journal
     every_s: float = 1.0
-    _told: dict[tuple[str, int], int] = field(default_factory=dict)
+    _reported: dict[tuple[str, int], int] = field(default_factory=dict)
 
     async def run(self) -> None:
-        """Tell until cancelled."""
+        """Report periodically until cancelled."""
         while True:
-            await self.tell()
+            await self.report()
             await asyncio.sleep(self.every_s)
 
-    async def tell(self) -> None:
-        """Tell of what has changed since the last time."""
+    async def report(self) -> None:
+        """Report the streams that have changed since the last report."""
         news: dict[int, dict[str, int]] = defaultdict(dict)
         for (stream, epoch), count in self.journal.produced.items():
-            if self._told.get((stream, epoch)) != count:
+            if self._reported.get((stream, epoch)) != count:
                 news[epoch][str(stream)] = count
-                self._told[stream, epoch] = count
+                self._reported[stream, epoch] = count
         for epoch, streams in news.items():
             message = Produced.model_validate({"epoch": epoch, "streams": streams})
             await self.socket.send(message.model_dump_json())
@@ -73,32 +73,32 @@ class Announcer:
 
 @dataclass
 class Prober:
-    """Asks for the server's clock again and again; tells the raw reading of each exchange.
+    """Requests the server's clock periodically, and reports the raw readings of each exchange.
 
-    `monotonic_s` is the client's own clock. An answer that does not come within `timeout_s` is told
-    as null, never as a number; when it comes after all, it is ignored.
+    `monotonic_s` is the client's own clock. If no answer comes within `timeout_s`, null is
+    reported, never a number; a late answer is ignored.
     """
 
     socket: ClientConnection
     monotonic_s: Callable[[], float]
     every_s: float
     timeout_s: float = TIMEOUT_S
-    _asked: dict[float, float] = field(default_factory=dict)
+    _pending: dict[float, float] = field(default_factory=dict)
 
     async def run(self) -> None:
-        """Ask until cancelled."""
+        """Send probes until cancelled."""
         while True:
             await self._give_up()
             client_sent_s = self.monotonic_s()
-            self._asked[client_sent_s] = time.monotonic()
+            self._pending[client_sent_s] = time.monotonic()
             await self.socket.send(Probe(client_sent_s=client_sent_s).model_dump_json())
             await asyncio.sleep(self.every_s)
 
     async def take(self, answer: ProbeAnswer, received_s: float) -> None:
-        """Tell the four times of an exchange, as they were read."""
-        if self._asked.pop(answer.client_sent_s, None) is None:
+        """Report the four raw times of an exchange."""
+        if self._pending.pop(answer.client_sent_s, None) is None:
             return
-        await self._tell(
+        await self._send(
             Probed(
                 client_sent_s=answer.client_sent_s,
                 server_received_ns=answer.server_received_ns,
@@ -109,9 +109,9 @@ class Prober:
 
     async def _give_up(self) -> None:
         before_s = time.monotonic() - self.timeout_s
-        for client_sent_s in [sent for sent, at_s in self._asked.items() if at_s <= before_s]:
-            del self._asked[client_sent_s]
-            await self._tell(
+        for client_sent_s in [sent for sent, at_s in self._pending.items() if at_s <= before_s]:
+            del self._pending[client_sent_s]
+            await self._send(
                 Probed(
                     client_sent_s=client_sent_s,
                     server_received_ns=None,
@@ -120,17 +120,17 @@ class Prober:
                 )
             )
 
-    async def _tell(self, reading: Probed) -> None:
+    async def _send(self, reading: Probed) -> None:
         await self.socket.send(reading.model_dump_json())
 
 
 class TelemetryError(RuntimeError):
-    """The server refused the connection for good; the message says why and what to do."""
+    """The server refused the connection permanently; the message says why and what to do."""
 
 
 @dataclass
 class TelemetryClient:
-    """One run (epoch) of a headset.
+    """A headset's telemetry connection during one run (epoch).
 
         async with TelemetryClient(url, token, name, monotonic_s) as client:
             await client.send_batch(stream, seq_end, message)
@@ -138,8 +138,8 @@ class TelemetryClient:
             client.state            # newest state of the session
             await client.drained()  # everything is on the server's disk
 
-    `url`: ws://HOST/api/vr/stream. `monotonic_s`: the client's own clock. `avatars`: what it can
-    show.
+    `url`: ws://HOST/api/vr/stream. `monotonic_s`: the client's own clock. `avatars`: the kinds of
+    avatar that it can show.
     """
 
     url: str
@@ -165,9 +165,9 @@ class TelemetryClient:
     _added: asyncio.Event = field(default_factory=asyncio.Event)
 
     async def __aenter__(self) -> "TelemetryClient":
-        """Connect; returns once the server has answered."""
+        """Connect; return once the server has answered."""
         self._keeper = asyncio.create_task(self._keep_connected())
-        # Whoever waits for an acknowledgement must learn that none will come.
+        # Wake up everything that waits for an acknowledgement, since none will come.
         self._keeper.add_done_callback(lambda _: asyncio.ensure_future(self._notify()))
         ready = asyncio.create_task(self._ready.wait())
         await asyncio.wait({self._keeper, ready}, return_when=asyncio.FIRST_COMPLETED)
@@ -176,10 +176,10 @@ class TelemetryClient:
         return self
 
     async def __aexit__(self, *_error: object) -> None:
-        """Close; what is not acknowledged stays in the journal."""
+        """Close the connection; unacknowledged messages stay in the journal."""
         if self._announcer is not None:
             with contextlib.suppress(ConnectionClosed):
-                await self._announcer.tell()
+                await self._announcer.report()
         if self._keeper is not None:
             self._keeper.cancel()
             with contextlib.suppress(asyncio.CancelledError):
@@ -187,7 +187,7 @@ class TelemetryClient:
 
     @property
     def epoch(self) -> int:
-        """The number the server gave to this run."""
+        """The epoch that the server assigned to this run."""
         if self.welcome is None:
             raise TelemetryError("not connected yet")
         return self.welcome.epoch
@@ -198,7 +198,7 @@ class TelemetryClient:
         return self._socket is not None
 
     async def send_batch(self, stream: StreamName, seq_end: int, message: bytes) -> None:
-        """Journal and send a batch; waits while the journal is full."""
+        """Journal and send a batch, waiting while the journal is full."""
         await self._send(Entry(stream, self.epoch, seq_end, message))
 
     async def report(self, body: ReportBody) -> None:
@@ -209,15 +209,15 @@ class TelemetryClient:
 
     @property
     def settled(self) -> bool:
-        """Whether every report is on the server's disk, so that its newest state knows of them."""
+        """Whether every report is on the server's disk, so that its newest state reflects them."""
         return self.journal.stored_up_to(REPORT_STREAM, self.epoch) >= self._next_report
 
     async def at_most_waiting(self, messages: int) -> None:
-        """Wait until no more than so many messages await acknowledgement."""
+        """Wait until at most this many messages await acknowledgement."""
         await self._wait_for(lambda: len(self.journal) <= messages)
 
     async def drained(self) -> None:
-        """Wait until everything sent is acknowledged."""
+        """Wait until every message is acknowledged."""
         await self._wait_for(lambda: len(self.journal) == 0)
 
     async def _send(self, entry: Entry) -> None:
@@ -226,7 +226,7 @@ class TelemetryClient:
             await self._wait_for(lambda: not self.journal.is_full)
         self.journal.add(entry)
         self._added.set()
-        # Whoever produces without a pause must still let the sender run.
+        # Let the sender run even if the producer never pauses.
         await asyncio.sleep(0)
 
     async def _wait_for(self, condition: Callable[[], bool]) -> None:
@@ -236,7 +236,7 @@ class TelemetryClient:
 
     @property
     def _over(self) -> bool:
-        """Whether nobody will connect any more."""
+        """Whether no further connection will be attempted."""
         return self.failure is not None or self._keeper is None or self._keeper.done()
 
     def _raise_failure(self) -> None:
@@ -260,14 +260,14 @@ class TelemetryClient:
             except (OSError, ConnectionClosed, InvalidHandshake, TimeoutError) as error:
                 log.info("connection lost: %s", error)
             finally:
-                # A connection that got as far as the welcome begins the waiting anew.
+                # A connection that reached the welcome resets the retry delay.
                 attempt = 0 if self._socket is not None else attempt
                 self._socket = self._announcer = None
             await asyncio.sleep(RETRY_S[min(attempt, len(RETRY_S) - 1)])
             attempt += 1
 
     async def _serve(self, socket: ClientConnection) -> None:
-        """Greet, then send the journal and what joins it, and read, until the socket closes."""
+        """Say hello, then send the journal and read messages until the socket closes."""
         epoch = None if self.welcome is None else self.welcome.epoch
         hello = Hello(
             protocol=PROTOCOL_VERSION, client=self.name, epoch=epoch, avatars=self.avatars
@@ -288,7 +288,7 @@ class TelemetryClient:
         await self._notify()
         prober = Prober(socket, self.monotonic_s, self.probe_every_s)
         self._announcer = Announcer(socket, self.journal)
-        beside = [
+        tasks = [
             asyncio.create_task(work)
             for work in (prober.run(), self._announcer.run(), self._send_journal(socket))
         ]
@@ -296,14 +296,15 @@ class TelemetryClient:
             async for text in socket:
                 await self._take(prober, text)
         finally:
-            for task in beside:
+            for task in tasks:
                 task.cancel()
-            await asyncio.gather(*beside, return_exceptions=True)
+            await asyncio.gather(*tasks, return_exceptions=True)
 
     async def _send_journal(self, socket: ClientConnection) -> None:
-        """The only sender of journaled messages: so they go out in order, none left out.
+        """Send journaled messages; as their only sender it keeps them in order, without gaps.
 
-        A broken socket ends it; the reader notices, and the next connection begins at the front.
+        A broken socket ends it; the reader notices that, and the next connection starts with the
+        oldest message.
         """
         while True:
             self._added.clear()

@@ -1,4 +1,4 @@
-"""The tables, one family a file. Importing this package registers them all."""
+"""The database tables, one family per file. Importing this package registers them all."""
 
 from app.models.accounts import (
     ROLES,

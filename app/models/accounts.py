@@ -1,4 +1,4 @@
-"""Who works here, and the chain of what they did."""
+"""Tables of accounts, logins and invitations, and the audit trail of what they did."""
 
 from datetime import datetime
 from typing import Any
@@ -13,9 +13,10 @@ ROLES = ("admin", "experimenter", "operator", "analyst")
 
 
 class Account(Base):
-    """A person of the lab. The password is kept as an argon2id hash only.
+    """An account of a person of the lab. The password is stored only as an argon2id hash.
 
-    `all_studies`: every study is theirs, also those to come; else those of `study_members`.
+    `all_studies`: they may see every study, including future ones; otherwise those of
+    `study_members`.
     """
 
     __tablename__ = "accounts"
@@ -30,7 +31,7 @@ class Account(Base):
 
 
 class StudyMember(Base):
-    """A study that an account may see, where it may not see all."""
+    """A study that an account may see if it may not see all."""
 
     __tablename__ = "study_members"
 
@@ -39,7 +40,10 @@ class StudyMember(Base):
 
 
 class Invitation(Base):
-    """A link that makes one account, once: the hash of its token, and what the account may do."""
+    """A single-use link that creates one account.
+
+    It consists of the hash of its token, and the account's rights.
+    """
 
     __tablename__ = "invitations"
     __table_args__ = (CheckConstraint(f"role IN {ROLES}", name="role"),)
@@ -59,7 +63,7 @@ class Invitation(Base):
 
 
 class LoginToken(Base):
-    """A login that can be revoked: the browser or script holds the token, we hold its hash."""
+    """A revocable login: the browser or script has the token, the database only its hash."""
 
     __tablename__ = "login_tokens"
 
@@ -74,11 +78,11 @@ class LoginToken(Base):
 
 
 class AuditEntry(Base):
-    """One act. `hash` covers the previous hash and every other column.
+    """One entry of the audit trail. `hash` covers the previous hash and every other column.
 
-    `subject` names what was acted upon by kind and key or id ("study:pilot", "session:0f3a..."),
-    and `details` is canonical JSON. Neither holds anything of a participant, not even their code:
-    an entry cannot be erased.
+    `subject` names the object of the action by kind and key or id ("study:pilot",
+    "session:0f3a..."), and `details` is canonical JSON. Neither contains any data of a participant,
+    not even their code: an entry cannot be erased.
     """
 
     __tablename__ = "audit_entries"
@@ -94,9 +98,9 @@ class AuditEntry(Base):
 
 
 class AuditHead(Base):
-    """The end of the chain: one row that writers queue on, so that the chain never forks.
+    """The head of the audit trail: one row that writers lock, so that the chain never forks.
 
-    It also tells a chain whose end was cut off from a shorter one.
+    It also shows if the end of the chain was removed.
     """
 
     __tablename__ = "audit_head"

@@ -1,4 +1,4 @@
-"""Avatars: humanoid models and what a body needs of them, and every version of a configuration."""
+"""Tables of avatars: humanoid models with their measures, and every version of a configuration."""
 
 from typing import Any
 
@@ -10,10 +10,11 @@ from app.models.types import UtcTime
 
 
 class HumanoidRow(Base):
-    """A model by the SHA-256 of its file; configurations name it, so it is never deleted.
+    """A humanoid model by the SHA-256 of its file.
 
-    `figure` is its measures and convex pieces as canonical JSON (`app.protocol.humanoid`); what
-    lists show of it stands beside it. `bones_by` is who said which bone is which body part.
+    Configurations refer to it, so it is never deleted. `figure` is its measures and convex pieces
+    as canonical JSON (`app.protocol.humanoid`); the other columns repeat what lists show of it.
+    `bones_by` is how its bones were mapped to body parts.
     """
 
     __tablename__ = "humanoids"
@@ -33,7 +34,7 @@ class HumanoidRow(Base):
 
 
 class Avatar(Base):
-    """An avatar's configuration by its key; how it behaves stands in its versions."""
+    """An avatar's configuration by its key; its content is in its versions."""
 
     __tablename__ = "avatars"
 
@@ -46,8 +47,9 @@ class Avatar(Base):
 class AvatarVersion(Base):
     """One content of a configuration; versions are appended and never edited or deleted.
 
-    A session names a content by its hash, which is taken over `canonical_json`. `origin` is how the
-    content came about. `report` is what tuning measured and with which settings, null otherwise.
+    A session refers to a content by its hash, which is computed from `canonical_json`. `origin` is
+    how the content was created. `report` is what the tuning measured and with which settings, null
+    otherwise.
     """
 
     __tablename__ = "avatar_versions"

@@ -1,4 +1,4 @@
-"""Captures of movement: files stored once by their content, what they hold, and joint maps."""
+"""Tables of captures: files stored once per content, a summary of each capture, and joint maps."""
 
 from typing import Any
 
@@ -10,7 +10,7 @@ from app.models.types import Id, UtcTime
 
 
 class CaptureContent(Base):
-    """The content of an uploaded file, once however many captures use it.
+    """The content of an uploaded file, stored once however many captures use it.
 
     `hash` is the SHA-256 of the file's bytes, `size` their number.
     """
@@ -22,9 +22,9 @@ class CaptureContent(Base):
 
 
 class CapturePiece(Base):
-    """A part of a content's zstd stream; all parts in order are the stream.
+    """A part of a content's zstd stream, which consists of all parts in order.
 
-    In parts, so that nobody who copies rows, such as a backup, ever holds a whole file in memory.
+    The stream is split so that copying rows, as a backup does, never needs a whole file in memory.
     """
 
     __tablename__ = "capture_pieces"
@@ -35,11 +35,11 @@ class CapturePiece(Base):
 
 
 class CaptureRow(Base):
-    """A capture: a file, perhaps with its companion, and what reading it found.
+    """A capture: a file, optionally with its companion, and the results of reading it.
 
-    `identity` names the contents of both, so that the same is stored once. `reading` holds the
-    conventions that somebody chose, `summary` what the page shows; both are as in the schemas of
-    the feature. `fingerprint` is that of its skeleton, null where it has none.
+    `identity` identifies the contents of both, so that the same capture is stored once. `reading`
+    contains the conventions that a user chose, `summary` what the page shows; both follow the
+    schemas of the feature. `fingerprint` is that of its skeleton, null if it has none.
     """
 
     __tablename__ = "captures"
@@ -68,10 +68,10 @@ class CaptureRow(Base):
 
 
 class SavedJointMap(Base):
-    """One version of a skeleton's joint map; versions are appended, the newest holds.
+    """One version of a skeleton's joint map; versions are appended, and the newest is used.
 
-    `joint_map` is body joint -> joint of the skeleton. Where `chosen` is false, somebody went back
-    to what is proposed, and the map is empty.
+    `joint_map` is body joint -> joint of the skeleton. If `chosen` is false, a user reverted to the
+    proposed map, and this one is empty.
     """
 
     __tablename__ = "joint_maps"

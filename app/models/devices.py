@@ -1,4 +1,4 @@
-"""The equipment: tablets and headsets, known by a scoped token, and how slow a setup is."""
+"""Tables of the equipment: paired tablets and headsets, and calibrations of its latency."""
 
 from datetime import datetime
 
@@ -10,7 +10,7 @@ from app.models.types import Id, UtcDateTime, UtcTime
 
 
 class PairingCode(Base):
-    """A short code that pairs one device with one session, once."""
+    """A short single-use code that pairs a device with a session."""
 
     __tablename__ = "pairing_codes"
 
@@ -23,10 +23,10 @@ class PairingCode(Base):
 
 
 class Device(Base):
-    """A paired device. Its token opens its own session only; we keep the token's hash.
+    """A paired device. Its token gives access to its own session only; only its hash is stored.
 
-    At most one device of a kind is unrevoked in a session: a second tablet is a takeover that the
-    operator makes on purpose by showing a new code.
+    At most one device of a kind is unrevoked in a session: to replace a tablet, the operator must
+    deliberately show a new code.
     """
 
     __tablename__ = "devices"
@@ -53,10 +53,10 @@ class Device(Base):
 
 
 class Calibration(Base):
-    """A measurement of the equipment's own motion-to-photon delay; added latency comes on top.
+    """A measurement of the motion-to-photon latency of the equipment itself, without added latency.
 
     Appended, never edited: a later measurement of the same `equipment` supersedes it, and
-    `retired_at` marks one that was a mistake. `measured_on` is an ISO date.
+    `retired_at` marks a mistaken one. `measured_on` is an ISO date.
     """
 
     __tablename__ = "calibrations"

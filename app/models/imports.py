@@ -1,7 +1,7 @@
-"""Answers that were collected elsewhere and taken in as a file; apart from sessions of our own.
+"""Tables of answers that were collected elsewhere and imported, separate from our own sessions.
 
-They have no session: nothing here ran them, so there is no plan, no slot of the ledger and no log
-of events. No query for sessions can find them by mistake.
+They belong to no session: they were not collected by this program, so there is no plan, no slot of
+the ledger and no event log. No query for sessions can find them by mistake.
 """
 
 from datetime import datetime
@@ -15,11 +15,11 @@ from app.models.types import Id, UtcDateTime, UtcTime
 
 
 class AnswerImport(Base):
-    """One file that was taken in as answers to one instrument.
+    """One file that was imported as answers to one instrument.
 
-    `content_hash`: SHA-256 of the file's text. At most one import of a study and instrument that
-    stands has it; one that was undone stays as a row without forms and frees it. `mapping`: what
-    was said of the file's columns and words, so that the next file need not be told again.
+    `content_hash`: SHA-256 of the file's text, unique among the current imports of a study and
+    instrument; an import that was undone remains as a row without forms, and no longer counts.
+    `mapping`: how the file's columns and words were interpreted, to be reused for the next file.
     """
 
     __tablename__ = "answer_imports"
@@ -51,11 +51,11 @@ class AnswerImport(Base):
 
 
 class ImportedForm(Base):
-    """One filled-in form of an import: whose, in which condition, the answers and their scores.
+    """One filled-in form of an import: its participant, condition, answers and scores.
 
-    `line`: in the file, from 1. `condition`: what the file says, by the import's words for it;
-    `in_study` where it is the key of one of the study's conditions. `answered_on`: YYYY-MM-DD.
-    `answers`: by item, null where left out; `scores`: by score, null where an item is missing.
+    `line`: in the file, from 1. `condition`: as in the file, or as mapped by the import;
+    `in_study`: whether it is the key of one of the study's conditions. `answered_on`: YYYY-MM-DD.
+    `answers`: by item, null if left out; `scores`: by score, null if an item is missing.
     """
 
     __tablename__ = "imported_forms"

@@ -1,4 +1,4 @@
-"""The counterbalancing ledger: an immutable list of slots, with attempts attached to them."""
+"""Tables of the counterbalancing ledger: an immutable list of slots, and the attempts at them."""
 
 from datetime import datetime
 from typing import Any
@@ -10,12 +10,12 @@ from app.database import Base
 from app.models.types import Id, UtcDateTime, UtcTime
 
 KINDS = ("people", "simulated", "test", "expert")
-"""Who was in a session. Only people are data; experts look a study over and give advice."""
+"""The kinds of sessions. Only people's are data; experts review a study and make suggestions."""
 KIND_CHECK = f"kind IN {KINDS}"
 
 
 class Participant(Base):
-    """Somebody taking part, under a pseudonym that is unique within the study and kind."""
+    """A participant, by a pseudonym that is unique within the study and kind."""
 
     __tablename__ = "participants"
     __table_args__ = (UniqueConstraint("study_id", "kind", "code"),)
@@ -28,11 +28,11 @@ class Participant(Base):
 
 
 class Ledger(Base):
-    """One balance: people, simulated and test sessions of one design never share it.
+    """The ledger of one kind of sessions and one design; different kinds never share one.
 
-    Versions of a study that differ in wording only share their ledger, because `design_hash` covers
-    just what decides balance (conditions and orders). `blocks` counts the seeded blocks made so
-    far.
+    Versions of a study that differ only in wording share their ledger, because `design_hash` covers
+    just what determines balance (conditions and orders). `blocks` counts the seeded blocks created
+    so far.
     """
 
     __tablename__ = "ledgers"
@@ -65,11 +65,11 @@ class LedgerSlot(Base):
 
 
 class SlotAttempt(Base):
-    """A session's hold on a slot. At most one attempt of a slot is open or completed.
+    """The assignment of a slot to a session. At most one attempt of a slot is open or completed.
 
-    The partial unique index makes a double booking impossible whatever the code does; a withdrawn
-    or aborted attempt stays with its data and reason and frees the slot for the next, and so does
-    an `invalid` one: its session was completed and does not count by the rules of the study.
+    The partial unique index prevents double bookings whatever the code does; a withdrawn or aborted
+    attempt keeps its data and reason and releases the slot for the next, and so does an `invalid`
+    one: its session was completed but does not count by the rules of the study.
     """
 
     __tablename__ = "slot_attempts"

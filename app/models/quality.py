@@ -1,4 +1,4 @@
-"""How good the data of a phase are: achieved latency, quality of its streams, and alarms."""
+"""Tables of data quality: achieved latency of phases, quality of their streams, and alarms."""
 
 from typing import Any
 
@@ -10,10 +10,10 @@ from app.models.types import Id, UtcTime
 
 
 class PhaseLatency(Base):
-    """The delay that the avatar really had in a phase, beside the ordered one.
+    """The achieved latency of a phase, with the set one.
 
-    `achieved_s` with its 95 % interval is null where the movement did not suffice; `reason` then
-    says so. `flagged`: off by more than 10 ms and more than one frame (`frame_s`).
+    `achieved_s` with its 95 % interval is null if there was too little movement to measure it;
+    `reason` then says so. `flagged`: off by more than 10 ms and more than one frame (`frame_s`).
     """
 
     __tablename__ = "phase_latencies"
@@ -35,10 +35,10 @@ class PhaseLatency(Base):
 
 
 class PhaseQuality(Base):
-    """What is wrong with the samples of one stream in one phase, counted.
+    """Counts of the problems in the samples of one stream in one phase.
 
-    Times in s of the client's clock; `frozen_joints` names joints that stood still to the bit while
-    others moved.
+    Times in s of the client's clock; `frozen_joints` names joints whose values did not change at
+    all while others moved.
     """
 
     __tablename__ = "phase_quality"

@@ -1,4 +1,4 @@
-"""Answers as given, with what was shown and how they came in; scores beside them."""
+"""Tables of submissions: the answers as given, how they were entered, and their scores."""
 
 from datetime import datetime
 from typing import Any
@@ -11,13 +11,14 @@ from app.models.types import Id, UtcDateTime, UtcTime
 
 
 class Submission(Base):
-    """One filled-in form. The idempotency key makes sending it twice harmless.
+    """One filled-in form. The idempotency key makes resending it harmless.
 
-    `administration` names the step and attempt it answers ("block1.hand.karas2020#1").
-    `request_hash` tells a repeated request from a different one under the same key. The event log
-    holds sha256(salt + answers) only. `timings`: seconds from the opening of the form to the last
-    change of each item. `item_traces`: by item, `response_s` and `changes`, as `ItemTrace` in the
-    questionnaires' schemas says; None where the page that sent the form did not know them.
+    `administration` names the step and attempt that it answers ("block1.hand.karas2020#1").
+    `request_hash` distinguishes a repeated request from a different one with the same key. The
+    event log contains only sha256(salt + answers). `timings`: seconds from the opening of the form
+    to the last change of each item. `item_traces`: by item, `response_s` and `changes`, as in
+    `ItemTrace` of the questionnaires' schemas; None if the page that sent the form did not record
+    them.
     """
 
     __tablename__ = "submissions"
@@ -48,7 +49,7 @@ class Submission(Base):
 
 
 class Answer(Base):
-    """One item's answer: a number or a text, never both; neither means it was left out."""
+    """One item's answer: a number or a text, never both; neither if the item was left out."""
 
     __tablename__ = "answers"
 

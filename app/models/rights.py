@@ -1,4 +1,4 @@
-"""What participants may ask for afterwards: corrections, copies, and that their data go."""
+"""Tables of participants' rights: corrections, copies of data, and erasures."""
 
 from datetime import datetime
 from typing import Any
@@ -11,10 +11,11 @@ from app.models.types import Id, UtcDateTime, UtcTime
 
 
 class AnswerCorrection(Base):
-    """A later value of one answer; the answer as first given stays beside it.
+    """A later value of one answer; the original answer is kept.
 
-    The newest correction counts. Value and previous value are a number or a text; neither means
-    left out. `reason`, values and `salt` are emptied by erasure; the event log holds only the hash.
+    The newest correction counts. Value and previous value are a number or a text; neither if the
+    item is left out. `reason`, values and `salt` are emptied by erasure; the event log contains
+    only the hash.
     """
 
     __tablename__ = "answer_corrections"
@@ -35,10 +36,10 @@ class AnswerCorrection(Base):
 
 
 class Erasure(Base):
-    """A tombstone: that a participant's data were erased, when, by whom, and how much went.
+    """A tombstone: when and by whom a participant's data were erased, and how many rows.
 
-    It holds nothing about the person. `removed` counts rows by table; `remaining` lists exports and
-    backups made before, which lie outside the database and must be deleted by hand.
+    It contains nothing about the person. `removed` counts rows by table; `remaining` lists earlier
+    exports and backups, which are outside the database and must be deleted by hand.
     """
 
     __tablename__ = "erasures"
@@ -56,8 +57,8 @@ class Erasure(Base):
 class CopyMade(Base):
     """A copy of data that left the database: an export, an access copy, or a backup.
 
-    `kind` is export, access or backup. `place` is where it went as far as known: a file, or the
-    browser of `by`. `destroyed_at`: somebody said that it is gone.
+    `kind` is export, access or backup. `place` is its destination as far as known: a file, or the
+    browser of `by`. `destroyed_at`: when somebody reported that it was deleted.
     """
 
     __tablename__ = "copies_made"

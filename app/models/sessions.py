@@ -1,4 +1,4 @@
-"""A session is its event log; the snapshot and the phase rows are folded from it."""
+"""Tables of sessions: the event log, and the snapshot and phases computed from it."""
 
 from datetime import datetime
 from typing import Any
@@ -22,10 +22,9 @@ from app.models.types import Id, UtcDateTime, UtcTime
 class StudySession(Base):
     """One visit of one participant. `version` counts events; `snapshot` is the state after them.
 
-    `avatar_configuration_hash` names the content of the avatar's configuration that was used, if
-    the avatar has one (AvatarVersion). `shortfalls`: what a completed session lacks by its study's
-    rules in order to count, an empty list if nothing; null where there are no rules, or nothing was
-    decided yet.
+    `avatar_configuration_hash` identifies the content of the avatar's configuration, if the avatar
+    has one (AvatarVersion). `shortfalls`: the rules of its study that a completed session does not
+    satisfy, an empty list if none; null if there are no rules, or it was not checked yet.
     """
 
     __tablename__ = "sessions"
@@ -54,10 +53,10 @@ class StudySession(Base):
 
 
 class SessionEvent(Base):
-    """One thing that happened, appended and never edited.
+    """One event of a session, appended and never edited.
 
     `hash` covers the previous hash and every other column, so an edited row breaks the chain.
-    `payload` is canonical JSON text and holds no answers, notes or personal text, only the ids and
+    `payload` is canonical JSON and contains no answers, notes or personal text, only the ids and
     salted hashes of such content.
     """
 
@@ -76,7 +75,7 @@ class SessionEvent(Base):
 
 
 class SessionContent(Base):
-    """Words and personal data that an event points at; erasure empties `body` and `salt`."""
+    """Texts and personal data that an event refers to; erasure empties `body` and `salt`."""
 
     __tablename__ = "session_contents"
 
@@ -90,10 +89,10 @@ class SessionContent(Base):
 
 
 class Phase(Base):
-    """One run of a timed step (free roam, hand or foot phase), folded from the events.
+    """One attempt of a timed step (free movement, practice or task), computed from the events.
 
-    `phase_id` counts within the session and marks telemetry. `active_s` is participant time:
-    pauses and walk-backs do not count.
+    `phase_id` counts within the session and identifies the phase's telemetry. `active_s` is the
+    participant's active time: pauses and walks back do not count.
     """
 
     __tablename__ = "phases"

@@ -1,6 +1,6 @@
-"""Studies and instruments: every version that was ever used, by the hash of its content.
+"""Tables of studies and instruments, with every version by the hash of its content.
 
-What experts advise about a version of a study stands with it.
+Experts' suggestions about a version of a study are stored with it.
 """
 
 from datetime import datetime
@@ -14,7 +14,7 @@ from app.models.types import Id, UtcDateTime, UtcTime
 
 
 class Study(Base):
-    """A study by its key; what it asks of people stands in its versions."""
+    """A study by its key; its content is in its versions."""
 
     __tablename__ = "studies"
 
@@ -27,8 +27,9 @@ class Study(Base):
 class StudyVersion(Base):
     """One content of a study. Once a session has started it is frozen; an edit makes a new one.
 
-    `source_yaml` is the file as it was given, comments included; `canonical_json` is what its
-    hash was taken over. `instruments` maps each instrument key to the content hash it had.
+    `source_yaml` is the file as it was uploaded, including comments; its hash was computed from
+    `canonical_json`. `instruments` maps the key of each instrument to its content hash at that
+    time.
     """
 
     __tablename__ = "study_versions"
@@ -50,7 +51,7 @@ class StudyVersion(Base):
 
 
 class InstrumentVersion(Base):
-    """One content of an instrument; submissions point at the exact wording that was shown."""
+    """One content of an instrument; submissions refer to the exact wording that was shown."""
 
     __tablename__ = "instrument_versions"
     __table_args__ = (UniqueConstraint("key", "content_hash"),)
@@ -64,10 +65,10 @@ class InstrumentVersion(Base):
 
 
 class Suggestion(Base):
-    """What an expert advised about a version of a study, and what became of it.
+    """An expert's suggestion about a version of a study, and the decision on it.
 
-    `status` is open, adopted or declined; `adopted_in` is the number of the version that has it.
-    `about` names a step of the study, or is empty for the whole.
+    `status` is open, adopted or declined; `adopted_in` is the number of the version that contains
+    it. `about` names a step of the study, or is empty for the whole study.
     """
 
     __tablename__ = "suggestions"

@@ -1,4 +1,4 @@
-"""Movement and what it did: streams, batches, chunks, reports, contacts, joint errors."""
+"""Tables of telemetry: streams, batches, chunks, reports, contacts, joint errors."""
 
 from datetime import datetime
 from typing import Any
@@ -19,11 +19,11 @@ from app.models.types import Id, UtcDateTime, UtcTime
 
 
 class TelemetryStream(Base):
-    """How far a stream of one client run (epoch) is stored: all of `seq < next_seq`.
+    """How much of a stream of one client run (epoch) is stored: all of `seq < next_seq`.
 
-    `produced` is how far the client says it has come: what lies between is still in its journal, or
-    lost with it. `phase_id` and `active_s` are those of the newest stored frame: after a crash they
-    tell how much active time is certain.
+    `produced` is the next seq that the client has reported: what lies between is still in its
+    journal, or was lost with it. `phase_id` and `active_s` are those of the newest stored frame:
+    after a crash they show how much active time is certain.
     """
 
     __tablename__ = "telemetry_streams"
@@ -42,7 +42,7 @@ class TelemetryStream(Base):
 
 
 class TelemetryBatch(Base):
-    """A message exactly as it came, kept until it is folded into a chunk."""
+    """A message exactly as received, kept until it is merged into a chunk."""
 
     __tablename__ = "telemetry_batches"
 
@@ -57,7 +57,7 @@ class TelemetryBatch(Base):
 
 
 class TelemetryChunk(Base):
-    """About a second of one stream in compressed columns, bit-exact; never spans two phases."""
+    """About a second of one stream in compressed columns, lossless; never spans two phases."""
 
     __tablename__ = "telemetry_chunks"
     __table_args__ = (Index("ix_telemetry_chunks_phase", "session_id", "phase_id", "stream"),)
@@ -76,7 +76,7 @@ class TelemetryChunk(Base):
 
 
 class ClientReport(Base):
-    """A headset's report as it came, with what the server made of it."""
+    """A headset's report as received, and whether the server accepted it."""
 
     __tablename__ = "client_reports"
 
@@ -94,8 +94,8 @@ class Contact(Base):
     """One body part touching one surface, for one interval of active time.
 
     Times are the monotonic seconds of the client run `epoch`, `*_active_s` the phase's active time.
-    `effect` says
-    what the task made of it: green, out_of_order, wrong_part, early, side, target, start or none.
+    `effect` is how the task counted it: green, out_of_order, wrong_part, early, side, target, start
+    or none.
     """
 
     __tablename__ = "contacts"
@@ -140,12 +140,12 @@ class Completion(Base):
 
 
 class JointErrorRow(Base):
-    """How far a joint was from its target over the active time of a phase, per axis.
+    """The angular distance of a joint from its target over the active time of a phase, per axis.
 
-    `reference` is `present` (against what was asked for at that moment) or `command` (against the
-    delayed command, which tells how good the controller is). Radians; null where no sample counts.
-    `clipped_share` is the share of the samples in which the limits of a physics avatar took
-    something from what was asked for; null without limits, or without a hinge that turns.
+    `reference` is `present` (the target at that moment) or `command` (the delayed command, which
+    shows the quality of the controller). Radians; null if no sample counts. `clipped_share` is the
+    share of the samples in which the limits of a physics avatar clipped the target; null without
+    limits, or without a hinge that moves.
     """
 
     __tablename__ = "joint_errors"
@@ -168,13 +168,13 @@ class JointErrorRow(Base):
 
 
 class JointErrorCourseRow(Base):
-    """How the joint error of a phase went over its active time, in bins of `bin_s` from 0 s on.
+    """The time course of a phase's joint error over its active time, in bins of `bin_s` from 0 s.
 
-    `reference` as in `joint_errors`. Bin by bin: `mean_rad`, the mean angle over the joints and
-    frames that count, null where none does, and `samples`, how many of them there are.
+    `reference` as in `joint_errors`. For each bin: `mean_rad`, the mean angle over the joints and
+    frames that count, null if none does, and `samples`, their number.
     """
 
-    # A row a phase and reference, not one a bin: the bins of a phase are only ever read together,
+    # One row per phase and reference, not per bin: the bins of a phase are always read together,
     # and a figure of a thousand sessions then reads 7,000 rows instead of 96,000.
     __tablename__ = "joint_error_courses"
     __table_args__ = (
@@ -190,9 +190,9 @@ class JointErrorCourseRow(Base):
 
 
 class ClockProbe(Base):
-    """One exchange of clock readings, raw; the mapping is made at analysis.
+    """One exchange of clock readings, raw; the clocks are mapped in the analysis.
 
-    An answer that did not come in time leaves null in all three times behind the first.
+    If no answer came in time, all three times after the first are null.
     """
 
     __tablename__ = "clock_probes"

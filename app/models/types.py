@@ -13,13 +13,13 @@ from app.errors import DamagedValue
 
 
 class UtcDateTime(TypeDecorator[datetime]):
-    """An aware UTC time on every engine; a naive value is refused rather than guessed at."""
+    """A timezone-aware UTC time on every database; a naive value is rejected."""
 
     impl = DateTime(timezone=True)
     cache_ok = True
 
     def process_bind_param(self, value: datetime | None, dialect: Dialect) -> datetime | None:
-        """Store in UTC; SQLite keeps no zone, so it is dropped there after conversion."""
+        """Convert to UTC for storage; SQLite stores no time zone, so it is removed there."""
         if value is None:
             return None
         if value.tzinfo is None:
@@ -28,7 +28,7 @@ class UtcDateTime(TypeDecorator[datetime]):
         return utc.replace(tzinfo=None) if dialect.name == "sqlite" else utc
 
     def process_result_value(self, value: datetime | None, _dialect: Dialect) -> datetime | None:
-        """Give the zone back."""
+        """Add the time zone again if the database does not store it."""
         if value is None:
             return None
         return value.replace(tzinfo=UTC) if value.tzinfo is None else value.astimezone(UTC)
@@ -36,7 +36,7 @@ class UtcDateTime(TypeDecorator[datetime]):
     def result_processor(
         self, dialect: Dialect, coltype: object
     ) -> Callable[[Any], datetime | None] | None:
-        """Raise DamagedValue for a text that is no time: SQLite keeps times as text."""
+        """Raise DamagedValue for a text that is not a time, because SQLite stores times as text."""
         process = super().result_processor(dialect, coltype)
         if process is None or dialect.name != "sqlite":
             return process
@@ -51,10 +51,10 @@ class UtcDateTime(TypeDecorator[datetime]):
 
 
 def new_id() -> str:
-    """A random identifier of 122 bits, as 32 hexadecimal digits."""
+    """Return a random identifier of 122 bits, as 32 hexadecimal digits."""
     return uuid.uuid4().hex
 
 
 Id = Annotated[str, mapped_column(String(32), primary_key=True, default=new_id)]
 UtcTime = Annotated[datetime, mapped_column(UtcDateTime)]
-"""A moment in UTC."""
+"""A column with a UTC time."""

@@ -1,4 +1,4 @@
-"""How people walk: scenes, sets of walks, and the models that are fitted on them."""
+"""Tables of walking: scenes, sets of walks, and the models fitted to them."""
 
 from typing import Any
 
@@ -10,7 +10,7 @@ from app.models.types import Id, UtcTime
 
 
 class WalkingScene(Base):
-    """A floor with obstacles, as the text of its file; a key is given once."""
+    """A floor with obstacles, as the text of its file; keys are unique."""
 
     __tablename__ = "walking_scenes"
 
@@ -23,11 +23,11 @@ class WalkingScene(Base):
 
 
 class WalkSetRow(Base):
-    """Walks to fit models on: people's tracks, kept as a table of text, or made-up walkers.
+    """Walks to fit models to: people's tracks, stored as a text table, or synthetic walkers.
 
-    `origin` says where they come from and how they are read, `summary` what was found; both are as
-    in the schemas of the feature. `content_hash` is null for made-up walkers, whom their seed makes
-    anew.
+    `origin` is where they come from and how they are read, `summary` their figures; both follow the
+    schemas of the feature. `content_hash` is null for synthetic walkers, which are reproduced from
+    their seed.
     """
 
     __tablename__ = "walk_sets"
@@ -46,11 +46,11 @@ class WalkSetRow(Base):
 
 
 class WalkingModelRow(Base):
-    """A model of how people walk, while it is fitted and afterwards.
+    """A model of how people walk, during and after its fitting.
 
-    `walk_set` and `scene` are copies of what it is fitted on, so that it can be understood when
-    those are gone. `content_hash` is that of its file, null until it is ready; `trouble` is why it
-    could not be fitted.
+    `walk_set` and `scene` are copies of what it is fitted to, so that it can still be understood
+    after those are deleted. `content_hash` is that of its file, null until it is ready; `trouble`
+    is why the fitting failed.
     """
 
     __tablename__ = "walking_models"

@@ -1,4 +1,4 @@
-"""Produced counts, achieved latency, quality, alarms
+"""Add produced counts, achieved latency, data quality and alarms.
 
 Revision: 0002
 Revises: 0001
@@ -92,9 +92,10 @@ def upgrade() -> None:
 
     # ### end Alembic commands ###
     if op.get_bind().dialect.name == 'postgresql':
-        # Movement is noise to a general compressor: batches lie beside their keys as they came, and
-        # chunks are compressed already. The table of batches fills and empties all the time: giving
-        # its end back would lock out the writer.
+        # Movement is noise to a general compressor: batches are stored inline and uncompressed, and
+        # chunks are compressed already. The table of batches fills and empties constantly:
+        # returning
+        # the space at its end would lock out the writer.
         op.execute(
             'ALTER TABLE telemetry_batches SET (toast_tuple_target = 8160, vacuum_truncate = false)'
         )
@@ -102,7 +103,7 @@ def upgrade() -> None:
 
 
 def downgrade() -> None:
-    """Take this revision back."""
+    """Revert this revision."""
     if op.get_bind().dialect.name == 'postgresql':
         op.execute('ALTER TABLE telemetry_batches RESET (toast_tuple_target, vacuum_truncate)')
         op.execute('ALTER TABLE telemetry_chunks ALTER COLUMN data SET STORAGE EXTENDED')

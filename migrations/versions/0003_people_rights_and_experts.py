@@ -1,4 +1,4 @@
-"""People, rights and experts
+"""Add people, participants' rights and experts.
 
 Revision: 0003
 Revises: 0002
@@ -23,7 +23,7 @@ OLD_KIND = "kind IN ('people', 'simulated', 'test')"
 
 
 def _kinds(condition: str) -> None:
-    """Which kinds of sessions there are."""
+    """Replace the constraint on the kinds of sessions."""
     for table in ('ledgers', 'sessions'):
         name = op.f(f'ck_{table}_kind')
         with op.batch_alter_table(table) as batch_op:
@@ -179,7 +179,7 @@ def upgrade() -> None:
 
 
 def downgrade() -> None:
-    """Take this revision back."""
+    """Revert this revision."""
     _kinds(OLD_KIND)
     with op.batch_alter_table('accounts', schema=None) as batch_op:
         batch_op.drop_column('all_studies')

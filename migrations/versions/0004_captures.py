@@ -1,4 +1,4 @@
-"""Captures
+"""Add captures.
 
 Revision: 0004
 Revises: 0003
@@ -75,7 +75,7 @@ def upgrade() -> None:
 
 
 def downgrade() -> None:
-    """Take this revision back."""
+    """Revert this revision."""
     with op.batch_alter_table('captures', schema=None) as batch_op:
         batch_op.drop_index(batch_op.f('ix_captures_fingerprint'))
         batch_op.drop_index(batch_op.f('ix_captures_content_hash'))

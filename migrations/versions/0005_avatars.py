@@ -1,4 +1,4 @@
-"""Configurations of avatars, and which one a session used
+"""Add avatar configurations, and the one that each session used.
 
 Revision: 0005
 Revises: 0004
@@ -49,7 +49,7 @@ def upgrade() -> None:
 
 
 def downgrade() -> None:
-    """Take this revision back."""
+    """Revert this revision."""
     with op.batch_alter_table('sessions', schema=None) as batch_op:
         batch_op.drop_column('avatar_configuration_hash')
 

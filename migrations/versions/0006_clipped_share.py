@@ -1,4 +1,4 @@
-"""How often limits took something from what an avatar's joints were asked for
+"""Add the share of samples in which limits clipped the target of an avatar's joint.
 
 Revision: 0006
 Revises: 0005
@@ -23,6 +23,6 @@ def upgrade() -> None:
 
 
 def downgrade() -> None:
-    """Take this revision back."""
+    """Revert this revision."""
     with op.batch_alter_table('joint_errors', schema=None) as batch_op:
         batch_op.drop_column('clipped_share')

@@ -1,4 +1,4 @@
-"""Humanoid models
+"""Add humanoid models.
 
 Revision: 0007
 Revises: 0006
@@ -39,5 +39,5 @@ def upgrade() -> None:
 
 
 def downgrade() -> None:
-    """Take this revision back."""
+    """Revert this revision."""
     op.drop_table('humanoids')

@@ -1,4 +1,4 @@
-"""How each item was answered
+"""Add the traces of how each item was answered.
 
 Revision: 0008
 Revises: 0007
@@ -23,6 +23,6 @@ def upgrade() -> None:
 
 
 def downgrade() -> None:
-    """Take this revision back."""
+    """Revert this revision."""
     with op.batch_alter_table('submissions') as batch_op:
         batch_op.drop_column('item_traces')

@@ -1,4 +1,4 @@
-"""How people walk: scenes, sets of walks, models
+"""Add walking: scenes, sets of walks and models.
 
 Revision: 0009
 Revises: 0008
@@ -73,7 +73,7 @@ def upgrade() -> None:
 
 
 def downgrade() -> None:
-    """Take this revision back."""
+    """Revert this revision."""
     with op.batch_alter_table('walking_models') as batch_op:
         batch_op.drop_index(batch_op.f('ix_walking_models_walk_set_id'))
         batch_op.drop_index(batch_op.f('ix_walking_models_content_hash'))

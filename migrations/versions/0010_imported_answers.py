@@ -1,4 +1,4 @@
-"""Answers collected elsewhere
+"""Add answers collected elsewhere.
 
 Revision: 0010
 Revises: 0009
@@ -63,7 +63,7 @@ def upgrade() -> None:
 
 
 def downgrade() -> None:
-    """Take this revision back."""
+    """Revert this revision."""
     with op.batch_alter_table('imported_forms', schema=None) as batch_op:
         batch_op.drop_index(batch_op.f('ix_imported_forms_import_id'))
         batch_op.drop_index('ix_imported_forms_code')

@@ -1,4 +1,4 @@
-"""How the joint error of a phase went over its active time
+"""Add the time course of a phase's joint error.
 
 Revision: 0011
 Revises: 0010
@@ -31,5 +31,5 @@ def upgrade() -> None:
 
 
 def downgrade() -> None:
-    """Take this revision back."""
+    """Revert this revision."""
     op.drop_table('joint_error_courses')

@@ -1,4 +1,4 @@
-"""Which completed sessions do not count, and why
+"""Record which completed sessions do not count, and why.
 
 Revision: 0012
 Revises: 0011
@@ -20,7 +20,7 @@ OLD_OUTCOME = "outcome IN ('open', 'completed', 'withdrawn', 'aborted')"
 
 
 def _outcomes(condition: str) -> None:
-    """How a session's hold on a slot can end."""
+    """Replace the constraint on the outcomes of a slot attempt."""
     name = op.f('ck_slot_attempts_outcome')
     with op.batch_alter_table('slot_attempts') as batch_op:
         batch_op.drop_constraint(name, type_='check')
@@ -34,7 +34,7 @@ def upgrade() -> None:
 
 
 def downgrade() -> None:
-    """Take this revision back."""
+    """Revert this revision."""
     op.execute("UPDATE slot_attempts SET outcome = 'aborted' WHERE outcome = 'invalid'")
     _outcomes(OLD_OUTCOME)
     op.drop_column('sessions', 'shortfalls')

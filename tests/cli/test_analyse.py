@@ -178,7 +178,7 @@ def test_differences_without_error_leave_the_ranks(tmp_path: Path) -> None:
         (("P3,125,5,ok", " ,125,5,ok"), ("Line 10", "'person'", "names nothing")),
         (("P3,125,5,ok", 'P3,125,"5,ok'), ("cannot be read", "Close every quote")),
         (("person,", "who,"), ("no column 'person'", "who, latency, score, remark")),
-        (("remark", "score"), ("'score' stands 2 times", "rename")),
+        (("remark", "score"), ("'score' occurs 2 times", "rename")),
     ],
 )
 def test_a_row_that_cannot_be_used_is_refused_by_its_line(

@@ -167,7 +167,7 @@ def test_an_unknown_avatar_is_refused_with_those_there_are() -> None:
         (["--mass", "0"], "mass"),
         (["--attempts", "0"], "from 1"),
         (["--capture", "nowhere.bvh"], "nowhere.bvh"),
-        (["--save", "Not A Key"], "small letter"),
+        (["--save", "Not A Key"], "lower-case letter"),
         (["--evaluate", "--save", "arm"], "changes nothing"),
     ],
 )

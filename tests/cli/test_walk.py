@@ -164,7 +164,7 @@ def test_questions_that_cannot_be_are_refused(lab: Path) -> None:
     assert "one of --length" in _refusal("sample", model)
     assert "stature" in _refusal("sample", model, "--length", 2)
     assert "metres" in _refusal("sample", model, "--length", 2, "--stature", 175)
-    assert "no model" in _refusal("sample", lab / "people.csv", "--length", 2)
+    assert "not a walking model" in _refusal("sample", lab / "people.csv", "--length", 2)
     content = bytearray(model.read_bytes())
     content[len(content) // 2] ^= 0xFF
     broken = lab / "broken.npz"

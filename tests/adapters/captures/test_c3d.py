@@ -147,7 +147,7 @@ def test_silence_is_filled_by_guesses_that_are_shown() -> None:
 def test_a_file_that_is_cut_off_is_refused() -> None:
     """A header that tells of more frames than the bytes hold is no reason to allocate them."""
     whole = C3dFile(_some_places(50), ("A", "B", "C")).to_bytes()
-    with pytest.raises(CaptureError, match="50 frames and holds 49"):
+    with pytest.raises(CaptureError, match="50 frames but contains 49"):
         _read(whole[:-8])
     huge = C3dFile(_some_places(1), ("A", "B", "C"), frames_told=65_535).to_bytes()
     with pytest.raises(CaptureError, match="holds 1"):
@@ -184,7 +184,7 @@ def test_what_nobody_saw_is_refused() -> None:
 def test_limits_hold_before_anything_is_read() -> None:
     """Too many markers or values are refused by what the header says."""
     data = C3dFile(_some_places(50), ("A", "B", "C")).to_bytes()
-    with pytest.raises(CaptureError, match="1 to 2 are read"):
+    with pytest.raises(CaptureError, match="1 to 2 are valid"):
         _read(data, limits=Limits(tracks=2))
     with pytest.raises(CaptureError, match="too many"):
         _read(data, limits=Limits(values=100))

@@ -61,7 +61,7 @@ def test_json_is_read_too() -> None:
         ("goal: [0, 3]", "goal: [0, 1]", r"line 11.*places.goal.*inside obstacle 'table'"),
         ("goal: [0, 3]", "goal: [0, 9]", r"line 11.*outside the scene's bounds"),
         ("to: goal", "to: gaol", r"line 13.*names 'gaol'; places are start, goal"),
-        ("to: goal", "to: start", r"line 13.*leads back"),
+        ("to: goal", "to: start", r"line 13.*ends where it begins"),
         ("[-2, -2, 2, 4]", "[-2, 4, 2, -2]", r"line 4.*near < far"),
         ("[-2, -2, 2, 4]", "[-2, -2, 2]", r"bounds_m"),
         ("key: my-lab", "key: My Lab", r"line 2.*key"),
