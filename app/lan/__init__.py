@@ -1,11 +1,11 @@
-"""The server on the lab's own network: addresses, certificates, doors, and the page that helps.
+"""The server on the lab's own network: addresses, certificates, listeners and a help page.
 
-Three ways lead to the same application. On this machine, and through a USB cable, plain http on the
-loopback, which browsers count as secure. Over the network https, with a certificate of the lab's
-own or with one from a small authority that lives in the data folder and whose certificate each
-device installs once. This package knows no study, no database and no route of the application.
+The application can be reached in three ways. On this machine, and through a USB cable, by plain
+http on the loopback, which browsers count as secure. Over the network by https, with the lab's own
+certificate, or with one from a small authority in the data folder whose certificate each device
+installs once. This package depends on no study, no database and no route of the application.
 
-This face tells where the server is reached; `app.lan.serving` opens the doors.
+This module describes where the server can be reached; `app.lan.serving` serves it there.
 """
 
 from app.lan.network import STRANGER, Mode, Network, Reach, ShownCertificate, qr_svg, qr_terminal

@@ -1,7 +1,7 @@
-"""Where the running server can be reached, as pages, terminals and QR codes tell it.
+"""The addresses of the running server, as shown by pages, terminals and QR codes.
 
-`Network` is one for the whole run and always answers with the newest `Reach`: a laptop that joins
-another Wi-Fi gets other addresses and another certificate while the server runs.
+There is one `Network` per process, which always has the newest `Reach`: a laptop that joins another
+Wi-Fi gets other addresses and another certificate while the server runs.
 """
 
 import io
@@ -16,12 +16,15 @@ import segno
 Mode = Literal["loopback", "lan", "without_tls"]
 DEFAULT_PORT = 8321
 STRANGER = "reembody.stranger"
-"""Marks the scope of a request without login or pairing, for whoever serves the connection."""
+"""Marks the ASGI scope of a request without login or pairing, for the protocol that serves it."""
 
 
 @dataclass(frozen=True)
 class ShownCertificate:
-    """The certificate of the https address; `authority_fingerprint` is what devices install."""
+    """The certificate of the https address.
+
+    `authority_fingerprint` is that of the certificate which devices install.
+    """
 
     source: Literal["authority", "files"]
     server_fingerprint: str
@@ -33,10 +36,10 @@ class ShownCertificate:
 
 @dataclass(frozen=True)
 class Reach:
-    """Addresses (URLs without a slash at the end), the best one first.
+    """The server's addresses (URLs without a trailing slash), the best one first.
 
     `loopback`: only this machine, and headsets on its USB cable. `lan`: also https at `urls`.
-    `without_tls`: plain http at `urls`, with no secrecy and without WebXR.
+    `without_tls`: plain http at `urls`, without encryption and without WebXR.
     """
 
     mode: Mode = "loopback"
@@ -52,16 +55,16 @@ class Reach:
 
     @property
     def port(self) -> int:
-        """The port on this machine, which a USB cable leads to."""
+        """The port on this machine, which a USB cable forwards to."""
         return urlsplit(self.local_url).port or DEFAULT_PORT
 
     def for_devices(self, asked_at: str) -> str | None:
-        """The address to give to another device, when a page was asked for at the URL `asked_at`.
+        """Return the address for another device, given the URL `asked_at` of the requested page.
 
-        Every page, command and QR code that names an address for a tablet, a headset or another
-        person's computer asks here. Whoever asks from this machine sees `localhost`, which is
-        another machine for the tablet: then it is the best address of the network, and None where
-        only this machine can reach the server.
+        Every page, command and QR code that shows an address for a tablet, a headset or another
+        person's computer uses this. A page on this machine has the address `localhost`, which for
+        the tablet is the tablet itself: then it is the best address of the network, or None if only
+        this machine can reach the server.
         """
         if not is_this_machine(urlsplit(asked_at).hostname or ""):
             return asked_at.rstrip("/")
@@ -69,20 +72,20 @@ class Reach:
 
     @property
     def for_tablets(self) -> str | None:
-        """The tablet's page for another device; None where only this machine can reach it."""
+        """The tablet's page for another device; None if only this machine can reach it."""
         base = self.for_devices(self.local_url)
         return None if base is None else f"{base}/tablet"
 
 
 @dataclass
 class Network:
-    """The newest reach; replaced as a whole, so any thread may read it."""
+    """The newest reach; it is replaced as a whole, so any thread may read it."""
 
     reach: Reach = field(default_factory=Reach)
 
 
 def is_this_machine(host: str) -> bool:
-    """Whether a URL's host name means, on every machine, that machine itself."""
+    """Return whether a URL's host name means, on every machine, that machine itself."""
     name = host.lower().rstrip(".")
     if name in ("", "localhost") or name.endswith(".localhost"):
         return True
@@ -95,7 +98,7 @@ def is_this_machine(host: str) -> bool:
 
 
 def qr_svg(text: str) -> str:
-    """A QR code as an SVG element without a size of its own."""
+    """Return a QR code as an SVG element without a fixed size."""
     buffer = io.BytesIO()
     segno.make(text, error="m").save(
         buffer, kind="svg", xmldecl=False, svgns=True, border=2, scale=1, omitsize=True
@@ -104,7 +107,7 @@ def qr_svg(text: str) -> str:
 
 
 def qr_terminal(text: str) -> str:
-    """A QR code in half blocks, two rows a line."""
+    """Return a QR code in half blocks, two rows per line."""
     buffer = io.StringIO()
     segno.make(text, error="l").terminal(buffer, compact=True, border=2)
     return buffer.getvalue()

@@ -1,1 +1,1 @@
-"""A scripted participant, headset, tablet and operator over the public interfaces."""
+"""A scripted participant, headset, tablet and operator that use only the public interfaces."""

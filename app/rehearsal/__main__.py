@@ -1,9 +1,9 @@
-"""A rehearsal for another program: its plan comes on standard input, what happens goes to output.
+"""Run a rehearsal for another program: its plan comes on standard input, progress on output.
 
-One line of JSON in: the fields of `RehearsalPlan`. Lines of JSON out, as it goes: `{"session": id}`
-once three devices are paired, `{"step": "3/20 ..."}` at each step, and at the end `{"done": true}`
-or `{"error": words}`. Asked to terminate, or where it fails, it ends its session first. It ends at
-once when its input is closed: whoever started it is gone.
+Input is one line of JSON: the fields of `RehearsalPlan`. Output is lines of JSON: `{"session": id}`
+once all devices are paired, `{"step": "3/20 ..."}` at each step, and at the end `{"done": true}` or
+`{"error": message}`. If it is terminated or fails, it ends its session first. It exits immediately
+when its input is closed, because then the program that started it has ended.
 """
 
 import asyncio
@@ -26,28 +26,28 @@ STOPPED = "The scripted participant was stopped."
 
 
 def main() -> int:
-    """Rehearse; 1 where it failed."""
+    """Rehearse; return 1 if the rehearsal failed."""
     plan = plan_from(json.loads(sys.stdin.readline()))
     threading.Thread(target=_end_with_the_starter, daemon=True).start()
     try:
         asyncio.run(_rehearse(plan))
     except asyncio.CancelledError:
         return 1
-    except Exception as error:  # noqa: BLE001  # whatever it is, it is told
-        tell(error=words_of(error))
+    except Exception as error:  # noqa: BLE001  # every error is reported
+        emit(error=message_of(error))
         return 1
-    tell(done=True)
+    emit(done=True)
     return 0
 
 
 async def _rehearse(plan: RehearsalPlan) -> None:
     playing = asyncio.current_task()
     assert playing is not None  # noqa: S101 - this is one
-    # Windows has no such signal: there a termination is one at once.
+    # Windows has no such signal: there a termination takes effect immediately.
     with contextlib.suppress(NotImplementedError):
         asyncio.get_running_loop().add_signal_handler(signal.SIGTERM, playing.cancel)
-    async with assembled(plan, lambda words: tell(step=words)) as cast:
-        tell(session=cast.operator.session_id)
+    async with assembled(plan, lambda words: emit(step=words)) as cast:
+        emit(session=cast.operator.session_id)
         try:
             await perform(cast)
         except BaseException:
@@ -56,12 +56,12 @@ async def _rehearse(plan: RehearsalPlan) -> None:
 
 
 async def end_session(operator: Operator) -> None:
-    """Leave no simulated session that looks as if somebody were in it.
+    """Abort the session, so that no simulated session looks as if somebody were in it.
 
-    What the three devices had sent last may still end it between the look and the order: then both
-    are done again.
+    The devices' last messages may change the session between the check and the command; then both
+    are repeated.
     """
-    # Where nobody answers, the server goes away too.
+    # If the server does not respond, it is shutting down, too.
     with contextlib.suppress(TimeoutError, ServerRefusedError, UnreachableError):
         async with asyncio.timeout(ENDS_WITHIN_S):
             while (await operator.view())["status"] not in ENDED:
@@ -72,23 +72,23 @@ async def end_session(operator: Operator) -> None:
                         raise
 
 
-def plan_from(told: dict[str, Any]) -> RehearsalPlan:
-    """The plan in a decoded line; raises TypeError for fields that a plan does not have."""
-    known = {field.name for field in fields(RehearsalPlan)}
-    unknown = sorted(set(told) - known)
+def plan_from(content: dict[str, Any]) -> RehearsalPlan:
+    """Return the plan of a decoded line; raise TypeError for unknown fields."""
+    valid = {field.name for field in fields(RehearsalPlan)}
+    unknown = sorted(set(content) - valid)
     if unknown:
         raise TypeError(f"a rehearsal's plan has no {', '.join(unknown)}")
-    return RehearsalPlan(**told)
+    return RehearsalPlan(**content)
 
 
-def tell(**news: object) -> None:
-    """One line, at once."""
+def emit(**news: object) -> None:
+    """Write one line and flush it immediately."""
     sys.stdout.write(json.dumps(news) + "\n")
     sys.stdout.flush()
 
 
-def words_of(error: BaseException) -> str:
-    """What the first of the things that went wrong says."""
+def message_of(error: BaseException) -> str:
+    """Return the message of an error, or of the first in a group."""
     while isinstance(error, BaseExceptionGroup):
         error = error.exceptions[0]
     return (str(error) or type(error).__name__)[:LONGEST_WORDS]

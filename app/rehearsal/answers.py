@@ -1,4 +1,4 @@
-"""What the simulated participant writes into forms: drawn from the seed, no person's answers."""
+"""Fill in forms for the simulated participant: answers are drawn from the seed."""
 
 import re
 from typing import Any
@@ -10,11 +10,11 @@ from app.science.simulation import Aspect, SimulatedItem, simulated_answers
 
 OPEN_PROMPT = "Simulated answer of a rehearsal."
 SIGNATURE = "M80 150L120 60L160 150M100 115L145 115M200 150L200 60L260 150L260 60"
-"""Two letters, drawn by nobody."""
+"""A synthetic signature of two letters, as an SVG path."""
 
 
 def agreement(form: dict[str, Any]) -> dict[str, Any]:
-    """A consent as the simulated participant gives it: everything ticked that is not optional."""
+    """Return the simulated participant's consent, with all required statements ticked."""
     lines = enumerate(form["statements"])
     return {
         "ticked": [at for at, line in lines if not line["optional"]],
@@ -30,7 +30,7 @@ def fill_in(
     limb: str | None,
     rng: np.random.Generator,
 ) -> dict[str, Any]:
-    """Answers to every item of an instrument (as the tablet receives it)."""
+    """Return answers to every item of an instrument (as the tablet receives it)."""
     likert = [item for item in instrument["items"] if item["type"] == "likert"]
     answers: dict[str, Any] = {}
     if likert:
@@ -59,13 +59,16 @@ def fill_in(
 
 
 def _on_step(value: int, scale: dict[str, Any]) -> int:
-    """The step of a scale that is nearest."""
+    """Return the nearest step of a scale."""
     low, step = int(scale["minimum"]), int(scale.get("step", 1))
     return low + step * round((value - low) / step)
 
 
 def _aspects(instrument: dict[str, Any]) -> dict[str, Aspect]:
-    """Items that a score named like an aspect is made of follow that aspect's curve."""
+    """Return the aspect of each item that contributes to a score named like an aspect.
+
+    The answers to such an item follow that aspect's curve.
+    """
     return {
         item["key"]: aspect
         for aspect in Aspect
@@ -87,7 +90,7 @@ def _answer(item: dict[str, Any], person: Person, rng: np.random.Generator) -> A
         return own[item["key"]]
     match item["type"]:
         case "boolean":
-            # Normal or corrected vision and stereo vision are what takes part.
+            # Participants need normal or corrected vision and stereo vision.
             return item["key"] in ("vision", "stereo_vision")
         case "choice":
             keys = [choice["key"] for choice in item["choices"]]

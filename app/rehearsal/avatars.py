@@ -26,30 +26,30 @@ from app.science.tasks import SurfaceArrays, TaskLayout, touching_and_near
 FloatArray = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 RELEASE_MARGIN_M = 0.005
-"""How far a part may go from a surface before its touch is over."""
+"""How far a part may move away from a surface before its touch ends."""
 
 
 class RemoteAvatar(Protocol):
-    """The body that the participant sees as theirs."""
+    """The body that the participant sees as their own."""
 
     def set_latency(self, latency_s: float) -> None:
-        """Follow so much later from now on."""
+        """Set the latency with which the avatar follows from now on."""
 
     def show_boxes(self, layout: TaskLayout | None) -> None:
-        """Put the boxes of a task into the room, or take all away."""
+        """Place the boxes of a task in the room, or remove all."""
 
     def frame(self, t_s: float, pose: Pose) -> Pose:
-        """Where the avatar is when the participant is in this pose, frame after frame."""
+        """Return the avatar's pose for the participant's pose; called for every frame."""
 
     def touches(self) -> tuple[Bools, Bools]:
-        """What it touches at the last frame, and what is near enough to hold a touch.
+        """Return what it touches at the last frame, and what is near enough to keep a touch.
 
         Two bool (S, 22), surfaces of the task by joints of the skeleton; (0, 22) without boxes.
         """
 
 
 class DelayedCopy:
-    """The participant's own movement, with every joint but the hips delayed."""
+    """A copy of the participant's own movement, with every joint except the hips delayed."""
 
     def __init__(self, skeleton: Skeleton) -> None:
         self._skeleton, self._delay = skeleton, DelayBuffer(0.0)
@@ -57,20 +57,20 @@ class DelayedCopy:
         self._pose: Pose | None = None
 
     def set_latency(self, latency_s: float) -> None:
-        """Follow so much later from now on."""
+        """Set the delay of the joints from now on."""
         self._delay.set_delay(latency_s)
 
     def show_boxes(self, layout: TaskLayout | None) -> None:
-        """What is judged from now on; a copy passes through everything."""
+        """Set the surfaces whose touches are detected; a copy passes through everything."""
         self._surfaces = None if layout is None else SurfaceArrays.of(layout)
 
     def frame(self, t_s: float, pose: Pose) -> Pose:
-        """The hips as they are, the joints as they were."""
+        """Return the current position of the hips with the delayed rotations of the joints."""
         self._pose = Pose(pose.root_position_m, self._delay.push(t_s, pose.rotations))
         return self._pose
 
     def touches(self) -> tuple[Bools, Bools]:
-        """By the distances of the body's capsules from the boxes."""
+        """Return touches by the distances of the body's capsules from the boxes."""
         if self._surfaces is None or self._pose is None:
             return no_touches()
         world = forward_kinematics(self._skeleton, self._pose.root_position_m, self._pose.rotations)
@@ -79,41 +79,49 @@ class DelayedCopy:
 
 
 def no_touches() -> tuple[Bools, Bools]:
-    """Nothing to touch."""
+    """Return the touches without boxes."""
     nothing = np.zeros((0, 22), dtype=np.bool_)
     return nothing, nothing
 
 
 class AvatarSource(Protocol):
-    """Where the avatar of a session is had from."""
+    """A source of the physics avatar of a session."""
 
     async def take_up(self, stature_m: float) -> "PhysicsBody":
-        """The avatar for a participant of this stature."""
+        """Return the avatar for a participant of this stature."""
 
 
 @dataclass(frozen=True)
 class FromServer:
-    """The server builds and records it; `http` calls as the session's paired headset."""
+    """The avatar that the server builds and records.
+
+    `http` sends as the session's paired headset.
+    """
 
     http: AsyncClient
 
     async def take_up(self, stature_m: float) -> "PhysicsBody":
-        """The avatar for a participant of this stature; raises as `call_again`."""
-        told: Json = await call_again(self.http, "POST", "/api/vr/avatar", {"stature_m": stature_m})
-        configuration = configuration_of(AvatarFile.model_validate(told["configuration"]))
+        """Return the avatar for a participant of this stature.
+
+        Raises the errors of `call_again`.
+        """
+        answer: Json = await call_again(
+            self.http, "POST", "/api/vr/avatar", {"stature_m": stature_m}
+        )
+        configuration = configuration_of(AvatarFile.model_validate(answer["configuration"]))
         # Loading the model and the compiled code takes a second or two.
         own_m = build_skeleton(stature_m).standing_hips_m
-        scale = told["standing_hips_m"] / own_m
-        return await asyncio.to_thread(PhysicsBody, told["mjcf"], configuration, scale)
+        scale = answer["standing_hips_m"] / own_m
+        return await asyncio.to_thread(PhysicsBody, answer["mjcf"], configuration, scale)
 
 
 class PhysicsBody:
-    """A simulated body that stands where the participant's first pose is, without boxes.
+    """A simulated body that starts in the participant's first pose, without boxes.
 
     Args:
         mjcf: the model, with the boxes of all tasks.
         configuration: that the model was built from.
-        hips_scale: how high its hips are when it stands, as a share of the participant's.
+        hips_scale: the height of its hips when standing, as a share of the participant's.
     """
 
     def __init__(self, mjcf: str, configuration: Configuration, hips_scale: float = 1.0) -> None:
@@ -126,17 +134,17 @@ class PhysicsBody:
         self._began_s: float | None = None
 
     def set_latency(self, latency_s: float) -> None:
-        """Let the motors' targets come so much later from now on."""
+        """Set the delay of the motors' targets from now on."""
         self._follower.set_delay(latency_s)
 
     def show_boxes(self, layout: TaskLayout | None) -> None:
-        """Put the boxes of a task into the room, or take all away."""
+        """Place the boxes of a task in the room, or remove all."""
         names = () if layout is None else tuple(surface.key for surface in layout.surfaces)
         self.avatar.boxes.show(names)
         self._touches = SurfaceTouches(self.avatar, names, RELEASE_MARGIN_M) if names else None
 
     def frame(self, t_s: float, pose: Pose) -> Pose:
-        """Simulate up to this frame; where the body is then."""
+        """Simulate up to this frame and return the body's pose."""
         hips_m = self._hips_scale * pose.root_position_m
         if self._began_s is None:
             self._began_s = t_s
@@ -145,5 +153,5 @@ class PhysicsBody:
         return Pose(followed.state.root_position_m, followed.state.rotations)
 
     def touches(self) -> tuple[Bools, Bools]:
-        """By the contacts of the simulation."""
+        """Return touches by the contacts of the simulation."""
         return no_touches() if self._touches is None else self._touches.read()

@@ -1,4 +1,4 @@
-"""The rehearsing participant's body and movement, made up here or taken from a capture."""
+"""The simulated participant's body and movement, either synthetic or from a capture."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,18 +15,20 @@ from app.science.skeleton import Movement, Skeleton, SkeletonError, build_skelet
 FRAME_RATE_HZ = 90.0
 CROSSFADE_S, SHORTEST_CROSSFADE_S = 0.4, 0.1
 SHORTEST_LOOP_S = 0.55
-"""A capture of a second still makes a loop, with a shorter cross-fade."""
+"""Shortest loop: a capture of a second is long enough, with a shorter cross-fade."""
 
 
 class UnusableCapture(ValueError):
-    """The capture cannot be used as movement; says why and what to do."""
+    """The capture cannot be used as movement; the message says why and what to do."""
 
 
 def captured_movement(path: Path, skeleton: Skeleton) -> Movement:
-    """The capture's movement on a skeleton, in place and facing -z; markers get a skeleton first.
+    """Return the capture's movement on a skeleton, in place and facing -z.
+
+    A skeleton is first fitted to markers.
 
     Raises:
-        UnusableCapture: the file cannot be read, or no body can be made of it.
+        UnusableCapture: the file cannot be read, or its movement cannot be transferred to a body.
     """
     try:
         source = skeleton_motion(path)
@@ -39,7 +41,7 @@ def captured_movement(path: Path, skeleton: Skeleton) -> Movement:
 
 
 def skeleton_motion(path: Path) -> RigMotion:
-    """The movement of the capture's own skeleton, or of one fitted to its markers or bodies.
+    """Return the movement of the capture's own skeleton, or of one fitted to its markers or bodies.
 
     Raises:
         UnusableCapture: no skeleton can be fitted.
@@ -48,7 +50,7 @@ def skeleton_motion(path: Path) -> RigMotion:
     motion = read_capture_file(path).motion
     if isinstance(motion, RigMotion):
         return motion
-    from app.science.fitting import FitError, fit_skeleton  # most captures bring a skeleton
+    from app.science.fitting import FitError, fit_skeleton  # most captures have a skeleton
 
     try:
         return fit_skeleton(motion).motion
@@ -58,7 +60,7 @@ def skeleton_motion(path: Path) -> RigMotion:
 
 @dataclass(frozen=True)
 class Person:
-    """Who takes part in the rehearsal: made up from the seed, and simulated."""
+    """The simulated participant of a rehearsal, with properties drawn from the seed."""
 
     stature_m: float
     handedness: str
@@ -69,7 +71,7 @@ class Person:
 
 
 def make_person(rng: np.random.Generator, capture: Path | None) -> Person:
-    """A person moving like `capture`, or by movement made here; raises UnusableCapture."""
+    """Make a participant that moves like `capture`, or synthetically; raise UnusableCapture."""
     stature_m = float(np.clip(rng.normal(1.72, 0.09), 1.52, 1.95))
     skeleton = build_skeleton(stature_m)
     movement = idle_movement(skeleton, rng) if capture is None else _looped(capture, skeleton)
@@ -84,7 +86,7 @@ def make_person(rng: np.random.Generator, capture: Path | None) -> Person:
 
 
 def _looped(capture: Path, skeleton: Skeleton) -> Movement:
-    """The capture in place, scaled to the stature, looped with a cross-fade."""
+    """Return the capture in place, scaled to the stature, and looped with a cross-fade."""
     movement = captured_movement(capture, skeleton)
     try:
         crossfade_s = min(CROSSFADE_S, (movement.duration_s - SHORTEST_LOOP_S) / 2.0)

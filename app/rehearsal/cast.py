@@ -1,4 +1,4 @@
-"""Who plays a session: an operator who presses buttons, a tablet that answers, a headset."""
+"""Play a session: an operator who issues commands, a tablet that answers, a headset."""
 
 import asyncio
 from collections.abc import Callable
@@ -16,7 +16,7 @@ from app.rehearsal.headset import WITHDRAWN, Headset
 Json = dict[str, Any]
 ENDED = ("completed", "aborted", WITHDRAWN)
 OVERTAKEN = ("stale", "not_now")
-"""What the server says where somebody else, or the headset, was first."""
+"""Error codes of a command that came after somebody else's, or the headset's, change."""
 LOOK_EVERY_S = 0.1
 REDO_REASON = "Rehearsal: the phase is repeated."
 WITHDRAWAL_REASON = "Rehearsal: the participant withdraws."
@@ -25,7 +25,7 @@ SAID = {"redo": "is repeated from its beginning", "withdraw": "the participant w
 
 @dataclass(frozen=True)
 class Interruption:
-    """What the operator does once, half-way through a phase: repeat it, or end by a withdrawal.
+    """What the operator does once, half-way through a phase: repeat it, or record a withdrawal.
 
     `phase`: its number in the visit, from 1; practice and free movement count.
     """
@@ -40,7 +40,10 @@ class MissedInterruptionError(RuntimeError):
 
 @dataclass
 class Cast:
-    """The three devices and what they share. `interruptions`: those to come, the next one first."""
+    """The three devices and their shared state.
+
+    `interruptions`: the pending ones, the next first.
+    """
 
     operator: Operator
     tablet: Tablet
@@ -53,7 +56,7 @@ class Cast:
 
 
 async def perform(cast: Cast) -> None:
-    """All three at once, until the session is over; the first that fails ends the others."""
+    """Run all three devices until the session is over; if one fails, the others are cancelled."""
     async with asyncio.TaskGroup() as group:
         group.create_task(cast.headset.run())
         group.create_task(answer(cast))
@@ -61,17 +64,17 @@ async def perform(cast: Cast) -> None:
 
 
 async def operate(cast: Cast) -> None:
-    """The operator: looks, presses the next button, looks again."""
-    told = -1
+    """Play the operator: check the session and issue the next command, until it is over."""
+    shown = -1
     while True:
         view = await cast.operator.view()
         if view["status"] in ENDED:
             _require_no_interruption_missed(cast, view)
             return
         current = view["current"]
-        if current is not None and current["index"] != told:
-            told = current["index"]
-            cast.say(f"{told + 1}/{len(view['steps'])} {view['steps'][told]['title']}")
+        if current is not None and current["index"] != shown:
+            shown = current["index"]
+            cast.say(f"{shown + 1}/{len(view['steps'])} {view['steps'][shown]['title']}")
         try:
             if _is_due(view, cast):
                 await _interrupt(view, cast)
@@ -85,7 +88,7 @@ async def operate(cast: Cast) -> None:
 
 
 def _is_due(view: Json, cast: Cast) -> bool:
-    """Whether the phase of the next interruption is half over, or was left since the last look."""
+    """Return whether the phase of the next interruption is half over, or was already left."""
     if not cast.interruptions or view["current"] is None:
         return False
     step = _step_of(view, cast.interruptions[0])
@@ -97,7 +100,7 @@ def _is_due(view: Json, cast: Cast) -> bool:
 
 
 async def _interrupt(view: Json, cast: Cast) -> None:
-    """Give the order of the next interruption; refused, it stays the next one."""
+    """Carry out the next interruption; if it is refused, it stays pending."""
     order = cast.interruptions[0]
     if order.kind == "redo":
         step_index = _step_of(view, order)["index"]
@@ -125,7 +128,7 @@ def _next_action(view: Json, person: Person) -> tuple[str, Json] | None:
     if view["status"] == "planned":
         return "start", {}
     if view["held"] is not None:
-        # A simulated participant is never unwell; that the rule works is seen all the same.
+        # A simulated participant is never unwell, but this exercises the stop rule.
         return "override_stop", {"reason": "Rehearsal: nobody is unwell."}
     current = view["current"]
     step = view["steps"][current["index"]]
@@ -147,7 +150,7 @@ def _measured(person: Person) -> Json:
 
 
 async def answer(cast: Cast) -> None:
-    """The tablet: reads, agrees, answers, until the session is over."""
+    """Play the tablet: read, consent and answer until the session is over."""
     try:
         await _answer_while_it_lasts(cast)
     except ServerRefusedError as error:

@@ -1,4 +1,4 @@
-"""From the surface the rules ask for to what the simulated participant does about it."""
+"""Convert the surface that the task rules expect next to a goal of the simulated participant."""
 
 from app.science.simulation import Goal, GoalKind
 from app.science.tasks import (
@@ -17,7 +17,7 @@ _HALF_HAND_M = 0.05
 
 
 def goal_of(state: TaskState, leading_foot: Laterality, *, solid: bool = False) -> Goal | None:
-    """The goal of the present state; None once the phase is frozen.
+    """Return the goal in the current state; None once the phase is frozen.
 
     `solid`: the avatar cannot pass through the boxes, so the hand is aimed to fit between walls.
     """
@@ -42,7 +42,7 @@ def _reach(surface: Surface, state: TaskState, half_hand_m: float) -> Goal:
     return Goal(
         GoalKind.REACH,
         f"{state.rules.writing_hand.value.capitalize()}Hand",
-        # The face towards the participant.
+        # The centre of the face towards the participant.
         (x, y, z + half_depth),
         max(0.02, min(surface.half_size_m[0], surface.half_size_m[1]) - half_hand_m),
         (0.0, 0.0, out_m),
@@ -50,7 +50,7 @@ def _reach(surface: Surface, state: TaskState, half_hand_m: float) -> Goal:
 
 
 def _step(surface: Surface, state: TaskState, leading_foot: Laterality) -> Goal:
-    # Feet alternate from box to box, as people walk.
+    # The feet alternate from box to box, as in walking.
     other = Laterality.LEFT if leading_foot is Laterality.RIGHT else Laterality.RIGHT
     counting = state.rules.layout.counting_foot
     foot = counting or (leading_foot if state.n_green % 2 == 0 else other)
@@ -65,7 +65,7 @@ def _step(surface: Surface, state: TaskState, leading_foot: Laterality) -> Goal:
 
 
 def _box_depth(surface: Surface, state: TaskState) -> float:
-    """How far the box's walls stand out in front of its panel."""
+    """Return how far the box's walls protrude in front of its panel."""
     sides = [
         one
         for one in state.rules.layout.surfaces
@@ -75,7 +75,7 @@ def _box_depth(surface: Surface, state: TaskState) -> float:
 
 
 def _edge_height(state: TaskState) -> float:
-    """Clear of every edge of the foot boxes."""
+    """Return a height that clears every edge of the foot boxes."""
     tops = [
         one.center_m[1] + one.half_size_m[1]
         for one in state.rules.layout.surfaces

@@ -1,8 +1,8 @@
 """The scripted headset: moves a body, delays its copy, plays the tasks, streams everything.
 
 The remote avatar is a delayed copy of the movement, or a body that follows it by forces, as the
-study says; contacts are what that avatar touches. One that is moved by physics is had from the
-server when the participant's stature is known and the T-pose is held.
+study specifies; contacts are those of that avatar. A physics avatar is requested from the server
+once the participant's stature is known and the T-pose is held.
 """
 
 import asyncio
@@ -37,15 +37,15 @@ FRAMES_PER_BATCH = 6
 T_POSE_S = 2.0
 MESSAGES_AHEAD = 100
 WITHDRAWN = "withdrawn"
-"""Status of a session, and why the server takes no more of it."""
+"""The status of a session, and the error code with which the server refuses its data."""
 
 
 @dataclass
 class FrameClock:
-    """Goes `speed` seconds a second, and never beyond the frame that was drawn last.
+    """A clock that runs at `speed` seconds per second, but never beyond the last drawn frame.
 
-    So a machine that is too slow for the speed has a slower clock, as a headset that drops frames
-    has not: only a rehearsal faster than life can come to that.
+    So if a machine is too slow for the speed, its clock is slower, unlike that of a headset, which
+    drops frames: this can only happen in a rehearsal faster than real time.
     """
 
     speed: float
@@ -53,21 +53,21 @@ class FrameClock:
     _started_s: float = field(default_factory=time.monotonic)
 
     def start(self) -> None:
-        """The first frame is due now."""
+        """Start the clock: the first frame is due now."""
         self._started_s = time.monotonic()
 
     @property
     def t_s(self) -> float:
-        """The time of the present frame."""
+        """The time of the current frame."""
         return self.frame / FRAME_RATE_HZ
 
     def now_s(self) -> float:
-        """The time at any moment, also between two frames."""
+        """Return the current time, which may be between two frames."""
         return min(self.t_s, (time.monotonic() - self._started_s) * self.speed)
 
     @property
     def due_in_s(self) -> float:
-        """How many real seconds until the next frame; not above zero where it is late."""
+        """The real seconds until the next frame is due; not positive if it is late."""
         return self._started_s + self.t_s / self.speed - time.monotonic()
 
 
@@ -89,10 +89,10 @@ class Buffers:
 
 
 class Headset:
-    """Runs until the session is over or recording ends with the debriefing.
+    """The headset, which runs until the session is over or its recording ends.
 
-    `clock` is the one that the client shows in its probes, too. `physics` is where an avatar moved
-    by physics is had from; without it the avatar is a delayed copy.
+    `clock` is also the clock of the client's probes. `physics` is the source of a physics avatar;
+    without it the avatar is a delayed copy.
     """
 
     def __init__(
@@ -119,25 +119,25 @@ class Headset:
 
     @property
     def _goes_on_alone(self) -> bool:
-        """Whether the study lets a phase run on while the connection is broken."""
+        """Whether the study lets a phase continue while the connection is lost."""
         welcome = self.client.welcome
         return welcome is not None and welcome.on_disconnect == "continue"
 
     @property
     def t_s(self) -> float:
-        """The headset's monotonic clock: the time of the present frame."""
+        """The headset's monotonic clock: the time of the current frame."""
         return self._clock.t_s
 
     @property
     def active_s(self) -> float:
-        """Active time used of the phase under way; 0.0 where there is none."""
+        """The active time of the current phase; 0.0 outside phases."""
         return 0.0 if self._run is None else self._run.active_s(self.t_s)
 
     async def run(self) -> None:
-        """Draw frame after frame while the session lasts.
+        """Draw frame after frame until the session ends.
 
-        Once the participant has withdrawn nothing more is taken of them: what the journal still
-        holds is left, as the server says.
+        Once the participant has withdrawn, nothing more of their data is sent: the remaining
+        messages of the journal are discarded, as the server instructs.
         """
         try:
             await self._draw_while_it_lasts()
@@ -161,19 +161,20 @@ class Headset:
         await self.client.drained()
 
     async def _sleep_until_due(self) -> None:
-        """Keep the pace; a machine that is behind goes on at once but lets others run.
+        """Wait for the next frame; if it is late, only let other tasks run.
 
-        A rehearsal faster than life also waits for the server: else its orders would come late in
-        the headset's time. A headset in real time cannot wait, and goes on by its journal.
+        A rehearsal faster than real time also waits for the server: otherwise its commands would
+        arrive late in the headset's time. A headset in real time cannot wait, and relies on its
+        journal.
         """
         await asyncio.sleep(max(0.0, self._clock.due_in_s))
         if self._clock.speed > 1.0:
             await self.client.at_most_waiting(MESSAGES_AHEAD)
 
     async def _follow(self, state: HeadsetState) -> None:
-        """Converge to the session's state."""
+        """Bring the headset in line with the session's state."""
         if self._avatar is None and state.materialised:
-            # Another run of the client had taken it up.
+            # An earlier run of the client had requested the avatar.
             await self._take_up(state)
         if state.step_kind == "materialise" and not state.materialised:
             await self._materialise(state)
@@ -183,7 +184,7 @@ class Headset:
                 if self.client.settled:
                     await self._report(self._run.follow(order, self.t_s))
                 return
-            # Another phase was called: the one under way was voided.
+            # Another phase was started: the current one was voided.
             await self._leave_phase()
         if order is None or self._has_ended(order):
             if self._run is not None:
@@ -192,7 +193,7 @@ class Headset:
         await self._enter_phase(order)
 
     def _has_ended(self, order: PhaseOrder) -> bool:
-        """Whether the state is older than our own report that the phase has ended."""
+        """Return whether the state is older than our own report that the phase has ended."""
         return self._run is None and order.phase_id <= self._phase_id
 
     async def _materialise(self, state: HeadsetState) -> None:
@@ -204,7 +205,7 @@ class Headset:
             await self.client.report(MaterialisedReport(t_s=self.t_s))
 
     async def _take_up(self, state: HeadsetState) -> None:
-        """Have the avatar that physics moves, for the stature that is on record."""
+        """Request the physics avatar, if there is one, for the recorded stature."""
         if self._physics is not None:
             stature_m = state.participant.stature_m or self._person.stature_m
             self._avatar = await self._physics.take_up(stature_m)
@@ -237,7 +238,7 @@ class Headset:
             self._avatar.show_boxes(layout)
 
     async def _draw(self, *, recording: bool) -> None:
-        """One frame: the person's pose, the delayed avatar, its contacts, and the record."""
+        """Draw one frame: the participant's pose, the avatar, its contacts, and the record."""
         self._clock.frame += 1
         t_s, run = self.t_s, self._run
         goal = None
@@ -270,7 +271,7 @@ class Headset:
         buffers.count += 1
 
     async def _flush(self) -> None:
-        """Send the frames so far; a batch never spans two phases."""
+        """Send the frames collected so far; a batch never spans two phases."""
         buffers, count = self._buffers, self._buffers.count
         if count == 0:
             return
@@ -296,7 +297,7 @@ class Headset:
 
     async def _report(self, reports: Sequence[ReportBody]) -> None:
         if reports:
-            # Frames first: whoever reads a report finds the movement that led to it.
+            # Send frames first, so that the movement that led to a report is stored before it.
             await self._flush()
         for body in reports:
             self.contacts += body.kind == "contact"

@@ -1,8 +1,8 @@
-"""A scripted participant goes through a whole session over the public interfaces only.
+"""Take a scripted participant through a whole session over the public interfaces only.
 
-Three parts run side by side as three devices would: an operator who presses the buttons, a tablet
-that reads and answers, a headset that moves, plays and streams. The session is simulated and says
-so everywhere.
+Three parts run in parallel, as three devices would: an operator who issues commands, a tablet that
+reads and answers, a headset that moves, plays and streams. The session is marked as simulated
+everywhere.
 """
 
 import json
@@ -34,7 +34,7 @@ from app.rehearsal.headset import WITHDRAWN, FrameClock, Headset
 
 Json = dict[str, Any]
 AVATARS = ("delayed_copy", "physics")
-"""What the scripted headset can show."""
+"""The kinds of avatar that the scripted headset can show."""
 PHYSICS_SUFFIX = "-physics"
 PHYSICS_AVATAR = "standard"
 _KEY = re.compile(r"^key: .*$", re.MULTILINE)
@@ -45,9 +45,9 @@ _MOVED = re.compile(r"^avatar: delayed_copy[ \t]*$", re.MULTILINE)
 class RehearsalPlan:
     """What to rehearse. `token` None logs in with `password`. `speed` 1 is real time.
 
-    `physics`: with an avatar that is moved by physics, in a copy of the study where it has another.
-    `redo`: the phase that is repeated half-way through; `withdraw_during`: the one in which the
-    participant withdraws. Phases count from 1, in the order of the visit.
+    `physics`: use a physics avatar, in a copy of the study if that has another one. `redo`: the
+    phase that is repeated half-way through; `withdraw_during`: the one in which the participant
+    withdraws. Phases count from 1, in the order of the visit.
     """
 
     url: str
@@ -65,7 +65,7 @@ class RehearsalPlan:
 
     @property
     def interruptions(self) -> list[Interruption]:
-        """What the operator interrupts, in the order of the visit."""
+        """The operator's interruptions, in the order of the visit."""
         redo = [] if self.redo is None else [Interruption("redo", self.redo)]
         if self.withdraw_during is None:
             return redo
@@ -73,15 +73,15 @@ class RehearsalPlan:
 
     @property
     def ends_as(self) -> str:
-        """The status of a session that went as it was planned."""
+        """The final status of a session that goes as planned."""
         return "completed" if self.withdraw_during is None else WITHDRAWN
 
 
 @dataclass(frozen=True)
 class Visit:
-    """What a study sets for each visit: how many timed phases, and their time together in s.
+    """What a study specifies for each visit: the number of timed phases and their total time in s.
 
-    `physics`: whether physics moves the avatar; taken for granted where an operator is not told.
+    `physics`: whether it has a physics avatar; assumed if the caller may not see the protocol.
     """
 
     phases: int
@@ -91,10 +91,10 @@ class Visit:
 
 @dataclass(frozen=True)
 class RehearsalReport:
-    """What was sent and what the server says it stored.
+    """What was sent, and what the server reports as stored.
 
-    `status`: how the session ended; somebody else may have aborted it. Phases have no latency where
-    whoever rehearsed must not know it.
+    `status`: how the session ended; somebody else may have aborted it. The latency of phases is
+    None if the caller must not know it.
     """
 
     session_id: str
@@ -118,9 +118,9 @@ class RehearsalReport:
 
 
 async def visit_of(plan: RehearsalPlan) -> Visit:
-    """What the plan's study sets for each visit.
+    """Return what the plan's study specifies for each visit.
 
-    Raises ValueError where an interruption is planned for a phase that a visit does not have,
+    Raises ValueError if an interruption is planned for a phase that a visit does not have,
     ServerRefusedError or UnreachableError.
     """
     async with _client(plan) as http:
@@ -144,7 +144,7 @@ async def rehearse(
     *,
     journal: Journal | None = None,
 ) -> RehearsalReport:
-    """Run a whole session; `say` is told each step, `journal` is where the headset keeps frames.
+    """Run a whole session; `say` gets each step, `journal` is the headset's journal.
 
     Raises UnusableCapture, NoVariantError, ServerRefusedError, UnreachableError or TelemetryError.
     """
@@ -161,7 +161,7 @@ async def assembled(
     *,
     journal: Journal | None = None,
 ) -> AsyncIterator[Cast]:
-    """Three paired devices in a new session that waits for its start; raises as `rehearse`."""
+    """Create a session with three paired devices, ready to start; raises as `rehearse`."""
     clock = FrameClock(plan.speed)
     rng = np.random.default_rng(plan.seed)
     person = make_person(rng, plan.capture)
@@ -193,9 +193,9 @@ async def assembled(
 
 
 def tasks_of(socket: TelemetryClient) -> Tasks:
-    """The study's tasks as the server told them at the welcome."""
-    told = {} if socket.welcome is None else socket.welcome.tasks
-    return Tasks.model_validate_json(json.dumps(told))
+    """Return the study's tasks from the server's welcome message."""
+    content = {} if socket.welcome is None else socket.welcome.tasks
+    return Tasks.model_validate_json(json.dumps(content))
 
 
 def _client(plan: RehearsalPlan) -> AsyncClient:
@@ -226,7 +226,7 @@ async def _join(http: AsyncClient, plan: RehearsalPlan) -> Json:
 
 
 async def report_of(cast: Cast, plan: RehearsalPlan, duration_s: float) -> RehearsalReport:
-    """What was sent, and what the server says about it."""
+    """Return what was sent, and what the server has stored of it."""
     view = await cast.operator.view()
     session_id = cast.operator.session_id
     streams: list[Json] = await call_again(
@@ -274,17 +274,17 @@ async def report_of(cast: Cast, plan: RehearsalPlan, duration_s: float) -> Rehea
 
 
 class NoVariantError(ValueError):
-    """The study has no form with a physics avatar; says why."""
+    """No variant of the study with a physics avatar can be made; says why."""
 
 
 async def physics_variant(http: AsyncClient, study: str) -> str:
-    """The key of the study itself if physics moves its avatar, else of its copy that has one.
+    """Return the key of the study if it has a physics avatar, else of its copy that has one.
 
-    The copy is made where it is missing, and gets a version where the study has changed since. It
-    differs in its key and in what moves the avatar: the newest version of the standard one.
+    The copy is created if it does not exist, and gets a new version if the study has changed since.
+    It differs in its key and in its avatar: the newest version of the standard one.
 
     Raises:
-        NoVariantError: the file cannot be changed at these places. ServerRefusedError.
+        NoVariantError: the file cannot be changed in these places. ServerRefusedError.
     """
     view: dict[str, Any] = await call(http, "GET", f"/api/studies/{study}")
     text = view["yaml"] or ""
@@ -300,12 +300,12 @@ async def physics_variant(http: AsyncClient, study: str) -> str:
     chosen = f"avatar: physics\navatar_configuration: {{key: {PHYSICS_AVATAR}, version: {newest}}}"
     changed = _MOVED.sub(chosen, _KEY.sub(f"key: {key}", text))
     try:
-        known = await call(http, "GET", f"/api/studies/{key}")
+        existing = await call(http, "GET", f"/api/studies/{key}")
     except ServerRefusedError as error:
         if error.code != "not_found":
             raise
         await call(http, "POST", "/api/studies", {"yaml": changed})
         return key
-    if known["yaml"] != changed:
+    if existing["yaml"] != changed:
         await call(http, "POST", f"/api/studies/{key}/versions", {"yaml": changed})
     return key

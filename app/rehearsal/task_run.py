@@ -1,4 +1,4 @@
-"""A hand or foot phase on the headset: the task rules between the avatar and the reports."""
+"""A hand or foot phase on the headset: apply the task rules to the avatar, and make reports."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -28,7 +28,7 @@ _EFFECTS = {
 
 
 class BoxRun(TimedRun):
-    """The boxes: contacts become intervals, intervals and completions become reports."""
+    """One phase at the boxes: contact intervals and completions become reports."""
 
     def __init__(
         self, order: PhaseOrder, rules: TaskRules, parts: Sequence[str], t_s: float
@@ -36,17 +36,17 @@ class BoxRun(TimedRun):
         super().__init__(order, t_s)
         self._run = TaskRun(rules, tuple(parts))
         if rules.layout.reverse_after_task and order.completions % 2:
-            # Another run of the client has turned the order round already.
+            # An earlier run of the client has already reversed the order.
             state = self._run.state
             self._run.state = replace(state, order=state.order[::-1])
         self._completed_before = order.completions
-        self._told_events = 0
-        self._told_intervals = 0
-        self._told_completions = 0
+        self._reported_events = 0
+        self._reported_intervals = 0
+        self._reported_completions = 0
 
     @property
     def state(self) -> TaskState:
-        """Where the task stands."""
+        """The current state of the task."""
         return self._run.state
 
     @property
@@ -56,26 +56,26 @@ class BoxRun(TimedRun):
 
     @property
     def has_enough(self) -> bool:
-        """Whether as many tasks are completed as a practice wants."""
-        wanted = self.order.until_completions
-        done = self._completed_before + self._told_completions
-        return wanted is not None and self.clock_runs and done >= wanted
+        """Whether as many tasks are completed as a practice requires."""
+        required = self.order.until_completions
+        done = self._completed_before + self._reported_completions
+        return required is not None and self.clock_runs and done >= required
 
     def command(self, kind: CommandKind, t_s: float) -> None:
         """Start, pause, resume or freeze the task."""
         self._run.command(kind, t_s)
 
     def touch(self, t_s: float, touches: Touches) -> None:
-        """Give the rules one frame of touches."""
+        """Apply the rules to the touches of one frame."""
         touched, near = touches()
         self._run.frame(t_s, touched, near)
 
     def news(self, _t_s: float) -> list[ReportBody]:
-        """Contacts that closed, tasks completed, walks back that began or ended."""
-        events = self._run.events[self._told_events :]
-        intervals = self._run.intervals[self._told_intervals :]
-        self._told_events += len(events)
-        self._told_intervals += len(intervals)
+        """Return reports of contacts and walks back that ended or started, and tasks completed."""
+        events = self._run.events[self._reported_events :]
+        intervals = self._run.intervals[self._reported_intervals :]
+        self._reported_events += len(events)
+        self._reported_intervals += len(intervals)
         reports: list[ReportBody] = [self._contact(interval) for interval in intervals]
         if any(event.kind is EventKind.TASK_COMPLETED for event in events):
             reports += self._new_completions()
@@ -92,8 +92,8 @@ class BoxRun(TimedRun):
 
     def _new_completions(self) -> list[CompletionReport]:
         done = completions(self._run.events)
-        new = done[self._told_completions :]
-        self._told_completions = len(done)
+        new = done[self._reported_completions :]
+        self._reported_completions = len(done)
         boxes = {surface.key: surface.box for surface in self.state.rules.layout.surfaces}
         return [
             CompletionReport(
@@ -125,7 +125,7 @@ class BoxRun(TimedRun):
         )
 
     def _effect(self, interval: ContactInterval, kind: SurfaceKind) -> str:
-        """What the task made of the touch that began the interval."""
+        """Return how the task counted the touch that began the interval."""
         if kind in (SurfaceKind.SIDE, SurfaceKind.START):
             return kind.value
         for event in reversed(self._run.events):

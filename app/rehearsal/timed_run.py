@@ -1,8 +1,8 @@
-"""A timed phase on the headset's clock: preparation, active time, freeze, and what to report.
+"""A timed phase on the headset's clock: preparation, active time, freeze, and its reports.
 
-The headset runs the phase by itself and tells the server each change with its own monotonic time
-and the active time used up. The clock stands during pauses, during walks back, and while the
-connection is broken, so both sides agree on what counts.
+The headset runs the phase by itself and reports each change to the server with its own monotonic
+time and the active time so far. The clock is stopped during pauses, during walks back, and while
+the connection is lost, so both sides agree on what counts.
 """
 
 from abc import ABC, abstractmethod
@@ -16,14 +16,14 @@ from app.wire import PhaseOrder, PhaseReport, ReportBody
 
 Bools = NDArray[np.bool_]
 Touches = Callable[[], tuple[Bools, Bools]]
-"""Surfaces of the task by joints (S, P): what is touched, and what is near enough to hold it."""
+"""Returns, by surface and joint (S, P), what is touched and what is near enough to keep a touch."""
 
 
 class TimedRun(ABC):
     """One phase from its preparation to the end of its freeze.
 
-    A client that takes over in mid-phase goes on with the active time that the order tells: it
-    waits for the operator's resume, since it cannot know where the participant stands.
+    A client that takes over in mid-phase continues with the active time in the order: it waits for
+    the operator to resume, since it cannot know where the participant stands.
     """
 
     def __init__(self, order: PhaseOrder, t_s: float) -> None:
@@ -38,7 +38,7 @@ class TimedRun(ABC):
     @property
     @abstractmethod
     def clock(self) -> ActiveClock:
-        """The active clock of this run, from zero."""
+        """The active clock of this run, which starts at zero."""
 
     @abstractmethod
     def command(self, kind: CommandKind, t_s: float) -> None:
@@ -46,44 +46,44 @@ class TimedRun(ABC):
 
     @abstractmethod
     def touch(self, t_s: float, touches: Touches) -> None:
-        """Judge what the avatar touches in one frame."""
+        """Process what the avatar touches in one frame."""
 
     @abstractmethod
     def news(self, t_s: float) -> list[ReportBody]:
-        """What happened since the last call."""
+        """Return reports of what has happened since the last call."""
 
     @property
     def clock_runs(self) -> bool:
-        """Whether active time passes now."""
+        """Whether the active clock is running."""
         return self.clock.running_since_s is not None
 
     @property
     def has_enough(self) -> bool:
-        """Whether the phase ends now, before its time: a practice with its tasks completed."""
+        """Whether the phase ends before its time is up: a practice with its tasks completed."""
         return False
 
     def active_s(self, t_s: float) -> float:
-        """Active time used up at `t_s`, at most the phase's duration."""
+        """Return the active time at `t_s`, at most the phase's duration."""
         clock = self.clock
         if clock.last_s is None:
             return self._spent_s
         return min(self._spent_s + clock.active_s(max(t_s, clock.last_s)), self.order.duration_s)
 
     def follow(self, order: PhaseOrder, t_s: float) -> list[ReportBody]:
-        """Do what the operator wants: pause or go on.
+        """Pause or resume as the operator has ordered, and return the reports.
 
-        `order` must know of every report of this run: an older one would be answered by a pause
-        that the next older one answers again.
+        `order` must reflect every report of this run: in response to an older one, the run would
+        pause again and again.
         """
         self.order = order
         if order.pausing and self.clock_runs:
             return self._pause(t_s, "operator")
         reports: list[ReportBody] = []
         if order.status == "paused" and self.clock_runs:
-            # The server lost us for a moment that was too short to notice here.
+            # The server lost the connection for a moment too short to be noticed here.
             reports = self._pause(t_s, "disconnected")
         if self._paused and self.clock.active_before_s == 0.0:
-            # Taken over, and the other run had used more than was known then.
+            # Taken over, and the earlier run had used more active time than was known then.
             self._spent_s = max(self._spent_s, order.active_s)
         if self._paused and order.status == "running":
             return [self.report("paused", t_s, "restarted")]
@@ -94,7 +94,10 @@ class TimedRun(ABC):
         return reports
 
     def frame(self, t_s: float, touches: Touches, *, connected: bool) -> list[ReportBody]:
-        """Go on by one frame; what to report of it. `touches` is asked while the clock may run."""
+        """Advance by one frame and return its reports.
+
+        `touches` is called while the clock may run.
+        """
         if self._takes_over:
             self._takes_over = False
             return self._take_over(t_s)
@@ -109,7 +112,7 @@ class TimedRun(ABC):
             reports.append(self.report("started", t_s))
         end_s = self.clock.reaches_s(self.order.duration_s - self._spent_s)
         if end_s is not None and t_s >= end_s:
-            # The phase ends when its time is used up, not when the next frame is drawn.
+            # The phase ends when its time is up, not when the next frame is drawn.
             return [*reports, *self._freeze(max(end_s, self.clock.last_s or end_s))]
         if self.clock.last_s is not None:
             self.touch(t_s, touches)
@@ -117,7 +120,7 @@ class TimedRun(ABC):
         return [*reports, *self._freeze(t_s)] if self.has_enough else reports
 
     def report(self, what: str, t_s: float, cause: str = "headset") -> PhaseReport:
-        """A report of this phase's clock."""
+        """Make a report of this phase's clock."""
         return PhaseReport.model_validate(
             {
                 "phase_id": self.order.phase_id,
@@ -129,9 +132,9 @@ class TimedRun(ABC):
         )
 
     def _take_over(self, t_s: float) -> list[ReportBody]:
-        """Begin where another run of the client was lost: frozen, or standing still.
+        """Continue where another run of the client was lost, frozen or paused.
 
-        Where the server has not noticed the loss yet, `follow` tells it about the pause.
+        If the server has not noticed the loss yet, `follow` reports the pause.
         """
         if self.order.status == "freezing":
             self._frozen_until_s = t_s + self.order.freeze_s
@@ -162,7 +165,7 @@ class TimedRun(ABC):
 
 
 class FreeRun(TimedRun):
-    """Free movement for a time: a clock and nothing to touch."""
+    """A phase of free movement: a clock, and nothing to touch."""
 
     def __init__(self, order: PhaseOrder, t_s: float) -> None:
         super().__init__(order, t_s)
@@ -184,8 +187,8 @@ class FreeRun(TimedRun):
                 self._clock = self._clock.pause(t_s)
 
     def touch(self, t_s: float, touches: Touches) -> None:
-        """Nothing to touch."""
+        """Ignore touches."""
 
     def news(self, _t_s: float) -> list[ReportBody]:
-        """Nothing to tell."""
+        """Return no reports."""
         return []

@@ -148,7 +148,7 @@ class TestOwnFiles:
     def test_an_ended_certificate_is_refused(self, files: OwnFiles) -> None:
         """With the day it ended."""
         late = replace(files, clock=Clock(utc_now=lambda: NOW + timedelta(days=400)))
-        with pytest.raises(InvalidInput, match="ended on 2027-04"):
+        with pytest.raises(InvalidInput, match="expired on 2027-04"):
             late.current(LAB_PC)
 
 

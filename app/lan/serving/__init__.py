@@ -1,7 +1,7 @@
-"""Serving on the lab's network: doors, certificates, who may take how long, and the help page.
+"""Serve on the lab's network: listeners, certificates, deadlines, and the help page.
 
-Loaded by `reembody serve` and `reembody tls` alone: the application needs only to know where it can
-be reached (`app.lan`).
+It is imported only by `reembody serve` and `reembody tls`: the application just needs to know where
+it can be reached (`app.lan`).
 """
 
 from app.lan.serving.addresses import look_around

@@ -1,7 +1,7 @@
-"""What this machine is called and where it can be reached.
+"""Determine this machine's names and addresses.
 
-Nothing is sent to find out: interfaces are listed, and the kernel is asked which of them it would
-use for the way out.
+Nothing is sent for this: the interfaces are listed, and the kernel is asked which of them it would
+use for the internet.
 """
 
 import re
@@ -14,7 +14,7 @@ import psutil
 Address = IPv4Address | IPv6Address
 LOOPBACK: tuple[Address, ...] = (IPv4Address("127.0.0.1"), IPv6Address("::1"))
 _DNS_NAME = re.compile(r"(?=.{1,253}$)[a-z0-9]([a-z0-9-]{0,61}[a-z0-9])?(\.[a-z0-9-]{1,63})*")
-# Reserved for documentation: no packet goes there, the kernel only chooses an interface.
+# Reserved for documentation: no packet is sent, the kernel only chooses an interface.
 _SOMEWHERE = (
     (socket.AF_INET, "192.0.2.1"),
     (socket.AF_INET6, "2001:db8::1"),
@@ -23,22 +23,22 @@ _SOMEWHERE = (
 
 @dataclass(frozen=True)
 class Machine:
-    """`names` it answers to, and `addresses` without the loopback, the likeliest one first."""
+    """The `names` of a machine, and its `addresses` without the loopback, the likeliest first."""
 
     names: tuple[str, ...]
     addresses: tuple[Address, ...]
 
 
 def look_around() -> Machine:
-    """This machine as it is now; both change when a laptop joins another network."""
+    """Return this machine's current names and addresses, which change with its network."""
     return Machine(names=host_names(socket.gethostname()), addresses=_addresses())
 
 
 def host_names(host: str) -> tuple[str, ...]:
-    """The names for a host's own name: its first part in the local network, and all of it.
+    """Return the names of a host: its first part in the local network, and its full name.
 
-    `.local` is what machines are found by without a name server (multicast DNS). A name of one part
-    is left out: an authority that may vouch for `dev` may vouch for all of `.dev`.
+    `.local` names are found without a name server (multicast DNS). A name of one part is left out:
+    an authority that may sign `dev` may sign all of `.dev`.
     """
     full = host.lower().rstrip(".")
     if not _DNS_NAME.fullmatch(full):
@@ -48,7 +48,7 @@ def host_names(host: str) -> tuple[str, ...]:
 
 
 def url_host(address: Address | str) -> str:
-    """An address as it stands in a URL: IPv6 in brackets."""
+    """Return an address as written in a URL: IPv6 in brackets."""
     text = str(address)
     return f"[{text}]" if ":" in text else text
 
@@ -60,11 +60,11 @@ def _addresses() -> tuple[Address, ...]:
         for name, group in psutil.net_if_addrs().items()
         if name in up
         for one in group
-        # Link-local IPv6 is valid on one interface only, which a browser cannot be told.
+        # Link-local IPv6 is valid on one interface only, which a URL cannot specify.
         if one.family in (socket.AF_INET, socket.AF_INET6) and "%" not in one.address
     ]
     usable = {one for one in found if not (one.is_loopback or one.is_link_local)}
-    # An address of 169.254/16 means that nobody gave one out: two machines on one cable.
+    # An address of 169.254/16 means that none was assigned, as with two machines on one cable.
     if not usable:
         usable = {one for one in found if one.version == 4 and not one.is_loopback}
     likeliest = _ways_out()

@@ -1,9 +1,9 @@
-"""The lab's own certificate authority: one key that can vouch for the lab's machines only.
+"""The lab's own certificate authority, whose key can sign for the lab's machines only.
 
-A device that installs its certificate trusts whatever the key signs. So the certificate itself says
-what that may be: private addresses, names that exist in local networks only, and what this machine
-was called and where it was when the authority was made (RFC 5280, 4.2.1.10). A stolen key can
-pretend to be the lab's server, which it was stolen from, and no bank.
+A device that installs its certificate trusts whatever the key signs. So the certificate itself
+limits what that may be: private addresses, names that exist in local networks only, and the names
+and addresses that this machine had when the authority was created (RFC 5280, 4.2.1.10). With a
+stolen key one can impersonate the lab's server, but no bank.
 """
 
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ from app.lan.serving.addresses import Address, Machine
 
 YEARS = 10
 SKEW = timedelta(hours=1)
-"""Certificates are valid from a little before they were made: tablets' clocks are not exact."""
+"""Certificates are valid from this long before their creation: tablets' clocks are not exact."""
 NETWORKS = (
     *("10.0.0.0/8", "172.16.0.0/12", "192.168.0.0/16", "169.254.0.0/16", "127.0.0.0/8"),
     *("fc00::/7", "fe80::/10", "::1/128"),
@@ -29,13 +29,13 @@ DOMAINS = ("localhost", "local", "lan", "home.arpa", "internal")
 
 @dataclass(frozen=True)
 class Authority:
-    """A certificate and the key behind it."""
+    """A certificate authority: its certificate and private key."""
 
     certificate: x509.Certificate
     key: ec.EllipticCurvePrivateKey
 
     def permits(self, host: Address | str) -> bool:
-        """Whether devices would accept its word for this address or name."""
+        """Return whether devices would accept its certificate for this address or name."""
         permitted = self._constraints().permitted_subtrees or []
         if isinstance(host, str):
             domains = [one.value for one in permitted if isinstance(one, x509.DNSName)]
@@ -44,7 +44,7 @@ class Authority:
         return any(host in ip_network(network) for network in networks)
 
     def as_pem(self) -> bytes:
-        """Key and certificate in one file, so that they cannot come apart."""
+        """Return key and certificate in one file, so that they cannot be separated."""
         return key_pem(self.key) + self.certificate.public_bytes(serialization.Encoding.PEM)
 
     def _constraints(self) -> x509.NameConstraints:
@@ -52,12 +52,12 @@ class Authority:
 
 
 def new_authority(machine: Machine, now: datetime) -> Authority:
-    """Make an authority for `machine`, valid for ten years from `now`."""
+    """Create an authority for `machine`, valid for ten years from `now`."""
     key = ec.generate_private_key(ec.SECP256R1())
     host = machine.names[-1].removesuffix(".local") if machine.names else "this machine"
     name = x509.Name(
         [
-            # The year and a part of the key tell two authorities of one lab apart in a list.
+            # The month distinguishes two authorities of one lab in a list.
             x509.NameAttribute(NameOID.COMMON_NAME, f"Reembody on {host[:40]} ({now:%Y-%m})"),
             x509.NameAttribute(NameOID.ORGANIZATION_NAME, "Reembody, the lab's own authority"),
         ]
@@ -81,7 +81,7 @@ def new_authority(machine: Machine, now: datetime) -> Authority:
 
 
 def authority_from_pem(pem: bytes) -> Authority:
-    """Read what `as_pem` wrote; raises ValueError if it is something else."""
+    """Parse the result of `as_pem`; raise ValueError if it is something else."""
     key = serialization.load_pem_private_key(pem, password=None)
     certificate = x509.load_pem_x509_certificate(pem)
     if not isinstance(key, ec.EllipticCurvePrivateKey) or key.public_key() != (
@@ -92,7 +92,7 @@ def authority_from_pem(pem: bytes) -> Authority:
 
 
 def key_pem(key: ec.EllipticCurvePrivateKey) -> bytes:
-    """A private key as PEM, unencrypted: the server must start without a person."""
+    """Return a private key as PEM, unencrypted: the server must start unattended."""
     return key.private_bytes(
         serialization.Encoding.PEM,
         serialization.PrivateFormat.PKCS8,
@@ -101,7 +101,7 @@ def key_pem(key: ec.EllipticCurvePrivateKey) -> bytes:
 
 
 def fingerprint(certificate: x509.Certificate) -> str:
-    """The SHA-256 of a certificate as devices show it: pairs of digits with colons."""
+    """Return the SHA-256 of a certificate as devices show it: pairs of digits with colons."""
     return certificate.fingerprint(hashes.SHA256()).hex(":").upper()
 
 

@@ -1,10 +1,11 @@
-"""Where the certificate for the lab's network comes from, and when it is made anew.
+"""Sources of the certificate for the lab's network, and when it is renewed.
 
-`LabAuthority` keeps an authority in the data folder and signs with it: one file with the authority,
-made once, and one with the server's certificate, made again whenever an address is missing or its
-end is near. `OwnFiles` are the lab's own, looked at and never written. Both hand out an `Identity`
-and load it into the context that the open door uses, so a new one takes effect without a restart.
-Files with keys are written whole or not at all, and readable by their owner only.
+`LabAuthority` stores an authority in the data folder and signs with it: one file has the authority,
+created once, and one the server's certificate, which is renewed whenever an address is missing or
+it is about to expire. `OwnFiles` are the lab's own, only ever read. Both provide an `Identity` and
+load it into the TLS context in use, so a new one takes effect without a restart.
+
+Files with keys are written atomically, and only their owner can read them.
 """
 
 import os
@@ -36,14 +37,14 @@ FOLDER = "tls"
 AUTHORITY_FILE, SERVER_FILE = "authority.pem", "server.pem"
 OTHERS = stat.S_IRWXG | stat.S_IRWXO
 POSIX = os.name == "posix"
-"""Elsewhere a file's mode says nothing about who may read it; its folder's rights hold."""
+"""Whether file modes protect files; on other systems the permissions of the folder do."""
 
 
 @dataclass(frozen=True)
 class Identity:
-    """What the server shows of itself. `authority` is what devices install; None: nothing.
+    """The server's certificate. `authority` is what devices install; None if nothing.
 
-    `uncovered` are addresses of this machine that the certificate is not valid for.
+    `uncovered` are addresses of this machine for which the certificate is not valid.
     """
 
     source: Literal["authority", "files"]
@@ -55,18 +56,21 @@ class Identity:
 
     @property
     def authority_fingerprint(self) -> str | None:
-        """The fingerprint that a person compares before installing."""
+        """The fingerprint that a person compares before installing the authority."""
         return None if self.authority is None else fingerprint(self.authority)
 
 
 class CertificateSource(Protocol):
-    """Gives the certificate for a machine as it is now, made or read anew where needed."""
+    """Provides the certificate for a machine's current addresses.
+
+    It is renewed or read again if necessary.
+    """
 
     def current(self, machine: Machine) -> Identity:
-        """The certificate to show; raises ReembodyError where there is no usable one."""
+        """Return the certificate to use; raise ReembodyError if there is no usable one."""
 
     def load_into(self, context: ssl.SSLContext) -> None:
-        """Let `context` show it, to every handshake from now on."""
+        """Load the certificate into `context`, for all subsequent handshakes."""
 
 
 @dataclass(frozen=True)
@@ -78,16 +82,16 @@ class LabAuthority:
 
     @property
     def authority_file(self) -> Path:
-        """Where the authority's key and certificate are."""
+        """The file with the authority's key and certificate."""
         return self.data_dir / FOLDER / AUTHORITY_FILE
 
     @property
     def server_file(self) -> Path:
-        """Where the server's key and certificates are."""
+        """The file with the server's key and certificates."""
         return self.data_dir / FOLDER / SERVER_FILE
 
     def authority(self, machine: Machine) -> Authority:
-        """The authority, made if there is none."""
+        """Return the authority, creating it if there is none."""
         if not self.authority_file.exists():
             return self.replace_authority(machine)
         pem = read_private(self.authority_file)
@@ -97,34 +101,37 @@ class LabAuthority:
             raise InvalidInput(
                 f"{self.authority_file} cannot be read: {error}",
                 remedy=(
-                    "Put it back from a copy, or run `./run tls renew --new-authority`; devices"
+                    "Restore it from a copy, or run `./run tls renew --new-authority`; devices"
                     " then install the new certificate"
                 ),
             ) from error
 
     def replace_authority(self, machine: Machine) -> Authority:
-        """Make another authority: devices trust nothing of the old one's from then on."""
+        """Create another authority.
+
+        Devices then no longer trust the server until they install it.
+        """
         made = new_authority(machine, self.clock.utc_now())
         write_private(self.authority_file, made.as_pem())
         return made
 
     def current(self, machine: Machine) -> Identity:
-        """The server's certificate, kept as long as it is good."""
-        return self._identity(machine, anew=False)
+        """Return the server's certificate, renewed only if necessary."""
+        return self._identity(machine, renew=False)
 
     def renew(self, machine: Machine) -> Identity:
-        """The server's certificate, made anew; the authority stays, so devices notice nothing."""
-        return self._identity(machine, anew=True)
+        """Renew the server's certificate; the authority stays, so devices need no change."""
+        return self._identity(machine, renew=True)
 
     def load_into(self, context: ssl.SSLContext) -> None:
-        """Let `context` show the server's certificate."""
+        """Load the server's certificate into `context`."""
         read_private(self.server_file)
         context.load_cert_chain(self.server_file)
 
-    def _identity(self, machine: Machine, *, anew: bool) -> Identity:
+    def _identity(self, machine: Machine, *, renew: bool) -> Identity:
         authority, now = self.authority(machine), self.clock.utc_now()
         hosts = wanted_hosts(machine, authority)
-        leaf = None if anew else self._stored_leaf()
+        leaf = None if renew else self._stored_leaf()
         if leaf is None or not still_good(leaf, authority, hosts, now):
             leaf = new_leaf(authority, hosts, now)
             write_private(self.server_file, leaf.pem)
@@ -142,7 +149,7 @@ class LabAuthority:
             return None
         try:
             return leaf_from_pem(read_private(self.server_file))
-        except ValueError:  # it holds nothing that could not be made again
+        except ValueError:  # it can simply be recreated
             return None
 
 
@@ -155,7 +162,7 @@ class OwnFiles:
     clock: Clock
 
     def current(self, machine: Machine) -> Identity:
-        """What the certificate says; raises InvalidInput if it cannot be served."""
+        """Return the identity of the certificate; raise InvalidInput if it cannot be used."""
         for file in (self.certificate_file, self.key_file):
             if not file.exists():
                 raise InvalidInput(
@@ -178,7 +185,7 @@ class OwnFiles:
         ends = certificate.not_valid_after_utc
         if ends <= self.clock.utc_now():
             raise InvalidInput(
-                f"the certificate {self.certificate_file} ended on {ends:%Y-%m-%d}",
+                f"the certificate {self.certificate_file} expired on {ends:%Y-%m-%d}",
                 remedy="Renew it, or leave both files out to use the built-in authority",
             )
         hosts = hosts_of(certificate)
@@ -191,8 +198,9 @@ class OwnFiles:
         )
 
     def load_into(self, context: ssl.SSLContext) -> None:
-        """Let `context` show the lab's certificate."""
-        # An encrypted key would ask at the terminal; refusing is better than a server that waits.
+        """Load the lab's certificate into `context`."""
+        # An encrypted key would prompt on the terminal; an error is better than a server that
+        # waits.
         context.load_cert_chain(self.certificate_file, self.key_file, password=_no_password)
 
 
@@ -201,7 +209,7 @@ def _no_password() -> str:
 
 
 def write_private(file: Path, content: bytes) -> None:
-    """Put `content` at `file` for its owner alone, on disk before it replaces what was there."""
+    """Write `content` to `file` atomically and durably, readable by its owner only."""
     file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     file.parent.chmod(0o700)
     part = file.with_name(f".{file.name}.{secrets.token_hex(4)}")
@@ -218,10 +226,10 @@ def write_private(file: Path, content: bytes) -> None:
 
 
 def read_private(file: Path) -> bytes:
-    """The content of a file with a key; raises NotAllowed if others could have read it."""
+    """Return the content of a file with a key; raise NotAllowed if others could have read it."""
     if POSIX and file.stat().st_mode & OTHERS:
         raise NotAllowed(
-            f"{file} holds a private key, and others on this machine can read it",
+            f"{file} contains a private key, but others on this machine can read it",
             value=oct(stat.S_IMODE(file.stat().st_mode)),
             valid="0o600",
             remedy=(

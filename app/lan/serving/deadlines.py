@@ -1,11 +1,12 @@
-"""How long a client may take to say what it wants: a deadline for the head, one for the body.
+"""Limit how long a client may take to send a request: a deadline for the head, one for the body.
 
-uvicorn keeps a connection whose request never ends for as long as the client likes; a few hundred
-of those (a "slow loris", or tablets that left the room in mid-sentence) would hold sockets until
-none is left. The deadlines count from the first byte that was due, however many more drip in; a
-large body that somebody takes has the body's for every portion of it.
-Requests that are not all there are also counted: above `MOST_UNFINISHED` the oldest of whoever has
-most makes room, so that the slow are shut out before anybody else is.
+uvicorn keeps a connection with an unfinished request as long as the client likes; a few hundred of
+those (a "slow loris", or tablets that left the room while sending) would occupy sockets until none
+is left. The deadlines count from the first expected byte, however many more trickle in; a large
+body that the application reads has a separate deadline for each portion.
+
+Unfinished requests are also counted: above `MOST_UNFINISHED`, the address with the most loses its
+oldest one, so that slow clients are shut out before others.
 """
 
 import asyncio
@@ -23,17 +24,17 @@ from app.lan.network import STRANGER
 HEAD_WITHIN_S = 10.0
 BODY_WITHIN_S = 30.0
 PORTION_BYTES = 2 * 1024 * 1024
-"""Usual bodies have one portion at most: this asks for 70 kB/s of the slowest tablet."""
+"""Bytes per deadline of a body, which most do not exceed: requires 70 kB/s of a tablet."""
 MOST_HEAD_BYTES = 64 * 1024
 MOST_UNFINISHED = 256
 CLOSED_WITHIN_S = 2.0
 READS_ANSWER_WITHIN_S = 0.5
-"""A stranger whose body was answered before its end: nothing more of it is read. Whoever the lab
-knows may send the rest, since a browser shows the answer only then."""
+"""The time for a stranger to read a response that was sent before the end of the body, of which
+nothing more is read. Other clients may send the rest: browsers show the response only then."""
 
 
 class Unfinished:
-    """The connections that owe the rest of a request, oldest first."""
+    """The connections with an unfinished request, oldest first."""
 
     def __init__(self, most: int = MOST_UNFINISHED) -> None:
         self._most = most
@@ -43,7 +44,7 @@ class Unfinished:
         return len(self._connections)
 
     def add(self, connection: "ReceivingProtocol", address: str) -> None:
-        """One more; above the limit the greediest address loses its oldest."""
+        """Add a connection; above the limit, the address with the most loses its oldest one."""
         self._connections.setdefault(connection, address)
         if len(self._connections) <= self._most:
             return
@@ -53,12 +54,12 @@ class Unfinished:
         oldest.give_up()
 
     def discard(self, connection: "ReceivingProtocol") -> None:
-        """This one owes nothing any more."""
+        """Remove a connection, whose request is complete."""
         self._connections.pop(connection, None)
 
 
 class ReceivingProtocol(HttpToolsProtocol):
-    """uvicorn's HTTP protocol with deadlines for what it receives."""
+    """uvicorn's HTTP protocol with deadlines for receiving requests."""
 
     def __init__(
         self,
@@ -76,17 +77,20 @@ class ReceivingProtocol(HttpToolsProtocol):
         self._portion = 0
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]  # asyncio hands a Transport
-        """The head is due from now on."""
+        """Start the deadline of the first head."""
         super().connection_made(transport)
         self._await_head()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Nothing is due any more."""
+        """Cancel the deadline."""
         self._settle()
         super().connection_lost(exc)
 
     def data_received(self, data: bytes) -> None:
-        """Parse; the next head is due from its first byte, or from what only looks like one."""
+        """Parse data.
+
+        The first byte of the next head, or of anything like it, starts its deadline.
+        """
         if self._timer is None:
             self._await_head()
         heads, in_body = self._heads, self._in_body
@@ -97,13 +101,13 @@ class ReceivingProtocol(HttpToolsProtocol):
                 self._refuse(HTTPStatus.REQUEST_HEADER_FIELDS_TOO_LARGE)
 
     def on_message_begin(self) -> None:
-        """A head begins."""
+        """Start the deadline of a head, unless one is running."""
         super().on_message_begin()
         if self._timer is None:
             self._await_head()
 
     def on_headers_complete(self) -> None:
-        """The head is there; the body is due."""
+        """Start the deadline of the body, since the head is complete."""
         self._settle()
         self._heads, self._head_bytes, self._in_body = self._heads + 1, 0, True
         self._portion = 0
@@ -111,7 +115,7 @@ class ReceivingProtocol(HttpToolsProtocol):
         super().on_headers_complete()
 
     def on_body(self, body: bytes) -> None:
-        """A portion that came in time earns time for the next, unless it was answered already."""
+        """Extend the deadline after each portion, unless the response was already sent."""
         super().on_body(body)
         self._portion += len(body)
         if self._portion >= PORTION_BYTES and self._answering:
@@ -120,10 +124,10 @@ class ReceivingProtocol(HttpToolsProtocol):
             self._await(BODY_WITHIN_S, self._body_is_late)
 
     def on_response_complete(self) -> None:
-        """Go on with the next request, unless a stranger was refused in mid-sentence."""
+        """Continue with the next request, unless a stranger was refused in mid-body."""
         if self._in_body and STRANGER in self.scope and not self.transport.is_closing():
             self._settle()
-            # Closed at once, the answer might be lost on the way to those who still send.
+            # Closing immediately might lose the response on the way to a client that still sends.
             self.flow.pause_reading()
             self.cycle.body = bytearray()
             self.loop.call_later(READS_ANSWER_WITHIN_S, self.transport.abort)
@@ -131,18 +135,18 @@ class ReceivingProtocol(HttpToolsProtocol):
         super().on_response_complete()
 
     def on_message_complete(self) -> None:
-        """All of it is there."""
+        """Cancel the deadline, since the request is complete."""
         self._settle()
         self._in_body = False
         super().on_message_complete()
 
     def handle_websocket_upgrade(self) -> None:
-        """What follows are messages, which have rules of their own."""
+        """Cancel the deadline: WebSocket messages have their own limits."""
         self._settle()
         super().handle_websocket_upgrade()
 
     def give_up(self) -> None:
-        """Make room at once."""
+        """Abort the connection immediately."""
         self._settle()
         self.transport.abort()
 
@@ -162,7 +166,8 @@ class ReceivingProtocol(HttpToolsProtocol):
     def _head_is_late(self) -> None:
         self._settle()
         if self._answering:
-            # Bytes of a next request came while this one is answered: it may take its time.
+            # Bytes of the next request arrived before this response is complete, which may take
+            # longer.
             self._await_head()
         elif self._head_bytes:
             self._refuse(HTTPStatus.REQUEST_TIMEOUT)
@@ -170,7 +175,7 @@ class ReceivingProtocol(HttpToolsProtocol):
             self._close()
 
     def _body_is_late(self) -> None:
-        # Whoever waits for the body in the application hears that the client is gone.
+        # Code that waits for the body in the application is notified of the disconnect.
         self._refuse(HTTPStatus.REQUEST_TIMEOUT)
 
     @property
@@ -179,7 +184,7 @@ class ReceivingProtocol(HttpToolsProtocol):
 
     def _refuse(self, status: HTTPStatus) -> None:
         self._settle()
-        # Words in the middle of an answer, or after it, would be taken for part of the next one.
+        # Within or after a response, these bytes would be taken for part of it or the next one.
         begun = self.cycle is not None and self.cycle.response_started
         silent = begun and (self._in_body or self._answering)
         if not silent and not self.transport.is_closing():
@@ -190,6 +195,6 @@ class ReceivingProtocol(HttpToolsProtocol):
         self._close()
 
     def _close(self) -> None:
-        """Close, and do not wait for ever for a client that does not read the last bytes."""
+        """Close, with a time limit for a client that does not read the last bytes."""
         self.transport.close()
         self.loop.call_later(CLOSED_WITHIN_S, self.transport.abort)

@@ -15,31 +15,31 @@ from app.lan.serving.addresses import LOOPBACK, Address, Machine
 from app.lan.serving.authority import SKEW, Authority, key_pem
 
 LASTS = timedelta(days=397)
-"""Browsers refuse server certificates that are valid for longer (398 days)."""
+"""Validity of the certificate: browsers reject server certificates of more than 398 days."""
 RENEWED_BEFORE = timedelta(days=30)
 Host = Address | str
 
 
 @dataclass(frozen=True)
 class Leaf:
-    """A server's certificate as PEM (key first, then the chain), and what it says."""
+    """A server's certificate as PEM (key first, then the chain), and parsed."""
 
     pem: bytes
     certificate: x509.Certificate
 
     @property
     def hosts(self) -> tuple[Host, ...]:
-        """The names and addresses it is valid for."""
+        """The names and addresses for which it is valid."""
         return hosts_of(self.certificate)
 
     @property
     def expires_at(self) -> datetime:
-        """When it ends."""
+        """The time at which it expires."""
         return self.certificate.not_valid_after_utc
 
 
 def hosts_of(certificate: x509.Certificate) -> tuple[Host, ...]:
-    """The names and addresses a certificate is valid for; none if it names none."""
+    """Return the names and addresses for which a certificate is valid; empty if it names none."""
     try:
         names = certificate.extensions.get_extension_for_class(x509.SubjectAlternativeName).value
     except x509.ExtensionNotFound:
@@ -53,13 +53,13 @@ def hosts_of(certificate: x509.Certificate) -> tuple[Host, ...]:
 
 
 def wanted_hosts(machine: Machine, authority: Authority) -> tuple[Host, ...]:
-    """Everything this machine is called that devices would accept the authority's word for."""
+    """Return all names and addresses of this machine that the authority may sign."""
     hosts: Sequence[Host] = ("localhost", *machine.names, *LOOPBACK, *machine.addresses)
     return tuple(one for one in dict.fromkeys(hosts) if authority.permits(one))
 
 
 def new_leaf(authority: Authority, hosts: Sequence[Host], now: datetime) -> Leaf:
-    """Make a key and a certificate for `hosts`, valid for 397 days."""
+    """Create a key and a certificate for `hosts`, valid for 397 days."""
     key = ec.generate_private_key(ec.SECP256R1())
     begin = now - SKEW
     certificate = (
@@ -95,18 +95,21 @@ def new_leaf(authority: Authority, hosts: Sequence[Host], now: datetime) -> Leaf
 
 
 def leaf_from_pem(pem: bytes) -> Leaf:
-    """Read what `new_leaf` made; raises ValueError if it is something else."""
+    """Parse the result of `new_leaf`; raise ValueError if it is something else."""
     return Leaf(pem, x509.load_pem_x509_certificates(pem)[0])
 
 
 def still_good(leaf: Leaf, authority: Authority, hosts: Sequence[Host], now: datetime) -> bool:
-    """Whether a certificate is this authority's, names every host and lasts for another month."""
+    """Return whether a certificate can still be used.
+
+    It must be signed by this authority, cover all hosts and be valid for another month.
+    """
     try:
         leaf.certificate.verify_directly_issued_by(authority.certificate)
     except (ValueError, TypeError, InvalidSignature):
         return False
     ends = leaf.expires_at
-    # What ends with its authority cannot be made to last longer.
+    # A certificate that expires with its authority cannot be extended.
     lasts = ends - now > RENEWED_BEFORE or ends == authority.certificate.not_valid_after_utc
     return lasts and set(hosts) <= set(leaf.hosts)
 

@@ -1,8 +1,8 @@
-"""One application behind several doors, in one event loop.
+"""Serve one application on several listeners ("doors") in one event loop.
 
-A door is a set of bound sockets, what is served behind them, and the TLS context if it is locked.
-uvicorn's own `Server` knows one application and one socket configuration; this one starts the
-application's lifespan once and lets every door share its connections, its tasks and its end.
+A door is a set of bound sockets, the application behind them, and a TLS context if it is encrypted.
+uvicorn's own `Server` supports one application and one socket configuration; this one runs the
+application's lifespan once and lets all doors share connections, tasks and shutdown.
 """
 
 import asyncio
@@ -26,7 +26,7 @@ MOST_OPEN_FILES = 8192
 
 @dataclass(frozen=True)
 class Door:
-    """Bound sockets and what is behind them; `tls` None means plain http."""
+    """Bound sockets and the application behind them; `tls` None means plain http."""
 
     sockets: tuple[socket.socket, ...]
     config: uvicorn.Config
@@ -34,21 +34,22 @@ class Door:
 
 
 class SocketProtocol(WebSocketsSansIOProtocol):
-    """A WebSocket whose handshake is over, too, once it was answered with a refusal.
+    """A WebSocket protocol that also ends a handshake when it is refused with a response.
 
-    uvicorn knows that of `websocket.close`, but not of a refusal with a body
-    (`websocket.http.response.body`): it would log an error for each, and anybody could fill a disk.
+    uvicorn does so for `websocket.close`, but not for a refusal with a body
+    (`websocket.http.response.body`): it would log an error for each, with which anybody could fill
+    a disk.
     """
 
     async def send(self, message: Any) -> None:
-        """As the application wishes."""
+        """Send a message of the application, and end a refused handshake."""
         await super().send(message)
         if self.initial_response is not None and self.close_sent:
             self.handshake_complete = True
 
 
 class LabServer(uvicorn.Server):
-    """Serves the first door's application and its lifespan; `meanwhile` runs beside it."""
+    """Serves the first door's application and its lifespan; `meanwhile` runs alongside."""
 
     def __init__(self, doors: Sequence[Door], meanwhile: Callable[[], Awaitable[None]]) -> None:
         super().__init__(doors[0].config)
@@ -77,13 +78,13 @@ class LabServer(uvicorn.Server):
         self.started = True
 
     async def main_loop(self) -> None:
-        """Until somebody ends it."""
-        beside = asyncio.ensure_future(self._meanwhile())
+        """Serve until the server is stopped."""
+        task = asyncio.ensure_future(self._meanwhile())
         try:
             await super().main_loop()
         finally:
-            beside.cancel()
-            await asyncio.gather(beside, return_exceptions=True)
+            task.cancel()
+            await asyncio.gather(task, return_exceptions=True)
 
     def _protocol_of(self, door: Door) -> Callable[[], asyncio.Protocol]:
         state = self.lifespan.state if door is self._doors[0] or door.tls else {}
@@ -91,9 +92,9 @@ class LabServer(uvicorn.Server):
 
 
 def bind(hosts: Sequence[str], port: int, option: str) -> tuple[socket.socket, ...]:
-    """Sockets for `port` at every one of `hosts`; IPv6 is left out where there is none.
+    """Bind sockets to `port` at every one of `hosts`; IPv6 is skipped if it is unavailable.
 
-    Raises InvalidInput, naming the `option` that chooses another port, where it is taken.
+    Raises InvalidInput, naming the `option` that selects another port, if the port is taken.
     """
     bound: list[socket.socket] = []
     for host in hosts:
@@ -107,22 +108,25 @@ def bind(hosts: Sequence[str], port: int, option: str) -> tuple[socket.socket, .
             raise InvalidInput(
                 f"port {port} at {host} cannot be opened: {error.strerror}",
                 value=port,
-                remedy=f"End what uses it, or choose another port with {option}",
+                remedy=f"Stop the program that uses it, or choose another port with {option}",
             ) from error
     return tuple(bound)
 
 
 def tls_context() -> ssl.SSLContext:
-    """TLS 1.2 and newer, with the ciphers the library recommends; it has no certificate yet."""
+    """Return a TLS context without a certificate.
+
+    It allows TLS 1.2 and newer, with the ciphers that the library recommends.
+    """
     context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
     context.minimum_version = ssl.TLSVersion.TLSv1_2
-    # A renegotiation costs the server ten times what it costs whoever asks for it.
+    # A renegotiation costs the server ten times as much as the client.
     context.options |= ssl.OP_NO_RENEGOTIATION | ssl.OP_NO_COMPRESSION
     return context
 
 
 def allow_open_files() -> None:
-    """Let the process hold as many sockets as the system grants without asking."""
+    """Raise the process's limit of open files as far as the system allows without privileges."""
     if sys.platform == "win32":
         return
     import resource

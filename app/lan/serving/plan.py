@@ -1,7 +1,7 @@
-"""Which doors the settings ask for, and whether they may be opened.
+"""Determine the listeners ("doors") for the settings, and whether they may be opened.
 
-Whoever asks for an address that others can reach and names no way to encrypt is refused: passwords,
-answers and movement would be open to everybody on the network, and headsets would refuse WebXR.
+An address that others can reach is refused without encryption: passwords, answers and movement
+would be readable by everybody on the network, and headsets would refuse WebXR.
 """
 
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ EVERYWHERE = ("0.0.0.0", "::")  # noqa: S104 - asked for with --lan, and encrypt
 class Plan:
     """The doors: plain http at `local_hosts`; with `certificates` https at `lan_hosts`.
 
-    `help_port` is None where devices need to install nothing.
+    `help_port` is None if devices need not install anything.
     """
 
     mode: Mode
@@ -40,7 +40,7 @@ class Plan:
         return f"http://{shown}:{self.local_port}"
 
     def reach(self, machine: Machine, identity: Identity | None) -> Reach:
-        """How the server can be reached on `machine` while it shows `identity`."""
+        """Return how the server can be reached on `machine` with the certificate `identity`."""
         if self.mode == "loopback":
             return Reach(local_url=self.local_url)
         if identity is None:
@@ -63,9 +63,9 @@ class Plan:
         covered = tuple(one for one in addresses if one in identity.hosts)
         names = tuple(one for one in identity.hosts if isinstance(one, str) and "*" not in one)
         if identity.source == "files":
-            # The lab chose the names of its certificate; addresses are seldom in one.
+            # The lab chose the names of its certificate, which seldom contains addresses.
             return (*names, *covered) or addresses
-        # A name leads to any address of this machine, so only where all of them are open.
+        # A name may resolve to any address of this machine, so use names only if all are served.
         named = [one for one in names if one in machine.names and self.lan_hosts == EVERYWHERE]
         return (*covered, *named) or addresses
 
@@ -77,7 +77,7 @@ class Plan:
 
 
 def make_plan(settings: Settings, clock: Clock) -> Plan:
-    """The doors for `settings`; raises NotAllowed or InvalidInput with the ways out."""
+    """Return the doors for `settings`; raise NotAllowed or InvalidInput with the alternatives."""
     _require_address("--lan-host", settings.lan_host)
     lan_hosts = (settings.lan_host,) if settings.lan_host else EVERYWHERE
     if settings.lan and settings.without_tls:
@@ -120,7 +120,11 @@ def _certificates(settings: Settings, clock: Clock) -> CertificateSource:
 
 
 def _require_own_ports(settings: Settings) -> None:
-    """Two sockets may take one port as long as neither listens; then one of them answers nobody."""
+    """Raise InvalidInput if two doors have the same port.
+
+    The operating system lets two sockets bind one port until they listen; then one gets no
+    requests.
+    """
     options = {"--port": settings.port, "--lan-port": settings.lan_port}
     if settings.certificate is None:
         options["--help-port"] = settings.help_port
@@ -136,7 +140,7 @@ def _require_own_ports(settings: Settings) -> None:
 
 
 def is_loopback(host: str) -> bool:
-    """Whether only this machine can reach an address."""
+    """Return whether only this machine can reach an address."""
     if host == "localhost":
         return True
     try:
@@ -155,7 +159,7 @@ def _require_address(option: str, host: str) -> None:
             ip_address(host)
     except ValueError as error:
         raise InvalidInput(
-            f"{option} is {host!r}, which is no address",
+            f"{option} is {host!r}, which is not an address",
             valid="an IPv4 or IPv6 address of this machine, such as 192.168.1.20",
             remedy="Leave it out to listen on every address of this machine",
         ) from error

@@ -1,9 +1,9 @@
-"""Keeping the certificate right while the server runs.
+"""Keep the certificate up to date while the server runs.
 
-A laptop that joins another network gets another address; a certificate nears its end; the lab puts
-new files in place of its own. None of that may wait for a restart in the middle of a session, so it
-is looked at every minute, and a new certificate counts from the next handshake on. Connections that
-are open stay open, and the tokens of paired devices have nothing to do with certificates.
+A laptop that joins another network gets another address; a certificate is about to expire; the lab
+replaces its own files. None of that may wait for a restart in the middle of a session, so it is
+checked every minute, and a new certificate takes effect with the next handshake. Open connections
+stay open, and the tokens of paired devices do not depend on certificates.
 """
 
 import asyncio
@@ -26,7 +26,7 @@ LOOKED_AT_EVERY_S = 60.0
 
 @dataclass
 class CertificateWatch:
-    """Keeps `network` and the `tls` context in step with the machine and the files."""
+    """Keeps `network` and the `tls` context in line with the machine and the files."""
 
     plan: Plan
     network: Network
@@ -37,11 +37,11 @@ class CertificateWatch:
     _well: Callable[[], object] = lambda: None
 
     def report_to(self, failed: Callable[[Exception], object], well: Callable[[], object]) -> None:
-        """Have each look noticed: `failed` with what went wrong, or `well`."""
+        """Set the callbacks after each check: `failed` with the error, or `well`."""
         self._failed, self._well = failed, well
 
     def refresh(self) -> None:
-        """Look once; raises ReembodyError where there is no usable certificate."""
+        """Check once; raise ReembodyError if there is no usable certificate."""
         machine = self.look()
         if self.plan.certificates is not None and self.tls is not None:
             identity = self.plan.certificates.current(machine)
@@ -51,13 +51,13 @@ class CertificateWatch:
         self.network.reach = self.plan.reach(machine, self.identity)
 
     def authority(self) -> x509.Certificate:
-        """The certificate that devices install now."""
+        """Return the certificate that devices install now; raise LookupError if there is none."""
         if self.identity is None or self.identity.authority is None:
-            raise LookupError("nothing has to be installed: ask only where there is a help page")
+            raise LookupError("there is no authority to install, hence no help page")
         return self.identity.authority
 
     async def run(self) -> None:
-        """Look again and again; what goes wrong is told, and the old certificate stays."""
+        """Check periodically; on an error it is reported, and the old certificate stays in use."""
         while True:
             await asyncio.sleep(LOOKED_AT_EVERY_S)
             try:
@@ -65,8 +65,8 @@ class CertificateWatch:
             except (ReembodyError, OSError, ValueError) as error:
                 log.error("the certificate could not be renewed: %s", error)
                 self._failed(error)
-            except Exception as error:  # whatever it is, the next look may be luckier
-                log.exception("the certificate could not be looked at")
+            except Exception as error:  # the next check may succeed
+                log.exception("the certificate could not be checked")
                 self._failed(error)
             else:
                 self._well()

@@ -1,1 +1,1 @@
-"""The page that helps a device to trust the lab's authority, and its words."""
+"""The help page for devices to trust the lab's authority, and its texts."""

@@ -1,4 +1,4 @@
-"""The help page as HTML: no script, nothing loaded from elsewhere, every word escaped."""
+"""The help page as HTML: no script, no external resources, all text escaped."""
 
 import base64
 import hashlib
@@ -18,9 +18,9 @@ PAIRS_IN_A_GROUP = 4
 
 @dataclass(frozen=True)
 class HelpFacts:
-    """What the page tells: its own address, the https address, and the authority's certificate.
+    """The facts on the page: its own address, the https address, and the authority's certificate.
 
-    `port` is the one that a USB cable leads to.
+    `port` is the one that a USB cable forwards to.
     """
 
     here: str
@@ -31,9 +31,9 @@ class HelpFacts:
 
 
 def help_page(facts: HelpFacts, texts: HelpTexts, user_agent: str) -> str:
-    """The page, with the steps of the likeliest device unfolded."""
+    """Return the page, with the steps of the likeliest device unfolded."""
     likely = device_of(user_agent, texts)
-    # One device at a time is enough to read; without a guess all are folded.
+    # Unfold one device at most; without a guess all are folded.
     ordered = sorted(texts.devices, key=lambda device: device.key != likely)
     words = {name: _rich(value) for name, value in vars(texts).items() if isinstance(value, str)}
     return Template(_read("page.html")).substitute(
@@ -53,13 +53,13 @@ def help_page(facts: HelpFacts, texts: HelpTexts, user_agent: str) -> str:
 
 @cache
 def style() -> str:
-    """The page's style sheet."""
+    """Return the page's style sheet."""
     return _read("page.css")
 
 
 @cache
 def style_hash() -> str:
-    """What a content security policy names to allow this style sheet and no other."""
+    """Return the hash with which a content security policy allows only this style sheet."""
     digest = hashlib.sha256(style().encode()).digest()
     return f"'sha256-{base64.b64encode(digest).decode()}'"
 
@@ -71,7 +71,7 @@ def _section(device: Device, port: int, *, is_open: bool) -> str:
 
 
 def _downloads(texts: HelpTexts, *, first_profile: bool) -> str:
-    """Both files, the one that fits the device first and filled."""
+    """Return links to both files, the one that fits the device first and highlighted."""
     certificate = ("/reembody-ca.crt", texts.certificate)
     profile = ("/reembody.mobileconfig", texts.profile)
     first, other = (profile, certificate) if first_profile else (certificate, profile)
@@ -88,7 +88,7 @@ def _in_groups(fingerprint: str) -> str:
 
 
 def _rich(text: str) -> str:
-    """Escaped, with `*bold*` and `` `code` ``."""
+    """Escape a text, and format its `*bold*` and `` `code` ``."""
     bold = re.sub(r"\*(.+?)\*", r"<b>\1</b>", escape(text))
     return re.sub(r"`(.+?)`", r"<code>\1</code>", bold)
 

@@ -1,7 +1,7 @@
-"""What the plain-http port serves: how to trust the lab's certificate, and not a byte more.
+"""Serve the plain-http port: how to trust the lab's certificate, and nothing else.
 
-Nobody signs in here and nothing is redirected: a device that comes with a cookie or a password
-would otherwise send them in the clear.
+There is no login and no redirect here: otherwise a device with a cookie or a password would send
+them unencrypted.
 """
 
 import plistlib
@@ -25,7 +25,7 @@ from app.lan.serving.help.texts import texts_for
 
 
 class HelpSite:
-    """An ASGI application of four addresses; `authority` gives the certificate of the moment.
+    """An ASGI application with four addresses; `authority` returns the current certificate.
 
     `spend` counts a request of a client's address, and raises TooManyAttempts.
     """
@@ -43,7 +43,7 @@ class HelpSite:
         if scope["type"] == "websocket":
             await send({"type": "websocket.close", "code": 1000})
         elif scope["type"] == "http":
-            # Everybody is one here: of a body nothing is read, and the connection ends.
+            # Every client is a stranger here: no body is read, and the connection is closed.
             scope[STRANGER] = True
             response = self._counted(Request(scope))
             response.headers.update(_headers())
@@ -86,13 +86,13 @@ class HelpSite:
     def _page(self, request: Request, certificate: x509.Certificate) -> Response:
         reach = self._network.reach
         if not reach.urls:
-            # There is no address to send a device to; its own localhost would be another machine.
-            return PlainTextResponse("The lab's computer is on no network now.\n", 503)
+            # There is no address for other devices; on them, localhost is another machine.
+            return PlainTextResponse("The lab's computer is not connected to a network.\n", 503)
         try:
             host = urlsplit(f"//{request.headers.get('host', '')}").hostname
         except ValueError:
             host = None
-        # A name that is not ours must not get onto the page: it may lead to somebody else.
+        # A foreign name must not appear on the page: it may lead to another server.
         same = [one for one in reach.urls if urlsplit(one).hostname == host]
         facts = HelpFacts(
             here=reach.help_url or "",
@@ -130,7 +130,10 @@ def _headers() -> dict[str, str]:
 
 
 def mobileconfig(authority: x509.Certificate) -> bytes:
-    """An unsigned profile; the same certificate always gives the same, so it replaces itself."""
+    """Return an unsigned configuration profile with the authority's certificate.
+
+    The same certificate always gives the same profile, so installing it again replaces it.
+    """
     digest = authority.fingerprint(hashes.SHA256()).hex()
     (name,) = authority.subject.get_attributes_for_oid(NameOID.COMMON_NAME)
     identifier = f"reembody.authority.{digest[:16]}"

@@ -1,4 +1,4 @@
-"""The help page's words in English and German, and which of them a browser is shown first.
+"""The help page's texts in English and German, and which language a browser is shown.
 
 `*bold*` is what a person looks for on the device's screen, `` `code` `` what they type.
 """
@@ -8,7 +8,10 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Device:
-    """How one kind of device takes the certificate; `marks` stand in its browser's user agent."""
+    """How to install the certificate on one kind of device.
+
+    `marks` occur in the user agent of its browsers.
+    """
 
     key: str
     name: str
@@ -18,7 +21,7 @@ class Device:
 
 @dataclass(frozen=True)
 class HelpTexts:
-    """Every word of the page in one language."""
+    """All texts of the page in one language."""
 
     language: str
     other_name: str
@@ -47,9 +50,9 @@ ENGLISH = HelpTexts(
     other_name="Deutsch",
     title="Connect this device",
     lead=(
-        "The lab's server encrypts what it sends and proves that it is itself with a certificate of"
-        " the lab. Each device installs that certificate once; from then on every page opens"
-        " without a warning."
+        "The lab's server encrypts what it sends and proves its identity with a certificate of the"
+        " lab. Install that certificate on each device once; from then on every page opens without"
+        " a warning."
     ),
     download="Get the certificate",
     certificate="Download certificate",
@@ -57,19 +60,19 @@ ENGLISH = HelpTexts(
     pem="as PEM file",
     compare="Compare the fingerprint",
     compare_how=(
-        "SHA-256. The same digits stand on the console's page *Network* and in the terminal of the"
-        " lab's computer."
+        "SHA-256. The same digits are shown on the console's page *Network* and in the terminal of"
+        " the lab's computer."
     ),
-    compare_stop="If they differ, install nothing and tell whoever runs the lab.",
+    compare_stop="If they differ, install nothing and inform the lab.",
     install="Install it",
-    go_on="Go on over https",
-    go_on_how="If the page opens without a warning, all is done.",
+    go_on="Continue over https",
+    go_on_how="If the page opens without a warning, you are done.",
     tablet="Open the tablet's page",
     console="Open the console",
     elsewhere="This page, for another device",
     limits=(
-        "This certificate can vouch for private networks and for the lab's own computer only, never"
-        " for a site of the internet. Remove it from a device that leaves the lab."
+        "This certificate is valid only for private networks and the lab's own computer, never for"
+        " a website on the internet. Remove it from a device that leaves the lab."
     ),
     until="It is valid until {date}.",
     devices=(
@@ -88,10 +91,10 @@ ENGLISH = HelpTexts(
                 (
                     "*Settings*, *General*, *About*, at the very bottom *Certificate Trust"
                     " Settings*:"
-                    " switch *Reembody* on. Without this step Safari shows pages and still refuses"
-                    " their live connection."
+                    " switch *Reembody* on. Without this step Safari shows pages but refuses their"
+                    " live connection."
                 ),
-                "Come back and go on with step 4.",
+                "Come back and continue with step 4.",
             ),
             ("iPad", "iPhone", "Macintosh"),
         ),
@@ -102,12 +105,12 @@ ENGLISH = HelpTexts(
                 "Tap *Download certificate* above.",
                 (
                     "*Settings*, *Security and privacy*, *More security settings*, *Encryption and"
-                    " credentials*, *Install a certificate*, *CA certificate*. Where it is differs:"
+                    " credentials*, *Install a certificate*, *CA certificate*. The place varies:"
                     " search the settings for *CA certificate*."
                 ),
                 "Tap *Install anyway* and choose `reembody-ca.crt` in *Downloads*.",
                 (
-                    "Use *Chrome*. Firefox has to be told: *Settings*, *About Firefox*, tap"
+                    "Use *Chrome*. Firefox needs a setting: *Settings*, *About Firefox*, tap"
                     " the logo"
                     " five times; then *Settings*, *Secret Settings*, *Use third party CA"
                     " certificates*."
@@ -120,15 +123,15 @@ ENGLISH = HelpTexts(
             "Meta Quest",
             (
                 (
-                    "The headset has no page to install certificates. Best is a cable: in the lab's"
+                    "Certificates cannot be installed on the headset. Use a cable: on the lab's"
                     " computer `adb reverse tcp:{port} tcp:{port}`, in the headset"
                     " `http://localhost:{port}`."
                 ),
                 (
                     "Without a cable: open the address of step 4 in the headset's browser. On the"
-                    " warning choose *Advanced*, then *Proceed*. The browser keeps that for"
+                    " warning choose *Advanced*, then *Proceed*. The browser remembers that for"
                     " a while;"
-                    " do it before the participant comes."
+                    " do it before the participant arrives."
                 ),
             ),
             ("OculusBrowser", "Quest"),
@@ -151,7 +154,7 @@ ENGLISH = HelpTexts(
             "macos",
             "Mac",
             (
-                "Download the certificate and open it: *Keychain Access* takes it into *login*.",
+                "Download the certificate and open it: *Keychain Access* adds it to *login*.",
                 (
                     "Open it there, unfold *Trust*, and set *When using this certificate* to"
                     " *Always Trust*. Close the window; your password confirms it."
@@ -362,16 +365,16 @@ GERMAN = HelpTexts(
 
 
 def texts_for(accept_language: str, chosen: str) -> HelpTexts:
-    """The language that was chosen, else the browser's first of ours, else English."""
+    """Return the chosen language, else the browser's first supported one, else English."""
     offered = {"en": ENGLISH, "de": GERMAN}
     wanted = [part.partition(";")[0].strip()[:2].lower() for part in accept_language.split(",")]
     return next((offered[one] for one in (chosen, *wanted) if one in offered), ENGLISH)
 
 
 def device_of(user_agent: str, texts: HelpTexts) -> str:
-    """The key of the section that most likely fits a browser; empty if none does.
+    """Return the key of the section that most likely fits a browser; empty if none does.
 
-    An iPad calls itself a Macintosh; a Mac's owner finds the next section easily enough.
+    An iPad identifies itself as a Macintosh; the owner of a Mac easily finds the next section.
     """
     order = ("quest", "android", "ios", "firefox", "windows", "linux")
     by_key = {device.key: device for device in texts.devices}
