@@ -23,7 +23,7 @@ from app.science.avatar.configuration import Configuration
 from app.science.avatar.mjcf import FLOOR_ONLY, Scene, avatar_model, default_configuration
 from app.science.avatar.simulation import MAX_SPEED_RAD_S
 from app.science.avatar.targets import TargetAngles, joint_rotations
-from app.science.avatar.tuning import NOTHING, Spread, follow_capture, track, tune
+from app.science.avatar.tuning import EMPTY_SPACE, Spread, follow_capture, track, tune
 from app.science.latency import achieved_latency
 from app.science.skeleton import Movement
 from tests.benchmarks.clips import CLIPS, LONG_WALK, movement, movements
@@ -88,8 +88,8 @@ def _row(
 
 def _delays() -> Iterator[Figure]:
     for name, file, scene in (
-        ("walk and bend", LONG_WALK, NOTHING),
-        ("reach", CLIPS["reach"][0], NOTHING),
+        ("walk and bend", LONG_WALK, EMPTY_SPACE),
+        ("reach", CLIPS["reach"][0], EMPTY_SPACE),
         ("reach on a floor", CLIPS["reach"][0], FLOOR_ONLY),
     ):
         clip = movement(file)

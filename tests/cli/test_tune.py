@@ -87,7 +87,7 @@ def test_the_table_has_units_and_an_end() -> None:
     assert "N m/rad" in result.stdout
     assert "8 tuned, 0 retried, 0 flagged, 83 locked" in result.stdout
     assert "1.6 m, 60 kg" in result.stdout
-    assert "skipped: a locked group holds it" in result.stdout
+    assert "skipped: it is in a locked group" in result.stdout
     assert "relay experiment: 8 of 8 axes" in result.stderr
 
 

@@ -1,5 +1,5 @@
-"""The avatars: bodies that follow the participant's, driven by motors.
+"""Avatars: motor-driven bodies that follow the participant's movement.
 
-Each folder is a face of its own, so that importing one loads what it needs and no more. From the
-bottom: `body`, `configuration`, `mjcf`, `targets`, `ik`, `simulation`, `tuning`.
+Each folder is imported separately, so that importing one loads only what it needs. From lowest to
+highest level: `body`, `configuration`, `mjcf`, `targets`, `ik`, `simulation`, `tuning`.
 """

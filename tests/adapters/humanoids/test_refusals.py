@@ -53,7 +53,7 @@ def test_a_box_is_no_humanoid() -> None:
 def test_a_dog_with_a_humans_names_is_none() -> None:
     """Its legs do not hang from where its head is above."""
     told = str(refused(dog_file(humans_names=True)))
-    assert "no standing human body" in told
+    assert "not a standing human body" in told
 
 
 def test_exchanged_sides_are_found() -> None:
@@ -62,7 +62,7 @@ def test_exchanged_sides_are_found() -> None:
     def exchanged(part: str) -> str:
         return part.replace("Left", "#").replace("Right", "Left").replace("#", "Right")
 
-    assert "left and right are exchanged" in str(refused(humanoid_file(Model(name=exchanged))))
+    assert "left and right are swapped" in str(refused(humanoid_file(Model(name=exchanged))))
 
 
 def test_a_bone_out_of_order_is_named() -> None:
@@ -73,7 +73,7 @@ def test_a_bone_out_of_order_is_named() -> None:
         bones["leftHand"], bones["leftUpperArm"] = bones["leftUpperArm"], bones["leftHand"]
 
     told = str(refused(humanoid_file(Model(vrm=1, edit=crossed))))
-    assert "is LeftHand, but is not below" in told
+    assert "is LeftHand, but not a child of" in told
 
 
 def test_a_bone_that_is_two_parts_is_named() -> None:

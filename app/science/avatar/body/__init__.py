@@ -1,9 +1,9 @@
-"""The body: its parts and axes, proportions, masses and shapes.
+"""The avatar's body: parts, axes, proportions, masses and shapes.
 
-`PART_NAMES`, `AXES` and the tables beside them fix the 52 parts and the order of their axes.
-`build_body` makes a `Body` of a stature or of a model's lengths, `body_masses` shares out its mass,
-and `figure_of` takes a `Humanoid`, a rigged model, for the body it is. All places are metres in the
-T-pose, y up; nothing here knows a simulator.
+`PART_NAMES`, `AXES` and related tables define the 52 parts and the order of their axes.
+`build_body` makes a `Body` from a stature or from a model's lengths, `body_masses` distributes its
+mass among the parts, and `figure_of` measures a `Humanoid`, a rigged model. All positions are in
+metres in the T-pose, y up; nothing here depends on a simulator.
 """
 
 from app.science.avatar.body.body import REQUIRED_PARTS, Body, BodyPart, build_body

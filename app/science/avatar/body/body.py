@@ -1,11 +1,11 @@
-"""The body of one avatar: which parts it has, where they hang, and what they are made of.
+"""Build the body of one avatar: which parts it has, how they are connected, and their shapes.
 
-Every humanoid model is welcome: what it lacks is skipped. The parts that hung on a missing one hang
-on the next part above it, at the same place; its shapes and its mass go there too. Only a part
-without which there is no human body is required; the list is that of Unity's humanoid rigs.
+A humanoid model may lack parts. The children of a missing part are attached to the nearest present
+part above it, without changing their position; its shapes and its mass go there too. Only the parts
+without which there is no human body are required; the list is that of Unity's humanoid rigs.
 
 A body may be that of a humanoid model (`figure`): then joints lie where the model has them, and
-parts have a convex piece of its skin beside their simple shapes.
+each part has a convex piece of its skin in addition to its simple shapes.
 """
 
 from collections.abc import Collection, Mapping
@@ -26,20 +26,20 @@ _REQUIRED_LIMBS = ("UpperArm", "LowerArm", "Hand", "UpperLeg", "LowerLeg", "Foot
 REQUIRED_PARTS: tuple[str, ...] = (
     "Hips", "Spine", "Head", *(f"{side}{limb}" for side in SIDES for limb in _REQUIRED_LIMBS)
 )  # fmt: skip
-"""Parts without which a model is no humanoid."""
+"""Parts that a model needs to be a humanoid."""
 
 
 @dataclass(frozen=True)
 class BodyPart:
-    """One rigid part; its frame lies in its joint, parallel to the world in the T-pose.
+    """One rigid part of a body; its frame lies in its joint, parallel to the world in the T-pose.
 
     Attributes:
         name: HumanBodyBones name.
-        parent: the part it hangs on; None for the hips.
-        joint_m: its joint in the parent's frame; of the hips, their place above the floor.
+        parent: the part it is attached to; None for the hips.
+        joint_m: its joint in the parent's frame; for the hips, their position above the floor.
         end_m: end of its bone in its own frame.
-        shapes: what collides, in its own frame.
-        piece: what may collide instead of them: the skin's convex piece in the same frame.
+        shapes: its collision shapes, in its own frame.
+        piece: convex piece of the skin in the same frame, which may collide instead of the shapes.
     """
 
     name: str
@@ -52,12 +52,14 @@ class BodyPart:
 
 @dataclass(frozen=True)
 class Body:
-    """The parts an avatar has, a parent always before its children.
+    """The parts of an avatar, each parent before its children.
 
     Attributes:
-        proportions: the bones of the complete body it was made from, whose masses it has.
+        proportions: bones of the complete body of a person of the same lengths, which determine the
+            masses.
         parts: the present parts by name, in the order of `PART_NAMES`.
-        bones: the same with joints where they lie in this body: those of a model, if it is one's.
+        bones: bones with the joints of this body: for a model's body, where the model has them;
+            otherwise the same as `proportions`.
     """
 
     proportions: Proportions
@@ -66,15 +68,15 @@ class Body:
 
     @property
     def stature_m(self) -> float:
-        """Body height."""
+        """Return the body height."""
         return self.proportions.stature_m
 
-    def stand_in(self, part: str) -> str:
-        """The present part that carries this one: itself, or the next one above."""
-        return _stand_in(part, self.parts)
+    def carrier_of(self, part: str) -> str:
+        """Return the part itself if the body has it, else the nearest present part above it."""
+        return _carrier_of(part, self.parts)
 
     def places_m(self) -> dict[str, Vector]:
-        """Where each present part's joint lies in the world in the T-pose."""
+        """Return the position of each present part's joint in the world in the T-pose."""
         places = self.bones.places_m()
         return {part: places[part] for part in self.parts}
 
@@ -90,12 +92,12 @@ def build_body(
 
     Args:
         stature_m: 0.5 to 2.6 m.
-        segments_m: measured lengths by the names of `proportions.SEGMENT_NAMES`; they count for
-            both sides.
-        parts: HumanBodyBones names that the model has; names that are not among the 52 (eyes,
-            jaw) are skipped.
+        segments_m: measured lengths by the names of `proportions.SEGMENT_NAMES`; they apply to both
+            sides.
+        parts: HumanBodyBones names that the model has; names that are not among the 52 (eyes, jaw)
+            are skipped.
         figure: the model whose body it is; parts that it lacks are left out. It has lengths of its
-            own, so none are given.
+            own, so `segments_m` must not be given.
 
     Raises:
         BodyError: a required part is missing, or a length is not plausible.
@@ -103,7 +105,7 @@ def build_body(
     if figure is not None:
         if segments_m:
             raise BodyError(
-                "A model has lengths of its own: give either a model or measured lengths."
+                "A model has its own lengths: give either a model or measured lengths, not both."
             )
         figure = figure.scaled(stature_m)
         segments_m = figure.segments_m
@@ -111,19 +113,19 @@ def build_body(
     missing = [part for part in REQUIRED_PARTS if part not in parts]
     if missing:
         raise BodyError(
-            f"The model has no {', '.join(missing)}, so it is no humanoid. A body needs"
+            f"The model has no {', '.join(missing)}, so it is not a humanoid. A body needs"
             f" {', '.join(REQUIRED_PARTS)}: map these bones in the model's rig."
         )
-    usual = proportions(stature_m, segments_m or {})
-    bones = usual if figure is None else own_bones(usual, figure)
+    expected = proportions(stature_m, segments_m or {})
+    bones = expected if figure is None else own_bones(expected, figure)
     present = [part for part in PART_NAMES if part in parts]
-    shapes = _shapes(usual, bones, frozenset(present))
+    shapes = _shapes(expected, bones, frozenset(present))
     places, pieces = bones.places_m(), {} if figure is None else figure.pieces
     built = {
         part: _part(part, bones, places, present, shapes[part], pieces.get(part))
         for part in present
     }
-    return Body(usual, MappingProxyType(built), bones)
+    return Body(expected, MappingProxyType(built), bones)
 
 
 def _part(
@@ -134,24 +136,25 @@ def _part(
     shapes: tuple[Shape, ...],
     piece: Piece | None,
 ) -> BodyPart:
-    above = PARENT_OF[part]
+    usual_parent = PARENT_OF[part]
     end = bones.ends_m[part]
     if part.endswith("Hand") and not _has_fingers(part, present):
         x = bones.segments_m["hand"] * (-1.0 if part.startswith("Left") else 1.0)
         end = (x, 0.0, 0.0)
-    if above is None:
+    if usual_parent is None:
         return BodyPart(part, None, places[part], end, shapes, piece)
-    parent = _stand_in(above, present)
-    joint = bones.joints_m[part] if parent == above else v_subtract(places[part], places[parent])
+    parent = _carrier_of(usual_parent, present)
+    is_usual = parent == usual_parent
+    joint = bones.joints_m[part] if is_usual else v_subtract(places[part], places[parent])
     return BodyPart(part, parent, joint, end, shapes, piece)
 
 
-def _stand_in(part: str, present: Collection[str]) -> str:
+def _carrier_of(part: str, present: Collection[str]) -> str:
     while part not in present:
-        above = PARENT_OF[part]
-        if above is None:
+        parent = PARENT_OF[part]
+        if parent is None:
             raise BodyError(f"The body has no {part}.")
-        part = above
+        part = parent
     return part
 
 
@@ -160,20 +163,20 @@ def _has_fingers(hand: str, present: Collection[str]) -> bool:
 
 
 def _shapes(
-    usual: Proportions, bones: Proportions, present: frozenset[str]
+    expected: Proportions, bones: Proportions, present: frozenset[str]
 ) -> dict[str, tuple[Shape, ...]]:
     places = bones.places_m()
-    gathered: dict[str, list[Shape]] = {part: [] for part in present}
+    shapes_by_part: dict[str, list[Shape]] = {part: [] for part in present}
     for part in PART_NAMES:
-        stand_in = _stand_in(part, present)
-        if part in FINGER_PARTS and stand_in not in FINGER_PARTS:
-            continue  # a finger the model does not have
-        own = shapes_of(usual if part.endswith(LIKE_A_PERSONS) else bones, part)
+        carrier = _carrier_of(part, present)
+        if part in FINGER_PARTS and carrier not in FINGER_PARTS:
+            continue  # a finger that the model lacks
+        own = shapes_of(expected if part.endswith(LIKE_A_PERSONS) else bones, part)
         if part.endswith("Hand") and not _has_fingers(part, present):
-            own = (mitten(usual, part),)
-        by = v_subtract(places[part], places[stand_in])
-        if bones is not usual:
-            by = v_add(by, sole_lift_m(part, usual, places))
-        moved = part != stand_in or bones is not usual
-        gathered[stand_in] += [shape.moved(by) for shape in own] if moved else own
-    return {part: tuple(shapes) for part, shapes in gathered.items()}
+            own = (mitten(expected, part),)
+        offset = v_subtract(places[part], places[carrier])
+        if bones is not expected:
+            offset = v_add(offset, sole_lift_m(part, expected, places))
+        is_moved = part != carrier or bones is not expected
+        shapes_by_part[carrier] += [shape.moved(offset) for shape in own] if is_moved else own
+    return {part: tuple(shapes) for part, shapes in shapes_by_part.items()}

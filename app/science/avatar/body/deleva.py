@@ -17,7 +17,7 @@ Population = Literal["male", "female", "average"]
 
 @dataclass(frozen=True)
 class Segment:
-    """One row of the table; all values are fractions, see the module."""
+    """One row of the table; all values are fractions, see the module docstring."""
 
     mass: float
     center: float
@@ -55,7 +55,7 @@ FEMALE: Mapping[str, Segment] = MappingProxyType(
     }
 )
 PAIRED = ("Upper arm", "Forearm", "Hand 2", "Thigh", "Shank", "Foot")
-"""Segments that a body has twice."""
+"""Segments that a body has on both sides."""
 
 
 def segments_of(population: Population) -> Mapping[str, Segment]:
@@ -71,7 +71,7 @@ def segments_of(population: Population) -> Mapping[str, Segment]:
 
 
 def mass_fractions(population: Population) -> dict[str, float]:
-    """Return each segment's share of the body; the shares of the whole body add up to one.
+    """Return each segment's share of the body's mass; the shares of the whole body add up to one.
 
     The published ones add up to 1.0000 for men and .9999 for women, by rounding.
     """

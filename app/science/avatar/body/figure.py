@@ -1,10 +1,10 @@
-"""What is kept of a humanoid model for its body: joints, lengths, and a convex piece per part.
+"""Extract from a humanoid model what its body needs: joints, lengths, and a convex piece per part.
 
-Lengths are measured where the tables of masses want them, by the names of
-`proportions.SEGMENT_NAMES`; a trunk without a neck joint, and the head, are expected from the
-stature. A length that is not a person's is refused. One that is unusual, as of many drawn
-characters, counts for masses as the nearest that a person may have, with a note; joints and pieces
-stay where the model has them.
+Lengths are measured between the points that the mass tables use, and named as in
+`proportions.SEGMENT_NAMES`; the head, and the trunk of a model without a neck joint, get the length
+expected for the stature. A length that no person can have is rejected. An unusual one, as many
+drawn characters have, is replaced for the masses by the nearest that a person may have, with a
+note; joints and pieces stay where the model has them.
 """
 
 from collections.abc import Iterator, Mapping
@@ -23,21 +23,22 @@ from app.science.rotations import Vector, v_scale
 _SHORTEST, _LONGEST = 0.3, 3.0
 _DIGITS = 6
 _JUST_INSIDE = 1e-4
-"""Lengths are rounded and scaled after this."""
+"""Relative margin to the permitted range, as lengths are rounded and scaled afterwards."""
 _KNUCKLES = 0.446
-"""From the wrist to the middle knuckle, of the length of the hand: `fingers`."""
+"""Distance from the wrist to the middle knuckle, as a fraction of the hand's length: `fingers`."""
 
 
 @dataclass(frozen=True)
 class Figure:
-    """A model's measures in the T-pose; frames as in `app.science.avatar.body.parts`.
+    """Measurements of a model in the T-pose; frames as in `app.science.avatar.body.parts`.
 
     Attributes:
         stature_m: of the model itself.
-        places_m: part -> its joint over the floor, in the order of `PART_NAMES`.
-        segments_m: lengths by the names of `proportions.SEGMENT_NAMES`, as far as it has them.
-        pieces: part -> its convex piece; parts whose skin encloses nothing are absent.
-        notes: what a reader should know, each a sentence.
+        places_m: part -> position of its joint above the floor, in the order of `PART_NAMES`.
+        segments_m: lengths by the names of `proportions.SEGMENT_NAMES`, as far as they could be
+            measured.
+        pieces: part -> its convex piece; parts whose skin encloses no volume are absent.
+        notes: remarks for the user, each a sentence.
     """
 
     stature_m: float
@@ -48,20 +49,20 @@ class Figure:
 
     @property
     def absent(self) -> tuple[str, ...]:
-        """Body parts that the model lacks."""
+        """Return the body parts that the model lacks."""
         return tuple(part for part in PART_NAMES if part not in self.places_m)
 
     @property
     def without_piece(self) -> tuple[str, ...]:
-        """Parts that it has, but with too little skin for a piece."""
+        """Return the parts whose skin is too small for a convex piece."""
         return tuple(part for part in self.places_m if part not in self.pieces)
 
     def finger_count(self, side: str) -> int:
-        """Fingers of the left or right hand."""
+        """Return the number of fingers of the left or right hand."""
         return sum(f"{side}{finger}Proximal" in self.places_m for finger in FINGERS)
 
     def scaled(self, stature_m: float) -> "Figure":
-        """The same as large as a person."""
+        """Return the figure scaled to a person's stature."""
         factor = stature_m / self.stature_m
         return Figure(
             stature_m,
@@ -73,30 +74,30 @@ class Figure:
 
 
 def figure_of(humanoid: Humanoid) -> Figure:
-    """Measure a model.
+    """Measure a humanoid model.
 
     Raises:
-        HumanoidError: its stature or a length of it is no person's.
+        HumanoidError: no person has its stature or one of its lengths.
     """
     stature = round(humanoid.stature_m, _DIGITS)
     try:
         expected = segment_lengths(stature)
     except BodyError as error:
-        raise HumanoidError(f"The model is no human body: {error}") from error
+        raise HumanoidError(f"The model is not a human body: {error}") from error
     notes = list(humanoid.notes)
     segments: dict[str, float] = {}
     for name, length in _measured(humanoid):
         ratio = length / expected[name]
         if not _SHORTEST <= ratio <= _LONGEST:
             raise HumanoidError(
-                f"Of a model {stature:g} m tall the {_WORDS[name]} cannot be {length:.3f} m:"
-                f" expected are about {expected[name]:.3f} m. Check the bones it was measured"
-                f" between: {_BETWEEN[name]}."
+                f"The {_WORDS[name]} of a model {stature:g} m tall cannot be {length:.3f} m;"
+                f" about {expected[name]:.3f} m is expected. Check the bones between which it was"
+                f" measured: {_BETWEEN[name]}."
             )
         counted = min(max(ratio, LEAST + _JUST_INSIDE), MOST - _JUST_INSIDE) * expected[name]
         if abs(counted - length) > _JUST_INSIDE * length:
             notes.append(
-                f"The {_WORDS[name]} of {length:.3f} m is unusual; for masses it counts as"
+                f"The {_WORDS[name]} of {length:.3f} m is unusual; masses are computed with"
                 f" {counted:.3f} m."
             )
         segments[name] = round(counted, _DIGITS)
@@ -134,7 +135,7 @@ _BONES = {
 
 
 def _measured(humanoid: Humanoid) -> Iterator[tuple[str, float]]:
-    """(segment, length); of both sides the mean."""
+    """Yield (segment, length); the length is the mean of both sides."""
     places = {part: own.place_m for part, own in humanoid.parts.items()}
     for name, (start, end) in _BONES.items():
         yield name, _mean(dist(places[f"{s}{start}"], places[f"{s}{end}"]) for s in SIDES)
@@ -151,7 +152,10 @@ def _measured(humanoid: Humanoid) -> Iterator[tuple[str, float]]:
 
 
 def _hand(humanoid: Humanoid, side: str) -> Iterator[float]:
-    """From the wrist to the fingertips, by the skin; else by the knuckles."""
+    """Yield the length from the wrist to the fingertips, by the skin, or else by the knuckles.
+
+    Yield nothing for a hand without skin and middle finger.
+    """
     outwards = -1.0 if side == "Left" else 1.0
     wrist = humanoid.parts[f"{side}Hand"].place_m[0]
     names = [f"{side}Hand", *(part for part in PART_NAMES if _is_finger(part, side))]

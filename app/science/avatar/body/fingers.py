@@ -1,13 +1,13 @@
-"""How long the fingers of one hand are and where they stand on the palm, in the T-pose.
+"""Lengths of the fingers of one hand and their positions on the palm, in the T-pose.
 
 Published (Buchholz, Armstrong and Goldstein 1992, Ergonomics 35(3), 261-273): lengths of the finger
-segments between joint centres, and how far from the wrist the knuckles and the root of the thumb
-lie, as fractions of the length of the hand; how far they lie from the axis of the middle finger, as
-fractions of the breadth of the hand.
+segments between joint centres, and distances of the knuckles and of the root of the thumb from the
+wrist, as fractions of the length of the hand; their distances from the axis of the middle finger,
+as fractions of the breadth of the hand.
 
 Estimated by us: the breadth of the hand is 0.44 of its length; in the T-pose the fingers lie flat
 and parallel, the thumb points 45 degrees forward in the plane of the palm, and its root lies at the
-level of the palm; how thick the fingers are.
+level of the palm; the thickness of the fingers.
 """
 
 from collections.abc import Iterator, Mapping
@@ -18,7 +18,7 @@ from app.science.avatar.body.parts import FINGERS, SEGMENTS
 from app.science.rotations import Vector, v_scale
 
 HAND_BREADTH = 0.44
-"""Of the palm at the knuckles, as a fraction of the length of the hand."""
+"""Breadth of the palm at the knuckles, as a fraction of the length of the hand."""
 _SEGMENT_LENGTHS: Mapping[str, tuple[float, float, float]] = {  # of the length of the hand
     "Thumb": (0.251, 0.196, 0.158),
     "Index": (0.245, 0.143, 0.097),
@@ -26,7 +26,7 @@ _SEGMENT_LENGTHS: Mapping[str, tuple[float, float, float]] = {  # of the length 
     "Ring": (0.244, 0.165, 0.107),
     "Little": (0.204, 0.117, 0.093),
 }
-# From the wrist (of the length of the hand) and towards the thumb (of its breadth).
+# Distance from the wrist (of the hand's length) and towards the thumb (of its breadth).
 _ROOTS: Mapping[str, tuple[float, float]] = {
     "Thumb": (0.073, 0.196),
     "Index": (0.447, 0.251),
@@ -51,7 +51,7 @@ class FingerBone:
 
     Attributes:
         part: HumanBodyBones name.
-        joint_m: its joint in the frame of the part it hangs on.
+        joint_m: its joint in the frame of its parent.
         end_m: the next joint, or the tip, in its own frame.
         relative_radius: half its thickness as a fraction of the stature.
     """
@@ -63,7 +63,7 @@ class FingerBone:
 
 
 def finger_bones(side: str, hand_m: float) -> Iterator[FingerBone]:
-    """Yield the fifteen bones of a hand of this length, each finger from its root to its tip."""
+    """Yield the fifteen bones of a hand of this length, finger by finger, each from root to tip."""
     outwards = -1.0 if side == "Left" else 1.0
     for finger in FINGERS:
         along, towards_thumb = _ROOTS[finger]

@@ -1,13 +1,13 @@
-"""Convex pieces: few corners around many points, always the same for the same points.
+"""Build convex pieces: few corners around many points, always the same for the same points.
 
-The hull of a body part may have hundreds of corners, and each costs at every contact. So a piece
-begins with the outermost points along 26 directions, and gets the point that is farthest outside of
-it, again and again, until every point is inside or at most `CLOSE_M` outside, or it has `MOST`
-corners. The outermost along 1000 directions are asked before all the others. How far the farthest
-point is outside is kept with the piece.
+The hull of a body part may have hundreds of corners, and each costs time at every contact. So a
+piece starts with the outermost points along 26 directions; the point farthest outside is added
+repeatedly until every point is inside or at most `CLOSE_M` outside, or the piece has `MOST`
+corners. The outermost points along 1000 directions are considered before all others. The distance
+by which the farthest point remains outside is stored with the piece.
 
-Points are rounded to `GRID_M` first and corners are listed in order, so neither the order of the
-points nor a machine's last digit decides.
+Points are first rounded to `GRID_M` and corners are listed in order, so the result depends neither
+on the order of the points nor on a machine's last digit.
 """
 
 from collections.abc import Iterable
@@ -26,44 +26,45 @@ MOST: Final = 128
 CLOSE_M: Final = 0.001
 GRID_M: Final = 1e-5
 THINNEST_M: Final = 0.001
-"""Twice the volume over the surface: a thinner piece is a leaf, which nothing can rest against."""
+"""Least thickness of a piece, as twice its volume over its surface: a thinner one is a sheet, which
+nothing can rest against."""
 _DIGITS = 5
 _DIRECTIONS = np.array([row for row in product((-1.0, 0.0, 1.0), repeat=3) if any(row)])
 _CANDIDATES = 1000
 
 
-def _all_round(count: int) -> FloatArray:
-    """(count, 3) directions spread evenly over the sphere, on a spiral by the golden angle."""
+def _sphere_directions(count: int) -> FloatArray:
+    """Return (count, 3) directions spread evenly over the sphere, on a golden-angle spiral."""
     step = np.arange(count)
     turn, height = step * np.pi * (3.0 - np.sqrt(5.0)), 1.0 - (2.0 * step + 1.0) / count
     radius = np.sqrt(1.0 - height**2)
     return np.stack((radius * np.cos(turn), height, radius * np.sin(turn)), axis=1)
 
 
-_ALL_ROUND = _all_round(_CANDIDATES)
+_SPHERE_DIRECTIONS = _sphere_directions(_CANDIDATES)
 
 
 @dataclass(frozen=True)
 class Piece:
-    """A convex solid.
+    """A convex solid around the points of one body part.
 
     Attributes:
         corners_m: its corners in the frame of its part, in ascending order.
-        outside_m: how far the farthest of the points it was made of is outside of it.
+        outside_m: greatest distance by which one of the enclosed points lies outside.
     """
 
     corners_m: tuple[Vector, ...]
     outside_m: float
 
     def scaled(self, factor: float) -> "Piece":
-        """The same, larger or smaller, on the same grid."""
+        """Return the piece scaled by a factor, on the same grid."""
         corners = np.array(self.corners_m) * factor
         return Piece(_listed(corners), round(self.outside_m * factor, _DIGITS))
 
 
 def piece_of(points_m: FloatArray) -> Piece | None:
-    """Return the piece around (N, 3) points; None where they are too few or enclose nothing."""
-    # Loading it takes a while, and a server that only writes models never needs it.
+    """Return the piece around (N, 3) points; None if they are too few or enclose no volume."""
+    # SciPy loads slowly, and a server that only writes models never needs it.
     from scipy.spatial import QhullError
 
     points = np.unique(np.round(points_m, _DIGITS), axis=0)
@@ -83,25 +84,25 @@ def piece_of(points_m: FloatArray) -> Piece | None:
 def _thinned(corners: FloatArray) -> "ConvexHull":
     if len(corners) <= MOST:
         return _hull(corners)
-    asked = corners[_outermost(corners, _ALL_ROUND)]
-    chosen = asked[_outermost(asked, _DIRECTIONS)]
+    considered = corners[_outermost(corners, _SPHERE_DIRECTIONS)]
+    chosen = considered[_outermost(considered, _DIRECTIONS)]
     while True:
         hull = _hull(chosen)
-        heights = _heights(hull, asked)
-        if heights.max() <= CLOSE_M and asked is not corners:
-            asked, heights = corners, _heights(hull, corners)
+        heights = _heights(hull, considered)
+        if heights.max() <= CLOSE_M and considered is not corners:
+            considered, heights = corners, _heights(hull, corners)
         if heights.max() <= CLOSE_M or len(chosen) >= MOST:
             return hull
-        chosen = np.vstack((chosen, asked[int(np.argmax(heights))]))
+        chosen = np.vstack((chosen, considered[int(np.argmax(heights))]))
 
 
 def _outermost(points: FloatArray, directions: FloatArray) -> list[int]:
-    """The points that are farthest out along any of the directions."""
+    """Return the sorted indices of the points that are outermost along any of the directions."""
     return sorted(set(np.argmax(directions @ points.T, axis=1).tolist()))
 
 
 def _heights(hull: "ConvexHull", points: FloatArray) -> FloatArray:
-    """(N,) how far points are outside of the face they are farthest outside of; below 0 inside."""
+    """Return (N,) the distance of each point outside its farthest face; below 0 inside the hull."""
     normals, offsets = hull.equations[:, :3], hull.equations[:, 3]
     heights: FloatArray = (points @ normals.T + offsets).max(axis=1)
     return heights

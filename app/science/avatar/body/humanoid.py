@@ -1,7 +1,7 @@
-"""A humanoid model: the body parts it has, where their joints lie, and the skin that follows them.
+"""A humanoid model: its body parts, the positions of their joints, and their skin.
 
-In the T-pose, in the product's frame: x right, y up, facing -z, metres; the hips over the origin,
-the soles at height zero. Bones and mesh of a file become one by `humanoid_pose`.
+It is in the T-pose, in the world frame: x right, y up, facing -z, metres; the hips over the origin,
+the soles at height zero. `humanoid_pose` makes it from the bones and the mesh of a file.
 """
 
 from collections.abc import Mapping
@@ -11,7 +11,7 @@ from app.science.rotations import FloatArray, Vector
 
 
 class HumanoidError(ValueError):
-    """A model is no humanoid body: a required part is missing, or its bones hang as no body's."""
+    """A model is not a humanoid body: a part is missing, or its bones form no human skeleton."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,9 +19,9 @@ class HumanoidPart:
     """One body part of a model.
 
     Attributes:
-        place_m: its joint in the T-pose.
-        vertices_m: (N, 3) the skin that follows it most, in the part's own frame: its joint, axes
-            parallel to the world in the T-pose.
+        place_m: position of its joint in the T-pose.
+        vertices_m: (N, 3) the skin that follows this part most, in the part's own frame: origin in
+            its joint, axes parallel to the world in the T-pose.
     """
 
     place_m: Vector
@@ -30,12 +30,12 @@ class HumanoidPart:
 
 @dataclass(frozen=True, eq=False)
 class Humanoid:
-    """A model in the T-pose.
+    """A humanoid model in the T-pose.
 
     Attributes:
-        stature_m: as its joints tell, whatever hair or hats it wears; see `humanoid_pose`.
+        stature_m: estimated from its joints, regardless of hair or hats; see `humanoid_pose`.
         parts: HumanBodyBones name -> part, in the order of `PART_NAMES`.
-        notes: what a reader should know, each a sentence.
+        notes: remarks for the user, each a sentence.
     """
 
     stature_m: float

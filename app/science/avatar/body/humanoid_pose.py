@@ -1,18 +1,19 @@
-"""From bones and a mesh in any rest pose to a humanoid in the T-pose.
+"""Convert bones and a mesh in any rest pose to a humanoid in the T-pose.
 
-1. The bones are a body's, or there is an error that names what is missing or hangs wrongly.
+1. The **bones** must form a body, or an error names what is missing or misplaced.
 2. **Up** is y; where the head lies over the hips along another axis, the model is turned.
-3. **Size**: bones that no person's are in metres are tried in other units; where none fits, only
-   the proportions count, as a body is scaled to a person's stature anyhow.
-4. **T-pose** by `app.science.retargeting.t_pose`: trunk, legs and arms along their axes, feet, head
-   and collar bones as they are, fingers as they lie in the hand. Each vertex goes rigidly with the
-   bone that moves it most. The model then faces -z, whichever way it did.
-5. The **soles** are the lowest skin of the feet. The **stature** is told by how high over them the
-   joint of the head lies, .875 of the stature in `app.science.skeleton`: the top of a mesh may be
-   hair, a hat or horns.
+3. **Size**: where no person has the stature in metres, other units are tried; where none fits, only
+the proportions are used, as a body is scaled to a person's stature anyway.
+4. **T-pose** by `app.science.retargeting.t_pose`: trunk, legs and arms are aligned with their axes;
+feet, head and collar bones stay as they are, and fingers keep their pose relative to the hand. Each
+vertex moves rigidly with the bone that has the most influence on it. The model is then turned to
+face -z.
+5. The **soles** are the lowest skin of the feet. The **stature** is computed from the height of the
+head's joint above them, which is .875 of the stature in `app.science.skeleton`: the top of a mesh
+may be hair, a hat or horns.
 
-Vertices of bones that are no body part belong to the next one above that is, those above the hips
-to the hips.
+Vertices of bones that are not body parts belong to the nearest bone above that is one; those of
+bones above the hips belong to the hips.
 """
 
 from collections.abc import Mapping
@@ -31,7 +32,8 @@ from app.science.rotations import FloatArray, Vector, conjugate, multiply, rotat
 from app.science.skeleton import JOINT_NAMES
 
 HEAD_AT, ANKLE_AT = 0.875, 0.039
-"""Heights of the joints of head and foot over the soles, of the stature (see `skeleton`)."""
+"""Heights of the joints of head and foot above the soles, as fractions of the stature (see
+`skeleton`)."""
 _UNITS = ((1.0, "metres"), (0.01, "centimetres"), (0.001, "millimetres"))
 _LOWEST_M, _HIGHEST_M, _USUAL_M = 0.5, 2.6, 1.75
 _UP = np.array((0.0, 1.0, 0.0))
@@ -41,13 +43,13 @@ IndexArray = npt.NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class RiggedMesh:
-    """Bones at rest with the skin on them, in the world of a file.
+    """Bones at rest with the skin on them, in the world frame of a file.
 
     Attributes:
-        rig: the J bones, y up by the file's word.
+        rig: the J bones, y up according to the file.
         bones: HumanBodyBones name -> index of its bone.
         vertices_m: (V, 3) the skin at rest.
-        owners: (V,) the bone that moves each vertex most.
+        owners: (V,) the bone with the most influence on each vertex.
     """
 
     rig: Rig
@@ -60,7 +62,7 @@ def humanoid_of(mesh: RiggedMesh) -> Humanoid:
     """Bring a rigged mesh into the T-pose.
 
     Raises:
-        HumanoidError: a required part has no bone, or the bones hang as no human body's do.
+        HumanoidError: a required part has no bone, or the bones do not form a human body.
     """
     check_bones(mesh.rig, mesh.bones)
     notes: list[str] = []
@@ -70,7 +72,7 @@ def humanoid_of(mesh: RiggedMesh) -> Humanoid:
     try:
         joints, vertices = _in_t_pose(mesh)
     except RigError as error:
-        raise HumanoidError(f"The bones are no human body's: {error}") from error
+        raise HumanoidError(f"The bones do not form a human skeleton: {error}") from error
     part_of = _parts_of_bones(mesh)[mesh.owners]
     places = {part: joints[mesh.bones[part]] for part in PART_NAMES if part in mesh.bones}
     floor = _floor(places, vertices, part_of)
@@ -91,7 +93,7 @@ def _upright(mesh: RiggedMesh, notes: list[str]) -> RiggedMesh:
     across = places[mesh.bones["Head"]] - places[mesh.bones["Hips"]]
     axis = int(np.argmax(np.abs(across)))
     if not abs(across[axis]) > 0.0:
-        raise HumanoidError("The head lies where the hips are, so this is no human body.")
+        raise HumanoidError("Head and hips are at the same position, so this is not a human body.")
     up = np.zeros(3)
     up[axis] = np.sign(across[axis])
     if axis == 1 and up[1] > 0.0:
@@ -100,8 +102,8 @@ def _upright(mesh: RiggedMesh, notes: list[str]) -> RiggedMesh:
     rig = mesh.rig
     offsets, rotations = rig.offsets_m.copy(), rig.rest_rotations.copy()
     offsets[0], rotations[0] = rotate(turn, offsets[0]), multiply(turn, rotations[0])
-    told = f"{'+' if up[axis] > 0.0 else '-'}{'xyz'[axis]}"
-    notes.append(f"The head lies over the hips along {told}, so the model was turned upright.")
+    axis_name = f"{'+' if up[axis] > 0.0 else '-'}{'xyz'[axis]}"
+    notes.append(f"The head lies over the hips along {axis_name}, so the model was turned upright.")
     return replace(
         mesh,
         rig=replace(rig, offsets_m=offsets, rest_rotations=rotations),
@@ -112,17 +114,19 @@ def _upright(mesh: RiggedMesh, notes: list[str]) -> RiggedMesh:
 def _in_metres(mesh: RiggedMesh, notes: list[str]) -> RiggedMesh:
     heights = mesh.rig.rest_world()[0][:, 1]
     feet = min(heights[mesh.bones["LeftFoot"]], heights[mesh.bones["RightFoot"]])
-    told = float(heights[mesh.bones["Head"]] - feet) / (HEAD_AT - ANKLE_AT)
+    stature = float(heights[mesh.bones["Head"]] - feet) / (HEAD_AT - ANKLE_AT)
     factor = 0.0
     for metres, unit in _UNITS:
-        if _LOWEST_M <= told * metres <= _HIGHEST_M:
+        if _LOWEST_M <= stature * metres <= _HIGHEST_M:
             factor = metres
             if metres != 1.0:
-                notes.append(f"A stature of {told:.4g} m was taken for {unit}.")
+                notes.append(
+                    f"A stature of {stature:.4g} was taken to be in {unit}, not in metres."
+                )
             break
     else:
-        factor = _USUAL_M / told
-        notes.append(f"A stature of {told:.4g} m is no person's: only the proportions count.")
+        factor = _USUAL_M / stature
+        notes.append(f"No person has a stature of {stature:.4g} m: only the proportions are used.")
     if factor == 1.0:
         return mesh
     rig = replace(mesh.rig, offsets_m=mesh.rig.offsets_m * factor)
@@ -130,7 +134,7 @@ def _in_metres(mesh: RiggedMesh, notes: list[str]) -> RiggedMesh:
 
 
 def _in_t_pose(mesh: RiggedMesh) -> tuple[FloatArray, FloatArray]:
-    """Joints (J, 3) and vertices (V, 3), facing -z."""
+    """Return joints (J, 3) and vertices (V, 3) in the T-pose, facing -z."""
     rig = mesh.rig
     named = {
         part: rig.names[bone] for part, bone in mesh.bones.items() if part in JOINT_NAMES
@@ -148,7 +152,7 @@ def _in_t_pose(mesh: RiggedMesh) -> tuple[FloatArray, FloatArray]:
 
 
 def _parts_of_bones(mesh: RiggedMesh) -> IndexArray:
-    """(J,) index in `PART_NAMES` of the part each bone belongs to."""
+    """Return (J,) the index in `PART_NAMES` of the part that each bone belongs to."""
     part_of_bone = {bone: PART_NAMES.index(part) for part, bone in mesh.bones.items()}
     found = np.zeros(mesh.rig.joint_count, dtype=np.int64)  # 0 is the hips
     for bone, parent in enumerate(mesh.rig.parents):
@@ -161,7 +165,7 @@ def _floor(places: Mapping[str, FloatArray], vertices: FloatArray, part_of: Inde
     feet = np.isin(part_of, [PART_NAMES.index(part) for part in _SOLES])
     if feet.any():
         return float(vertices[feet, 1].min())
-    # Without a skin on the feet, as high as an ankle is.
+    # Feet without skin: take the floor from the usual height of an ankle.
     ankle = float(min(places["LeftFoot"][1], places["RightFoot"][1]))
     return ankle - (float(places["Head"][1]) - ankle) * ANKLE_AT / (HEAD_AT - ANKLE_AT)
 

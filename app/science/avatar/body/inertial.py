@@ -1,6 +1,6 @@
-"""Mass, centre of mass and inertia of rigid things, and how they add up.
+"""Compute mass, centre of mass and inertia of rigid objects and of their combinations.
 
-Plain floats in a fixed order of operations: a body's model is compared byte by byte.
+Plain floats in a fixed order of operations: a body's model must be the same byte for byte.
 """
 
 from collections.abc import Sequence
@@ -18,7 +18,7 @@ _AXES = (0, 1, 2)
 
 @dataclass(frozen=True)
 class Inertial:
-    """How heavy a rigid thing is and how it resists to being turned.
+    """Mass, centre of mass and inertia of a rigid object.
 
     Attributes:
         mass_kg: mass.
@@ -31,25 +31,25 @@ class Inertial:
     inertia_kg_m2: Tensor
 
     def moved(self, by: Vector) -> "Inertial":
-        """The same thing seen from a frame whose origin lies at -by."""
+        """Return the object in a frame whose origin lies at `-by`."""
         return Inertial(self.mass_kg, v_add(self.center_m, by), self.inertia_kg_m2)
 
     def turned(self, rotation: Quaternion, about: Vector) -> "Inertial":
-        """The same thing turned about a point."""
+        """Return the object rotated about a point."""
         center = v_add(about, q_rotate(rotation, v_subtract(self.center_m, about)))
         turn = [q_rotate(rotation, unit) for unit in _UNITS]  # columns of the matrix R
         xx, yy, zz, xy, xz, yz = self.inertia_kg_m2
         rows = ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
 
         def entry(i: int, j: int) -> float:
-            """R I R^T."""
+            """Return one entry of R I R^T."""
             return fsum(turn[a][i] * rows[a][b] * turn[b][j] for a in _AXES for b in _AXES)
 
         inertia = (entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(0, 2), entry(1, 2))
         return Inertial(self.mass_kg, center, inertia)
 
     def about_axis(self, point: Vector, direction: Vector) -> float:
-        """Moment of inertia about a line, kg m^2; the direction is a unit vector."""
+        """Return the moment of inertia about a line, kg m^2; the direction is a unit vector."""
         at_point = _plus(self.inertia_kg_m2, _offset(self.mass_kg, self.center_m, point), 1.0)
         xx, yy, zz, xy, xz, yz = at_point
         x, y, z = direction
@@ -59,21 +59,21 @@ class Inertial:
         )  # fmt: skip
 
 
-def combined(things: Sequence[Inertial]) -> Inertial:
-    """Return several things, all in one frame, as one rigid thing."""
-    if len(things) == 1:
-        return things[0]
-    mass = fsum(thing.mass_kg for thing in things)
-    center = _mean_center(things, mass)
+def combined(objects: Sequence[Inertial]) -> Inertial:
+    """Combine several objects, all in one frame, into one rigid object."""
+    if len(objects) == 1:
+        return objects[0]
+    mass = fsum(item.mass_kg for item in objects)
+    center = _mean_center(objects, mass)
     inertia: Tensor = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    for thing in things:
-        inertia = _plus(inertia, thing.inertia_kg_m2, 1.0)
-        inertia = _plus(inertia, _offset(thing.mass_kg, thing.center_m, center), 1.0)
+    for item in objects:
+        inertia = _plus(inertia, item.inertia_kg_m2, 1.0)
+        inertia = _plus(inertia, _offset(item.mass_kg, item.center_m, center), 1.0)
     return Inertial(mass, center, inertia)
 
 
 def remainder(whole: Inertial, pieces: Sequence[Inertial]) -> Inertial:
-    """Return what is left of a thing without some of its pieces: `combined` turned round."""
+    """Return what is left of an object without some of its pieces, the inverse of `combined`."""
     mass = whole.mass_kg - fsum(piece.mass_kg for piece in pieces)
     weighted = [
         whole.mass_kg * whole.center_m[axis]
@@ -90,7 +90,7 @@ def remainder(whole: Inertial, pieces: Sequence[Inertial]) -> Inertial:
 
 
 def of_shape(shape: Shape, mass_kg: float) -> Inertial:
-    """Return the inertia of a capsule or box of even density."""
+    """Return the inertia of a capsule or box of uniform density."""
     if isinstance(shape, Box):
         x, y, z = (2.0 * half for half in shape.half_size_m)
         twelfth = mass_kg / 12.0
@@ -110,16 +110,16 @@ def _capsule(shape: Capsule, mass_kg: float) -> Tensor:
     if length == 0.0:
         return (along, along, along, 0.0, 0.0, 0.0)
     x, y, z = ((b - a) / length for a, b in zip(shape.start_m, shape.end_m, strict=True))
-    less = along - across
+    difference = along - across
     return (
-        across + less * x * x, across + less * y * y, across + less * z * z,
-        less * x * y, less * x * z, less * y * z,
+        across + difference * x * x, across + difference * y * y, across + difference * z * z,
+        difference * x * y, difference * x * z, difference * y * z,
     )  # fmt: skip
 
 
-def _mean_center(things: Sequence[Inertial], mass: float) -> Vector:
+def _mean_center(objects: Sequence[Inertial], mass: float) -> Vector:
     x, y, z = (
-        fsum(thing.mass_kg * thing.center_m[axis] for thing in things) / mass for axis in range(3)
+        fsum(item.mass_kg * item.center_m[axis] for item in objects) / mass for axis in range(3)
     )
     return (x, y, z)
 
@@ -130,7 +130,7 @@ def _plus(a: Tensor, b: Tensor, factor: float) -> Tensor:
 
 
 def _offset(mass: float, center: Vector, point: Vector) -> Tensor:
-    """Steiner's term: a point mass at `center`, seen from `point`."""
+    """Return Steiner's term: the inertia of a point mass at `center` about `point`."""
     x, y, z = (c - p for c, p in zip(center, point, strict=True))
     return (
         mass * (y * y + z * z), mass * (x * x + z * z), mass * (x * x + y * y),

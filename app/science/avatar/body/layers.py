@@ -1,18 +1,19 @@
-"""Which body parts collide with each other: the collision layers of the thesis, as data.
+"""Define which body parts collide with each other: the collision layers of the thesis, as data.
 
-Every part belongs to a layer, and two layers collide or do not. Torso, arms, legs, shoulders,
-hands and feet are layers of their own (Karas 2020, section 4.2.1): an arm does not collide with
-torso and shoulders, so it can be moved across the upper body, while a hand still touches the arms
-and the upper body. Parts of one layer never collide. The thesis's matrix is a picture we do not
-have; where its words leave it open, what follows is ours: left and right arm collide, a hand
-touches the legs, a foot the other leg and foot, and the two thighs, which nearly touch when people
-stand, pass through each other.
+Every part belongs to a layer, and a table states which pairs of layers collide. Torso, arms, legs,
+shoulders, hands and feet are separate layers (Karas 2020, section 4.2.1): an arm does not collide
+with torso and shoulders, so it can be moved across the upper body, while a hand still touches the
+arms and the upper body. Parts of one layer never collide. The thesis's matrix is a picture we do
+not have; where its text leaves it open, these rules are ours: left and right arm collide, a hand
+touches the legs, a foot touches the other leg and foot, and the two thighs, which nearly touch when
+people stand, pass through each other.
 
 Everything collides with the scene.
 
-For MuJoCo a layer is a bit. Two shapes collide when the `contype` of one meets the `conaffinity` of
-the other. Bodies that hang on each other overlap at the joint: MuJoCo leaves neighbours out by
-itself, but not a hand and its fingers against their own forearm, which `excluded_pairs` names.
+For MuJoCo a layer is a bit. Two shapes collide when the `contype` of one shares a bit with the
+`conaffinity` of the other. Connected bodies overlap at their joint: MuJoCo ignores contacts between
+parent and child, but not those of a hand and its fingers with their own forearm, which
+`excluded_pairs` lists.
 """
 
 from collections.abc import Collection, Iterator, Mapping
@@ -33,18 +34,18 @@ def _layer(part: str) -> str:
     side = next((side for side in SIDES if part.startswith(side)), None)
     if side is None:
         return "torso"
-    bare = part.removeprefix(side)
-    if bare == "Shoulder":
+    base = part.removeprefix(side)
+    if base == "Shoulder":
         return "shoulders"
     kind = {
         "UpperArm": "arm", "LowerArm": "arm", "UpperLeg": "leg", "LowerLeg": "leg",
         "Foot": "foot", "Toes": "foot",
-    }.get(bare, "hand")  # fmt: skip
+    }.get(base, "hand")  # fmt: skip
     return f"{side.lower()}_{kind}"
 
 
 LAYER_OF: Mapping[str, str] = MappingProxyType({part: _layer(part) for part in PART_NAMES})
-"""Part -> its layer."""
+"""Collision layer of each part."""
 
 
 def _colliding() -> Iterator[frozenset[str]]:
@@ -63,7 +64,7 @@ COLLIDING: frozenset[frozenset[str]] = frozenset(_colliding())
 
 @dataclass(frozen=True)
 class CollisionBits:
-    """MuJoCo's two masks of a shape."""
+    """MuJoCo's two collision masks of a shape."""
 
     contype: int
     conaffinity: int
@@ -74,7 +75,7 @@ SCENE = CollisionBits(0, SCENE_BIT)
 
 
 def collision_bits(part: str, *, self_collision: bool) -> CollisionBits:
-    """Return the masks of a body part's shapes; also good for switching a running model."""
+    """Return the masks of a body part's shapes; they can also be set in a running model."""
     layer = LAYER_OF[part]
     if not self_collision:
         return CollisionBits(SCENE_BIT, 0)
@@ -83,26 +84,27 @@ def collision_bits(part: str, *, self_collision: bool) -> CollisionBits:
 
 
 def collide(part: str, other: str) -> bool:
-    """Whether the layers of two body parts collide; neighbours still never do."""
+    """Return whether the layers of two body parts collide; connected parts never do."""
     return frozenset((LAYER_OF[part], LAYER_OF[other])) in COLLIDING
 
 
 def excluded_pairs(parents: Mapping[str, str | None]) -> Iterator[tuple[str, str]]:
-    """Pairs of present parts that never collide although their layers do: parent and child, and
-    a hand with its fingers against the forearm it hangs on.
+    """Yield the pairs of present parts that never collide although their layers do.
+
+    These are parent and child, and a hand with its fingers against its own forearm.
 
     Args:
-        parents: present part -> the present part it hangs on.
+        parents: present part -> the present part it is attached to.
     """
-    seen: set[tuple[str, str]] = set()
+    listed: set[tuple[str, str]] = set()
     for part, parent in parents.items():
         if parent is not None and collide(part, parent):
-            seen.add((parent, part))
+            listed.add((parent, part))
             yield parent, part
     for side in SIDES:
         forearm = f"{side}LowerArm"
         for part in _hand(side, parents):
-            if forearm in parents and (forearm, part) not in seen:
+            if forearm in parents and (forearm, part) not in listed:
                 yield forearm, part
 
 

@@ -1,11 +1,13 @@
-"""How heavy each body part is, where its centre of mass lies, how it resists to being turned.
+"""Compute the mass, centre of mass and inertia of each body part.
 
-De Leva's segments (see `deleva`) are laid on the bones and divided among the 52 parts so that the
-parts of a segment together keep its mass, its centre of mass and its radii of gyration. What a
-model lacks goes, with its place, to the part it hangs on; so the whole body keeps its inertia.
+De Leva's segments (see `deleva`) are placed along the bones and divided among the 52 parts so that
+the parts of a segment together keep its mass, its centre of mass and its radii of gyration. The
+mass of a part that a model lacks is added, at its position, to the part above; so the whole body
+keeps its inertia.
 
-The mass of the upper trunk is shared in equal parts by upper chest and shoulders (Karas 2020,
-section 6.4.1). Everything the tables do not tell is estimated by us and listed in `ESTIMATES`.
+The mass of the upper trunk is divided equally between upper chest and shoulders (Karas 2020,
+section 6.4.1). Everything that the tables do not contain is estimated by us and listed in
+`ESTIMATES`.
 """
 
 from collections.abc import Mapping
@@ -23,7 +25,7 @@ from app.science.rotations import Vector, v_add, v_subtract
 
 ESTIMATES: tuple[str, ...] = (
     ("Trunk, landmarks from the hip joints up to the head's joint: navel at .26, lower end of the"
-    " breastbone at .61, seventh neck vertebra at 1."),
+    " breastbone at .61, seventh cervical vertebra at 1."),
     "Lower trunk: all of it belongs to the hips.",
     ("Middle trunk: its lower half is the Spine's, its upper half the Chest's; their centres lie a"
     " quarter of the segment below and above its own."),
@@ -36,14 +38,14 @@ ESTIMATES: tuple[str, ...] = (
     ("Foot: .12 of it is the toes', with the inertia of their box; its centre of mass lies at half"
     " the height of its box."),
 )  # fmt: skip
-"""What de Leva's tables do not tell."""
+"""What de Leva's tables do not contain and is estimated instead."""
 
 _NAVEL, _BREASTBONE = 0.26, 0.61
 _SHOULDER_SHARE_AT = 0.39
 _NECK_SHARE, _FINGERS_SHARE, _TOES_SHARE = 0.12, 0.20, 0.12
 _LIGHTEST_KG, _HEAVIEST_KG = 1.0, 500.0
-# Which of a segment's axes lie along x, y, z in the T-pose: the trunk and the legs stand, an arm
-# lies along x with its elbow bending about y, a hand lies flat, a foot points forward.
+# Which of a segment's axes lie along x, y, z in the T-pose: trunk and legs are upright, an arm
+# lies along x and its elbow bends about y, a hand lies flat, a foot points forward.
 _STANDING = ("transverse", "longitudinal", "sagittal")
 _ARM = ("longitudinal", "transverse", "sagittal")
 _HAND = ("longitudinal", "sagittal", "transverse")
@@ -59,17 +61,17 @@ class BodyMasses:
 
     @property
     def total_kg(self) -> float:
-        """Mass of the whole body."""
+        """Return the mass of the whole body."""
         return fsum(part.mass_kg for part in self.parts.values())
 
 
 def body_masses(body: Body, total_kg: float, *, population: Population = "average") -> BodyMasses:
-    """Share out a body's mass among its parts.
+    """Distribute a body's mass among its parts.
 
     Args:
-        body: whose lengths scale the radii of gyration.
+        body: its lengths scale the radii of gyration.
         total_kg: 1 to 500 kg.
-        population: whose relative masses are taken.
+        population: supplies the relative masses.
 
     Raises:
         BodyError: the mass is out of range.
@@ -79,28 +81,30 @@ def body_masses(body: Body, total_kg: float, *, population: Population = "averag
             f"A mass of {total_kg} kg is outside {_LIGHTEST_KG:g} to {_HEAVIEST_KG:g} kg: give the"
             " mass of the whole body in kilograms."
         )
-    whole = _Sharing(body.proportions, total_kg, population).parts()
+    whole = _MassDistribution(body.proportions, total_kg, population).parts()
     places = body.proportions.places_m()
-    gathered: dict[str, list[Inertial]] = {part: [] for part in body.parts}
+    inertials_by_part: dict[str, list[Inertial]] = {part: [] for part in body.parts}
     for part in PART_NAMES:
-        stand_in = body.stand_in(part)
-        gathered[stand_in].append(whole[part].moved(v_subtract(places[part], places[stand_in])))
-    parts = {part: combined(pieces) for part, pieces in gathered.items()}
+        carrier = body.carrier_of(part)
+        inertials_by_part[carrier].append(
+            whole[part].moved(v_subtract(places[part], places[carrier]))
+        )
+    parts = {part: combined(pieces) for part, pieces in inertials_by_part.items()}
     return BodyMasses(population, MappingProxyType(parts))
 
 
-class _Sharing:
-    """The complete body; everything in the world's frame of the T-pose until `parts`."""
+class _MassDistribution:
+    """Distribute the mass of a complete body, in the world frame of the T-pose until `parts`."""
 
     def __init__(self, bones: Proportions, total_kg: float, population: Population) -> None:
         self._bones = bones
         self._places = bones.places_m()
         self._rows = segments_of(population)
         self._kg = {name: share * total_kg for name, share in mass_fractions(population).items()}
-        self._found: dict[str, Inertial] = {}
+        self._parts: dict[str, Inertial] = {}
 
     def parts(self) -> dict[str, Inertial]:
-        """Every part in its own frame."""
+        """Return every part in its own frame."""
         self._trunk()
         self._head()
         for side in SIDES:
@@ -111,8 +115,8 @@ class _Sharing:
             self._hand(side)
             self._foot(side)
         return {
-            part: found.moved(v_subtract((0.0, 0.0, 0.0), self._places[part]))
-            for part, found in self._found.items()
+            part: inertial.moved(v_subtract((0.0, 0.0, 0.0), self._places[part]))
+            for part, inertial in self._parts.items()
         }
 
     def _segment(
@@ -129,24 +133,24 @@ class _Sharing:
         self, side: str, name: str, ends: tuple[str, str], along: tuple[str, str, str]
     ) -> None:
         start, end = (self._places[f"{side}{part}"] for part in ends)
-        self._found[f"{side}{ends[0]}"] = self._segment(name, start, end, along)
+        self._parts[f"{side}{ends[0]}"] = self._segment(name, start, end, along)
 
     def _trunk(self) -> None:
         foot = _between(self._places["LeftUpperLeg"], self._places["RightUpperLeg"], 0.5)
         top = self._places["Head"]
         navel, breastbone = _between(foot, top, _NAVEL), _between(foot, top, _BREASTBONE)
-        self._found["Hips"] = self._segment("Lower trunk", navel, foot, _STANDING)
+        self._parts["Hips"] = self._segment("Lower trunk", navel, foot, _STANDING)
         middle = self._segment("Middle trunk", breastbone, navel, _STANDING)
         quarter = (breastbone[1] - navel[1]) / 4.0
         self._share(middle, {"Spine": (0.0, -quarter, 0.0), "Chest": (0.0, quarter, 0.0)})
         upper = self._segment("Upper trunk 2", top, breastbone, _STANDING)
-        aside = self._shoulder_share_m(self._rows["Upper trunk 2"], breastbone, top)
+        offset_x = self._shoulder_share_m(self._rows["Upper trunk 2"], breastbone, top)
         self._share(
             upper,
             {
                 "UpperChest": (0.0, 0.0, 0.0),
-                "LeftShoulder": (-aside, 0.0, 0.0),
-                "RightShoulder": (aside, 0.0, 0.0),
+                "LeftShoulder": (-offset_x, 0.0, 0.0),
+                "RightShoulder": (offset_x, 0.0, 0.0),
             },
         )
 
@@ -157,7 +161,7 @@ class _Sharing:
         return min(_SHOULDER_SHARE_AT * self._places["RightUpperArm"][0], most)
 
     def _share(self, segment: Inertial, offsets: Mapping[str, Vector]) -> None:
-        """Cut a segment into equal parts that together keep mass, centre and inertia."""
+        """Divide a segment into equal parts that together keep its mass, centre and inertia."""
         count = len(offsets)
         squares = [sum(offset[axis] ** 2 for offset in offsets.values()) for axis in range(3)]
         mass = segment.mass_kg / count
@@ -169,13 +173,13 @@ class _Sharing:
         for part, (x, y, z) in offsets.items():
             cx, cy, cz = segment.center_m
             center = (cx + x, cy + y, cz + z)
-            self._found[part] = Inertial(mass, center, (own[0], own[1], own[2], 0.0, 0.0, 0.0))
+            self._parts[part] = Inertial(mass, center, (own[0], own[1], own[2], 0.0, 0.0, 0.0))
 
     def _head(self) -> None:
         top = self._tip("Head")
         head = self._segment("Head", top, self._places["Head"], _STANDING)
         neck = self._shaped("Neck", _NECK_SHARE * head.mass_kg)
-        self._found["Neck"], self._found["Head"] = neck, remainder(head, [neck])
+        self._parts["Neck"], self._parts["Head"] = neck, remainder(head, [neck])
 
     def _hand(self, side: str) -> None:
         hand = f"{side}Hand"
@@ -190,8 +194,8 @@ class _Sharing:
         }
         density = _FINGERS_SHARE * whole.mass_kg / fsum(volumes.values())
         fingers = {part: self._shaped(part, density * own) for part, own in volumes.items()}
-        self._found.update(fingers)
-        self._found[hand] = remainder(whole, list(fingers.values()))
+        self._parts.update(fingers)
+        self._parts[hand] = remainder(whole, list(fingers.values()))
 
     def _foot(self, side: str) -> None:
         part, toes_part = f"{side}Foot", f"{side}Toes"
@@ -201,7 +205,7 @@ class _Sharing:
         tip = (x, y + box[1], z + self._bones.heel_m - self._bones.segments_m["foot"])
         whole = self._segment("Foot", heel, tip, _FOOT)
         toes = self._shaped(toes_part, _TOES_SHARE * whole.mass_kg)
-        self._found[toes_part], self._found[part] = toes, remainder(whole, [toes])
+        self._parts[toes_part], self._parts[part] = toes, remainder(whole, [toes])
 
     def _shaped(self, part: str, mass_kg: float) -> Inertial:
         shape = shapes_of(self._bones, part)[0]

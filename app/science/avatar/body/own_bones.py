@@ -1,8 +1,8 @@
-"""The bones of a body that a humanoid model lends its joints.
+"""Build the bones of a body whose joints are those of a humanoid model.
 
 Masses are those of a person of the model's lengths (`proportions`), each in its part's own frame;
 but joints lie where the model has them, and simple shapes reach from joint to joint. A part that
-the model lacks hangs on the part above it as a person's would.
+the model lacks is placed relative to the part above it as in a person.
 """
 
 from collections.abc import Mapping
@@ -16,7 +16,7 @@ from app.science.rotations import Vector, v_add, v_length, v_scale, v_subtract
 
 _SHORTEST_M = 1e-4
 LIKE_A_PERSONS = ("Hand", "Foot", "Toes", "Head")
-"""Parts whose simple shapes are a person's: boxes and a sphere that no single bone tells."""
+"""Parts that keep a person's simple shapes, boxes and a sphere, as no single bone defines them."""
 
 
 def own_bones(bones: Proportions, figure: Figure) -> Proportions:
@@ -39,20 +39,23 @@ def own_bones(bones: Proportions, figure: Figure) -> Proportions:
 
 
 def sole_lift_m(part: str, bones: Proportions, places: Mapping[str, Vector]) -> Vector:
-    """How a person's shape of foot or toes is moved so that its sole is on the floor."""
+    """Return the offset that brings a person's shape of foot or toes down or up to the floor.
+
+    It is zero for all other parts.
+    """
     if not part.endswith(("Foot", "Toes")):
         return (0.0, 0.0, 0.0)
     return (0.0, bones.places_m()[part][1] - places[part][1], 0.0)
 
 
 def _ends_at(part: str) -> bool:
-    """Whether the bone of the part above ends at this part's joint."""
+    """Return whether the bone of the part above ends at this part's joint."""
     if part.endswith(("Shoulder", "UpperLeg")):
         return False
     return "Middle" in part or not part.endswith("Proximal")
 
 
 def _straight_on(joint: Vector, end: Vector) -> Vector:
-    """The tip of a finger goes on as the bone before it does."""
+    """Return the tip of a finger, in the direction of the preceding bone."""
     length = v_length(joint)
     return v_scale(joint, v_length(end) / length) if length > _SHORTEST_M else end

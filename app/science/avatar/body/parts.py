@@ -1,20 +1,22 @@
-"""The 52 body parts, how they hang together, and about which axes each can turn.
+"""Define the 52 body parts, how they are connected, and the axes about which each can turn.
 
-Names are Unity's HumanBodyBones. Every part is a rigid body; its frame lies in its joint and is
-parallel to the world in the T-pose (x right, y up, facing -z), so the left arm points along -x.
+Names are Unity's HumanBodyBones. Every part is a rigid body; its frame has its origin in its joint
+and is parallel to the world in the T-pose (x right, y up, facing -z), so the left arm points along
+-x.
 
-An axis is called after the part and the world's axis it lies along in the T-pose:
-`LeftUpperLegX`. Its direction is chosen so that a positive angle is the movement that `movement`
-names, on both sides alike: the right side's axes are the left side's mirrored at the body's middle,
-(x, -y, -z). A part's rotation is the product of its axes' rotations in the order they are listed,
+An axis is named after the part and the world's axis it lies along in the T-pose: `LeftUpperLegX`.
+Its direction is chosen so that a positive angle is the movement that `movement` names, on both
+sides: the right side's axes are the left side's mirrored at the body's median plane, (x, -y, -z). A
+part's rotation is the product of its axes' rotations in the order they are listed,
 
     parent_from_part = R(axis 1, angle 1) R(axis 2, angle 2) R(axis 3, angle 3),
 
 which is how a chain of hinges turns: the first hinge carries the others.
 
-Degrees of freedom: hips 3 and 3 (bound to the participant, not driven), three joints of the spine,
-neck and head 3 each, shoulders none; an arm 29 (upper arm, forearm and hand 3, five fingers 2, 1
-and 1), a leg 9 (thigh 3, knee 2, foot 3, toes 1). Without the hips 91 axes are driven.
+Degrees of freedom: the hips have 3 of translation and 3 of rotation (bound to the participant, not
+driven); the three joints of the spine, neck and head have 3 each, shoulders none; an arm has 29
+(upper arm, forearm and hand 3 each, five fingers 2, 1 and 1 by segment), a leg 9 (thigh 3, knee 2,
+foot 3, toes 1). Without the hips 91 axes are driven.
 
 Source: Karas (2020), section 3.2. The directions and their order are ours.
 """
@@ -38,7 +40,8 @@ class Axis:
 
     Attributes:
         part: HumanBodyBones name.
-        letter: the world's axis it lies along in the T-pose; for fingers that lie askew, nearly.
+        letter: the world's axis it lies along in the T-pose; only approximately for oblique
+            fingers.
         direction: unit vector in the part's frame.
         movement: what a positive angle does.
     """
@@ -50,7 +53,7 @@ class Axis:
 
     @property
     def name(self) -> str:
-        """Name of the axis and of its motor, such as `LeftUpperLegX`."""
+        """Return the name of the axis and of its motor, such as `LeftUpperLegX`."""
         return f"{self.part}{self.letter}"
 
 
@@ -101,13 +104,14 @@ _TRUNK: tuple[_AxisRow, ...] = (
     ("Z", _BACK, "bend to the left"),
     ("Y", _UP, "turn to the left"),
 )
-# An order of three axes is bad where the second is near 90 degrees: first and third then lie along
-# each other, and tiny movements turn both far. With Y, Z, X arms that hang at the sides are there:
-# in four walks up to all frames were within 10 degrees of it, and angles moved at up to 280 rad/s.
-# With Z, X, Y no frame is, and 8 rad/s is the most (CMU 02_01, 02_06, 06_01, 12_02). Z, Y, X does
+# Three axes come close to gimbal lock where the second is near 90 degrees: first and third lie
+# along
+# each other, and tiny movements turn both far. With Y, Z, X, arms hanging at the sides are there:
+# in four walks, up to all frames were within 10 degrees of it, and angles moved at up to 280 rad/s.
+# With Z, X, Y no frame is, at 8 rad/s at most (CMU 02_01, 02_06, 06_01, 12_02). Z, Y, X works
 # as well there, but locks where arms point forward, as in reaching. The hand's turn comes first, so
-# it lies along the forearm's own, which can take over what the wrist cannot.
-# Of the left side. A thumb lies in front of the palm and closes towards the little finger.
+# that it lies along the forearm's own, which can take over what the wrist cannot do.
+# Axes of the left side. A thumb lies in front of the palm and closes towards the little finger.
 _LIMBS: Mapping[str, tuple[_AxisRow, ...]] = {
     "UpperArm": (
         ("Z", _FORWARD, "raise"),
@@ -146,14 +150,14 @@ _THUMB_SPREAD: _AxisRow = ("Z", _BACK, "lower to the palm")
 def _rows(part: str) -> tuple[_AxisRow, ...]:
     if part in {"Spine", "Chest", "UpperChest", "Neck", "Head"}:
         return _TRUNK
-    bare = part.removeprefix("Left").removeprefix("Right")
-    if bare.startswith("Thumb"):
-        return (_THUMB_BEND, _THUMB_SPREAD) if bare.endswith("Proximal") else (_THUMB_BEND,)
-    if bare.endswith("Proximal"):
+    base = part.removeprefix("Left").removeprefix("Right")
+    if base.startswith("Thumb"):
+        return (_THUMB_BEND, _THUMB_SPREAD) if base.endswith("Proximal") else (_THUMB_BEND,)
+    if base.endswith("Proximal"):
         return (_FINGER_BEND, _FINGER_SPREAD)
-    if bare.endswith(("Intermediate", "Distal")):
+    if base.endswith(("Intermediate", "Distal")):
         return (_FINGER_BEND,)
-    return _LIMBS.get(bare, ())
+    return _LIMBS.get(base, ())
 
 
 def _axes(part: str) -> tuple[Axis, ...]:
@@ -173,7 +177,7 @@ AXIS_NAMES: tuple[str, ...] = tuple(axis.name for axis in AXES)
 
 
 def mirrored_name(name: str) -> str:
-    """The same part or axis on the other side; of the middle, itself."""
+    """Return the same part or axis on the other side; for one of the trunk, the name itself."""
     if name.startswith("Left"):
         return f"Right{name.removeprefix('Left')}"
     return f"Left{name.removeprefix('Right')}" if name.startswith("Right") else name

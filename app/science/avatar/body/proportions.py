@@ -1,10 +1,11 @@
-"""How long every bone of one person is: the 52 parts in the T-pose.
+"""Compute the length of every bone of one person: the 52 parts in the T-pose.
 
 The 22 body joints are those of `app.science.skeleton.build_skeleton`: lengths as fractions of the
-stature. Where a length was measured it replaces the fraction by its name, on both sides alike; the
-hips then stand as high as the legs are long. Fingers follow the length of the hand; see `fingers`.
+stature. A measured length, given by its name, replaces the fraction on both sides; the height of
+the hips then follows from the length of the legs. Finger lengths follow from the length of the
+hand; see `fingers`.
 
-Estimated by us: the heel is a quarter of the foot behind the ankle.
+Estimated by us: the heel is a quarter of the foot's length behind the ankle.
 """
 
 from collections.abc import Mapping
@@ -18,16 +19,16 @@ from app.science.skeleton import JOINT_INDEX, Skeleton, SkeletonError, build_ske
 
 _FOOT_LENGTH, _BEHIND_THE_ANKLE = 0.152, 0.25
 LEAST, MOST = 0.7, 1.3
-"""How far a measured length may be from the one expected for the stature, as a factor."""
+"""Permitted range of a measured length, as a multiple of the one expected for the stature."""
 
 SEGMENT_NAMES: tuple[str, ...] = (
     "upper_arm", "forearm", "hand", "thigh", "shank", "foot", "trunk", "head", "shoulders", "hips",
 )  # fmt: skip
-"""What can be measured; see `segment_lengths`."""
+"""Names of the lengths that can be measured; see `segment_lengths`."""
 
 
 class BodyError(ValueError):
-    """A body cannot be built: an impossible length or mass, or a required part that is missing."""
+    """A body cannot be built: an impossible length or mass, or a missing required part."""
 
 
 @dataclass(frozen=True)
@@ -36,10 +37,11 @@ class Proportions:
 
     Attributes:
         stature_m: body height.
-        joints_m: each part's joint in its parent's frame; the hips' is their place over the floor.
+        joints_m: each part's joint in its parent's frame; for the hips, their position above the
+            floor.
         ends_m: end of each part's bone in the part's frame: the next joint, or the tip.
         radii_m: half the thickness of each part.
-        segments_m: the lengths in force, by the names of `SEGMENT_NAMES`.
+        segments_m: the lengths in use, by the names of `SEGMENT_NAMES`.
     """
 
     stature_m: float
@@ -50,21 +52,21 @@ class Proportions:
 
     @property
     def hand_breadth_m(self) -> float:
-        """Breadth of the palm at the knuckles."""
+        """Return the breadth of the palm at the knuckles."""
         return HAND_BREADTH * self.segments_m["hand"]
 
     @property
     def heel_m(self) -> float:
-        """How far the heel lies behind the ankle."""
+        """Return the distance of the heel behind the ankle."""
         return _BEHIND_THE_ANKLE * self.segments_m["foot"]
 
     @property
     def ankle_height_m(self) -> float:
-        """Height of the ankle over the sole of a flat foot."""
+        """Return the height of the ankle above the sole of a flat foot."""
         return 0.039 * self.stature_m
 
     def places_m(self) -> dict[str, Vector]:
-        """Where each joint lies in the world in the T-pose, feet on the floor."""
+        """Return the position of each joint in the world in the T-pose, feet on the floor."""
         places: dict[str, Vector] = {}
         for part in PART_NAMES:
             parent = PARENT_OF[part]
@@ -74,12 +76,12 @@ class Proportions:
 
 
 def segment_lengths(stature_m: float) -> dict[str, float]:
-    """Return the lengths expected for a stature, which a measured one may replace.
+    """Return the lengths expected for a stature; measured ones may replace them.
 
-    `upper_arm`, `forearm`, `thigh` and `shank` from joint to joint; `hand` from the wrist to the
-    tip of the middle finger; `foot` from heel to toes; `trunk` from the hips joint to the base of
-    the neck; `head` from there to the top of the head; `shoulders` and `hips` from the left to the
-    right shoulder joint and hip joint.
+    `upper_arm`, `forearm`, `thigh` and `shank` are measured from joint to joint; `hand` from the
+    wrist to the tip of the middle finger; `foot` from heel to toes; `trunk` from the hips joint to
+    the base of the neck; `head` from there to the top of the head; `shoulders` and `hips` from the
+    left to the right shoulder joint and hip joint.
 
     Raises:
         BodyError: the stature is not between 0.5 and 2.6 m.
@@ -90,11 +92,11 @@ def segment_lengths(stature_m: float) -> dict[str, float]:
 def proportions(
     stature_m: float, segments_m: Mapping[str, float] = MappingProxyType({})
 ) -> Proportions:
-    """Return the bones of a person of this stature, with measured lengths where there are any.
+    """Return the bones of a person of this stature, with measured lengths where given.
 
     Raises:
-        BodyError: the stature is out of range, a segment has no such name, or a length is not
-            between 0.7 and 1.3 of what the stature lets expect.
+        BodyError: the stature is out of range, a segment's name is unknown, or a length is not
+            between 0.7 and 1.3 times the one expected for the stature.
     """
     skeleton = _skeleton(stature_m)
     expected = _expected(skeleton)
@@ -148,8 +150,7 @@ def _check(expected: Mapping[str, float], segments_m: Mapping[str, float]) -> No
     for name, length in segments_m.items():
         if name not in expected:
             raise BodyError(
-                f"There is no segment {name!r}: give lengths for some of"
-                f" {', '.join(SEGMENT_NAMES)}."
+                f"There is no segment {name!r}: give lengths only for {', '.join(SEGMENT_NAMES)}."
             )
         low, high = LEAST * expected[name], MOST * expected[name]
         if not low <= length <= high:
@@ -183,12 +184,12 @@ def _body(
     joints: dict[str, Vector] = {}
     ends: dict[str, Vector] = {}
     for part, index in JOINT_INDEX.items():
-        bare = part.removeprefix("Left").removeprefix("Right")
-        joints[part] = _stretched(skeleton.offsets_m[index].tolist(), bare, ratios)
-        # A bone ends at the next joint; the three tips are stretched like their own segment.
-        follows = {"Hand": "hand", "Head": "head", "Toes": "foot"}.get(bare)
+        base = part.removeprefix("Left").removeprefix("Right")
+        joints[part] = _stretched(skeleton.offsets_m[index].tolist(), base, ratios)
+        # A bone ends at the next joint; tips of hand, head and toes scale with their own segment.
+        segment = {"Hand": "hand", "Head": "head", "Toes": "foot"}.get(base)
         x, y, z = skeleton.ends_m[index].tolist()
-        ratio = ratios[follows] if follows else 1.0
+        ratio = ratios[segment] if segment else 1.0
         ends[part] = (x * ratio, y * ratio, z * ratio)
     _lift_hips(skeleton, ratios, joints)
     for part in JOINT_INDEX:
@@ -205,8 +206,8 @@ def _lift_hips(skeleton: Skeleton, ratios: Mapping[str, float], joints: dict[str
     joints["Hips"] = (x, y + thigh + shank, z)
 
 
-def _stretched(offset: list[float], bare: str, ratios: Mapping[str, float]) -> Vector:
-    by = _STRETCH.get(bare, (None, None, None))
+def _stretched(offset: list[float], base: str, ratios: Mapping[str, float]) -> Vector:
+    by = _STRETCH.get(base, (None, None, None))
     x, y, z = (
         value if name is None else value * ratios[name]
         for value, name in zip(offset, by, strict=True)

@@ -1,13 +1,12 @@
-"""What a body part is made of for the simulation: capsules, boxes and spheres.
+"""Define the collision shapes of the body parts: capsules, boxes and spheres.
 
-Thicknesses are those of the product's skeleton. Estimated by us, as it has none: the breadths of
-the trunk (of the hips published, .191 of the stature: Winter 2009, figure 4.1), the thickness of
-the palm, and the height of foot and toes. The breadth of the foot, .055 of the stature, is
-published there too.
+Thicknesses are those of `app.science.skeleton`. Estimated by us, as the skeleton has none: the
+breadths of the trunk (that of the hips is published, .191 of the stature: Winter 2009, figure 4.1),
+the thickness of the palm, and the height of foot and toes. The breadth of the foot, .055 of the
+stature, is published there too.
 
-A part that a model lacks is rigid: its shapes stand in for it on the part it hangs on. A finger
-that is missing as a whole has no shape, as the model has no such finger; a hand without any finger
-is one flat box as long as the hand.
+A part that a model lacks is rigid: its shapes are added to the part above it. A finger that is
+missing as a whole has no shape; a hand without any finger is one flat box as long as the hand.
 """
 
 from dataclasses import dataclass
@@ -24,47 +23,47 @@ _FOOT_HEIGHT, _TOES_HEIGHT, _TOES_JOINT_HEIGHT = 0.028, 0.020, 0.014
 
 @dataclass(frozen=True)
 class Capsule:
-    """A rounded rod from start to end; a sphere where the two are the same."""
+    """A cylinder with hemispherical ends, from start to end; a sphere where the two coincide."""
 
     start_m: Vector
     end_m: Vector
     radius_m: float
 
     def moved(self, by: Vector) -> "Capsule":
-        """The same at another place."""
+        """Return the capsule moved by a vector."""
         return Capsule(v_add(self.start_m, by), v_add(self.end_m, by), self.radius_m)
 
     @property
     def volume_m3(self) -> float:
-        """Volume of rod and caps."""
+        """Return the volume of cylinder and caps."""
         return pi * self.radius_m**2 * (self.length_m + 4.0 / 3.0 * self.radius_m)
 
     @property
     def length_m(self) -> float:
-        """Length of the axis, without the caps."""
+        """Return the length of the axis, without the caps."""
         return v_length(v_subtract(self.end_m, self.start_m))
 
     @property
     def center_m(self) -> Vector:
-        """Its middle."""
+        """Return the centre of the capsule."""
         (ax, ay, az), (bx, by, bz) = self.start_m, self.end_m
         return ((ax + bx) / 2, (ay + by) / 2, (az + bz) / 2)
 
 
 @dataclass(frozen=True)
 class Box:
-    """A box parallel to its part's frame."""
+    """A box whose edges are parallel to the axes of its part's frame."""
 
     center_m: Vector
     half_size_m: Vector
 
     def moved(self, by: Vector) -> "Box":
-        """The same at another place."""
+        """Return the box moved by a vector."""
         return Box(v_add(self.center_m, by), self.half_size_m)
 
     @property
     def volume_m3(self) -> float:
-        """Volume."""
+        """Return the volume of the box."""
         x, y, z = self.half_size_m
         return 8.0 * x * y * z
 
@@ -74,25 +73,25 @@ Shape = Capsule | Box
 
 def shapes_of(body: Proportions, part: str) -> tuple[Shape, ...]:
     """Return the shapes of one part of a complete body, in the part's frame."""
-    bare = part.removeprefix("Left").removeprefix("Right")
+    base = part.removeprefix("Left").removeprefix("Right")
     if part in _HALF_BREADTHS:
         return (_trunk(body, part),)
     if part == "Head":
         x, y, z = body.ends_m[part]
         middle = (x, y - body.radii_m[part], z)
         return (Capsule(middle, middle, body.radii_m[part]),)
-    if bare == "Hand":
+    if base == "Hand":
         return (palm(body, part),)
-    if bare == "Foot":
+    if base == "Foot":
         return (_foot(body, part),)
-    if bare == "Toes":
+    if base == "Toes":
         return (_toes(body, part),)
-    end = _drawn_in(body, part) if bare.endswith("Distal") else body.ends_m[part]
+    end = _axis_end(body, part) if base.endswith("Distal") else body.ends_m[part]
     return (Capsule((0.0, 0.0, 0.0), end, body.radii_m[part]),)
 
 
 def palm(body: Proportions, hand: str) -> Box:
-    """The flat box from the wrist to the knuckles of a hand with fingers."""
+    """Return the flat box from the wrist to the knuckles of a hand with fingers."""
     side = hand.removesuffix("Hand")
     index, little = f"{side}IndexProximal", f"{side}LittleProximal"
     front = body.joints_m[index][2] - body.radii_m[index]
@@ -103,7 +102,7 @@ def palm(body: Proportions, hand: str) -> Box:
 
 
 def mitten(body: Proportions, hand: str) -> Box:
-    """The box of a hand without fingers: as wide as the palm, as long as the hand."""
+    """Return the box of a hand without fingers: as wide as the palm, as long as the hand."""
     box = palm(body, hand)
     length = body.segments_m["hand"] * (-1.0 if hand.startswith("Left") else 1.0)
     _, half_y, half_z = box.half_size_m
@@ -111,25 +110,25 @@ def mitten(body: Proportions, hand: str) -> Box:
 
 
 def fingers_of(hand: str) -> tuple[tuple[str, ...], ...]:
-    """The five fingers of a hand, each as its parts from the knuckle to the tip."""
+    """Return the five fingers of a hand, each as its parts from the knuckle to the tip."""
     side = hand.removesuffix("Hand")
     return tuple(tuple(f"{side}{finger}{segment}" for segment in SEGMENTS) for finger in FINGERS)
 
 
 def _trunk(body: Proportions, part: str) -> Capsule:
-    # A rod across the body: as thick as the trunk is deep, as long as it is wide.
+    # A capsule across the body: as thick as the trunk is deep, as long as it is wide.
     radius = body.radii_m[part]
     half = _HALF_BREADTHS[part] * body.stature_m - radius
     height = body.ends_m[part][1] / 2
     return Capsule((-half, height, 0.0), (half, height, 0.0), radius)
 
 
-def _drawn_in(body: Proportions, part: str) -> Vector:
-    """End of a rod whose cap reaches just to the tip."""
+def _axis_end(body: Proportions, part: str) -> Vector:
+    """Return the end of a capsule's axis, so that its cap reaches just to the tip."""
     x, y, z = body.ends_m[part]
     length = v_length((x, y, z))
-    keep = max(length - body.radii_m[part], 0.0) / length
-    return (x * keep, y * keep, z * keep)
+    factor = max(length - body.radii_m[part], 0.0) / length
+    return (x * factor, y * factor, z * factor)
 
 
 def _foot(body: Proportions, part: str) -> Box:

@@ -125,7 +125,7 @@ class AxisSettings:
         """The allowed angle nearest to the one asked for."""
         return min(max(angle_rad, self.low_rad), self.high_rad)
 
-    def held_at(self, angle_rad: float) -> "AxisSettings":
+    def locked_at(self, angle_rad: float) -> "AxisSettings":
         """The same axis, locked at the allowed angle nearest to the one asked for."""
         angle = self.clamped(angle_rad)
         return replace(self, low_rad=angle, high_rad=angle)

@@ -122,7 +122,7 @@ class Configuration:
         held = {name for group in self.locked_groups for name in axes_of(group)}
         return MappingProxyType(
             {
-                name: settings.held_at(self.held_rad.get(name, 0.0)) if name in held else settings
+                name: settings.locked_at(self.held_rad.get(name, 0.0)) if name in held else settings
                 for name, settings in self.axes.items()
             }
         )

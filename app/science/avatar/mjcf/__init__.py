@@ -1,8 +1,8 @@
-"""The body and its configuration as one MuJoCo model.
+"""Write the body and its configuration as one MuJoCo model.
 
 `avatar_model` writes the MJCF of a configuration for a stature or a figure, with its scene; the
-same text is loaded here and in the browser. `hinge_table` says where a loaded model keeps each
-axis.
+server and the browser load the same text. `hinge_table` finds the addresses of each axis in a
+loaded model.
 """
 
 from app.science.avatar.mjcf.gains import NATURAL_HZ, default_configuration

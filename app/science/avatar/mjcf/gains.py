@@ -1,22 +1,24 @@
-"""Gains and greatest torques for a start, from what each axis has to move.
+"""Compute initial gains and torque limits from the inertia that each axis moves.
 
 With I the moment of inertia that a motor turns (limb and armature, see `hinges`), an axis alone is
 a critically damped oscillator of natural frequency w:
 
     kp = w^2 I,    kd = 2 w I,    w = 2 pi f.
 
-The lighter a part, the higher its f: the weight of a limb of length l bends it by some g / (w^2 l).
-The trunk has the lowest: between two free neighbours a joint of the spine moves only a hundredth of
-I, and swings ten times as fast as f.
+Lighter parts get a higher f: the weight of a limb of length l deflects it by an angle of about g /
+(w^2 l). The trunk has the lowest f: between two free neighbours, a joint of the spine moves only a
+hundredth of I and oscillates ten times as fast as f.
 
-The greatest torques are of the order of what strong people can exert, doubled. They hardly bind
-while a person is followed, as people have no more, but they bound what a jump of the target does.
+The torque limits are about twice what strong people can exert. They are rarely reached while the
+avatar follows a person, who has no more torque than that, but they bound the response to a jump of
+the target.
 
 Frequencies and torques are estimates. Measured tuning (relay experiments) replaces the gains.
 
-`default_configuration` comes with the product. Limits are a human body's; gains and torques follow
-from what each axis moves in a body of average stature and mass. A relay tuning finds better ones
-for a certain body, and is saved beside this.
+`default_configuration` is the configuration that Reembody ships with. Its limits are those of a
+human body; gains and torques follow from what each axis moves in a body of average stature and
+mass. A relay tuning finds better ones for a particular body, and is saved as a separate
+configuration.
 """
 
 from collections.abc import Mapping
@@ -42,7 +44,7 @@ NATURAL_HZ: Mapping[str, float] = MappingProxyType(
         **dict.fromkeys(("Hand", "Toes", "Finger"), 15.0),
     }
 )
-"""f of each part's axes; `Finger` is all of them."""
+"""Natural frequency f of each part's axes, in Hz; `Finger` stands for all finger parts."""
 MAX_TORQUES_NM: Mapping[str, float] = MappingProxyType(
     {
         **dict.fromkeys(("Spine", "Chest", "UpperChest"), 500.0),
@@ -51,26 +53,26 @@ MAX_TORQUES_NM: Mapping[str, float] = MappingProxyType(
         "UpperLeg": 400.0, "LowerLeg": 350.0, "Foot": 250.0, "Toes": 30.0,
     }
 )  # fmt: skip
-"""Of each part's axes; `Finger` is all of them."""
+"""Torque limit of each part's axes; `Finger` stands for all finger parts."""
 
 
 def default_settings(
     body: Body, masses: BodyMasses, *, preset: Preset = "anatomic"
 ) -> dict[str, AxisSettings]:
-    """Return settings for every axis of the present parts, axis name -> settings."""
+    """Return settings for every axis of the parts of `body`, axis name -> settings."""
     limits = limits_of(preset)
-    found: dict[str, AxisSettings] = {}
+    settings: dict[str, AxisSettings] = {}
     for axis, hinge in hinges_of(body, masses).items():
         kind = _kind(axis)
         omega = 2.0 * pi * NATURAL_HZ[kind]
-        found[axis] = AxisSettings(
-            kp=_settled(omega**2 * hinge.inertia_kg_m2),
-            kd=_settled(2.0 * omega * hinge.inertia_kg_m2),
+        settings[axis] = AxisSettings(
+            kp=_rounded(omega**2 * hinge.inertia_kg_m2),
+            kd=_rounded(2.0 * omega * hinge.inertia_kg_m2),
             max_torque_nm=MAX_TORQUES_NM[kind],
             low_rad=limits[axis].low_rad,
             high_rad=limits[axis].high_rad,
         )
-    return found
+    return settings
 
 
 def _kind(axis: str) -> str:
@@ -80,8 +82,8 @@ def _kind(axis: str) -> str:
     return part.removeprefix("Left").removeprefix("Right")
 
 
-def _settled(value: float) -> float:
-    """Six digits: as many as a person may want to read."""
+def _rounded(value: float) -> float:
+    """Round to six significant digits, so that gains stay readable."""
     return float(f"{value:.6g}")
 
 
@@ -89,7 +91,10 @@ USUAL_STATURE_M: Final = 1.75
 
 
 def default_configuration(*, limits: Preset = "anatomic") -> Configuration:
-    """Every axis of the whole body; `free` lets the elbow turn about its third axis."""
+    """Return the configuration for every axis of the whole body.
+
+    The preset `free` lets the elbow turn about its third axis.
+    """
     body = build_body(USUAL_STATURE_M)
     masses = body_masses(body, USUAL_MASS_KG)
     return Configuration(default_settings(body, masses, preset=limits))

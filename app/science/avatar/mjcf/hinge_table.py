@@ -1,4 +1,4 @@
-"""Where an avatar's hinges, motors and bodies lie in a MuJoCo model."""
+"""Find the indices of an avatar's hinges, motors and bodies in a MuJoCo model."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -12,7 +12,7 @@ from app.science.skeleton import JOINT_NAMES, PARENTS
 
 
 class SimulationError(ValueError):
-    """The model is no avatar, a name is not in it, or a value or time cannot be."""
+    """The model is not an avatar, it lacks a given name, or a value or time is invalid."""
 
 
 if TYPE_CHECKING:
@@ -23,22 +23,24 @@ IndexArray = npt.NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class HingeTable:
-    """Addresses; n hinges in the model's order.
+    """Indices of n hinges, in the model's order, and of bodies in the arrays of a MuJoCo model.
 
     Attributes:
         names: of the axes with a hinge.
-        columns: (n,) of these axes in `AXIS_NAMES`.
+        columns: (n,) columns of these axes in `AXIS_NAMES`.
         joints: (n,) rows of `jnt_range`.
-        angles: (n,) places in `qpos`.
-        speeds: (n,) places in `qvel`.
-        position_targets: (n,) places in `ctrl`; the speed's target is the next one.
+        angles: (n,) indices into `qpos`.
+        speeds: (n,) indices into `qvel`.
+        position_targets: (n,) indices into `ctrl`; each is followed by the speed's target.
         bodies: part -> body.
-        joint_bodies: (22,) body that carries each joint of the skeleton; that of the part above
-            where the model lacks it.
-        parent_bodies: (22,) the same of the joint above; the world's, 0, for the hips.
-        mocap: row of the body that is placed: the hips themselves, or what they are welded to.
-        root_angles, root_speeds: first place of the welded hips in `qpos` and `qvel`; None where
-            the hips are carried.
+        joint_bodies: (22,) body that carries each joint of the skeleton; where the model lacks the
+            joint's own part, the body of the part above it.
+        parent_bodies: (22,) the body that carries each joint's parent; the world's, 0, for the
+            hips.
+        mocap: row of the body whose pose is set: the hips themselves, or the body they are welded
+            to.
+        root_angles, root_speeds: first index of the welded hips in `qpos` and `qvel`; None where
+        the hips are carried.
     """
 
     names: tuple[str, ...]
@@ -56,15 +58,17 @@ class HingeTable:
 
 
 def hinge_table(model: "mujoco.MjModel") -> HingeTable:
-    """Look everything up; raises SimulationError where the model is not one of `build_mjcf`."""
+    """Return the hinge table; raise SimulationError if `build_mjcf` did not write the model."""
     joints = {model.jnt(row).name: row for row in range(model.njnt)}
     names = tuple(name for name in joints if name in AXIS_NAMES)
     bodies = {model.body(row).name: row for row in range(model.nbody)}
     parts = {part: bodies[part] for part in PART_NAMES if part in bodies}
     if "Hips" not in parts or model.nmocap != 1:
-        raise SimulationError("The model has no hips to place: build it with build_mjcf.")
+        raise SimulationError(
+            "The model has no hips that can be positioned: build it with build_mjcf."
+        )
     rows = np.array([joints[name] for name in names], dtype=np.int64)
-    carriers = _carriers(parts)
+    joint_bodies = _joint_bodies(parts)
     placed = bodies[HIPS_TARGET] if HIPS_TARGET in bodies else parts["Hips"]
     root = joints.get("Hips")
     return HingeTable(
@@ -77,16 +81,16 @@ def hinge_table(model: "mujoco.MjModel") -> HingeTable:
             [model.actuator_ctrladr[model.actuator(name).id] for name in names], dtype=np.int64
         ),
         bodies=parts,
-        joint_bodies=carriers,
-        parent_bodies=np.array([0 if above < 0 else carriers[above] for above in PARENTS]),
+        joint_bodies=joint_bodies,
+        parent_bodies=np.array([0 if above < 0 else joint_bodies[above] for above in PARENTS]),
         mocap=int(model.body_mocapid[placed]),
         root_angles=None if root is None else int(model.jnt_qposadr[root]),
         root_speeds=None if root is None else int(model.jnt_dofadr[root]),
     )
 
 
-def _carriers(parts: dict[str, int]) -> IndexArray:
-    found: list[int] = []
+def _joint_bodies(parts: dict[str, int]) -> IndexArray:
+    carriers: list[int] = []
     for joint, above in zip(JOINT_NAMES, PARENTS, strict=True):
-        found.append(parts[joint] if joint in parts else found[above])
-    return np.array(found, dtype=np.int64)
+        carriers.append(parts[joint] if joint in parts else carriers[above])
+    return np.array(carriers, dtype=np.int64)

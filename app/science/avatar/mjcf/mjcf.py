@@ -1,21 +1,21 @@
-"""The avatar as a MuJoCo model, written as text that is the same to the byte everywhere.
+"""Write the avatar as a MuJoCo model, byte for byte the same on every machine.
 
 Each part is a rigid body in its parent's frame, and each of its axes a hinge in the order of
 `parts.AXES_OF`, so a part's rotation is the product of its axes' rotations. A hinge has a motor of
-its own name: a PD controller with a target angle and a target speed,
+the same name: a PD controller with a target angle and a target speed,
 
-    torque = kp (angle* - angle) + kd (speed* - speed),   clamped to the greatest torque,
+    torque = kp (angle* - angle) + kd (speed* - speed),   clamped to the torque limit,
 
-whose target angle is clamped to the hinge's limits. `data.ctrl` holds the two targets of a motor
-beside each other: angle, speed, angle, speed, in the order of `driven_axes`. A locked axis has
+whose target angle is clamped to the hinge's limits. `data.ctrl` holds the two targets of each motor
+next to each other: angle, speed, angle, speed, in the order of `driven_axes`. A locked axis has
 neither hinge nor motor; the part is turned by the locked angle.
 
-A part's convex piece, where it has one, is a mesh beside its simple shapes; what a part does not
-collide with has empty masks (`Colliders`).
+A part's convex piece, where it has one, is added as a mesh next to its simple shapes; shapes that
+the part does not collide with have empty masks (`Colliders`).
 
-How the hips follow the participant is told in `model_options`.
+`model_options` describes how the hips follow the participant.
 
-Every byte of the XML text is decided: element by element, attribute by attribute.
+The order of elements and attributes and the formatting of numbers are fixed.
 """
 
 from collections.abc import Iterable, Mapping
@@ -62,13 +62,16 @@ _INDENT = "  "
 
 
 def number(value: float) -> str:
-    """Twelve digits, more than any measure has and fewer than machines may disagree about."""
+    """Format a number with twelve digits.
+
+    That is more than any measurement has, and fewer than the digits in which machines may differ.
+    """
     text = f"{value:.12g}"
     return "0" if text == "-0" else text
 
 
 class Element:
-    """One XML element; attributes and children stay in the order they were given."""
+    """An XML element whose attributes and children stay in the order in which they were added."""
 
     def __init__(self, tag: str, /, **attributes: Value | None) -> None:
         self._tag = tag
@@ -86,19 +89,21 @@ class Element:
         return child
 
     def lines(self, depth: int = 0) -> Iterable[str]:
-        """The element as lines of text."""
+        """Yield the element as indented lines of text."""
         pad = _INDENT * depth
-        words = "".join(f" {name}={quoteattr(text)}" for name, text in self._attributes.items())
+        attributes = "".join(
+            f" {name}={quoteattr(text)}" for name, text in self._attributes.items()
+        )
         if not self._children:
-            yield f"{pad}<{self._tag}{words}/>"
+            yield f"{pad}<{self._tag}{attributes}/>"
             return
-        yield f"{pad}<{self._tag}{words}>"
+        yield f"{pad}<{self._tag}{attributes}>"
         for child in self._children:
             yield from child.lines(depth + 1)
         yield f"{pad}</{self._tag}>"
 
     def text(self) -> str:
-        """The whole document."""
+        """Return the element and its children as one text that ends with a newline."""
         return "\n".join(self.lines()) + "\n"
 
 
@@ -111,7 +116,7 @@ def _text(value: Value) -> str:
 
 
 PIECE = "mesh"
-"""What the geom of a convex piece is called, after its part and a slash."""
+"""Name of the geom of a convex piece, after its part and a slash."""
 _NO_TORQUE_NM = 1e-9
 
 
@@ -143,10 +148,10 @@ def build_mjcf(
     options: ModelOptions = DEFAULT_OPTIONS,
     colliders: Colliders = SIMPLE,
 ) -> str:
-    """Write the model of one avatar in one scene.
+    """Return the MJCF text of one avatar in one scene.
 
     Bodies are named after parts, hinges and motors after axes, shapes `LeftHand/0`, convex pieces
-    `LeftHand/mesh`, blocks of the scene after themselves, the floor `floor`.
+    `LeftHand/mesh`, blocks of the scene by their own names, the floor `floor`.
 
     Raises:
         BodyError: an axis of a present part has no settings.
@@ -180,8 +185,9 @@ class _Model:
         gravity = (0.0, -9.81 if self._options.gravity else 0.0, 0.0)
         option = root.add("option", timestep=TIMESTEP_S, gravity=gravity, integrator="implicitfast")
         if self._pieces or "none" in self._colliders.kinds.values():
-            # The tree that it searches leaves out what touches nothing when the model is loaded,
-            # so what is switched on later would never be found.
+            # When the model is loaded, the tree of the midphase leaves out geoms that touch
+            # nothing,
+            # so geoms whose collisions are switched on later would never be found.
             option.add("flag", midphase="disable")
         if self._pieces:
             assets = root.add("asset")
@@ -265,7 +271,7 @@ class _Model:
 
     def _add_motor(self, actuator: Element, axis: Axis) -> None:
         settings = self._settings[axis.name]
-        # A force range of zero would mean: no bound at all.
+        # MuJoCo reads a force range of zero as unlimited.
         torque = max(settings.max_torque_nm, _NO_TORQUE_NM)
         delay = self._options.longest_delay_s
         samples = round(delay / TIMESTEP_S) + 1 if delay > 0.0 else None
@@ -282,7 +288,7 @@ def _masks(bits: CollisionBits) -> dict[str, float]:
 
 def _inertial(part: Inertial) -> dict[str, float | tuple[float, ...]]:
     xx, yy, zz, xy, xz, yz = part.inertia_kg_m2
-    # Off the axes nothing but rounding, or a limb that lies askew.
+    # Off-diagonal terms are rounding errors, unless the limb is not parallel to the axes.
     askew = max(abs(xy), abs(xz), abs(yz)) > 1e-9 * max(xx, yy, zz)
     kind = "fullinertia" if askew else "diaginertia"
     values = part.inertia_kg_m2 if askew else (xx, yy, zz)

@@ -1,7 +1,7 @@
-"""From a configuration and a stature to the model that is simulated, here and in the browser.
+"""Build the model that is simulated, on the server and in the browser, for a person's stature.
 
-The same configuration and stature give the same text to the byte, so its hash names the model, and
-a model need not be kept to be had again.
+The same configuration and stature give the same text, byte for byte, so its hash identifies the
+model, and a model can be rebuilt instead of stored.
 """
 
 import hashlib
@@ -31,7 +31,7 @@ from app.science.avatar.mjcf.scene import FLOOR_ONLY, Scene
 
 @dataclass(frozen=True)
 class AvatarModel:
-    """A body that behaves as a configuration says.
+    """The model of an avatar with what it was built from.
 
     Attributes:
         configuration: as it was given.
@@ -47,7 +47,10 @@ class AvatarModel:
 
     @property
     def simple_instead(self) -> tuple[str, ...]:
-        """Parts that are to collide with a piece of skin, but have none: they keep their shapes."""
+        """Return the parts that are configured to collide as meshes but have no convex piece.
+
+        They keep their simple shapes.
+        """
         return tuple(
             name
             for name, part in self.body.parts.items()
@@ -56,7 +59,7 @@ class AvatarModel:
 
     @property
     def content_hash(self) -> str:
-        """SHA-256 of the text's bytes."""
+        """Return the SHA-256 of the MJCF text as hexadecimal digits."""
         return hashlib.sha256(self.mjcf.encode()).hexdigest()
 
 
@@ -73,22 +76,24 @@ def avatar_model(
     """Build the avatar of a person.
 
     Args:
-        configuration: how it behaves. Locked groups have no hinges in the model.
+        configuration: gains, limits, masses and colliders. Locked groups have no hinges in the
+            model.
         stature_m: of the person.
-        segments_m: measured lengths, by the names of `proportions.SEGMENT_NAMES`; not of a model.
-        figure: the model that the configuration names, as large as it is; parts that it lacks are
+        segments_m: measured lengths, by the names of `proportions.SEGMENT_NAMES`; not allowed with
+            a figure.
+        figure: the model that the configuration names, in its own size; parts that it lacks are
             left out.
         scene: what the avatar can collide with.
-        longest_delay_s: the most latency that can be set while it runs.
-        switchable_colliders: put the figure's pieces beside the simple shapes even where the
-            configuration wants none, so that they can be chosen while it runs.
+        longest_delay_s: the longest latency that can be set while the model runs.
+        switchable_colliders: add the figure's convex pieces next to the simple shapes even where
+            the configuration does not use them, so that they can be chosen while the model runs.
 
     Raises:
-        BodyError: the configuration lacks a part without which there is no body, a length is not
-            plausible, or the configuration's model is not given.
+        BodyError: the configuration lacks an indispensable part, a length is not plausible, or the
+            configuration's model is not given.
     """
     _check_figure(configuration, figure)
-    # Parts without driven axes, hips and shoulders, are not named in a configuration.
+    # Hips and shoulders have no driven axes, so a configuration does not name them.
     driven = set(configuration.parts)
     parts = [part for part in PART_NAMES if part in driven or not AXES_OF[part]]
     body = build_body(stature_m, segments_m=segments_m, parts=parts, figure=figure)
@@ -114,7 +119,7 @@ def _check_figure(configuration: Configuration, figure: Figure | None) -> None:
         raise BodyError(f"{problem.message} {problem.remedy}")
     if (figure is None) != (configuration.humanoid is None):
         raise BodyError(
-            "The configuration names no model, so it has its person's body."
+            "A figure was given, but the configuration names no model: it uses the person's body."
             if figure is not None
-            else f"The configuration is for the model {configuration.humanoid}, which is not here."
+            else f"The configuration needs the model {configuration.humanoid}, which was not given."
         )

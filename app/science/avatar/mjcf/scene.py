@@ -1,6 +1,7 @@
-"""What stands around the avatar: immovable boxes and the floor.
+"""The surroundings of the avatar: immovable boxes and the floor.
 
-World frame as everywhere: x right, y up, the participant faces -z, the floor at zero; metres.
+The world frame is the usual one: x right, y up, the participant faces -z, the floor is at zero;
+metres.
 """
 
 from collections.abc import Iterable
@@ -14,11 +15,11 @@ FLOOR = "floor"
 
 @dataclass(frozen=True)
 class SceneBox:
-    """One immovable block, parallel to the world's axes.
+    """One immovable box whose edges are parallel to the world's axes.
 
     Attributes:
-        name: of its geom; contacts are told by it.
-        solid: whether it can be touched; a mark on the floor is not.
+        name: of its geom; contacts are reported by this name.
+        solid: whether it can be touched; a mark on the floor cannot.
     """
 
     name: str
@@ -29,21 +30,22 @@ class SceneBox:
 
 @dataclass(frozen=True)
 class Scene:
-    """Blocks, and whether there is a floor; names of blocks differ from each other."""
+    """The boxes around an avatar, with unique names, and whether there is a floor."""
 
     boxes: tuple[SceneBox, ...] = ()
     floor: bool = True
 
 
 FLOOR_ONLY = Scene()
-"""An empty room."""
+"""A scene without boxes: only the floor."""
 
 
 def scene_of(layouts: Iterable[TaskLayout], *, floor: bool = True) -> Scene:
-    """Return the boxes of a study's tasks: an open box is its panel and its walls.
+    """Return the scene of a study's tasks: a box for each surface.
 
-    A block is named after its surface (`hand/2/left`), so a contact names what was touched. The
-    start square is a mark on the floor that feet stand on, not an obstacle.
+    An open box of a task has one for its panel and one for each wall. Each is named after its
+    surface (`hand/2/left`), so a contact names the surface that was touched. The start square is a
+    mark on the floor that feet stand on, not an obstacle.
     """
     boxes = tuple(
         SceneBox(

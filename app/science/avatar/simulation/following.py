@@ -145,8 +145,8 @@ class Follower:
         return FollowedFrame(targets, state)
 
 
-def _deviation(wanted_rad: FloatArray, actual_rad: FloatArray) -> FloatArray:
-    wanted, actual = wanted_rad.tolist(), actual_rad.tolist()
+def _deviation(unclamped_rad: FloatArray, actual_rad: FloatArray) -> FloatArray:
+    wanted, actual = unclamped_rad.tolist(), actual_rad.tolist()
     # What has no hinge is where it is wanted.
     actual = [w if math.isnan(a) else a for w, a in zip(wanted, actual, strict=True)]
     return np.array(q_inverse_multiply(_chest(wanted), _chest(actual)))

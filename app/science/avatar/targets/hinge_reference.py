@@ -6,7 +6,7 @@ that hands, feet and head still point where the participant's do (`targets`). Ag
 rotations an avatar that does exactly as it is told would be wrong in both neighbours, by the same
 turn forth and back: at a shrug by 20 degrees in the shoulder and in the upper arm, while the arm is
 where it should be. So errors of its joints are counted from the rotations that its hinges are asked
-for, joint by joint, before their limits (`TargetAngles.wanted_rad`).
+for, joint by joint, before their limits (`TargetAngles.unclamped_rad`).
 
 What is left out of this reference:
 
@@ -78,7 +78,7 @@ class HingeReference:
         found = self._angles.batch(_usable(rotations), anew=_gaps(times_s))
         for first in range(0, len(rotations), _AT_ONCE):
             at = slice(first, first + _AT_ONCE)
-            asked[at] = joint_rotations(found.wanted_rad[at], rotations[at, 0])
+            asked[at] = joint_rotations(found.unclamped_rad[at], rotations[at, 0])
         return ReferenceMotion(asked, self._clipping(found.clipped[:, self._columns]))
 
     def pose(self, rotations: FloatArray) -> FloatArray:
@@ -87,7 +87,7 @@ class HingeReference:
         NaN for joints that have no hinge, and for what follows from a rotation that is none.
         """
         self._angles.forget()
-        wanted = self._angles.follow(_usable(rotations)).wanted_rad
+        wanted = self._angles.follow(_usable(rotations)).unclamped_rad
         asked = joint_rotations(wanted, rotations[0])
         asked[1:][~self._hinged] = np.nan
         return asked

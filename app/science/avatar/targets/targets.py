@@ -18,7 +18,7 @@ where a fixed formula has them. It is given up only where it would lead far out 
 the other way if that one lies at least 45 deg further in, all axes of the part together, and for a
 whole turn where an angle is more than 225 deg from the middle of its range.
 
-What is asked for may lie beyond the limits. `wanted_rad` is unclamped, `angles_rad` is clamped;
+What is asked for may lie beyond the limits. `unclamped_rad` is unclamped, `angles_rad` is clamped;
 `clipped` says which were. A part with fewer than three axes cannot take every rotation: it comes as
 near as it can, and `residual_rad` says by how much it misses, before any clamping.
 """
@@ -70,13 +70,13 @@ class Targets:
     """
 
     angles_rad: FloatArray
-    wanted_rad: FloatArray
+    unclamped_rad: FloatArray
     residual_rad: FloatArray
 
     @property
     def clipped(self) -> npt.NDArray[np.bool_]:
         """(..., 91) where the limits took something away, and be it `ROUNDING_RAD`."""
-        return np.asarray(np.abs(self.wanted_rad - self.angles_rad) > ROUNDING_RAD)
+        return np.asarray(np.abs(self.unclamped_rad - self.angles_rad) > ROUNDING_RAD)
 
     def clipped_share(self) -> FloatArray:
         """(91,) share of the frames in which an axis was clipped."""
@@ -155,7 +155,7 @@ class TargetAngles:
         ]
         return Targets(
             np.concatenate([frames.angles_rad for frames in found]),
-            np.concatenate([frames.wanted_rad for frames in found]),
+            np.concatenate([frames.unclamped_rad for frames in found]),
             np.concatenate([frames.residual_rad for frames in found]),
         )
 
@@ -175,7 +175,7 @@ class TargetAngles:
         """
         given = {name: q[np.newaxis] for name, q in (fingers or {}).items()}
         one = self._follow(rotations[np.newaxis], given, np.array([self._anew]))
-        return Targets(one.angles_rad[0], one.wanted_rad[0], one.residual_rad[0])
+        return Targets(one.angles_rad[0], one.unclamped_rad[0], one.residual_rad[0])
 
     def _follow(
         self,

@@ -1,4 +1,4 @@
-"""Finds gains for every axis of an avatar by relay experiments, and proves them on the body."""
+"""Find gains for every axis of an avatar by relay experiments, and test them on the whole body."""
 
 from app.science.avatar.tuning.assessment import Assessment, assess
 from app.science.avatar.tuning.heuristics import HEURISTICS
@@ -11,7 +11,7 @@ from app.science.avatar.tuning.results import (
     TuningReport,
 )
 from app.science.avatar.tuning.tracking import (
-    NOTHING,
+    EMPTY_SPACE,
     Followed,
     Spread,
     Tracking,
@@ -21,8 +21,8 @@ from app.science.avatar.tuning.tracking import (
 from app.science.avatar.tuning.tuner import tune
 
 __all__ = [
+    "EMPTY_SPACE",
     "HEURISTICS",
-    "NOTHING",
     "Assessment",
     "AxisTuning",
     "Followed",

@@ -1,4 +1,4 @@
-"""Gains that are there already, tried as a tuning would try its own: nothing is changed."""
+"""Assess the gains of a configuration by the tests of a tuning, without changing them."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -6,22 +6,23 @@ from dataclasses import dataclass, field
 from app.science.avatar.body import Figure
 from app.science.avatar.configuration import Configuration
 from app.science.avatar.mjcf import avatar_model
-from app.science.avatar.tuning.crew import Crew
+from app.science.avatar.tuning.axis_pool import AxisPool
 from app.science.avatar.tuning.evaluation import Trial
-from app.science.avatar.tuning.plant import bare
+from app.science.avatar.tuning.plant import without_shapes
 from app.science.avatar.tuning.results import AxisTuning, TuningOptions, TuningProgress
 from app.science.avatar.tuning.step_response import objection
 
 
 @dataclass(frozen=True)
 class Assessment:
-    """What the gains of a configuration do.
+    """The result of testing the gains of a configuration.
 
     Attributes:
         configuration: as it was given.
-        stature_m: of the body it was tried on.
-        axes: every axis, in its order; `accepted`, `locked`, or `flagged: ` and why.
-        wall_s: how long it took by the clock that was given.
+        stature_m: of the body that was tested.
+        axes: every axis, in the configuration's order; its status is `accepted`, `locked`, or
+            `flagged: ` and the reason.
+        wall_s: elapsed time by the given clock.
     """
 
     configuration: Configuration
@@ -40,17 +41,17 @@ def assess(
     progress: Callable[[TuningProgress], None] = lambda _: None,
     cancelled: Callable[[], bool] = lambda: False,
 ) -> Assessment:
-    """Let each free axis jump on the whole body, with the gains it has.
+    """Test the gains of each free axis by a step of its target on the whole body.
 
     Args:
-        configuration: its gains, mass, locks, limits and greatest torques are taken.
+        configuration: supplies gains, mass, locks, limits and torque limits.
         stature_m: of the body.
-        options: of these the accepted overshoot and the workers.
+        options: only the accepted overshoot and the number of workers are used.
         figure, wall_s, progress, cancelled: as for `tune`.
 
     Raises:
-        BodyError: there is no such body.
-        TuningCancelled: `cancelled` said so.
+        BodyError: the body cannot be built.
+        TuningCancelled: `cancelled` returned true.
     """
     chosen = TuningOptions() if options is None else options
     started_s = wall_s()
@@ -58,21 +59,21 @@ def assess(
     in_force = configuration.in_force
     free = [name for name in in_force if name not in configuration.locked_axes]
     steps = {}
-    trial = Trial(bare(built.body), built.masses, in_force, gravity=configuration.gravity)
+    trial = Trial(without_shapes(built.body), built.masses, in_force, gravity=configuration.gravity)
     if free:
-        steps = Crew(chosen.workers, progress, cancelled).each(1, "steps", free, trial.step)
+        steps = AxisPool(chosen.workers, progress, cancelled).run(1, "steps", free, trial.step)
 
-    def told(name: str) -> AxisTuning:
+    def tuning_of(name: str) -> AxisTuning:
         own, step = configuration.axes[name], steps.get(name)
         if step is None:
             return AxisTuning(name, own.kp, own.kd, "locked")
-        said = objection(
+        problem = objection(
             step,
             trial.clearance(name),
             accepted_overshoot_percent=chosen.accepted_overshoot_percent,
         )
-        status = "accepted" if said is None else f"flagged: {said}"
+        status = "accepted" if problem is None else f"flagged: {problem}"
         return AxisTuning(name, own.kp, own.kd, status, step=step)
 
-    axes = tuple(told(name) for name in configuration.axes)
+    axes = tuple(tuning_of(name) for name in configuration.axes)
     return Assessment(configuration, stature_m, axes, wall_s() - started_s)

@@ -1,4 +1,4 @@
-"""The attempts on one axis: what was found, what was objected to, and which gains are kept."""
+"""Record the tuning attempts of one axis and choose the gains to keep."""
 
 from dataclasses import dataclass
 
@@ -19,64 +19,66 @@ class _Attempt:
 
 
 class AxisAttempts:
-    """One axis, and the one on the other side that gets the same gains.
+    """The tuning attempts of one axis, whose gains its mirrored axis may share.
 
     Attributes:
-        gains: of the latest attempt; after `settle` the ones that are kept.
+        gains: of the latest attempt; after `settle`, the best ones.
     """
 
     def __init__(self, axis: str, settings: AxisSettings, options: TuningOptions) -> None:
         self._axis, self._options = axis, options
-        self._before = self.gains = Gains(settings.kp, settings.kd)
+        self._initial = self.gains = Gains(settings.kp, settings.kd)
         self._attempts: list[_Attempt] = []
         self._count = 0
         self._failure: NoOscillation | None = None
-        self._kept: _Attempt | None = None
+        self._best: _Attempt | None = None
 
     @property
     def accepted(self) -> bool:
-        """Whether the latest attempt oscillated and nothing is said against its gains."""
+        """Return whether the latest attempt oscillated and its gains met no objection."""
         return self._failure is None and bool(self._attempts) and not self._attempts[-1].objections
 
-    def take(self, found: Experiment | NoOscillation) -> None:
-        """Take the outcome of an experiment."""
+    def record(self, outcome: Experiment | NoOscillation) -> None:
+        """Record the outcome of an experiment and compute gains from it."""
         self._count += 1
-        if isinstance(found, NoOscillation):
-            self._failure = found
+        if isinstance(outcome, NoOscillation):
+            self._failure = outcome
             return
         self._failure = None
         rule = HEURISTICS[self._options.heuristic]
-        self.gains = rule.gains(found.found, _slowed(self._axis, found))
-        self._attempts.append(_Attempt(found, self.gains))
+        self.gains = rule.gains(outcome.found, _aimed_hz(self._axis, outcome))
+        self._attempts.append(_Attempt(outcome, self.gains))
 
     def judge(self, name: str, step: StepFigures, clearance: float) -> None:
-        """Judge the latest gains by the trial of this axis or of the other side's."""
+        """Judge the latest gains by the step response of this axis or of its mirrored axis."""
         if self._failure is not None or not self._attempts:
             return
         latest = self._attempts[-1]
-        said = self._objection(step, clearance)
-        objections = latest.objections if said is None else (*latest.objections, f"{name}: {said}")
+        problem = self._objection(step, clearance)
+        added = () if problem is None else (f"{name}: {problem}",)
         worst = max(latest.overshoot_percent, step.overshoot_percent)
-        self._attempts[-1] = _Attempt(latest.experiment, latest.gains, worst, objections)
+        self._attempts[-1] = _Attempt(
+            latest.experiment, latest.gains, worst, latest.objections + added
+        )
 
     def settle(self) -> None:
-        """Keep the best gains: with the fewest objections, then the least overshoot."""
+        """Choose the best gains: those with the fewest objections, then the least overshoot."""
         if self._attempts:
-            self._kept = min(
+            self._best = min(
                 self._attempts, key=lambda one: (len(one.objections), one.overshoot_percent)
             )
-            self.gains = self._kept.gains
+            self.gains = self._best.gains
         else:
-            self.gains = self._before
+            self.gains = self._initial
 
     def result(self, name: str, step: StepFigures, clearance: float) -> AxisTuning:
-        """What is reported of this axis, or of the other side's, after the last trial."""
-        said = self._objection(step, clearance)
-        if self._kept is None:
-            reason = self._failure.reason if self._failure is not None else "it was not tried"
-            status, note = f"flagged: {reason}", "the gains it had are kept"
-        elif said is not None:
-            status, note = f"flagged: {said}", "the best gains that were found"
+        """Return the result of this axis, or of its mirrored axis, after the last step response."""
+        problem = self._objection(step, clearance)
+        if self._best is None:
+            reason = self._failure.reason if self._failure is not None else "it was not measured"
+            status, note = f"flagged: {reason}", "its previous gains are kept"
+        elif problem is not None:
+            status, note = f"flagged: {problem}", "these are the best gains found"
         else:
             status = "tuned" if self._count == 1 else "retried"
             note = "" if self._count == 1 else f"accepted at attempt {self._count}"
@@ -89,7 +91,7 @@ class AxisAttempts:
             status=status,
             note=note,
             attempts=self._count,
-            experiment=None if self._kept is None else self._kept.experiment,
+            experiment=None if self._best is None else self._best.experiment,
             mirrored_from=None if name == self._axis else self._axis,
             step=step,
         )
@@ -99,6 +101,6 @@ class AxisAttempts:
         return objection(step, clearance, accepted_overshoot_percent=accepted)
 
 
-def _slowed(axis: str, found: Experiment) -> float:
-    """The frequency for rules by inertia: the one this attempt aims at."""
-    return min(found.aimed_hz, natural_hz(axis))
+def _aimed_hz(axis: str, outcome: Experiment) -> float:
+    """Return the natural frequency that this attempt aimed at, for rules that use the inertia."""
+    return min(outcome.aimed_hz, natural_hz(axis))

@@ -1,12 +1,12 @@
-"""Gains on trial: the whole body, one axis after the other asked to jump by 30 degrees.
+"""Test gains on the whole body by the step response of one axis after another.
 
-All axes are driven, so a limb leans on neighbours that give way, as it will. Gravity is that of
-the configuration. There is no floor and parts pass through each other: the trial asks how an axis
-moves, not what is in its way. Hips are carried.
+All axes are driven, so a limb pushes against neighbours that give way, as it will in use. Gravity
+is that of the configuration. There is no floor and parts pass through each other: the test is about
+how an axis moves, not about obstacles. The hips are carried.
 
-An axis starts where its body stands, and jumps to the side where it turns farther. If there is not
-enough room for that it jumps through the middle of its range, at most by eight tenths of it, so
-that a limit never hides an overshoot.
+The target of an axis jumps by 30 degrees from its rest angle, to the side where it has more range.
+Where that range is too small, it jumps across the middle of its range, by at most eight tenths of
+it, so that a limit never hides an overshoot.
 """
 
 from collections.abc import Mapping
@@ -26,24 +26,24 @@ if TYPE_CHECKING:
     import mujoco
 
 STEP_RAD: Final = radians(30.0)
-_ROOM = 1.25
+_MIN_RANGE_PER_STEP = 1.25
 _SHARE_OF_RANGE = 0.8
-_STAND_S, _LEAN_S, _WATCH_S = 1.0, 0.3, 0.8
+_SETTLE_S, _PREPARE_S, _RECORD_S = 1.0, 0.3, 0.8
 
 
 @dataclass(frozen=True)
 class Jump:
-    """From one angle to another, rad."""
+    """A step of a target from one angle to another, in rad."""
 
     start_rad: float
     target_rad: float
 
 
 def jump_of(settings: AxisSettings) -> Jump:
-    """The jump an axis is tried with."""
+    """Return the step that an axis with these settings is tested with."""
     rest = settings.rest_rad
     up, down = settings.high_rad - rest, rest - settings.low_rad
-    if max(up, down) >= _ROOM * STEP_RAD:
+    if max(up, down) >= _MIN_RANGE_PER_STEP * STEP_RAD:
         return Jump(rest, rest + (STEP_RAD if up >= down else -STEP_RAD))
     middle = (settings.low_rad + settings.high_rad) / 2.0
     half = min(STEP_RAD, _SHARE_OF_RANGE * settings.range_rad) / 2.0
@@ -51,7 +51,7 @@ def jump_of(settings: AxisSettings) -> Jump:
 
 
 class Trial:
-    """One body with its gains, standing at rest; `names` are the axes that can be tried."""
+    """Step responses of one body with its gains; `names` are the axes that can be tested."""
 
     def __init__(
         self,
@@ -75,54 +75,54 @@ class Trial:
         rest = np.array([settings[name].rest_rad for name in self.names])
         data.qpos[:] = rest
         data.ctrl[0::2] = rest
-        mujoco.mj_step(self._model, data, nstep=round(_STAND_S / TIMESTEP_S))
-        self._rest, self._stood = rest, data.qpos.copy()
-        self._moved_at_once = self._effective_inertias(data)
+        mujoco.mj_step(self._model, data, nstep=round(_SETTLE_S / TIMESTEP_S))
+        self._rest, self._standing = rest, data.qpos.copy()
+        self._free_inertias = self._effective_inertias(data)
 
     def step(self, axis: str) -> StepFigures:
-        """Try one axis. Several threads may do so at once."""
+        """Return the figures of one axis' step response; this method is thread-safe."""
         row = self.names.index(axis)
         jump = jump_of(self._settings[axis])
         data: mujoco.MjData = self._mujoco.MjData(self._model)
-        data.qpos[:] = self._stood
+        data.qpos[:] = self._standing
         data.ctrl[0::2] = self._rest
         if jump.start_rad != self._rest[row]:
             data.qpos[row] = jump.start_rad
             data.ctrl[2 * row] = jump.start_rad
-            self._mujoco.mj_step(self._model, data, nstep=round(_LEAN_S / TIMESTEP_S))
+            self._mujoco.mj_step(self._model, data, nstep=round(_PREPARE_S / TIMESTEP_S))
         start = float(data.qpos[row])
         data.ctrl[2 * row] = jump.target_rad
-        angles = self._watch(data, row)
+        angles = self._angles_after(data, row)
         return step_figures(angles, start, jump.target_rad, TIMESTEP_S)
 
     def clearance(self, axis: str) -> float:
-        """How far the damper of an axis stays clear of chatter: 2 J / (kd h), more than 1.
+        """Return the margin of an axis' damping against chatter: 2 J / (kd h), stable above 1.
 
-        J is what the motor moves at once while all neighbours are free to give way (see `hinges`),
-        in the pose in which the body stands; infinite without a damper.
+        J is what the motor moves immediately while all neighbours are free to give way (see
+        `hinges`), in the pose in which the body stands; infinite without damping.
         """
         row = self.names.index(axis)
         kd = self._settings[axis].kd
         if kd == 0.0:
             return float("inf")
-        return float(2.0 * self._moved_at_once[row] / (kd * TIMESTEP_S))
+        return float(2.0 * self._free_inertias[row] / (kd * TIMESTEP_S))
 
     def _effective_inertias(self, data: "mujoco.MjData") -> FloatArray:
         self._mujoco.mj_forward(self._model, data)
         inertia = np.zeros((self._model.nv, self._model.nv))
         self._mujoco.mj_fullM(self._model, data, inertia)
-        found: FloatArray = 1.0 / np.diagonal(np.linalg.inv(inertia))
-        return found
+        inertias: FloatArray = 1.0 / np.diagonal(np.linalg.inv(inertia))
+        return inertias
 
-    def _watch(self, data: "mujoco.MjData", row: int) -> FloatArray:
-        from mujoco import rollout  # many steps in one call let another thread work meanwhile
+    def _angles_after(self, data: "mujoco.MjData", row: int) -> FloatArray:
+        from mujoco import rollout  # one call for many steps lets other threads run meanwhile
 
         kind = self._mujoco.mjtState.mjSTATE_FULLPHYSICS
-        begin = np.empty(self._mujoco.mj_stateSize(self._model, kind))
-        self._mujoco.mj_getState(self._model, data, begin, kind)
+        initial = np.empty(self._mujoco.mj_stateSize(self._model, kind))
+        self._mujoco.mj_getState(self._model, data, initial, kind)
         controls = data.ctrl[np.newaxis, np.newaxis].copy()
-        steps = round(_WATCH_S / TIMESTEP_S)
-        states, _ = rollout.rollout(self._model, data, begin, controls, nstep=steps)
-        # A state begins with the time, then come the angles.
+        steps = round(_RECORD_S / TIMESTEP_S)
+        states, _ = rollout.rollout(self._model, data, initial, controls, nstep=steps)
+        # A state begins with the time, followed by the angles.
         angles: FloatArray = states[0, :, 1 + row].copy()
         return angles

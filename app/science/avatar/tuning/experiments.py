@@ -1,4 +1,4 @@
-"""The relay experiment on one axis of a body: which torque, in which pose, and what came of it."""
+"""Run the relay experiment on one axis of a body, in each pose that matters for the axis."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -7,18 +7,18 @@ from typing import Final
 from app.science.avatar.body import FINGER_PARTS, Body, BodyMasses
 from app.science.avatar.configuration import AxisSettings
 from app.science.avatar.mjcf import NATURAL_HZ, Hinge, hinges_of
-from app.science.avatar.tuning.plant import axis_plant, bare, poses_of
+from app.science.avatar.tuning.plant import axis_plant, poses_of, without_shapes
 from app.science.avatar.tuning.relay import NoOscillation, relay_for, run_relay
 from app.science.avatar.tuning.results import Experiment, TuningOptions
 
 RELAY_PER_NATURAL: Final = 1.083
-"""Relay frequency per natural frequency of the gains that come of it by the `critical` rule."""
+"""Ratio of the relay's frequency to the natural frequency of the gains by the `critical` rule."""
 RETRY_SHARE: Final = 0.8
-"""Each attempt aims at this share of the frequency of the one before, so at half its torque."""
+"""Each attempt aims at this share of the previous frequency, with 64 % of the previous torque."""
 
 
 def natural_hz(axis: str) -> float:
-    """The natural frequency that is aimed at first, as for the gains that come with the product."""
+    """Return the natural frequency of an axis in the default configuration, where tuning starts."""
     part = axis[:-1]
     if part in FINGER_PARTS:
         return NATURAL_HZ["Finger"]
@@ -27,16 +27,16 @@ def natural_hz(axis: str) -> float:
 
 @dataclass(frozen=True)
 class Laboratory:
-    """One body on which experiments are done; several threads may use it.
+    """One body for relay experiments; several threads may use it.
 
     Attributes:
-        body: without shapes, see `bare`.
+        body: without shapes, see `without_shapes`.
         masses: of its parts.
         settings: of every axis, in force.
-        hinges: of every axis; their inertia chooses the relay's torque.
+        hinges: of every axis; their inertia determines the relay's torque.
         options: of the tuning.
-        wall_s: a clock that only goes forward.
-        cancelled: whether nobody wants the result any more.
+        wall_s: a monotonic clock.
+        cancelled: returns whether the tuning was cancelled.
     """
 
     body: Body
@@ -48,7 +48,10 @@ class Laboratory:
     cancelled: Callable[[], bool]
 
     def experiment(self, axis: str, attempt: int) -> Experiment | NoOscillation:
-        """Do attempt 1, 2, ... on an axis, in each pose it is tried in; the heavier one counts."""
+        """Run an attempt on an axis and return the experiment in the pose with the larger inertia.
+
+        `attempt` counts from 1; each aims at a lower frequency than the previous one.
+        """
         aimed_hz = natural_hz(axis) * RETRY_SHARE ** (attempt - 1)
         chosen = relay_for(self.hinges[axis].inertia_kg_m2, RELAY_PER_NATURAL * aimed_hz)
         relay = replace(
@@ -64,7 +67,7 @@ class Laboratory:
                 return found
             if best is None or found.inertia_kg_m2 > best.found.inertia_kg_m2:
                 best = Experiment(relay, found, pose, aimed_hz)
-        return best if best is not None else NoOscillation("there is no pose to try it in")
+        return best if best is not None else NoOscillation("there is no pose to measure it in")
 
 
 def laboratory(
@@ -76,6 +79,6 @@ def laboratory(
     wall_s: Callable[[], float],
     cancelled: Callable[[], bool],
 ) -> Laboratory:
-    """Prepare a body for experiments."""
+    """Return a `Laboratory` for a body."""
     hinges = hinges_of(body, masses)
-    return Laboratory(bare(body), masses, settings, hinges, options, wall_s, cancelled)
+    return Laboratory(without_shapes(body), masses, settings, hinges, options, wall_s, cancelled)

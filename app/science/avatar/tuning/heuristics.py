@@ -1,9 +1,10 @@
-"""Rules that turn what a relay experiment measured into a spring and a damper.
+"""Rules that turn the measurements of a relay experiment into the gains kp and kd.
 
-All are of the form kp = share of Ku, kd = kp Td, with Td a share of Pu, or begin with the inertia.
-A limb is nearly a double integrator: for it Ku is about I w^2, so a share of .8 with Td = .356 Pu
-is critical damping, just under the relay's frequency. The classical rules are meant for processes
-that damp themselves, with an integral part that an avatar does not have; they overshoot.
+A rule takes either kp as a share of Ku, with kd = kp Td and Td a share of Pu, or both from the
+inertia. A limb is nearly a double integrator: for it Ku is about I w^2, so a share of .8 with Td =
+.356 Pu is critical damping, at a natural frequency just under the relay's. The classical rules are
+meant for self-damping processes and have an integral term, which an avatar does not have; they
+overshoot.
 """
 
 from collections.abc import Mapping
@@ -17,7 +18,7 @@ from app.science.avatar.tuning.relay import Oscillation
 
 @dataclass(frozen=True)
 class Gains:
-    """A spring in N m/rad and a damper in N m s/rad."""
+    """The gains of one axis: stiffness kp in N m/rad and damping kd in N m s/rad."""
 
     kp: float
     kd: float
@@ -25,14 +26,14 @@ class Gains:
 
 @dataclass(frozen=True)
 class Heuristic:
-    """One rule.
+    """A rule that computes gains from the measured oscillation of an axis.
 
     Attributes:
         key: by which it is chosen.
-        source: where it comes from.
+        source: the publication, or how it was derived.
         kp_per_ku: kp as a share of the ultimate gain; None for rules that use the inertia.
         td_per_pu: kd / kp as a share of the period.
-        damping_ratio: of rules that use the inertia: kp = I w^2, kd = 2 zeta I w.
+        damping_ratio: zeta, for rules that use the inertia: kp = I w^2, kd = 2 zeta I w.
     """
 
     key: str
@@ -42,14 +43,14 @@ class Heuristic:
     damping_ratio: float = 1.0
 
     def gains(self, found: Oscillation, natural_hz: float) -> Gains:
-        """The gains; `natural_hz` is the frequency that rules by inertia give the axis."""
+        """Return the gains; rules that use the inertia give the axis this natural frequency."""
         if self.kp_per_ku is not None:
             kp = self.kp_per_ku * found.ultimate_gain_nm_rad
-            return Gains(_settled(kp), _settled(kp * self.td_per_pu * found.period_s))
+            return Gains(_rounded(kp), _rounded(kp * self.td_per_pu * found.period_s))
         omega = 2.0 * pi * natural_hz
         inertia = found.inertia_kg_m2
         return Gains(
-            _settled(omega**2 * inertia), _settled(2.0 * self.damping_ratio * omega * inertia)
+            _rounded(omega**2 * inertia), _rounded(2.0 * self.damping_ratio * omega * inertia)
         )
 
 
@@ -83,9 +84,9 @@ HEURISTICS: Final[Mapping[str, Heuristic]] = MappingProxyType(
         )
     }
 )
-"""The rules by key; the first is the usual one."""
+"""The rules by key; the first is the default."""
 
 
-def _settled(value: float) -> float:
-    """Six digits, as in the gains that come with the product."""
+def _rounded(value: float) -> float:
+    """Round to six significant digits, as in the default configuration."""
     return float(f"{value:.6g}")

@@ -1,12 +1,13 @@
-"""One axis alone: the whole body, of which everything else is rigid.
+"""Simulate one axis alone: the whole body, with all other axes rigid.
 
-It is the avatar's own model with all other axes locked, compiled anew, so its one degree of freedom
-has exactly the inertia that the motor of this axis would turn if all others held still. There is no
-gravity, nothing to touch and no limit: the experiment finds what the axis is, not what is in its
-way, and a knee that is straight at its limit can swing about it.
+It is the avatar's own model, compiled with all other axes locked, so its one degree of freedom has
+exactly the inertia that the motor of this axis would turn if no other axis moved. There is no
+gravity, no obstacle and no limit: the experiment measures the axis and not its surroundings, and a
+knee that is straight at its limit can still swing about it.
 
-What hangs on a straight limb weighs nothing about an axis along it. So the arms' and the legs' axes
-can be tried with elbows and knees bent, in which the body is heavier about some of them.
+The parts attached to a straight limb have almost no inertia about the limb's own axis. So the axes
+of the upper arms and upper legs can also be tested with elbows and knees bent, which gives some of
+them a larger inertia.
 """
 
 from collections.abc import Mapping
@@ -29,43 +30,45 @@ BENDING_AXES = frozenset(
     if axis.movement == "bend" and axis.part.endswith(("LowerArm", "LowerLeg"))
 )
 _BENT_LIMBS = ("UpperArm", "UpperLeg")
-_ALONE = ModelOptions(gravity=False, self_collision=False, longest_delay_s=0.0)
-_NOWHERE = Scene(floor=False)
+_OPTIONS = ModelOptions(gravity=False, self_collision=False, longest_delay_s=0.0)
+_EMPTY_SCENE = Scene(floor=False)
 
 
 def poses_of(axis: str) -> tuple[Pose, ...]:
-    """The poses in which an axis is tried; the heavier one counts."""
+    """Return the poses in which an axis is measured; the result with the larger inertia is used."""
     return ("straight", "bent") if axis[:-1].endswith(_BENT_LIMBS) else ("straight",)
 
 
-def bare(body: Body) -> Body:
-    """The body without shapes, as heavy as it was: three times as fast to simulate."""
+def without_shapes(body: Body) -> Body:
+    """Return the body without shapes and with the same masses: three times as fast to simulate."""
     parts = {name: replace(part, shapes=()) for name, part in body.parts.items()}
     return replace(body, parts=parts)
 
 
 class AxisPlant:
-    """A hinge and what hangs on it, driven by a torque; angles in rad from where it began."""
+    """A hinge and the parts attached to it, driven by a torque; angles in rad from its start."""
 
     def __init__(self, model: "mujoco.MjModel") -> None:
         import mujoco
 
         self._model = model
-        off = mujoco.mjtDisableBit
-        model.opt.disableflags |= off.mjDSBL_CONTACT | off.mjDSBL_LIMIT | off.mjDSBL_ACTUATION
+        disable = mujoco.mjtDisableBit
+        model.opt.disableflags |= (
+            disable.mjDSBL_CONTACT | disable.mjDSBL_LIMIT | disable.mjDSBL_ACTUATION
+        )
         self._data = mujoco.MjData(model)
         self._step = mujoco.mj_step
         self._reset = mujoco.mj_resetData
 
     def prepare(self, step_s: float, damping_nm_s: float) -> None:
-        """Return to the start, at rest, with this step and this damping of the hinge."""
+        """Reset to the start, at rest, with this time step and this damping of the hinge."""
         self._model.opt.timestep = step_s
         self._model.dof_damping[0] = damping_nm_s
         self._reset(self._model, self._data)
         self._torque, self._angle = self._data.qfrc_applied, self._data.qpos
 
     def step(self, torque_nm: float) -> float:
-        """Apply a torque for one step; return the angle after it."""
+        """Apply a torque for one step and return the angle after it."""
         self._torque[0] = torque_nm
         self._step(self._model, self._data)
         return float(self._angle[0])
@@ -79,23 +82,23 @@ def axis_plant(
     *,
     pose: Pose = "straight",
 ) -> AxisPlant:
-    """Compile the plant of a free axis.
+    """Compile the model of a single free axis.
 
     Args:
-        body: the whole body; `bare` makes it faster.
+        body: the whole body; `without_shapes` makes it faster.
         masses: of its parts.
-        settings: of every axis; locked ones stay at their angle, the others at rest.
-        axis: name of the one that turns.
-        pose: of elbows and knees, as far as their limits let them.
+        settings: of every axis; locked ones stay at their angle, the others at their rest angle.
+        axis: name of the axis that turns.
+        pose: of elbows and knees, as far as their limits allow.
     """
     import mujoco
 
-    alone: dict[str, AxisSettings] = {}
+    single: dict[str, AxisSettings] = {}
     for name, own in settings.items():
         if name == axis:
-            alone[name] = replace(own, low_rad=-pi, high_rad=pi)
+            single[name] = replace(own, low_rad=-pi, high_rad=pi)
         else:
             bent = pose == "bent" and name in BENDING_AXES
-            alone[name] = own.held_at(pi / 2.0 if bent else own.rest_rad)
-    text = build_mjcf(body, masses, alone, scene=_NOWHERE, options=_ALONE)
+            single[name] = own.locked_at(pi / 2.0 if bent else own.rest_rad)
+    text = build_mjcf(body, masses, single, scene=_EMPTY_SCENE, options=_OPTIONS)
     return AxisPlant(mujoco.MjModel.from_xml_string(text))

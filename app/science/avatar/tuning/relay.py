@@ -1,19 +1,20 @@
-"""The relay experiment: let an axis oscillate under a torque that only knows two values.
+"""The relay experiment: make an axis oscillate under a torque that has only two values.
 
-A torque of +d or -d, switched against the angle with some hysteresis e, makes a hinge swing. With a
-little damping c the swing becomes a limit cycle of amplitude a and period Pu; without any, each
-swing of a body of inertia I would be larger than the last. By the describing function of the
-relay, 4 d / (pi a) at a lag of asin(e / a), the cycle is at
+A torque of +d or -d, switched against the angle with a hysteresis e, makes a hinge swing. With a
+small damping c the swing becomes a limit cycle of amplitude a and period Pu; without any, each
+swing of a body of inertia I would be larger than the last. By the describing function of the relay,
+4 d / (pi a) at a lag of asin(e / a), the limit cycle satisfies
 
     tan(phi) = c / (w I),    sin(phi) = e / a,    I w^2 / cos(phi) = 4 d / (pi a),    w = 2 pi / Pu.
 
-What is measured is a and Pu; from them follow the ultimate gain with hysteresis taken into account,
+a and Pu are measured; they give the ultimate gain, with hysteresis taken into account,
 
     Ku = 4 d / (pi sqrt(a^2 - e^2)),
 
-and the inertia. A body thrown to and fro by a constant torque flies along parabolas, on which
-a = d Pu^2 / (32 I): that is the dependable result, within some per cent whatever d, c and e.
-Ku and Pu depend on all three. So they are chosen by a rule, `relay_for`, and recorded.
+and the inertia. The angle of a body that a constant torque drives back and forth follows parabolas,
+on which a = d Pu^2 / (32 I): the inertia is the dependable result, accurate to a few per cent for
+any d, c and e. Ku and Pu depend on all three. So d, c and e are chosen by a rule, `relay_for`, and
+recorded.
 
 Source: Astrom and Hagglund (1984), Automatic tuning of simple regulators with specifications on
 phase and amplitude margins, Automatica 20(5), 645-651. The rule of choice is ours.
@@ -28,27 +29,29 @@ from app.science.avatar.tuning.plant import AxisPlant
 
 HYSTERESIS_RAD: Final = radians(2.0)
 AMPLITUDE_HYSTERESES: Final = 4.0
-"""The amplitude that is aimed at, in units of the hysteresis: 8 degrees."""
+"""The intended amplitude, in units of the hysteresis: 8 degrees."""
 STEPS_PER_CYCLE: Final = 200
-"""Of the simulation."""
+"""Time steps of the simulation in each cycle of the relay."""
 _STEADY: Final = 0.01
-_LOOK_EVERY = 256
+_CHECK_EVERY = 256
 
 
 @dataclass(frozen=True)
 class RelaySettings:
-    """What one experiment is done with; it belongs to the result.
+    """The settings of one experiment; they are recorded with its result.
 
     Attributes:
-        torque_nm: d, either way. It is the experiment's, not bounded by the axis' own motor.
+        torque_nm: d, in either direction. It is the experiment's and not bounded by the motor of
+            the axis.
         damping_nm_s: c, of the hinge, instead of the body's own.
         hysteresis_rad: e.
-        warm_up_cycles: not measured.
-        cycles: measured; they must agree within 1 %, or the measurement goes on.
-        step_s: of the simulation, finer than the avatar's: a relay that notices a crossing late
-            swings farther.
-        longest_s: simulated time after which there is no oscillation.
-        longest_wall_s: the same by the clock.
+        warm_up_cycles: number of first cycles that are not measured.
+        cycles: number of cycles that are measured; they must agree within 1 %, or the measurement
+            continues.
+        step_s: time step of the simulation, shorter than the avatar's: a relay that detects a
+            crossing late swings farther.
+        longest_s: simulated time after which the axis counts as not oscillating.
+        longest_wall_s: the same in wall-clock time.
     """
 
     torque_nm: float
@@ -63,14 +66,14 @@ class RelaySettings:
 
 @dataclass(frozen=True)
 class Oscillation:
-    """The limit cycle that was found.
+    """The limit cycle that was measured.
 
     Attributes:
-        amplitude_rad: a, half of the way from one extreme to the other.
+        amplitude_rad: a, half of the peak-to-peak swing.
         period_s: Pu.
         ultimate_gain_nm_rad: Ku.
         inertia_kg_m2: I.
-        simulated_s: how long it took.
+        simulated_s: duration of the experiment in simulated time.
     """
 
     amplitude_rad: float
@@ -82,7 +85,7 @@ class Oscillation:
 
 @dataclass(frozen=True)
 class NoOscillation:
-    """Why there is no limit cycle to measure."""
+    """The reason why an experiment found no limit cycle."""
 
     reason: str
 
@@ -109,13 +112,14 @@ def run_relay(
     wall_s: Callable[[], float],
     cancelled: Callable[[], bool] = lambda: False,
 ) -> Oscillation | NoOscillation:
-    """Do the experiment.
+    """Run the experiment and return the limit cycle, or the reason why there is none.
 
     Args:
-        plant: the axis alone; it begins at rest.
-        settings: see there.
-        wall_s: a clock that only goes forward, for the time-out.
-        cancelled: asked now and then; the experiment then ends without a result.
+        plant: the axis alone; it starts at rest.
+        settings: torque, damping, hysteresis and durations, see `RelaySettings`.
+        wall_s: a monotonic clock, for the time-out.
+        cancelled: checked every few hundred steps; if it returns true, the experiment ends without
+            a result.
     """
     started_s = wall_s()
     plant.prepare(settings.step_s, settings.damping_nm_s)
@@ -123,21 +127,21 @@ def run_relay(
     torque, edge = settings.torque_nm, settings.hysteresis_rad
     applied, ahead, angle = torque, 0.0, 0.0
     for step in range(round(settings.longest_s / settings.step_s)):
-        before, last = angle, ahead
+        previous, previous_ahead = angle, ahead
         ahead = plant.step(applied)
-        # The simulation's angles are half a step ahead of their time.
-        angle = (last + ahead) / 2.0
+        # The integrator's angles are half a step ahead of their time.
+        angle = (previous_ahead + ahead) / 2.0
         applied = torque
         if (angle > edge) if torque > 0.0 else (angle < -edge):
-            # The crossing lies between two steps: what the torque did since then is taken back.
+            # The crossing lies between two steps: compensate for the torque applied since then.
             crossed = edge if torque > 0.0 else -edge
-            share = (crossed - before) / (angle - before)
+            fraction = (crossed - previous) / (angle - previous)
             torque = -torque
-            applied = torque * (3.0 - 2.0 * share)
-            if torque < 0.0 and cycles.ended((step + share) * settings.step_s):
+            applied = torque * (3.0 - 2.0 * fraction)
+            if torque < 0.0 and cycles.ended((step + fraction) * settings.step_s):
                 return cycles.oscillation((step + 1) * settings.step_s)
-        cycles.see(angle)
-        if step % _LOOK_EVERY == 0:
+        cycles.add(angle)
+        if step % _CHECK_EVERY == 0:
             if cancelled():
                 return NoOscillation("the tuning was cancelled")
             if wall_s() - started_s > settings.longest_wall_s:
@@ -146,44 +150,45 @@ def run_relay(
                 )
         if not abs(angle) < pi:
             return NoOscillation(
-                f"it turned by half a circle after {(step + 1) * settings.step_s:.2f} s: the"
+                f"it turned by half a revolution after {(step + 1) * settings.step_s:.2f} s: the"
                 " oscillation grows"
             )
     return NoOscillation(
-        f"no steady oscillation within {settings.longest_s:g} s of simulated time; {cycles.told()}"
+        f"no steady oscillation within {settings.longest_s:g} s of simulated time;"
+        f" {cycles.progress()}"
     )
 
 
 class _Cycles:
-    """Collects whole cycles, each from one switch at the upper edge to the next."""
+    """Amplitudes and periods of whole cycles, each between two switches at the upper edge."""
 
     def __init__(self, settings: RelaySettings) -> None:
         self._settings = settings
-        self._least = self._most = 0.0
+        self._lowest = self._highest = 0.0
         self._last_s: float | None = None
         self._amplitudes: list[float] = []
         self._periods: list[float] = []
 
-    def see(self, angle: float) -> None:
-        """Take part in the present cycle."""
-        if angle > self._most:
-            self._most = angle
-        elif angle < self._least:
-            self._least = angle
+    def add(self, angle: float) -> None:
+        """Extend the extremes of the current cycle by this angle."""
+        if angle > self._highest:
+            self._highest = angle
+        elif angle < self._lowest:
+            self._lowest = angle
 
     def ended(self, at_s: float) -> bool:
-        """A cycle ended: whether the last ones are steady."""
+        """Record the end of a cycle and return whether the previous_ahead cycles are steady."""
         if self._last_s is not None:
             self._periods.append(at_s - self._last_s)
-            self._amplitudes.append((self._most - self._least) / 2.0)
-        self._last_s, self._least, self._most = at_s, 0.0, 0.0
-        wanted = self._settings.warm_up_cycles + self._settings.cycles
-        return len(self._periods) >= wanted and all(
+            self._amplitudes.append((self._highest - self._lowest) / 2.0)
+        self._last_s, self._lowest, self._highest = at_s, 0.0, 0.0
+        needed = self._settings.warm_up_cycles + self._settings.cycles
+        return len(self._periods) >= needed and all(
             max(values) - min(values) <= _STEADY * max(values) for values in self._latest()
         )
 
     def oscillation(self, simulated_s: float) -> Oscillation:
-        """The mean of the last cycles."""
+        """Return the mean of the previous_ahead cycles."""
         amplitudes, periods = self._latest()
         amplitude, period = sum(amplitudes) / len(amplitudes), sum(periods) / len(periods)
         edge, torque = self._settings.hysteresis_rad, self._settings.torque_nm
@@ -195,11 +200,11 @@ class _Cycles:
             simulated_s=simulated_s,
         )
 
-    def told(self) -> str:
-        """How far it came."""
+    def progress(self) -> str:
+        """Describe the progress of an experiment that found no steady cycle."""
         if not self._periods:
-            return "it did not swing to and fro once"
-        return f"its {len(self._periods)} cycles did not become alike"
+            return "it did not complete a single cycle"
+        return f"its {len(self._periods)} cycles did not become equal"
 
     def _latest(self) -> tuple[list[float], list[float]]:
         count = self._settings.cycles

@@ -1,4 +1,4 @@
-"""What a tuning is asked for, and what it answers, axis by axis."""
+"""Options, progress and results of a tuning, axis by axis."""
 
 from dataclasses import dataclass, field
 from typing import Final, Literal
@@ -15,24 +15,24 @@ Phase = Literal["relay", "steps"]
 
 
 class TuningError(ValueError):
-    """A tuning that cannot be done as it was asked for."""
+    """A tuning is impossible with the given options or movement."""
 
 
 class TuningCancelled(Exception):
-    """It was cancelled before it ended; nothing came of it."""
+    """The tuning was cancelled before it ended; there is no result."""
 
 
 @dataclass(frozen=True)
 class TuningOptions:
-    """How a tuning is done; nothing in it is drawn by chance.
+    """How a tuning is done; it uses no random numbers.
 
     Attributes:
         heuristic: a key of `HEURISTICS`.
         mirror: tune the left side, copy its gains to the right.
-        attempts: relay experiments per axis at most, each aiming at a lower frequency.
-        accepted_overshoot_percent: of the trial's step; more is tried again.
-        longest_s: simulated time after which an axis is said not to oscillate.
-        longest_wall_s: the same by the clock.
+        attempts: maximum number of relay experiments per axis, each aiming at a lower frequency.
+        accepted_overshoot_percent: of the step response; an axis that exceeds it is retried.
+        longest_s: simulated time after which an axis counts as not oscillating.
+        longest_wall_s: the same in wall-clock time.
         workers: threads; 1 to 64.
 
     Raises:
@@ -67,7 +67,7 @@ class TuningOptions:
 
 @dataclass(frozen=True)
 class TuningProgress:
-    """How far a tuning is: `done` of `total` axes of this attempt's phase; `axis` ended last."""
+    """Progress of a tuning: `done` of `total` axes of the attempt's phase; `axis` was the last."""
 
     attempt: int
     phase: Phase
@@ -78,10 +78,10 @@ class TuningProgress:
 
 @dataclass(frozen=True)
 class Experiment:
-    """The relay experiment whose gains an axis got.
+    """The relay experiment from which the gains of an axis were computed.
 
     Attributes:
-        relay: settings it was done with.
+        relay: its settings.
         found: what was measured.
         pose: of elbows and knees.
         aimed_hz: natural frequency that the relay was chosen for.
@@ -95,18 +95,18 @@ class Experiment:
 
 @dataclass(frozen=True)
 class AxisTuning:
-    """One axis.
+    """The result of tuning one axis.
 
     Attributes:
         name: of the axis.
-        kp, kd: gains it has now, N m/rad and N m s/rad.
-        status: `tuned`, `retried`, `locked`, or `flagged: ` and why. What is locked, and what did
-            not oscillate, keeps the gains it had.
+        kp, kd: its resulting gains, N m/rad and N m s/rad.
+        status: `tuned`, `retried`, `locked`, or `flagged: ` and the reason. An axis that is locked
+            or did not oscillate keeps its previous gains.
         note: more about the status.
-        attempts: relay experiments on it.
-        experiment: behind the gains; None where there is none.
-        mirrored_from: the axis it was copied from.
-        step: the trial of these gains; None for a locked axis.
+        attempts: number of relay experiments on it.
+        experiment: the one that gave the gains; None if there was none.
+        mirrored_from: the axis whose gains were copied.
+        step: the step response with these gains; None for a locked axis.
     """
 
     name: str
@@ -121,20 +121,20 @@ class AxisTuning:
 
     @property
     def flagged(self) -> bool:
-        """Whether somebody should look at it."""
+        """Return whether the result needs a person's attention."""
         return self.status.startswith("flagged")
 
 
 @dataclass(frozen=True)
 class TuningReport:
-    """A whole tuning.
+    """The result of tuning a whole avatar.
 
     Attributes:
-        configuration: the one that was given, with the new gains.
+        configuration: the given one with the new gains.
         stature_m: of the body it was tuned on.
-        options: how.
+        options: of the tuning.
         axes: every axis of the configuration, in its order.
-        wall_s: how long it took by the clock that was given.
+        wall_s: elapsed time by the given clock.
     """
 
     configuration: Configuration

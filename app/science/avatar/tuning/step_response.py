@@ -1,7 +1,7 @@
-"""What a step of the target tells about an axis, and whether its gains are good enough.
+"""Compute the figures of an axis' step response and decide whether its gains are good enough.
 
-All shares are of the way from where the axis was to where it comes to rest, so gravity, against
-which a spring must give way, counts as steady error and not as overshoot.
+All shares are of the distance from the starting angle to the angle where the axis comes to rest. So
+gravity, under which a spring must give way, counts as steady-state error and not as overshoot.
 """
 
 from dataclasses import dataclass
@@ -13,19 +13,19 @@ from app.science.rotations import FloatArray
 
 SETTLED_SHARE = 0.02
 _REST_S = 0.05
-"""Mean over the end of the record: where the axis came to rest."""
+"""The final angle is the mean over this time at the end of the record."""
 
 
 @dataclass(frozen=True)
 class StepFigures:
-    """Figures of one step.
+    """Figures of one step response.
 
     Attributes:
         step_deg: how far the target jumped.
-        overshoot_percent: farthest beyond the place of rest.
-        settling_s: until it stays within 2 % of the way; None where it does not.
-        rise_s: from 10 to 90 % of the way; None where it does not get there.
-        steady_error_deg: target less place of rest.
+        overshoot_percent: the farthest excursion beyond the final angle, of the distance travelled.
+        settling_s: time until the angle stays within 2 % of the distance; None if it does not.
+        rise_s: time from 10 to 90 % of the distance; None if the axis does not get there.
+        steady_error_deg: target minus final angle.
     """
 
     step_deg: float
@@ -38,24 +38,25 @@ class StepFigures:
 def step_figures(
     angles_rad: FloatArray, start_rad: float, target_rad: float, step_s: float
 ) -> StepFigures:
-    """Read a step response.
+    """Return the figures of a recorded step response.
 
     Args:
-        angles_rad: (N,) after each step since the target jumped.
+        angles_rad: (N,) angle after each step since the target jumped.
         start_rad: angle at the jump.
         target_rad: the new target.
-        step_s: between two angles.
+        step_s: time between two angles.
     """
     tail = max(round(_REST_S / step_s), 1)
     rest = float(angles_rad[-tail:].mean())
-    way = rest - start_rad
+    distance = rest - start_rad
     jump = degrees(target_rad - start_rad)
-    if not np.isfinite(angles_rad).all() or way == 0.0:
+    if not np.isfinite(angles_rad).all() or distance == 0.0:
         return StepFigures(jump, 100.0, None, None, jump)
-    shares = (angles_rad - start_rad) / way
+    shares = (angles_rad - start_rad) / distance
     outside = np.flatnonzero(np.abs(shares - 1.0) > SETTLED_SHARE)
     last = int(outside[-1]) + 1 if outside.size else 0
-    # An axis that is outside while its place of rest is taken has none.
+    # An axis still outside the tolerance in the window that defines its final angle has not
+    # settled.
     settled = last < len(shares) - tail
     return StepFigures(
         step_deg=jump,
@@ -74,34 +75,35 @@ def _rise_s(shares: FloatArray, step_s: float) -> float | None:
 
 
 CHATTER_CLEARANCE = 1.25
-"""A damper of kd chatters at its greatest torque from kd h = 2 J on (see `hinges`)."""
+"""Least accepted clearance: damping kd chatters at the torque limit where kd h >= 2 J (see
+`hinges`)."""
 _STEADY_SHARE = 0.25
 
 
 def objection(
     step: StepFigures, clearance: float, *, accepted_overshoot_percent: float
 ) -> str | None:
-    """Say what is wrong with the gains of an axis; None if nothing.
+    """Return what is wrong with the gains of an axis; None if nothing is.
 
     Args:
-        step: their trial.
+        step: the step response with these gains.
         clearance: 2 J / (kd h); see `Trial.clearance`.
         accepted_overshoot_percent: of the step.
     """
     if clearance < CHATTER_CLEARANCE:
         return (
-            f"its damper is too strong for what moves at once (clearance {clearance:.2f},"
-            f" at least {CHATTER_CLEARANCE:g}), so it would chatter"
+            "its damping is too strong for the inertia that moves immediately (clearance"
+            f" {clearance:.2f}, at least {CHATTER_CLEARANCE:g} is needed), so it would chatter"
         )
     if abs(step.steady_error_deg) > _STEADY_SHARE * abs(step.step_deg):
         return (
-            f"it comes to rest {abs(step.steady_error_deg):.1f} deg from its target: its greatest"
-            " torque is too small, or something holds it"
+            f"it comes to rest {abs(step.steady_error_deg):.1f} deg from its target: its torque"
+            " limit is too low, or it is obstructed"
         )
     if step.overshoot_percent > accepted_overshoot_percent:
         return (
             f"it overshoots a step of {abs(step.step_deg):.0f} deg by"
-            f" {step.overshoot_percent:.1f} %, accepted are {accepted_overshoot_percent:g} %"
+            f" {step.overshoot_percent:.1f} %, at most {accepted_overshoot_percent:g} % is accepted"
         )
     if step.settling_s is None:
         return f"a step of {abs(step.step_deg):.0f} deg does not settle to 2 %"

@@ -1,18 +1,18 @@
-"""How well a body follows a real movement, axis by axis.
+"""Measure how well a body follows a recorded movement, axis by axis.
 
-The movement is given frame by frame as a headset would, and the avatar's angles are compared with
-the targets of the same frame, over all frames but those of the first half second, in which the body
-takes up the movement. `track` has nothing around the body, which asks how its motors follow. On a
-floor (`follow_capture` does both) a foot stands where the capture's did only as well as the capture
-knew that, and what the floor holds up is not where it was asked to be.
+The movement is fed to the avatar frame by frame, as a headset would, and the avatar's angles are
+compared with the targets of the same frame. The first half second, in which the body takes up the
+movement, is left out. `track` uses an empty space, which shows how well the motors follow. With a
+floor (`follow_capture` does both) a foot lands where the capture's foot did only as far as the
+capture is accurate, and what the floor holds up cannot reach its target.
 
-Three errors are told of either:
+Either way, three kinds of error are reported:
 
-- against the clamped target, of all samples: what the limits allow the body to do;
-- the same of the samples in touch and of the free ones apart. A body that touches the floor or
-  itself is where that puts it, and no gains would take it elsewhere. An axis counts as in touch
-  while its part, or one that hangs on it, touches something, and `AFTERWARDS_S` longer;
-- against the unclamped target: what the person did, with the share that the limits took away.
+- against the clamped target, over all samples: what the body does within its limits;
+- the same separately for the samples in contact and without contact. A body in contact is where the
+  floor or its own parts hold it, and no gains would move it elsewhere. An axis counts as in contact
+  while its part, or a part attached to that, touches something, and for `AFTERWARDS_S` longer;
+- against the unclamped target: what the person did, including the share that the limits cut off.
 """
 
 from collections.abc import Iterable, Mapping
@@ -35,19 +35,20 @@ if TYPE_CHECKING:
     from app.science.avatar.simulation import Contact
 
 AFTERWARDS_S: Final = 0.1
-"""The slowest motors are back at their targets by then."""
-NOTHING: Final = Scene(floor=False)
-_BEGIN_S: Final = 0.5
+"""How long after a contact an axis counts as in contact: the slowest motors are back at their
+targets by then."""
+EMPTY_SPACE: Final = Scene(floor=False)
+_SKIPPED_S: Final = 0.5
 
 
 @dataclass(frozen=True)
 class Spread:
-    """Absolute errors of so many samples; NaN where there are none.
+    """Mean and 95th percentile of the absolute errors of some samples; NaN where there are none.
 
     Attributes:
         mean_deg: their mean.
         p95_deg: 95 % of them are at most this.
-        samples: an axis in a frame is one.
+        samples: their number; an axis in a frame is one.
     """
 
     mean_deg: float
@@ -57,17 +58,17 @@ class Spread:
 
 @dataclass(frozen=True)
 class Tracking:
-    """Errors of one body on one movement.
+    """Errors of contact body on contact movement.
 
     Attributes:
-        rms_deg: driven axis -> rms of clamped target less angle.
-        clamped: of all driven axes and frames against the clamped target.
-        free, touching: the same of the samples without and with touch.
-        unclamped: against what was asked for before clamping.
-        clipped_share: of the samples whose target the limits changed.
-        touches: who touched whom -> share of the frames, such as `RightToes, floor`; the most
+        rms_deg: driven axis -> RMS of the clamped target minus the angle.
+        clamped: errors of all driven axes and frames against the clamped target.
+        free, touching: the same for the samples without and with contact.
+        unclamped: errors against the target before clamping.
+        clipped_share: share of the samples whose target the limits changed.
+        touches: pair in contact -> share of the frames, such as `RightToes, floor`; the most
             frequent one first.
-        frames: that were compared.
+        frames: number of frames that were compared.
     """
 
     rms_deg: Mapping[str, float]
@@ -81,12 +82,12 @@ class Tracking:
 
     @property
     def mean_deg(self) -> float:
-        """Of all samples against the clamped target."""
+        """Return the mean error of all samples against the clamped target."""
         return self.clamped.mean_deg
 
     @property
     def p95_deg(self) -> float:
-        """Of all samples against the clamped target."""
+        """Return the 95th percentile of the errors of all samples against the clamped target."""
         return self.clamped.p95_deg
 
 
@@ -95,21 +96,22 @@ def track(
     stature_m: float,
     movement: Movement,
     *,
-    scene: Scene = NOTHING,
+    scene: Scene = EMPTY_SPACE,
     figure: Figure | None = None,
 ) -> Tracking:
-    """Let a body follow a movement without delay.
+    """Let a body follow a movement without delay and return its errors.
 
     Args:
-        configuration: of the body; its target space counts.
+        configuration: of the body; its target space is used.
         stature_m: of the body.
-        movement: of a skeleton of that stature, longer than half a second, at the rate of a
-            headset (`skeleton.resample`).
-        scene: what is around it.
+        movement: of a skeleton of that stature, longer than half a second, at the sampling rate of
+            a headset (`skeleton.resample`).
+        scene: the surroundings of the body.
         figure: the model that the configuration names.
 
     Raises:
-        TuningError: the movement is too short. BodyError: there is no such body.
+        TuningError: the movement is too short.
+        BodyError: the body cannot be built.
     """
     from app.science.avatar.simulation import Follower, PhysicsAvatar
     from app.science.avatar.targets import TargetAngles
@@ -119,7 +121,7 @@ def track(
         movement.root_positions_m,
         movement.rotations,
     )
-    skipped = round(_BEGIN_S * rate_hz)
+    skipped = round(_SKIPPED_S * rate_hz)
     count = movement.frame_count
     if count <= skipped + 1:
         raise TuningError(
@@ -132,11 +134,11 @@ def track(
     follower.start(positions_m[0], rotations[0])
     record = _Record(count - 1)
     for frame in range(1, count):
-        seen = follower.frame(frame / rate_hz, positions_m[frame], rotations[frame])
+        result = follower.frame(frame / rate_hz, positions_m[frame], rotations[frame])
         record.add(
-            seen.targets.angles_rad,
-            seen.targets.wanted_rad,
-            seen.state.angles_rad,
+            result.targets.angles_rad,
+            result.targets.unclamped_rad,
+            result.state.angles_rad,
             avatar.contacts(),
         )
     return record.tracking(skipped, round(AFTERWARDS_S * rate_hz), avatar.axis_names)
@@ -144,7 +146,7 @@ def track(
 
 @dataclass(frozen=True)
 class Followed:
-    """One movement, with nothing around the body and on a floor."""
+    """The errors on contact movement, in an empty space and on a floor."""
 
     alone: Tracking
     on_floor: Tracking
@@ -157,7 +159,12 @@ def follow_capture(
     *,
     figure: Figure | None = None,
 ) -> Followed:
-    """`track` it twice; the same arguments and errors."""
+    """Run `track` in an empty space and on a floor; it takes the same arguments.
+
+    Raises:
+        TuningError: the movement is too short.
+        BodyError: the body cannot be built.
+    """
     return Followed(
         track(configuration, stature_m, movement, figure=figure),
         track(configuration, stature_m, movement, scene=FLOOR_ONLY, figure=figure),
@@ -165,7 +172,7 @@ def follow_capture(
 
 
 class _Record:
-    """Errors and touches, frame by frame."""
+    """Errors and contacts of a movement, added frame by frame."""
 
     def __init__(self, frames: int) -> None:
         self._clamped = np.empty((frames, len(AXIS_NAMES)))
@@ -176,24 +183,27 @@ class _Record:
     def add(
         self,
         clamped_rad: FloatArray,
-        wanted_rad: FloatArray,
+        unclamped_rad: FloatArray,
         actual_rad: FloatArray,
         contacts: Iterable["Contact"],
     ) -> None:
-        frame, pressing = len(self._touches), [one for one in contacts if one.force_n > 0.0]
+        frame, touching = (
+            len(self._touches),
+            [contact for contact in contacts if contact.force_n > 0.0],
+        )
         self._clamped[frame] = np.abs(clamped_rad - actual_rad)
-        self._unclamped[frame] = np.abs(wanted_rad - actual_rad)
-        for one in pressing:
-            for part in (one.part, one.other):
-                if part in _CARRIERS:
-                    self._touching[frame] |= _CARRIERS[part]
-        self._touches.append(frozenset(f"{one.part}, {one.other}" for one in pressing))
+        self._unclamped[frame] = np.abs(unclamped_rad - actual_rad)
+        for contact in touching:
+            for part in (contact.part, contact.other):
+                if part in _AXES_ABOVE:
+                    self._touching[frame] |= _AXES_ABOVE[part]
+        self._touches.append(frozenset(f"{contact.part}, {contact.other}" for contact in touching))
 
     def tracking(self, skipped: int, afterwards: int, names: tuple[str, ...]) -> Tracking:
         columns = [AXIS_NAMES.index(name) for name in names]
         clamped = self._clamped[skipped:, columns]
         unclamped = self._unclamped[skipped:, columns]
-        touching = _lasting(self._touching[:, columns], afterwards)[skipped:]
+        touching = _extended(self._touching[:, columns], afterwards)[skipped:]
         rms = np.degrees(np.sqrt(np.mean(clamped**2, axis=0)))
         return Tracking(
             rms_deg=MappingProxyType(dict(zip(names, rms.tolist(), strict=True))),
@@ -207,8 +217,8 @@ class _Record:
         )
 
 
-def _carriers(part: str) -> npt.NDArray[np.bool_]:
-    """(91,) the axes between the hips and the end of a part."""
+def _axes_above(part: str) -> npt.NDArray[np.bool_]:
+    """Return (91,) whether each axis lies between the hips and the end of a part."""
     chain: set[str | None] = set()
     above: str | None = part
     while above is not None:
@@ -217,14 +227,14 @@ def _carriers(part: str) -> npt.NDArray[np.bool_]:
     return np.array([axis.part in chain for axis in AXES])
 
 
-_CARRIERS: Final = {part: _carriers(part) for part in PART_NAMES}
+_AXES_ABOVE: Final = {part: _axes_above(part) for part in PART_NAMES}
 
 
-def _lasting(touching: npt.NDArray[np.bool_], frames: int) -> npt.NDArray[np.bool_]:
-    """The same, each touch this many frames longer."""
+def _extended(touching: npt.NDArray[np.bool_], frames: int) -> npt.NDArray[np.bool_]:
+    """Return a copy in which each contact lasts this many frames longer."""
     longer = touching.copy()
-    for late in range(1, frames + 1):
-        longer[late:] |= touching[:-late]
+    for delay in range(1, frames + 1):
+        longer[delay:] |= touching[:-delay]
     return longer
 
 

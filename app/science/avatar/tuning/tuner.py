@@ -1,14 +1,14 @@
-"""The tuning of a whole avatar: experiment, rule, trial; again at a lower frequency; or a flag.
+"""Tune a whole avatar: measure each axis, compute gains, test them, and retry or flag what fails.
 
-1. Every free axis is let oscillate by a relay, alone (`experiments`).
-2. A rule makes gains of it (`heuristics`).
-3. The whole body is given all the gains, and each axis must jump (`evaluation`).
-4. What `objection` finds is tried again with a weaker relay, which means lower gains. After the
-   last attempt the best gains are kept and the axis is flagged with the reason.
-5. If anything changed since an axis was tried, the whole body is tried once more.
+1. A relay makes every free axis oscillate, with all others rigid (`experiments`).
+2. A rule computes gains from the oscillation (`heuristics`).
+3. The whole body gets all the gains, and the step response of each axis is tested (`evaluation`).
+4. Axes with an objection (`objection`) are retried with a weaker relay, which means lower gains.
+After the last attempt the best gains are kept and the axis is flagged with the reason.
+5. If anything changed since an axis was tested, the whole body is tested once more.
 
-Greatest torques and limits stay as they are. With `mirror` only the left side is experimented on;
-both sides are tried. An axis whose left counterpart is locked or missing is tuned itself.
+Torque limits and joint limits stay unchanged. With `mirror` only the left side is measured; both
+sides are tested. An axis whose left counterpart is locked or missing is tuned itself.
 """
 
 from collections.abc import Callable
@@ -18,7 +18,7 @@ from app.science.avatar.body import Figure, mirrored_name
 from app.science.avatar.configuration import AxisSettings, Configuration
 from app.science.avatar.mjcf import avatar_model
 from app.science.avatar.tuning.attempts import AxisAttempts
-from app.science.avatar.tuning.crew import Crew
+from app.science.avatar.tuning.axis_pool import AxisPool
 from app.science.avatar.tuning.evaluation import Trial
 from app.science.avatar.tuning.experiments import laboratory
 from app.science.avatar.tuning.results import (
@@ -43,18 +43,18 @@ def tune(
     """Find gains for every free axis; the same input gives the same gains.
 
     Args:
-        configuration: its mass, locks, limits and greatest torques are taken; gains of axes that
-            are locked or that do not oscillate are kept.
+        configuration: supplies mass, locks, limits and torque limits; axes that are locked or do
+            not oscillate keep its gains.
         stature_m: of the body.
-        options: see there.
+        options: see `TuningOptions`; None for the defaults.
         figure: the model that the configuration names; it has all parts of the configuration.
-        wall_s: a clock in seconds that only goes forward, such as `time.monotonic`.
-        progress: told after each axis.
-        cancelled: asked again and again.
+        wall_s: a monotonic clock in seconds, such as `time.monotonic`.
+        progress: called after each axis.
+        cancelled: checked repeatedly.
 
     Raises:
-        BodyError: there is no such body.
-        TuningCancelled: `cancelled` said so.
+        BodyError: the body cannot be built.
+        TuningCancelled: `cancelled` returned true.
     """
     chosen = TuningOptions() if options is None else options
     tuning = _Tuning(configuration, stature_m, figure, chosen, wall_s, progress, cancelled)
@@ -93,7 +93,7 @@ class _Tuning:
         self._laboratory = laboratory(
             built.body, built.masses, in_force, options, wall_s=wall_s, cancelled=cancelled
         )
-        self._crew = Crew(options.workers, progress, cancelled)
+        self._pool = AxisPool(options.workers, progress, cancelled)
         self._free = tuple(name for name in in_force if name not in self._locked)
         self._attempts = {
             name: AxisAttempts(name, in_force[name], options)
@@ -104,9 +104,9 @@ class _Tuning:
         self._clearances: dict[str, float] = {}
 
     def run(self) -> None:
-        """Attempt by attempt; at last the whole body."""
+        """Run attempt after attempt, and finally test the whole body if anything changed since."""
         pending = tuple(self._attempts)
-        tried_s = 0
+        last_attempt = 0
         for attempt in range(1, self._options.attempts + 1):
             self._experiment(attempt, pending)
             affected = [name for name in self._free if self._source(name) in pending]
@@ -115,38 +115,38 @@ class _Tuning:
                 self._attempts[self._source(name)].judge(
                     name, self._trials[name], self._clearances[name]
                 )
-            tried_s = attempt
+            last_attempt = attempt
             pending = tuple(name for name in pending if not self._attempts[name].accepted)
             if not pending:
                 break
         for one in self._attempts.values():
             one.settle()
-        if tried_s > 1 or pending:
-            self._try(tried_s, self._free)
+        if last_attempt > 1 or pending:
+            self._try(last_attempt, self._free)
 
     def results(self) -> tuple[AxisTuning, ...]:
-        """Of every axis, in the configuration's order."""
+        """Return the result of every axis, in the configuration's order."""
         return tuple(self._result(name) for name in self._configuration.axes)
 
     def _source(self, name: str) -> str:
-        """The axis whose gains this one gets: itself or, mirrored, its left counterpart."""
+        """Return the axis that supplies this one's gains: itself or, mirrored, its left one."""
         other = mirrored_name(name)
         mirrors = self._options.mirror and name.startswith("Right") and other in self._free
         return other if mirrors else name
 
     def _experiment(self, attempt: int, axes: tuple[str, ...]) -> None:
-        found = self._crew.each(
+        found = self._pool.run(
             attempt, "relay", axes, lambda axis: self._laboratory.experiment(axis, attempt)
         )
         for name, experiment in found.items():
-            self._attempts[name].take(experiment)
+            self._attempts[name].record(experiment)
 
     def _try(self, attempt: int, axes: tuple[str, ...] | list[str]) -> None:
         if not axes:
             return
         lab = self._laboratory
         trial = Trial(lab.body, lab.masses, self._settings(), gravity=self._configuration.gravity)
-        self._trials.update(self._crew.each(attempt, "steps", axes, trial.step))
+        self._trials.update(self._pool.run(attempt, "steps", axes, trial.step))
         self._clearances.update({name: trial.clearance(name) for name in axes})
 
     def _settings(self) -> dict[str, AxisSettings]:
@@ -159,7 +159,7 @@ class _Tuning:
     def _result(self, name: str) -> AxisTuning:
         own = self._configuration.axes[name]
         if name in self._locked:
-            why = "its limits leave no range" if own.locked else "a locked group holds it"
+            why = "its limits leave no range" if own.locked else "it is in a locked group"
             return AxisTuning(name, own.kp, own.kd, "locked", f"skipped: {why}")
         source = self._source(name)
         return self._attempts[source].result(name, self._trials[name], self._clearances[name])

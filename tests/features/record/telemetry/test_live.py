@@ -58,7 +58,7 @@ def test_live_errors_of_a_physics_avatar_are_of_what_its_hinges_are_asked_for() 
     """Its upper arm is asked for the shrug, as in what is stored; a shoulder tells nothing."""
     pose = shrug()
     live = LiveTelemetry(hinges=HingeReference(ANATOMIC))
-    wanted = TargetAngles(ANATOMIC).follow(pose).wanted_rad
+    wanted = TargetAngles(ANATOMIC).follow(pose).unclamped_rad
     told = live_errors_deg(live, pose, joint_rotations(wanted, pose[0]))
     assert {joint for joint, error in told.items() if error is None} == {
         "LeftShoulder",

@@ -149,7 +149,7 @@ def test_an_impossible_stature_is_refused(stature_m: float) -> None:
 @pytest.mark.parametrize("missing", REQUIRED_PARTS)
 def test_a_model_without_a_required_part_is_no_humanoid(missing: str) -> None:
     """The error names the part that is missing."""
-    with pytest.raises(BodyError, match=f"no {missing}, so it is no humanoid"):
+    with pytest.raises(BodyError, match=f"no {missing}, so it is not a humanoid"):
         build_body(1.75, parts=_without(missing))
 
 

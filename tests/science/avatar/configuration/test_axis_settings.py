@@ -50,13 +50,13 @@ def test_all_that_is_wrong_is_told_at_once() -> None:
 
 def test_limits_that_are_one_angle_lock_the_axis() -> None:
     """Also away from the T-pose; then the body starts there."""
-    locked = FINE_SPRING.held_at(math.radians(30.0))
+    locked = FINE_SPRING.locked_at(math.radians(30.0))
     assert locked.locked
     assert not FINE_SPRING.locked
     assert locked.range_rad == 0.0
     assert degrees_of(locked.rest_rad) == 30.0
     assert FINE_SPRING.rest_rad == 0.0
-    assert FINE_SPRING.held_at(9.0).low_rad == FINE_SPRING.high_rad
+    assert FINE_SPRING.locked_at(9.0).low_rad == FINE_SPRING.high_rad
 
 
 @given(angles_rad)

@@ -146,7 +146,7 @@ def test_overlapping_locks_come_off_one_by_one() -> None:
 
 def test_an_axis_without_a_range_is_locked_without_a_cast() -> None:
     """Tuning skips both kinds."""
-    still = with_axis(BODY, "LeftLowerArmZ", FINE_SPRING.held_at(0.0))
+    still = with_axis(BODY, "LeftLowerArmZ", FINE_SPRING.locked_at(0.0))
     assert still.locked_axes == {"LeftLowerArmZ"}
 
 

@@ -33,7 +33,7 @@ def _one_by_one(poses: FloatArray, fingers: dict[str, FloatArray], anew: set[int
         found.append(follower.follow(pose, {name: q[frame] for name, q in fingers.items()}))
     return Targets(
         np.stack([one.angles_rad for one in found]),
-        np.stack([one.wanted_rad for one in found]),
+        np.stack([one.unclamped_rad for one in found]),
         np.stack([one.residual_rad for one in found]),
     )
 
@@ -46,7 +46,7 @@ def test_a_recording_is_the_same_to_the_bit(anew: set[int]) -> None:
     begins = np.isin(np.arange(FRAMES), list(anew))
     together = TargetAngles(ANATOMIC).batch(poses, fingers, anew=begins)
     alone = _one_by_one(poses, fingers, anew)
-    np.testing.assert_array_equal(together.wanted_rad, alone.wanted_rad)
+    np.testing.assert_array_equal(together.unclamped_rad, alone.unclamped_rad)
     np.testing.assert_array_equal(together.angles_rad, alone.angles_rad)
     np.testing.assert_array_equal(together.residual_rad, alone.residual_rad)
 
@@ -55,11 +55,11 @@ def test_beginning_anew_gives_what_a_new_follower_gives() -> None:
     """Nothing of the frames before is left, and without it something would be."""
     poses = wild_movement()
     begins = np.arange(FRAMES) == 700
-    joined = TargetAngles(ANATOMIC).batch(poses, anew=begins).wanted_rad
+    joined = TargetAngles(ANATOMIC).batch(poses, anew=begins).unclamped_rad
     np.testing.assert_array_equal(
-        joined[700:], TargetAngles(ANATOMIC).batch(poses[700:]).wanted_rad
+        joined[700:], TargetAngles(ANATOMIC).batch(poses[700:]).unclamped_rad
     )
-    followed = TargetAngles(ANATOMIC).batch(poses).wanted_rad
+    followed = TargetAngles(ANATOMIC).batch(poses).unclamped_rad
     assert not np.array_equal(joined[700:], followed[700:])
 
 
@@ -71,17 +71,17 @@ def test_a_rotation_that_is_not_finite_costs_its_frame_only() -> None:
     found = TargetAngles(ANATOMIC).batch(broken)
     # The bone above an elbow is turned until the hinge fits.
     lost = np.array([axis.part in {"LeftUpperArm", "LeftLowerArm"} for axis in AXES])
-    np.testing.assert_array_equal(np.isnan(found.wanted_rad[20]), lost)
+    np.testing.assert_array_equal(np.isnan(found.unclamped_rad[20]), lost)
     np.testing.assert_array_equal(np.isnan(found.angles_rad[20]), lost)
     assert not found.clipped[20, lost].any()
     unknown = {PART_NAMES[part] for part in np.flatnonzero(np.isnan(found.residual_rad[20]))}
     assert unknown == {"LeftUpperArm", "LeftLowerArm"}
     as_ever = TargetAngles(ANATOMIC).batch(poses)
-    np.testing.assert_array_equal(found.wanted_rad[:, ~lost], as_ever.wanted_rad[:, ~lost])
+    np.testing.assert_array_equal(found.unclamped_rad[:, ~lost], as_ever.unclamped_rad[:, ~lost])
     without = TargetAngles(ANATOMIC).batch(np.delete(poses, 20, axis=0))
     arm = [column for column, axis in enumerate(AXES) if axis.part == "LeftUpperArm"]
     np.testing.assert_array_equal(
-        np.delete(found.wanted_rad, 20, axis=0)[:, arm], without.wanted_rad[:, arm]
+        np.delete(found.unclamped_rad, 20, axis=0)[:, arm], without.unclamped_rad[:, arm]
     )
 
 

@@ -52,7 +52,7 @@ def test_an_avatar_that_does_as_it_is_told_has_no_error() -> None:
     """Though its own rotations are not the participant's: these would blame it by 20 deg."""
     poses = _shrugging()
     told = TargetAngles(ANATOMIC).batch(poses)
-    actual = joint_rotations(told.wanted_rad, poses[:, 0])
+    actual = joint_rotations(told.unclamped_rad, poses[:, 0])
     asked = HingeReference(ANATOMIC).recording(_times_s(len(poses)), poses)
     summary = joint_error_summary(asked.rotations, actual, asked.clipping)
     np.testing.assert_allclose(np.nan_to_num(summary.max_rad), 0.0, atol=1e-12)

@@ -77,7 +77,7 @@ def test_three_axes_make_every_rotation() -> None:
     joints = [name for name in JOINT_NAMES if len(AXES_OF[name]) == 3 and "UpperLeg" not in name]
     for _ in range(200):
         pose = _random_pose(rng)
-        made = joint_rotations(follower.follow(pose).wanted_rad, pose[0])
+        made = joint_rotations(follower.follow(pose).unclamped_rad, pose[0])
         expected = pose.copy()
         for side in ("Left", "Right"):
             arm, shoulder = JOINT_INDEX[f"{side}UpperArm"], JOINT_INDEX[f"{side}Shoulder"]
@@ -95,10 +95,10 @@ def test_gimbal_lock_is_passed_with_the_least_change(side: float) -> None:
     angles = np.zeros(len(AXIS_NAMES))
     angles[columns] = 0.4, side * math.pi / 2, -0.3
     follower.follow(joint_rotations(angles, identity()))
-    before = follower.follow(joint_rotations(angles, identity())).wanted_rad[columns]
+    before = follower.follow(joint_rotations(angles, identity())).unclamped_rad[columns]
     angles[columns[0]] += 0.1
     pose = joint_rotations(angles, identity())
-    found = follower.follow(pose).wanted_rad
+    found = follower.follow(pose).unclamped_rad
     assert np.abs(found[columns] - before).max() == pytest.approx(0.05, abs=1e-6)
     assert geodesic_angle(joint_rotations(found, identity()), pose).max() < 1e-10
 
@@ -109,7 +109,7 @@ def test_whole_turns_do_not_add_up() -> None:
     angles = np.zeros(len(AXIS_NAMES))
     for turned in np.linspace(0.0, 6.0 * math.pi, 600):
         angles[_column("HeadY")] = turned
-        wanted = follower.follow(joint_rotations(angles, identity())).wanted_rad
+        wanted = follower.follow(joint_rotations(angles, identity())).unclamped_rad
         assert abs(wanted[_column("HeadY")]) <= math.radians(225.0) + 1e-9
 
 
@@ -134,7 +134,10 @@ def test_a_knee_and_an_elbow_that_bend_askew_keep_all_below_them_in_place() -> N
             bones[f"{side}UpperLeg"] = np.array([0.0, -1.0, 0.0])
         follower.forget()
         found = follower.follow(pose)
-        made, asked = _orientations(joint_rotations(found.wanted_rad, pose[0])), _orientations(pose)
+        made, asked = (
+            _orientations(joint_rotations(found.unclamped_rad, pose[0])),
+            _orientations(pose),
+        )
         below = [JOINT_INDEX[f"{side}{part}"] for side in ("Left", "Right")
                  for part in ("LowerArm", "Hand", "Foot")]  # fmt: skip
         assert geodesic_angle(made[below], asked[below]).max() < math.radians(6.0)
@@ -142,7 +145,7 @@ def test_a_knee_and_an_elbow_that_bend_askew_keep_all_below_them_in_place() -> N
             row = JOINT_INDEX[name]
             np.testing.assert_allclose(rotate(made[row], bone), rotate(asked[row], bone), atol=1e-9)
         elbows = [_column("LeftLowerArmZ"), _column("RightLowerArmZ")]
-        assert np.abs(found.wanted_rad[elbows]).max() < math.radians(6.0)
+        assert np.abs(found.unclamped_rad[elbows]).max() < math.radians(6.0)
 
 
 def test_a_forearm_takes_over_what_a_wrist_cannot_turn() -> None:
@@ -167,7 +170,7 @@ def test_two_axes_come_as_near_as_they_can() -> None:
         follower.forget()
         found = follower.follow(identity(len(JOINT_NAMES)), {part: asked})
         missed = found.residual_rad[PART_NAMES.index(part)]
-        tried = np.tile(found.wanted_rad, (200, 1))
+        tried = np.tile(found.unclamped_rad, (200, 1))
         assert geodesic_angle(rotations_of(tried[0])[part], asked) == pytest.approx(
             missed, abs=1e-7
         )
@@ -181,10 +184,10 @@ def test_parts_that_a_model_lacks_hand_their_turn_down() -> None:
     parts = [part for part in PART_NAMES if part not in {"Chest", "UpperChest", "Neck"}]
     pose = from_rotation_vector(rng.normal(scale=0.3, size=(len(JOINT_NAMES), 3)))
     found = TargetAngles(ANYWHERE, parts).follow(pose)
-    made, asked = _orientations(joint_rotations(found.wanted_rad, pose[0])), _orientations(pose)
+    made, asked = _orientations(joint_rotations(found.unclamped_rad, pose[0])), _orientations(pose)
     rows = [JOINT_INDEX[name] for name in ("Spine", "Head", "LeftHand", "RightLowerArm")]
     assert geodesic_angle(made[rows], asked[rows]).max() < 1e-10
-    assert found.wanted_rad[_column("ChestX")] == 0.0
+    assert found.unclamped_rad[_column("ChestX")] == 0.0
 
 
 def test_what_is_beyond_the_limits_is_clamped_and_counted() -> None:
@@ -196,7 +199,7 @@ def test_what_is_beyond_the_limits_is_clamped_and_counted() -> None:
     found = TargetAngles(ANATOMIC).batch(poses)
     knee = _column("LeftLowerLegX")
     assert found.angles_rad[1, knee] == 0.0
-    assert found.wanted_rad[1, knee] == pytest.approx(-0.04)
+    assert found.unclamped_rad[1, knee] == pytest.approx(-0.04)
     assert found.clipped_share()[knee] == 0.5
     assert found.clipped_share().sum() == 0.5
 
@@ -206,7 +209,7 @@ def test_real_movements_have_no_jumps(shared_data: Path, name: str) -> None:
     """No axis moves faster than a foot that swings does: 20 rad/s."""
     movement = captured(shared_data, name)
     found = TargetAngles(ANATOMIC).batch(movement.rotations)
-    steps = np.abs(np.diff(found.wanted_rad, axis=0)) * movement.rate_hz
+    steps = np.abs(np.diff(found.unclamped_rad, axis=0)) * movement.rate_hz
     assert steps.max() < 20.0
     np.testing.assert_array_less(np.abs(found.velocities_rad_s(movement.rate_hz)), 20.0)
 

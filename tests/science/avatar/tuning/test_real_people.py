@@ -16,7 +16,7 @@ from app.science.avatar.mjcf.model import avatar_model
 from app.science.avatar.mjcf.scene import FLOOR_ONLY, Scene
 from app.science.avatar.targets.targets import joint_rotations
 from app.science.avatar.tuning import TuningReport, track, tune
-from app.science.avatar.tuning.tracking import NOTHING
+from app.science.avatar.tuning.tracking import EMPTY_SPACE
 from app.science.latency.achieved_latency import achieved_latency
 from app.science.rotations import rotate
 from app.science.skeleton import Movement
@@ -90,7 +90,7 @@ def test_the_turn_is_one(shared_data: Path) -> None:
 
 
 @pytest.mark.parametrize("ordered_s", [0.125, 0.350])
-@pytest.mark.parametrize(("name", "scene"), [(LONG, NOTHING), (REACH, FLOOR_ONLY)])
+@pytest.mark.parametrize(("name", "scene"), [(LONG, EMPTY_SPACE), (REACH, FLOOR_ONLY)])
 def test_a_tuned_body_is_as_late_as_ordered(
     shared_data: Path, name: str, scene: Scene, ordered_s: float
 ) -> None:

@@ -9,7 +9,7 @@ from app.science.avatar.body.body import build_body
 from app.science.avatar.body.masses import body_masses
 from app.science.avatar.configuration.limits import ANATOMIC
 from app.science.avatar.tuning.evaluation import Trial, jump_of
-from app.science.avatar.tuning.plant import bare
+from app.science.avatar.tuning.plant import without_shapes
 from app.science.avatar.tuning.step_response import StepFigures, objection, step_figures
 from app.science.rotations import FloatArray
 from tests.science.avatar.bodies import settings_of
@@ -87,11 +87,11 @@ def test_the_dampers_that_come_with_the_product_stay_clear_of_chatter() -> None:
     """2 J / (kd h) above 1.25 in every axis, and a damper three times as strong does not."""
     body = build_body(1.75)
     settings = settings_of(body)
-    trial = Trial(bare(body), body_masses(body, 72.0), settings)
+    trial = Trial(without_shapes(body), body_masses(body, 72.0), settings)
     clearances = {name: trial.clearance(name) for name in trial.names}
     assert min(clearances.values()) > 1.25
     strong = {name: own.with_values(kd=3.0 * own.kd) for name, own in settings.items()}
-    tight = Trial(bare(body), body_masses(body, 72.0), strong)
+    tight = Trial(without_shapes(body), body_masses(body, 72.0), strong)
     assert tight.clearance("LeftUpperArmX") < 1.0
 
 
@@ -101,7 +101,7 @@ def test_the_dampers_that_come_with_the_product_stay_clear_of_chatter() -> None:
         (StepFigures(30.0, 2.0, 0.1, 0.05, 0.5), 2.0, None),
         (StepFigures(30.0, 6.0, 0.1, 0.05, 0.5), 2.0, "overshoots"),
         (StepFigures(30.0, 2.0, None, 0.05, 0.5), 2.0, "does not settle"),
-        (StepFigures(30.0, 2.0, 0.1, 0.05, 12.0), 2.0, "greatest torque"),
+        (StepFigures(30.0, 2.0, 0.1, 0.05, 12.0), 2.0, "torque limit"),
         (StepFigures(30.0, 2.0, 0.1, 0.05, 0.5), 1.1, "chatter"),
     ],
 )

@@ -1,8 +1,8 @@
-"""A few threads that do one thing for each of many axes, tell how far they are, and can be stopped.
+"""Run one task for each of many axes in a few threads, with progress reports and cancellation.
 
-Threads and not processes: the 89 axes of a whole body take 5.5 s of processor time, and two threads
-need 3.7 s for them, as the trials let each other run while the relay experiments hardly do.
-Processes would spend the difference on starting.
+Threads rather than processes: the 89 axes of a whole body take 5.5 s of processor time, for which
+two threads need 3.7 s, as the step responses run in parallel while the relay experiments hardly do.
+Starting processes would cost more than the difference.
 """
 
 from collections.abc import Callable, Sequence
@@ -14,13 +14,13 @@ from app.science.avatar.tuning.results import Phase, TuningCancelled, TuningProg
 Result = TypeVar("Result")
 
 
-class Crew:
-    """Does things axis by axis.
+class AxisPool:
+    """Run a task for each of many axes in parallel threads.
 
     Args:
-        workers: threads.
-        progress: told after each axis, in the caller's thread.
-        cancelled: asked after each axis.
+        workers: number of threads.
+        progress: called after each axis, in the caller's thread.
+        cancelled: checked after each axis.
     """
 
     def __init__(
@@ -31,10 +31,10 @@ class Crew:
     ) -> None:
         self._workers, self._progress, self._cancelled = workers, progress, cancelled
 
-    def each(
+    def run(
         self, attempt: int, phase: Phase, axes: Sequence[str], work: Callable[[str], Result]
     ) -> dict[str, Result]:
-        """Return axis -> result, in the order of the axes; raises TuningCancelled."""
+        """Return axis -> result, in the order of the axes; raise TuningCancelled if cancelled."""
         results: dict[str, Result] = {}
         with ThreadPoolExecutor(self._workers) as pool:
             futures = {pool.submit(work, axis): axis for axis in axes}
