@@ -150,7 +150,7 @@ def configuration_of(file: AvatarFile) -> Configuration:
                 high_rad=math.radians(axis.high_deg),
             )
         except AvatarSettingsError as error:
-            problems += [one.below(f"axes.{name}") for one in error.problems]
+            problems += [one.prefixed(f"axes.{name}") for one in error.problems]
     if problems:
         raise AvatarSettingsError(tuple(problems))
     return Configuration(

@@ -84,7 +84,7 @@ def _misplaced(rig: Rig, bones: Mapping[str, int], part: str) -> list[str]:
         above = PARENT_OF[above]
     if above is None or is_below(rig, bones[part], bones[above]):
         return []
-    return [f"{name!r} is {part}, but not a child of {rig.names[bones[above]]!r}, the {above}"]
+    return [f"{name!r} is {part}, but is not below {rig.names[bones[above]]!r}, the {above}"]
 
 
 def _bone_list(rig: Rig) -> str:

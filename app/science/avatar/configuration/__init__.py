@@ -1,7 +1,7 @@
-"""What a laboratory sets: limits, gains, colliders and locks, axis by axis.
+"""The settings of an avatar: limits, gains, colliders and locks, axis by axis.
 
-A `Configuration` that exists is consistent; what cannot be is refused with every `AvatarProblem` at
-once. `lock`, `with_axis` and their like return an edited copy.
+A `Configuration` is always consistent: invalid values are rejected with a list of all
+`AvatarProblem`s. `lock`, `with_axis` and similar functions return an edited copy.
 """
 
 from app.science.avatar.configuration.axis_settings import (

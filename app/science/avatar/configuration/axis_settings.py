@@ -1,12 +1,12 @@
-"""How one axis of the avatar is driven, and how far it turns.
+"""Define how one axis of the avatar is driven, and how far it turns.
 
 A driven axis is a hinge with a motor. At angle q and speed q', the motor pulls towards a target
 angle and speed with the torque
 
-    kp (target - q) + kd (target speed - q'),   at most max_torque_nm either way,
+    kp (target - q) + kd (target speed - q'),   at most max_torque_nm in either direction,
 
 and the hinge turns from `low_rad` to `high_rad`, counted from the T-pose. An axis whose two limits
-are one angle is locked: it stays at that angle and is neither driven nor tuned.
+are equal is locked: it stays at that angle and is neither driven nor tuned.
 
 Source: Karas (2020), section 2.2.5: spring, damper and maximum force of an angular drive.
 """
@@ -24,13 +24,13 @@ _DECIMALS_DEG = 9
 
 @dataclass(frozen=True)
 class AvatarProblem:
-    """One thing to correct in the settings of an avatar.
+    """An invalid value in the settings of an avatar, and how to correct it.
 
     Attributes:
         path: to the value, such as `axes.LeftUpperLegX.kp_nm_per_rad`.
         message: what is wrong.
         value: what was given.
-        valid: what could stand there.
+        valid: which values are valid.
         remedy: what to do.
     """
 
@@ -44,13 +44,13 @@ class AvatarProblem:
         where = f"{self.path}: " if self.path else ""
         return f"{where}{self.message} {self.remedy}".rstrip()
 
-    def below(self, path: str) -> "AvatarProblem":
-        """The same problem, told from further up."""
+    def prefixed(self, path: str) -> "AvatarProblem":
+        """Return the problem with `path` in front of its own path."""
         return replace(self, path=f"{path}.{self.path}" if self.path else path)
 
 
 class AvatarSettingsError(ValueError):
-    """Settings of an avatar contradict themselves; `problems` are all of them."""
+    """Settings of an avatar are invalid or inconsistent; `problems` lists all that is wrong."""
 
     def __init__(self, problems: tuple[AvatarProblem, ...]) -> None:
         self.problems = problems
@@ -59,21 +59,21 @@ class AvatarSettingsError(ValueError):
 
 @dataclass(frozen=True)
 class AxisSettings:
-    """Gains, greatest torque and limits of one axis.
+    """Gains, torque limit and joint limits of one axis.
 
-    Angles are kept to a billionth of a degree. So a file in degrees, which is what people read and
-    write, holds them without loss, and equal settings have one hash.
+    Angles are rounded to a billionth of a degree. So a file in degrees, which people read and
+    write, stores them without loss, and equal settings have the same hash.
 
     Attributes:
-        kp: spring, in N m per radian; zero or more.
-        kd: damper, in N m s per radian; zero or more.
-        max_torque_nm: of the motor, either way; zero lets the limb hang.
-        low_rad: least angle, at least half a turn back.
-        high_rad: greatest angle, at most half a turn ahead, and not below `low_rad`. Zero, the
-            T-pose, need not lie between them.
+        kp: stiffness, in N m per radian; zero or more.
+        kd: damping, in N m s per radian; zero or more.
+        max_torque_nm: of the motor, in either direction; zero lets the limb hang.
+        low_rad: lower limit, at least -pi.
+        high_rad: upper limit, at most pi, and not below `low_rad`. Zero, the T-pose, need not lie
+            between them.
 
     Raises:
-        AvatarSettingsError: with every value that cannot be.
+        AvatarSettingsError: with every invalid value.
     """
 
     kp: float
@@ -96,7 +96,7 @@ class AxisSettings:
                     f" one, {math.degrees(self.high_rad):g} deg.",
                     value=math.degrees(self.low_rad),
                     valid=f"at most {math.degrees(self.high_rad):g}",
-                    remedy="Exchange them, or make them equal to lock the axis.",
+                    remedy="Swap them, or make them equal to lock the axis.",
                 ),
             )
         if problems:
@@ -104,48 +104,48 @@ class AxisSettings:
         for name in ("kp", "kd", "max_torque_nm"):
             object.__setattr__(self, name, float(getattr(self, name)) + 0.0)  # -0.0 becomes 0.0
         for name in ("low_rad", "high_rad"):
-            object.__setattr__(self, name, settled_angle(getattr(self, name)))
+            object.__setattr__(self, name, rounded_angle(getattr(self, name)))
 
     @property
     def locked(self) -> bool:
-        """Whether the axis cannot turn."""
+        """Return whether the axis cannot turn."""
         return self.low_rad == self.high_rad
 
     @property
     def range_rad(self) -> float:
-        """How far it turns from one limit to the other."""
+        """Return the angle from one limit to the other."""
         return self.high_rad - self.low_rad
 
     @property
     def rest_rad(self) -> float:
-        """The allowed angle nearest to the T-pose's: where a body starts."""
+        """Return the permitted angle nearest to the T-pose's, at which a body starts."""
         return self.clamped(0.0)
 
     def clamped(self, angle_rad: float) -> float:
-        """The allowed angle nearest to the one asked for."""
+        """Return the permitted angle nearest to the given one."""
         return min(max(angle_rad, self.low_rad), self.high_rad)
 
     def locked_at(self, angle_rad: float) -> "AxisSettings":
-        """The same axis, locked at the allowed angle nearest to the one asked for."""
+        """Return the axis locked at the permitted angle nearest to the given one."""
         angle = self.clamped(angle_rad)
         return replace(self, low_rad=angle, high_rad=angle)
 
     def with_values(self, **values: Any) -> "AxisSettings":
-        """A copy with some values changed, such as `with_values(kp=300.0)`."""
+        """Return a copy with some values changed, such as `with_values(kp=300.0)`."""
         return replace(self, **values)
 
 
-def settled_angle(angle_rad: float) -> float:
-    """The angle to a billionth of a degree, which a file in degrees gives back to the bit."""
+def rounded_angle(angle_rad: float) -> float:
+    """Round an angle in rad to a billionth of a degree, which a file in degrees stores exactly."""
     return math.radians(degrees_of(angle_rad))
 
 
 def degrees_of(angle_rad: float) -> float:
-    """The angle in degrees, to a billionth."""
+    """Return the angle in degrees, rounded to a billionth."""
     return round(math.degrees(angle_rad), _DECIMALS_DEG) + 0.0
 
 
-# Attribute, its key in a file, least and greatest value, in the attribute's unit.
+# Attribute, its key in a file, minimum and maximum in the attribute's unit.
 _RANGES: tuple[tuple[str, str, float, float], ...] = (
     ("kp", "kp_nm_per_rad", 0.0, MAX_KP_NM_PER_RAD),
     ("kd", "kd_nm_s_per_rad", 0.0, MAX_KD_NM_S_PER_RAD),
@@ -158,11 +158,13 @@ _RANGES: tuple[tuple[str, str, float, float], ...] = (
 def _number_problem(path: str, value: float, least: float, most: float) -> AvatarProblem | None:
     if math.isfinite(value) and least <= value <= most:
         return None
-    told, unit = (math.degrees, " deg") if path.endswith("_deg") else (float, "")
+    convert, unit = (math.degrees, " deg") if path.endswith("_deg") else (float, "")
     return AvatarProblem(
         path,
-        f"{told(value):g}{unit} is out of range." if math.isfinite(value) else "It is not finite.",
-        value=told(value),
-        valid=f"from {told(least):g} to {told(most):g}{unit}",
-        remedy=f"Give a number from {told(least):g} to {told(most):g}{unit}.",
+        f"{convert(value):g}{unit} is out of range."
+        if math.isfinite(value)
+        else "It is not finite.",
+        value=convert(value),
+        valid=f"from {convert(least):g} to {convert(most):g}{unit}",
+        remedy=f"Give a number from {convert(least):g} to {convert(most):g}{unit}.",
     )

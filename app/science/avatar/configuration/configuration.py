@@ -1,11 +1,12 @@
-"""Everything that decides how an avatar behaves, but not who it is nor how late it is.
+"""Define a configuration: everything about an avatar's behaviour, except its size and its latency.
 
-A configuration holds the settings of every driven axis and what acts on the body as a whole. The
-body's lengths come from the participant's stature or from a model, the added latency from the
-study; so one configuration serves many people and conditions, and its hash names a behaviour.
+A configuration holds the settings of every driven axis and those of the body as a whole. The body's
+lengths come from the participant's stature or from a model, the added latency from the study; so
+one configuration serves many people and conditions, and its hash identifies a behaviour.
 
-A group of body parts can be locked, as a cast would: its axes then stay where they are held, and
-their limits are kept for when it comes off. What is in force is `in_force`, never `axes`.
+A group of body parts can be locked, as by a plaster cast: its axes then stay at fixed angles, while
+their limits are stored for when it is unlocked. `in_force` gives the settings with locks applied;
+`axes` does not.
 """
 
 import math
@@ -21,7 +22,7 @@ from app.science.avatar.configuration.axis_settings import (
     AvatarSettingsError,
     AxisSettings,
     degrees_of,
-    settled_angle,
+    rounded_angle,
 )
 from app.science.avatar.configuration.groups import AXIS_ORDER, GROUP_NAMES, PART_OF, axes_of
 from app.science.avatar.configuration.model_options import ColliderKind
@@ -30,7 +31,7 @@ Hips = Literal["carried", "welded"]
 TargetSpace = Literal["local", "world"]
 
 USUAL_MASS_KG: Final = 72.0
-"""Of the thesis's avatar (figure 6.1)."""
+"""Mass of the thesis's avatar (figure 6.1)."""
 MIN_MASS_KG: Final = 1.0
 MAX_MASS_KG: Final = 500.0
 _HASH = re.compile(r"[0-9a-f]{64}")
@@ -44,29 +45,30 @@ _CHOICES: tuple[tuple[str, tuple[str, ...]], ...] = (
 
 @dataclass(frozen=True)
 class Configuration:
-    """How an avatar behaves.
+    """The settings that determine how an avatar behaves.
 
     Attributes:
-        axes: axis -> settings, in the order of `AXIS_NAMES` whatever order it came in. A part that
-            a model lacks is absent; a part that is there has all of its axes.
-        total_mass_kg: of the body, shared out among its parts.
-        population: whose relative masses are taken.
-        gravity: whether the body is heavy.
-        self_collision: whether parts collide with each other as the layers allow.
-        hips: `carried` sets the hips where the participant's are at each step, so they feel nothing
-            of the limbs; `welded` pulls them there by a stiff bond.
+        axes: axis -> settings, always in the order of `AXIS_NAMES`. A part that a model lacks is
+            absent; a part that is present has all of its axes.
+        total_mass_kg: of the body, distributed among its parts.
+        population: supplies the relative masses of the parts.
+        gravity: whether gravity acts on the body.
+        self_collision: whether parts collide with each other as the layers define.
+        hips: `carried` sets the pose of the hips to the participant's at each step, so the limbs
+            have no effect on them; `welded` pulls them there by a stiff constraint.
         target_space: `local` drives each joint to the participant's joint angles; `world` to the
-            angles that give the part the participant's orientation in the room, so that a limb
-            that is pushed aside gives way and still points where it should.
+            angles that give the part the participant's orientation in the room, so that a limb that
+            is pushed aside gives way and still points in the right direction.
         colliders: of all parts but those in `part_colliders`.
         part_colliders: body part -> colliders.
-        humanoid: SHA-256 of the file of the model that gives the body its joints, lengths and
-            skin; None for a body of the participant's stature. `mesh` colliders need one.
-        locked_groups: groups that are held, in the order of `GROUP_NAMES`, each once.
-        held_rad: axis -> angle at which a locked axis is held; the T-pose's where it is absent.
+        humanoid: SHA-256 of the file of the model that gives the body its joints, lengths and skin;
+            None for a body of the participant's stature. `mesh` colliders need one.
+        locked_groups: groups that are locked, in the order of `GROUP_NAMES`, each once.
+        held_rad: axis -> angle at which an axis of a locked group is held; axes that are absent are
+            held at the T-pose's.
 
     Raises:
-        AvatarSettingsError: with every value that cannot be.
+        AvatarSettingsError: with every invalid value.
     """
 
     axes: Mapping[str, AxisSettings]
@@ -91,7 +93,7 @@ class Configuration:
             part: self.part_colliders[part] for part in PART_NAMES if part in self.part_colliders
         }
         held = {
-            name: settled_angle(self.held_rad[name]) for name in ordered if name in self.held_rad
+            name: rounded_angle(self.held_rad[name]) for name in ordered if name in self.held_rad
         }
         locked = tuple(name for name in GROUP_NAMES if name in self.locked_groups)
         for name, value in (
@@ -105,12 +107,12 @@ class Configuration:
 
     @property
     def parts(self) -> tuple[str, ...]:
-        """The driven parts that the model has."""
+        """Return the driven parts that the model has."""
         return tuple(dict.fromkeys(PART_OF[name] for name in self.axes))
 
     @property
     def locked_axes(self) -> frozenset[str]:
-        """Axes that a locked group holds, or whose limits leave no range."""
+        """Return the axes that are in a locked group, or whose limits leave no range."""
         held = {name for group in self.locked_groups for name in axes_of(group)}
         return frozenset(
             name for name, settings in self.axes.items() if settings.locked or name in held
@@ -118,7 +120,7 @@ class Configuration:
 
     @property
     def in_force(self) -> Mapping[str, AxisSettings]:
-        """Axis -> settings with the locked groups held: what a body is built from."""
+        """Return axis -> settings with the locked groups applied: what a body is built from."""
         held = {name for group in self.locked_groups for name in axes_of(group)}
         return MappingProxyType(
             {
@@ -128,12 +130,12 @@ class Configuration:
         )
 
     def collider_of(self, part: str) -> ColliderKind:
-        """What a body part collides with."""
+        """Return the kind of collider of a body part."""
         return self.part_colliders.get(part, self.colliders)
 
     @property
-    def wants_pieces(self) -> bool:
-        """Whether any part is to collide with a piece of a model's skin."""
+    def uses_pieces(self) -> bool:
+        """Return whether any part is configured to collide as a convex piece of a model's skin."""
         return "mesh" in {self.colliders, *self.part_colliders.values()}
 
     def __hash__(self) -> int:
@@ -141,18 +143,18 @@ class Configuration:
 
 
 def _problems_of(configuration: Configuration) -> Iterator[AvatarProblem]:
-    """Everything that makes a configuration impossible."""
+    """Yield everything that is invalid in a configuration."""
     yield from _axes_problems(configuration)
     yield from _body_problems(configuration)
     yield from _lock_problems(configuration)
 
 
 def piece_problems(configuration: Configuration) -> Iterator[AvatarProblem]:
-    """Pieces without a model whose they are: a configuration like that is no avatar.
+    """Yield a problem if colliders are pieces of a model's skin and no model is named.
 
-    Asked when one is saved or built, not of every one that is read.
+    This is checked when a configuration is saved or built, not whenever one is read.
     """
-    if configuration.humanoid is not None or not configuration.wants_pieces:
+    if configuration.humanoid is not None or not configuration.uses_pieces:
         return
     named = [part for part, kind in configuration.part_colliders.items() if kind == "mesh"]
     yield AvatarProblem(
@@ -178,13 +180,13 @@ def _axes_problems(configuration: Configuration) -> Iterator[AvatarProblem]:
                 remedy="Name it after its body part and X, Y or Z, as in LeftUpperLegX.",
             )
     for part in dict.fromkeys(PART_OF[name] for name in axes if name in PART_OF):
-        wanted = [axis.name for axis in AXES_OF[part]]
-        missing = [name for name in wanted if name not in axes]
+        required = [axis.name for axis in AXES_OF[part]]
+        missing = [name for name in required if name not in axes]
         if missing:
             yield AvatarProblem(
                 f"axes.{missing[0]}",
                 f"{part} lacks its axis {missing[0]}.",
-                valid=wanted,
+                valid=required,
                 remedy=f"Give all axes of {part}, or none where the model lacks the part.",
             )
 
@@ -194,7 +196,7 @@ def _body_problems(configuration: Configuration) -> Iterator[AvatarProblem]:
     if not (math.isfinite(mass) and MIN_MASS_KG <= mass <= MAX_MASS_KG):
         yield AvatarProblem(
             "total_mass_kg",
-            f"{mass} kg is no mass of a body.",
+            f"{mass} kg is not a valid body mass.",
             value=mass,
             valid=f"from {MIN_MASS_KG:g} to {MAX_MASS_KG:g}",
             remedy="Give the mass of the whole body in kilograms.",
@@ -206,7 +208,7 @@ def _body_problems(configuration: Configuration) -> Iterator[AvatarProblem]:
     if configuration.humanoid is not None and not _HASH.fullmatch(configuration.humanoid):
         yield AvatarProblem(
             "humanoid",
-            "This names no model.",
+            "This is not the hash of a model.",
             value=configuration.humanoid,
             valid="64 hexadecimal digits",
             remedy="Give the hash of an uploaded humanoid model, or leave it out.",
@@ -237,14 +239,14 @@ def _lock_problems(configuration: Configuration) -> Iterator[AvatarProblem]:
                 valid=free,
                 remedy="Lock its group, or take the angle out.",
             )
-        elif not settings.low_rad <= settled_angle(angle_rad) <= settings.high_rad:
+        elif not settings.low_rad <= rounded_angle(angle_rad) <= settings.high_rad:
             low, high = degrees_of(settings.low_rad), degrees_of(settings.high_rad)
             yield AvatarProblem(
                 path,
                 f"{name} cannot be held at {math.degrees(angle_rad):g} deg.",
                 value=math.degrees(angle_rad),
                 valid=f"from {low:g} to {high:g}",
-                remedy="Hold it within its limits, or widen them.",
+                remedy="Give an angle within its limits, or widen them.",
             )
 
 

@@ -1,4 +1,4 @@
-"""Edits of a configuration: each gives a new one, so undoing is keeping the old."""
+"""Edit a configuration: each function returns a new one and leaves the original unchanged."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -12,16 +12,17 @@ from app.science.avatar.configuration.groups import axes_of, parts_of
 def lock(
     configuration: Configuration, group: str, held_rad: Mapping[str, float] | None = None
 ) -> Configuration:
-    """Hold a group of body parts still, as a cast would; its limits are kept for later.
+    """Lock a group of body parts, as by a plaster cast, and keep its limits for unlocking.
 
     Args:
-        configuration: what is edited.
+        configuration: the one to edit.
         group: a body group or a part.
-        held_rad: axis of the group -> angle at which it is held; the T-pose's where it is left out,
-            as far as the limits allow. Locking a locked group anew replaces its angles.
+        held_rad: axis of the group -> angle at which it is held; axes that are absent are held at
+            the T-pose's, as far as the limits allow. Locking a locked group replaces its angles.
 
     Raises:
-        AvatarSettingsError: no such group, an axis of another group, an angle beyond the limits.
+        AvatarSettingsError: an unknown group, an axis of another group, or an angle beyond the
+            limits.
     """
     return replace(
         configuration,
@@ -31,22 +32,22 @@ def lock(
 
 
 def unlock(configuration: Configuration, group: str) -> Configuration:
-    """Let a locked group move again; groups that overlap it stay locked.
+    """Unlock a group; locked groups that overlap it stay locked.
 
-    Raises AvatarSettingsError where there is no such group.
+    Raises AvatarSettingsError if there is no such group.
     """
     parts_of(group)
-    left = tuple(one for one in configuration.locked_groups if one != group)
-    still = {name for one in left for name in axes_of(one)}
-    held = {name: angle for name, angle in configuration.held_rad.items() if name in still}
-    return replace(configuration, locked_groups=left, held_rad=held)
+    remaining = tuple(one for one in configuration.locked_groups if one != group)
+    still_locked = {name for one in remaining for name in axes_of(one)}
+    held = {name: angle for name, angle in configuration.held_rad.items() if name in still_locked}
+    return replace(configuration, locked_groups=remaining, held_rad=held)
 
 
 def mirror_left_to_right(configuration: Configuration) -> Configuration:
-    """Give every right axis the settings of the left one.
+    """Give every axis of the right side the settings of its left counterpart.
 
-    A positive angle is the same movement on both sides, so nothing changes its sign. Locked groups
-    and colliders stay, and so do parts that only one side of the model has.
+    A positive angle is the same movement on both sides, so no sign changes. Locked groups and
+    colliders stay unchanged, and so do parts that only one side of the model has.
     """
     axes = {
         name: configuration.axes.get(mirrored_name(name), settings)
@@ -65,9 +66,9 @@ def with_global(
     kd: float | None = None,
     max_torque_nm: float | None = None,
 ) -> Configuration:
-    """Give every axis of a group the same gains or torque; what is None stays.
+    """Give every axis of a group the same gains or torque limit; what is None stays unchanged.
 
-    Raises AvatarSettingsError: no such group, or a value that cannot be.
+    Raises AvatarSettingsError: no such group, or an invalid value.
     """
     given = {"kp": kp, "kd": kd, "max_torque_nm": max_torque_nm}
     values = {name: value for name, value in given.items() if value is not None}
@@ -80,17 +81,20 @@ def with_global(
 
 
 def with_axis(configuration: Configuration, name: str, settings: AxisSettings) -> Configuration:
-    """The configuration with one axis set anew; raises AvatarSettingsError for an unknown one."""
+    """Return the configuration with new settings for one axis.
+
+    Raises AvatarSettingsError for an unknown axis.
+    """
     return replace(configuration, axes={**configuration.axes, name: settings})
 
 
 def without_parts(configuration: Configuration, missing: frozenset[str]) -> Configuration:
-    """The configuration for a model that lacks some body parts, such as a finger."""
-    gone = {name for part in missing for name in axes_of(part)}
+    """Return the configuration for a model that lacks some body parts, such as a finger."""
+    removed = {name for part in missing for name in axes_of(part)}
     return replace(
         configuration,
-        axes={name: one for name, one in configuration.axes.items() if name not in gone},
-        held_rad={name: one for name, one in configuration.held_rad.items() if name not in gone},
+        axes={name: one for name, one in configuration.axes.items() if name not in removed},
+        held_rad={name: one for name, one in configuration.held_rad.items() if name not in removed},
     )
 
 

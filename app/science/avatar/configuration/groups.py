@@ -1,8 +1,8 @@
-"""Groups of body parts, by which joints are found, edited together, and locked.
+"""Define groups of body parts, by which joints are found, edited together, and locked.
 
-A group is a name for body parts; every body part is also a group of its own. Its axes are the
-driven axes of its parts, so the hips and the shoulders, which have none, only matter for colliders.
-An arm is without its fingers, as in the thesis: an arm in a cast still has a moving hand's fingers.
+A group names some body parts; every body part is also a group of its own. Its axes are the driven
+axes of its parts, so the hips and the shoulders, which have none, only matter for colliders. An arm
+excludes its fingers, as in the thesis: with an arm in a cast, the fingers still move.
 
 Source: Karas (2020), section 6.4.2 and figure 6.2.
 """
@@ -39,13 +39,13 @@ GROUPS: Mapping[str, tuple[str, ...]] = MappingProxyType(
         **_of_side("Right"),
     }
 )
-"""Group -> its parts, from the hips outwards."""
+"""Parts of each group, from the hips outwards."""
 GROUP_NAMES: tuple[str, ...] = (*GROUPS, *PART_NAMES)
-"""Every name that `parts_of` knows, the larger groups first."""
+"""Every name that `parts_of` accepts, the larger groups first."""
 
 
 def parts_of(group: str) -> tuple[str, ...]:
-    """The body parts of a group, or the part itself; raises AvatarSettingsError."""
+    """Return the body parts of a group, or the part itself; raises AvatarSettingsError."""
     if group in AXES_OF:
         return (group,)
     if group in GROUPS:
@@ -64,7 +64,7 @@ def parts_of(group: str) -> tuple[str, ...]:
 
 
 def axes_of(group: str) -> tuple[str, ...]:
-    """The names of a group's driven axes, in the order of the body; raises AvatarSettingsError."""
+    """Return the names of a group's driven axes in the body's order; raises AvatarSettingsError."""
     parts = set(parts_of(group))
     return tuple(axis.name for part in PART_NAMES if part in parts for axis in AXES_OF[part])
 
@@ -72,7 +72,7 @@ def axes_of(group: str) -> tuple[str, ...]:
 PART_OF: Mapping[str, str] = MappingProxyType(
     {axis.name: part for part in PART_NAMES for axis in AXES_OF[part]}
 )
-"""Axis -> its body part, in the order of `AXIS_NAMES`."""
+"""Body part of each axis, in the order of `AXIS_NAMES`."""
 AXIS_ORDER: Mapping[str, int] = MappingProxyType(
     {name: index for index, name in enumerate(AXIS_NAMES)}
 )

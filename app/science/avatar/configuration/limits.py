@@ -1,11 +1,11 @@
-"""How far each axis of a human body turns.
+"""Define how far each axis of a human body turns.
 
 Angles are counted from the T-pose and positive in the direction that `parts` names. Two presets:
-`anatomic`, and `free`, in which the elbow's third axis, which no human elbow has, turns all the way
-round as in the thesis (Karas 2020, section 3.2.2).
+`anatomic`, and `free`, in which the elbow's third axis, which no human elbow has, turns a full
+circle as in the thesis (Karas 2020, section 3.2.2).
 
-Each row names its source. A range that sources give for a chain of joints (trunk, neck) is shared
-out equally among the joints of the chain: an estimate, as is every row whose source says so.
+Each row names its source. A range that sources give for a chain of joints (trunk, neck) is divided
+equally among the joints of the chain: an estimate, as is every row whose source says so.
 """
 
 from collections.abc import Mapping
@@ -31,11 +31,11 @@ ESTIMATE = "estimate"
 
 @dataclass(frozen=True)
 class AxisLimits:
-    """How far one axis turns.
+    """Lower and upper limit of one axis.
 
     Attributes:
         low_rad, high_rad: both zero where the axis is locked.
-        source: where the numbers come from; begins with `ESTIMATE` where they are ours.
+        source: publication of the numbers; starts with `ESTIMATE` where one of them is ours.
     """
 
     low_rad: float
@@ -44,7 +44,7 @@ class AxisLimits:
 
     @property
     def estimated(self) -> bool:
-        """Whether one of the two numbers is ours."""
+        """Return whether at least one of the two numbers is our estimate."""
         return self.source.startswith(ESTIMATE)
 
 
@@ -60,8 +60,8 @@ _CERVICAL: Mapping[str, _Row] = {
     "Z": (-22.5, 22.5, f"{_SHARED} 45 to each side, {NECK}"),
     "Y": (-35.0, 35.0, f"{_SHARED} 70 to each side, {KURZ}"),
 }
-# In degrees. The T-pose is zero of the arm's turn as AAOS measures it: raised to the side, the bent
-# forearm pointing forward; and zero of the forearm's, as the palm then faces down.
+# In degrees. The T-pose is the zero of the arm's rotation as AAOS measures it: raised to the side,
+# the bent forearm pointing forward; and the zero of the forearm's, as the palm then faces down.
 _ROWS: Mapping[str, Mapping[str, _Row]] = {
     **dict.fromkeys(("Spine", "Chest", "UpperChest"), _SPINE),
     **dict.fromkeys(("Neck", "Head"), _CERVICAL),
@@ -130,7 +130,7 @@ ANATOMIC: Mapping[str, AxisLimits] = MappingProxyType(
 FREE: Mapping[str, AxisLimits] = MappingProxyType(
     {**ANATOMIC, "LeftLowerArmZ": _FREE_ELBOW, "RightLowerArmZ": _FREE_ELBOW}
 )
-"""The same with the elbow's third axis free."""
+"""The limits of a human body, but with the elbow's third axis free."""
 
 
 def limits_of(preset: Preset) -> Mapping[str, AxisLimits]:

@@ -1,17 +1,17 @@
-"""What can be chosen about an avatar's model, and what is the same for all of them.
+"""Options of an avatar's model, and constants that are the same for all models.
 
 The hips follow the participant in one of two ways:
 
-- `carried`: they are a mocap body, placed anew at each step. They never lag, a teleport does no
-  harm and the simulation is twice as fast; but they have no speed, so limbs do not feel the hips'
-  acceleration, and nothing pushes them.
-- `welded`: a free body, tied to the mocap body `HipsTarget` by a stiff weld. Limbs feel the hips'
-  inertia. Whoever teleports the target must also write the hips' own place and speed.
+- `carried`: they are a mocap body, whose pose is set at each step. They never lag, a teleport does
+  no harm and the simulation is twice as fast; but they have no speed, so limbs do not feel the
+  hips' acceleration, and nothing pushes them.
+- `welded`: they are a free body, tied to the mocap body `HipsTarget` by a stiff weld. Limbs feel
+  the hips' inertia. Code that teleports the target must also set the hips' own position and speed.
 
 Each body part touches things with a shape. A part has its simple shapes (capsules and boxes) and,
-where a humanoid model gives it a skin, a convex piece of that. Both can be in one model, of which
-one touches; so it can be changed while the avatar runs (`switches.use_collider`). A part without a
-piece keeps its simple shapes.
+where a humanoid model gives it a skin, a convex piece of that. Both can be in one model while only
+one of them collides, so the choice can be changed while the avatar runs (`switches.use_collider`).
+A part without a piece keeps its simple shapes.
 """
 
 from collections.abc import Mapping
@@ -19,7 +19,8 @@ from dataclasses import dataclass, field
 from typing import Final, Literal
 
 TIMESTEP_S: Final = 0.002
-"""5 ms is unstable under full-range jumps of the target at four times the gains, 2 ms at eight."""
+"""Time step of the simulation. When the target jumps over the full range, 5 ms is unstable at four
+times the default gains, 2 ms at eight times."""
 HIPS_TARGET = "HipsTarget"
 """The mocap body that pulls welded hips; carried hips are a mocap body themselves."""
 LIMIT_SOLREF = (2.0 * TIMESTEP_S, 1.0)
@@ -29,22 +30,23 @@ WALL_SOLIMP = (0.99, 0.999, 0.001, 0.5, 2.0)
 """With `WALL_SOLREF` a hand at 2 m/s enters a wall by some 4 mm and never passes it."""
 WELD_SOLREF = (2.0 * TIMESTEP_S, 1.0)
 WELD_SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)
-"""The hips lag 6 ms behind their target. As hard as a wall, the weld and the motors of the legs
-would rock each other at 12 Hz when the feet are off the floor."""
+"""With `WELD_SOLREF` the hips lag 6 ms behind their target. If the weld were as hard as a wall, it
+and the motors of the legs would oscillate against each other at 12 Hz with the feet off the
+floor."""
 FRICTION = (0.5, 0.005, 0.0001)
-"""Sliding, torsional, rolling: skin and cloth on smooth board, an estimate."""
+"""Sliding, torsional and rolling friction of skin and cloth on smooth board, an estimate."""
 
 
 @dataclass(frozen=True)
 class ModelOptions:
-    """Switches of the model.
+    """Options with which a MuJoCo model is built.
 
     Attributes:
-        hips: see the module.
-        gravity: whether the body is heavy.
-        self_collision: whether parts collide with each other as `layers` says.
-        longest_delay_s: the most latency that can be set while the model runs; see
-            `MjModel.actuator_delay`. Zero leaves the buffers out.
+        hips: see the module docstring.
+        gravity: whether gravity acts on the body.
+        self_collision: whether parts collide with each other as `layers` defines.
+        longest_delay_s: the longest latency that can be set while the model runs; see
+            `MjModel.actuator_delay`. With zero there are no delay buffers.
     """
 
     hips: Literal["carried", "welded"] = "carried"
@@ -62,18 +64,18 @@ ColliderKind = Literal["simple", "mesh", "none"]
 
 @dataclass(frozen=True)
 class Colliders:
-    """What the parts of one model collide with.
+    """The kinds of collider of the parts of one model.
 
     Attributes:
-        kinds: body part -> kind; `simple` for those that are not named.
-        both: whether convex pieces are in the model beside the simple shapes.
+        kinds: body part -> kind; `simple` for parts that are absent.
+        both: whether convex pieces are in the model in addition to the simple shapes.
     """
 
     kinds: Mapping[str, ColliderKind] = field(default_factory=dict)
     both: bool = False
 
     def of(self, part: str) -> ColliderKind:
-        """The kind of a part."""
+        """Return the kind of collider of a part."""
         return self.kinds.get(part, "simple")
 
 

@@ -1,23 +1,23 @@
-"""One joint a body part, or one joint an axis: the thesis's two templates, and the way between.
+"""Convert between the thesis's two templates: one joint per body part, or one joint per axis.
 
-In the *multiple* template each axis of a part has limits, gains and a greatest torque of its own;
-that is what a configuration holds. The *single* template has one joint a part, as game engines
-do. Its primary axis has a lower and an upper limit and a drive; its other axes have one symmetric
-limit each and one drive in common.
+In the *multiple* template each axis of a part has its own limits, gains and torque limit; that is
+what a configuration holds. The *single* template has one joint per part, as game engines do. Its
+primary axis has a lower and an upper limit and a drive; its other axes have one symmetric limit
+each and share one drive.
 
-Single to multiple loses nothing: a symmetric limit L becomes [-L, L], and the common drive is
-given to each of those axes. Multiple to single must choose:
+Single to multiple loses nothing: a symmetric limit L becomes [-L, L], and the shared drive is given
+to each of those axes. Multiple to single must choose:
 
 - a symmetric limit is the greater of |low| and |high|, so every pose stays possible;
-- the common drive is that of the stiffest axis (greatest kp, then kd, then torque; then the first
-  in the part's order), taken whole, because a kp belongs to the kd it was tuned with.
+- the shared drive is that of the stiffest axis (greatest kp, then kd, then torque; then the first
+  in the part's order), taken as a whole, because a kp belongs to the kd it was tuned with.
 
 An edit of the single template changes in the multiple one only what was edited. A new symmetric
-limit goes to the side it came from, and the other side stays as it was; where both sides are
-equally far, it goes to both. A new common drive goes to every axis that shares it.
+limit replaces the limit that it was taken from, and the other one stays unchanged; where both are
+equally far from the T-pose, it replaces both. A new shared drive goes to every axis that shares it.
 
-Source: Karas (2020), sections 2.2.3, 4.2.3 and 6.3, which leaves the common drive and equal sides
-open ("a compromise", chapter 8); those rules, and which axis is primary, are ours.
+Source: Karas (2020), sections 2.2.3, 4.2.3 and 6.3, which leaves the shared drive and equal sides
+open ("a compromise", chapter 8); those rules, and the choice of the primary axis, are ours.
 """
 
 from collections.abc import Iterable, Mapping
@@ -30,17 +30,17 @@ from app.science.avatar.configuration.axis_settings import (
     AvatarSettingsError,
     AxisSettings,
     degrees_of,
-    settled_angle,
+    rounded_angle,
 )
 from app.science.avatar.configuration.configuration import Configuration
 
-# The axis of a part's greatest and least symmetric movement; X where nothing is said.
+# The axis with the greatest and least symmetric range of a part; X for parts that are absent here.
 _PRIMARY_LETTERS = {"UpperArm": "Y", "LowerArm": "Y", "Hand": "Z"}
 
 
 @dataclass(frozen=True)
 class Drive:
-    """Spring, damper and greatest torque; units and ranges as in `AxisSettings`."""
+    """Stiffness, damping and torque limit of a drive; units and ranges as in `AxisSettings`."""
 
     kp: float
     kd: float
@@ -49,18 +49,19 @@ class Drive:
 
 @dataclass(frozen=True)
 class SingleJoint:
-    """The one joint of a body part.
+    """The one joint of a body part in the single template.
 
     Attributes:
         part: HumanBodyBones name of a driven part.
-        low_rad: least angle about the primary axis.
-        high_rad: greatest angle about it.
+        low_rad: lower limit about the primary axis.
+        high_rad: upper limit about the primary axis.
         drive: of the primary axis.
         limits_rad: other axis -> its symmetric limit, zero or more, in the part's order.
-        shared_drive: of the other axes; None where there are none.
+        shared_drive: of the other axes; None if there are none.
 
     Raises:
-        AvatarSettingsError: a part that is not driven, other axes than the part's, no limit.
+        AvatarSettingsError: the part is not driven, the axes are not the part's, or a limit is
+            invalid.
     """
 
     part: str
@@ -76,13 +77,13 @@ class SingleJoint:
         if problem is not None:
             raise AvatarSettingsError((problem,))
         for name in ("low_rad", "high_rad"):
-            object.__setattr__(self, name, settled_angle(getattr(self, name)))
-        limits = {name: settled_angle(self.limits_rad[name]) for name in others}
+            object.__setattr__(self, name, rounded_angle(getattr(self, name)))
+        limits = {name: rounded_angle(self.limits_rad[name]) for name in others}
         object.__setattr__(self, "limits_rad", MappingProxyType(limits))
 
 
 def primary_axis(part: str) -> str:
-    """The axis with limits and a drive of its own; raises AvatarSettingsError."""
+    """Return the axis with its own limits and drive; raises AvatarSettingsError."""
     axes = AXES_OF.get(part, ())
     if not axes:
         driven = [name for name in PART_NAMES if AXES_OF[name]]
@@ -97,20 +98,20 @@ def primary_axis(part: str) -> str:
                 ),
             )
         )
-    bare = part.removeprefix("Left").removeprefix("Right")
-    letter = _PRIMARY_LETTERS.get(bare, "X")
+    base = part.removeprefix("Left").removeprefix("Right")
+    letter = _PRIMARY_LETTERS.get(base, "X")
     # Fingers have no X; their first axis bends them.
     return next((axis.name for axis in axes if axis.letter == letter), axes[0].name)
 
 
 def shared_axes(part: str) -> tuple[str, ...]:
-    """The axes with a symmetric limit and a drive in common; raises AvatarSettingsError."""
+    """Return the axes with symmetric limits and a shared drive; raises AvatarSettingsError."""
     primary = primary_axis(part)
     return tuple(axis.name for axis in AXES_OF[part] if axis.name != primary)
 
 
 def to_multiple(joint: SingleJoint) -> dict[str, AxisSettings]:
-    """The joint as one joint an axis; raises AvatarSettingsError where a value cannot be."""
+    """Return the settings of each axis of a joint; raises AvatarSettingsError."""
     settings = {
         primary_axis(joint.part): _driven(joint.drive, joint.low_rad, joint.high_rad),
     }
@@ -121,7 +122,7 @@ def to_multiple(joint: SingleJoint) -> dict[str, AxisSettings]:
 
 
 def to_single(part: str, axes: Mapping[str, AxisSettings]) -> SingleJoint:
-    """The part's axes as one joint. `axes` has all of them, others are not read."""
+    """Return the part's axes as one joint; `axes` must have all of them and may have others."""
     primary = axes[primary_axis(part)]
     shared = [axes[name] for name in shared_axes(part)]
     return SingleJoint(
@@ -138,40 +139,41 @@ def to_single(part: str, axes: Mapping[str, AxisSettings]) -> SingleJoint:
 
 
 def edited(joint: SingleJoint, axes: Mapping[str, AxisSettings]) -> dict[str, AxisSettings]:
-    """What the part's axes become when its single joint is edited to `joint`.
+    """Return the part's axes after its single joint is edited to `joint`.
 
     Args:
-        joint: as it is to be.
-        axes: the part's axes as they are, from which the joint was seen.
+        joint: the single joint after the edit.
+        axes: the part's axes before the edit.
 
     Raises:
-        AvatarSettingsError: a value that cannot be.
+        AvatarSettingsError: a value is invalid.
     """
-    seen = to_single(joint.part, axes)
+    previous = to_single(joint.part, axes)
     primary = primary_axis(joint.part)
     changed: dict[str, AxisSettings] = {
         primary: _driven(joint.drive, joint.low_rad, joint.high_rad)
     }
     for name in shared_axes(joint.part):
         settings = axes[name]
-        if joint.limits_rad[name] != seen.limits_rad[name]:
+        if joint.limits_rad[name] != previous.limits_rad[name]:
             settings = _with_limit(settings, joint.limits_rad[name])
-        if joint.shared_drive is not None and joint.shared_drive != seen.shared_drive:
+        if joint.shared_drive is not None and joint.shared_drive != previous.shared_drive:
             settings = _driven(joint.shared_drive, settings.low_rad, settings.high_rad)
         changed[name] = settings
     return {axis.name: changed[axis.name] for axis in AXES_OF[joint.part]}
 
 
 def single_template(configuration: Configuration) -> dict[str, SingleJoint]:
-    """Every driven part of the configuration as one joint."""
+    """Return every driven part of the configuration as one joint."""
     return {part: to_single(part, configuration.axes) for part in configuration.parts}
 
 
 def with_single_template(
     configuration: Configuration, joints: Iterable[SingleJoint]
 ) -> Configuration:
-    """The configuration with single joints edited; parts that are not named, or that the model
-    lacks, stay as they are. Raises AvatarSettingsError.
+    """Return the configuration with single joints edited; raises AvatarSettingsError.
+
+    Parts that are not named, or that the model lacks, stay unchanged.
     """
     axes = dict(configuration.axes)
     present = set(configuration.parts)
@@ -186,7 +188,7 @@ def _with_limit(settings: AxisSettings, limit: float) -> AxisSettings:
     if low == -high:
         low, high = -limit, limit
     elif abs(low) > abs(high):
-        # A range on one side of the T-pose must not turn inside out.
+        # The lower limit of a range on one side of the T-pose must stay below the upper one.
         low, high = -limit, max(high, -limit)
     else:
         low, high = min(low, limit), limit
@@ -210,18 +212,18 @@ def _joint_problem(joint: SingleJoint, others: tuple[str, ...]) -> AvatarProblem
     if set(joint.limits_rad) != set(others) or (joint.shared_drive is None) != (not others):
         return AvatarProblem(
             "limits_rad",
-            f"{joint.part} shares a drive and symmetric limits among other axes than these.",
+            f"The given limits do not match the axes of {joint.part} that share a drive.",
             value=sorted(joint.limits_rad),
             valid=list(others),
             remedy="Give one limit for each of these axes, and a shared drive if there is one.",
         )
-    below = next((name for name in others if not joint.limits_rad[name] >= 0.0), None)
-    if below is None:
+    negative = next((name for name in others if not joint.limits_rad[name] >= 0.0), None)
+    if negative is None:
         return None
     return AvatarProblem(
-        f"limits_rad.{below}",
-        f"A symmetric limit of {degrees_of(joint.limits_rad[below]):g} deg is not one.",
-        value=degrees_of(joint.limits_rad[below]),
+        f"limits_rad.{negative}",
+        f"A symmetric limit cannot be {degrees_of(joint.limits_rad[negative]):g} deg.",
+        value=degrees_of(joint.limits_rad[negative]),
         valid="zero or more",
-        remedy="Give how far it turns either way.",
+        remedy="Give the angle by which it turns in either direction.",
     )

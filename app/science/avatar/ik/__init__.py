@@ -1,4 +1,4 @@
-"""Inverse kinematics: from tracked head, hands, waist and shins to the angles of the avatar.
+"""Inverse kinematics: compute the avatar's angles from tracked head, hands, waist and shins.
 
 Loading this package loads MuJoCo.
 """

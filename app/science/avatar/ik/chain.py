@@ -1,8 +1,8 @@
-"""The avatar's model as inverse kinematics sees it: hips that can be placed, hinges, tracked parts.
+"""Prepare the avatar's model for inverse kinematics: hips that can be positioned, hinges, goals.
 
-The hips are a mocap body or hang on a free joint, as `mjcf.ModelOptions.hips` says; both are placed
-here by hand. Of the hinges only those can move a tracked part that lie between it and the hips;
-fingers, feet and toes stay at rest.
+The hips are a mocap body or are attached to a free joint, as `mjcf.ModelOptions.hips` defines; in
+both cases their pose is set here directly. A tracked part is moved only by the hinges between it
+and the hips; fingers, feet and toes stay at rest.
 """
 
 import mujoco
@@ -18,13 +18,13 @@ _BODY = mujoco.mjtObj.mjOBJ_BODY
 
 
 class Chain:
-    """A model with data of its own, which no simulation uses.
+    """A model with its own data, separate from that of any simulation.
 
     Attributes:
         axis_names: every hinge, in the order of the model.
         low_rad, high_rad: their limits, shape (axes,); infinite where there are none.
         moving: indices of the hinges that move a tracked part.
-        moves: (goals, moving) which of these moves which goal; the hips' row is empty.
+        moves: (goals, moving) whether each of these moves each goal; the hips' row is all false.
         trunk: lengths for estimating the hips.
 
     Raises:
@@ -40,8 +40,13 @@ class Chain:
         limited = model.jnt_range[hinges, 0] < model.jnt_range[hinges, 1]
         self.low_rad = np.where(limited, model.jnt_range[hinges, 0], -np.inf)
         self.high_rad = np.where(limited, model.jnt_range[hinges, 1], np.inf)
-        above = [_above(model, body) for body in self._bodies]
-        moves = np.array([[model.jnt_bodyid[joint] in way for joint in hinges] for way in above])
+        ancestors_of_goals = [_ancestors(model, body) for body in self._bodies]
+        moves = np.array(
+            [
+                [model.jnt_bodyid[joint] in ancestors for joint in hinges]
+                for ancestors in ancestors_of_goals
+            ]
+        )
         self.moving = np.flatnonzero(moves.any(axis=0))
         self.moves: npt.NDArray[np.bool_] = moves[:, self.moving]
         self._columns = model.jnt_dofadr[hinges][self.moving]
@@ -50,7 +55,7 @@ class Chain:
         self.trunk = self._trunk()
 
     def place(self, hips_m: FloatArray, hips: FloatArray, angles_rad: FloatArray) -> None:
-        """Put the body somewhere: hips (3,) and (4,) in the world, every hinge's angle (axes,)."""
+        """Set the pose: hips (3,) and (4,) in the world, every hinge's angle (axes,)."""
         data = self.data
         data.qpos[self._at] = angles_rad
         if self._free is None:
@@ -61,25 +66,28 @@ class Chain:
         mujoco.mj_kinematics(self.model, data)
 
     def prepare_jacobians(self) -> None:
-        """After `place`, before `jacobian`."""
+        """Compute what `jacobian` needs; to be called after each `place`."""
         mujoco.mj_comPos(self.model, self.data)
 
     def position_m(self, goal: int) -> FloatArray:
-        """Where a tracked part's joint is in the world, (3,)."""
+        """Return the position of a tracked part's joint in the world, (3,)."""
         position: FloatArray = self.data.xpos[self._bodies[goal]]
         return position
 
     def rotation(self, goal: int) -> FloatArray:
-        """Its orientation world_from_part, (4,) wxyz."""
+        """Return a tracked part's orientation world_from_part, (4,) wxyz."""
         rotation: FloatArray = self.data.xquat[self._bodies[goal]]
         return rotation
 
     def jacobian(self, goal: int) -> FloatArray:
-        """Its velocity and angular velocity in the world per moving hinge, (6, moving)."""
+        """Return the Jacobian of a tracked part, (6, moving): velocity over angular velocity.
+
+        Both are in the world.
+        """
         linear, angular = self._jacobian
         mujoco.mj_jacBody(self.model, self.data, linear, angular, self._bodies[goal])
-        found: FloatArray = self._jacobian.reshape(6, -1)[:, self._columns]
-        return found
+        result: FloatArray = self._jacobian.reshape(6, -1)[:, self._columns]
+        return result
 
     def _trunk(self) -> Trunk:
         upright = np.array((1.0, 0.0, 0.0, 0.0))
@@ -103,31 +111,29 @@ def _length(v: FloatArray) -> float:
 
 
 def _body(model: mujoco.MjModel, part: str) -> int:
-    found = int(mujoco.mj_name2id(model, _BODY, part))
-    if found < 0:
+    result = int(mujoco.mj_name2id(model, _BODY, part))
+    if result < 0:
         raise IkError(
-            f"The model has no {part}: inverse kinematics needs {', '.join(GOAL_PARTS)} and what"
-            " lies between them."
+            f"The model has no {part}: inverse kinematics needs {', '.join(GOAL_PARTS)} and the"
+            " parts between them."
         )
-    return found
+    return result
 
 
-def _above(model: mujoco.MjModel, body: int) -> set[int]:
-    way: set[int] = set()
+def _ancestors(model: mujoco.MjModel, body: int) -> set[int]:
+    ancestors: set[int] = set()
     while body > 0:
-        way.add(body)
+        ancestors.add(body)
         body = int(model.body_parentid[body])
-    return way
+    return ancestors
 
 
 def _root(model: mujoco.MjModel, hips: int) -> tuple[int, int | None]:
-    """Index of the hips' mocap body, and address of their free joint if they have one."""
+    """Return the index of the hips' mocap body, and the address of their free joint or None."""
     mocap = int(model.body_mocapid[hips])
     for joint in range(model.njnt):
         if model.jnt_bodyid[joint] == hips and model.jnt_type[joint] == _FREE:
             return mocap, int(model.jnt_qposadr[joint])
     if mocap < 0:
-        raise IkError(
-            "The model's Hips are fixed: they must be a mocap body or hang on a free joint."
-        )
+        raise IkError("The model's Hips are fixed: they must be a mocap body or have a free joint.")
     return mocap, None

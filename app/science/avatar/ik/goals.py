@@ -1,8 +1,8 @@
-"""What inverse kinematics has to reach: the tracked parts of a body at one moment.
+"""Define the goals of inverse kinematics: the poses of a body's tracked parts at one moment.
 
-A goal is the place of a part's joint and the part's orientation in the world (x right, y up; in the
-T-pose, facing -z, every part's frame is parallel to the world). What lies between a tracker and the
-joint of the part that wears it is calibrated before, where the tracker is read.
+A goal is the position of a part's joint and the part's orientation in the world (x right, y up; in
+the T-pose, facing -z, every part's frame is parallel to the world). The offset between a tracker
+and the joint of the part that wears it is calibrated beforehand, where the tracker is read.
 """
 
 from collections.abc import Mapping, Sequence
@@ -24,20 +24,20 @@ _UNIT_WITHIN = 1e-3
 
 
 class IkError(ValueError):
-    """Goals, or a model, that inverse kinematics cannot work with."""
+    """Goals or a model are unsuitable for inverse kinematics."""
 
 
 @dataclass(frozen=True, eq=False)
 class Goals:
-    """Where the tracked parts are, in the world, in the order of `GOAL_PARTS`.
+    """Poses of the tracked parts in the world, in the order of `GOAL_PARTS`.
 
     Attributes:
         positions_m: (6, 3).
         rotations: (6, 4) wxyz, world_from_part, unit.
-        tracked: (6,) what is tracked at this moment; the other rows are not read.
+        tracked: (6,) whether each part is tracked at this moment; rows of the others are not read.
 
     Raises:
-        IkError: a wrong shape, a number that is not finite, a quaternion that is not unit.
+        IkError: a wrong shape, a number that is not finite, or a quaternion that is not unit.
     """
 
     positions_m: FloatArray
@@ -61,7 +61,7 @@ def goals_of(
     """Return goals from part -> (position in metres, rotation wxyz); absent parts are not tracked.
 
     Raises:
-        IkError: a part that cannot be tracked, or see `Goals`.
+        IkError: a part that cannot be tracked, or an invalid value as for `Goals`.
     """
     positions, rotations = np.zeros((_COUNT, 3)), np.zeros((_COUNT, 4))
     tracked = np.zeros(_COUNT, dtype=np.bool_)
@@ -78,12 +78,12 @@ def goals_of(
 def _check(part: str, position: FloatArray, rotation: FloatArray) -> None:
     if not np.isfinite(position).all():
         raise IkError(
-            f"The goal of {part} lies at {position.tolist()}: mark a part as not tracked where its"
-            " position is not known."
+            f"The goal of {part} lies at {position.tolist()}: mark a part as not tracked if its"
+            " position is unknown."
         )
     norm = float(np.sqrt(rotation @ rotation))
     if not abs(norm - 1.0) <= _UNIT_WITHIN:
         raise IkError(
-            f"The rotation of {part}, {rotation.tolist()}, is no unit quaternion (w, x, y, z): its"
-            f" length is {norm:g}, not 1."
+            f"The rotation of {part}, {rotation.tolist()}, is not a unit quaternion (w, x, y, z):"
+            f" its length is {norm:g}, not 1."
         )

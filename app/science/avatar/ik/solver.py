@@ -1,8 +1,8 @@
-"""Inverse kinematics by damped least squares, on the very model that is simulated.
+"""Solve inverse kinematics by damped least squares, on the model that is simulated.
 
-Wanted are the hinge angles q that bring the tracked parts to their goals. With e_g the goal's error
-of position (metres) and of rotation (rotation vector from the part to its goal, radians), both in
-the world, and J_g the part's Jacobian (MuJoCo's `mj_jacBody`), a step x from q minimises
+The unknowns are the hinge angles q that bring the tracked parts to their goals. With e_g the goal's
+error of position (metres) and of rotation (rotation vector from the part to its goal, radians),
+both in the world, and J_g the part's Jacobian (MuJoCo's `mj_jacBody`), a step x from q minimises
 
     sum over goals and both kinds  w^2 |J_g x - e_g|^2
         + w_rest^2 |q + x - q_rest|^2  +  |D x|^2     with  low <= q + x <= high,
@@ -13,18 +13,19 @@ whose normal equations are
 
 The rest pose decides what the goals leave open (there are 41 angles and 30 numbers to reach). The
 damping D^2 = CALM + DAMPING E is diagonal: E, for each angle, is the squared weighted error of the
-goals that it moves. It keeps limbs calm that stretch towards what is out of reach, and errors of
-one limb do not slow the others; the constant, ten times the rest pose's pull, lets angles that the
-goals leave open go to rest within some frames instead of at once. Neither moves the solution.
-Limits are kept by the step itself, so the other joints take over (see `bounded_step`).
+goals that it moves. It steadies limbs that stretch towards goals out of reach, and errors of one
+limb do not slow the others; the constant, ten times the weight of the rest pose, lets angles that
+the goals leave open return to rest over several frames instead of in one. Neither changes the
+solution. The step itself respects the limits, so the other joints compensate (see `bounded_step`).
 
-Two steps a frame, each frame starting where the last one ended, follow a moving person. An angle
-that moves no tracked goal stays where it is, so a limb whose tracker is lost is held.
+Two steps per frame, each frame starting where the last one ended, are enough to follow a moving
+person. An angle that moves no tracked goal stays where it is, so a limb whose tracker is lost keeps
+its pose.
 
-The hips are where the waist tracker is. Without one their place and orientation are six unknowns
-more, pulled to the estimate of `hips` with the weight of the rest pose. They begin at the estimate,
-and again where it is further away than it can be wrong: somebody was teleported. With neither waist
-nor head they stay.
+The hips are where the waist tracker is. Without one their position and orientation are six more
+unknowns, drawn to the estimate of `hips` with the weight of the rest pose. They start at the
+estimate, and restart there if the distance is larger than its error can be, as after a teleport.
+With neither waist nor head tracked they stay.
 
 Source: Wampler (1986), IEEE Trans. SMC 16(1), 93-101; Buss (2004), "Introduction to inverse
 kinematics with Jacobian transpose, pseudoinverse and damped least squares methods"; damping by the
@@ -53,7 +54,7 @@ _TINY = 1e-12
 def rotation_between(current: Quaternion, goal: Quaternion) -> Vector:
     """Return the rotation vector, in the world, that turns `current` into `goal`; at most pi long.
 
-    Both are world_from_part and need not be quite unit.
+    Both are world_from_part and need only approximately unit length.
     """
     w, x, y, z = current
     dw, dx, dy, dz = q_multiply(goal, (w, -x, -y, -z))
@@ -75,8 +76,8 @@ def turned(current: Quaternion, by: Vector) -> Quaternion:
 
 
 KNEE_DEG, ELBOW_DEG = 25.0, 30.0
-# Knees and elbows are bent a little. A straight limb cannot get shorter by a small turn of its
-# joint, so from the T-pose a solver that looks at small turns only finds no way to bend it.
+# Knees and elbows are slightly bent. A small turn of its joint does not shorten a straight limb, so
+# a solver that only considers small turns cannot bend it from the T-pose.
 REST_POSE_RAD: Mapping[str, float] = MappingProxyType(
     {
         axis: radians(angle)
@@ -84,7 +85,7 @@ REST_POSE_RAD: Mapping[str, float] = MappingProxyType(
         for axis, angle in ((f"{side}LowerLegX", KNEE_DEG), (f"{side}LowerArmY", ELBOW_DEG))
     }
 )
-"""Axis -> its angle at rest; every other axis rests at zero, as in the T-pose."""
+"""Rest angles by axis; every other axis rests at zero, as in the T-pose."""
 
 
 CALM, DAMPING = 0.1, 0.5
@@ -94,7 +95,7 @@ _ROOT_UNKNOWNS = 6
 
 @dataclass(frozen=True)
 class Weights:
-    """What matters how much: per metre, per radian, and per radian from the rest pose."""
+    """Weights of the errors: per metre, per radian, and per radian from the rest pose."""
 
     position: float = 10.0
     rotation: float = 1.0
@@ -108,8 +109,8 @@ class Solution:
     Attributes:
         angles_rad: (axes,) every hinge of the model in its order; see `axis_names`.
         hips_position_m, hips_rotation: (3,) and (4,) wxyz, world_from_hips.
-        position_errors_m, rotation_errors_rad: (6,) how far each part is from its goal, in the
-            order of `GOAL_PARTS`; NaN where it is not tracked.
+        position_errors_m, rotation_errors_rad: (6,) distance of each part from its goal, in the
+        order of `GOAL_PARTS`; NaN where it is not tracked.
     """
 
     angles_rad: FloatArray
@@ -124,13 +125,13 @@ class InverseKinematics:
 
     Args:
         model: an avatar's, as `mjcf.build_mjcf` writes it, with any scene.
-        rest_rad: axis -> preferred angle; others rest at zero, and axes the model lacks are passed
-            over.
+        rest_rad: axis -> preferred angle; others rest at zero, and axes that the model lacks are
+            ignored.
         weights: of the goals and of the rest pose.
-        steps: Gauss-Newton steps a frame.
+        steps: Gauss-Newton steps per frame.
 
     Raises:
-        IkError: the model is not an avatar's, or `rest_rad` names an axis that is none.
+        IkError: the model is not an avatar's, or `rest_rad` names an unknown axis.
     """
 
     def __init__(
@@ -146,8 +147,8 @@ class InverseKinematics:
         unknown = sorted(set(rest_rad) - set(AXIS_NAMES))
         if unknown:
             raise IkError(
-                f"There is no axis {unknown[0]!r} to rest: name it after its part and X, Y or Z, as"
-                " in LeftLowerArmY."
+                f"There is no axis {unknown[0]!r} for the rest pose: name it after its part and X,"
+                " Y or Z, as in LeftLowerArmY."
             )
         rest = np.array([rest_rad.get(name, 0.0) for name in chain.axis_names])
         self._rest = np.clip(rest, chain.low_rad, chain.high_rad)
@@ -156,14 +157,14 @@ class InverseKinematics:
 
     @property
     def axis_names(self) -> tuple[str, ...]:
-        """The hinges whose angles a solution gives, in its order."""
+        """Return the hinges whose angles a solution contains, in its order."""
         return self._chain.axis_names
 
     def reset(self) -> None:
-        """Forget the last frame: start again from the rest pose, hips at the origin."""
+        """Forget the last frame: restart from the rest pose with the hips at the origin."""
         self._angles = self._rest.copy()
         self._hips_m, self._hips = np.zeros(3), np.array((1.0, 0.0, 0.0, 0.0))
-        self._begun = False
+        self._has_hips = False
 
     def solve(self, goals: Goals) -> Solution:
         """Return the pose of the next frame."""
@@ -175,28 +176,33 @@ class InverseKinematics:
         return self._solution(goals)
 
     def _set_hips(self, goals: Goals) -> tuple[FloatArray, Quaternion] | None:
-        """Take the hips from the waist; else return where they are estimated to be, if possible."""
+        """Set the hips to the waist tracker's pose, or return their estimate if it is not tracked.
+
+        Return None if there is no estimate either.
+        """
         if goals.tracked[HIPS]:
             self._hips_m = goals.positions_m[HIPS].copy()
             self._hips = goals.rotations[HIPS] / np.sqrt(np.sum(goals.rotations[HIPS] ** 2))
-            self._begun = True
+            self._has_hips = True
             return None
         if not goals.tracked[HEAD]:
             return None
-        both = goals.tracked[LEFT_SHIN] and goals.tracked[RIGHT_SHIN]
-        shins = (_tracked(goals, LEFT_SHIN), _tracked(goals, RIGHT_SHIN)) if both else None
+        both_shins = goals.tracked[LEFT_SHIN] and goals.tracked[RIGHT_SHIN]
+        shins = (_tracked(goals, LEFT_SHIN), _tracked(goals, RIGHT_SHIN)) if both_shins else None
         place, turn = estimated_hips(self._chain.trunk, _tracked(goals, HEAD), shins)
         estimate = np.array(place)
-        if not self._begun or self._far_from(estimate, turn):
+        if not self._has_hips or self._far_from(estimate, turn):
             self._hips_m, self._hips = estimate, np.array(turn)
-        self._begun = True
+        self._has_hips = True
         return estimate, turn
 
     def _far_from(self, hips_m: FloatArray, hips: Quaternion) -> bool:
-        """Whether somebody has been carried elsewhere: further than any estimate is wrong."""
-        off = hips_m - self._hips_m
+        """Return whether the hips are farther from the estimate than its error can be."""
+        offset = hips_m - self._hips_m
         turn = rotation_between(_quaternion(self._hips), hips)
-        return bool(np.sqrt(np.sum(off**2)) > FAR_M or np.sqrt(np.sum(np.square(turn))) > FAR_RAD)
+        return bool(
+            np.sqrt(np.sum(offset**2)) > FAR_M or np.sqrt(np.sum(np.square(turn))) > FAR_RAD
+        )
 
     def _step(
         self, goals: Goals, rows: list[int], estimate: tuple[FloatArray, Quaternion] | None
@@ -216,10 +222,10 @@ class InverseKinematics:
         if estimate is not None:
             rest[:3] = estimate[0] - self._hips_m
             rest[3:6] = rotation_between(_quaternion(self._hips), estimate[1])
-        pull = self._weights.rest**2
+        rest_weight = self._weights.rest**2
         hessian = jacobian.T @ jacobian
-        hessian[np.diag_indices(count)] += pull + damping
-        step = bounded_step(hessian, jacobian.T @ error + pull * rest, low, high)
+        hessian[np.diag_indices(count)] += rest_weight + damping
+        step = bounded_step(hessian, jacobian.T @ error + rest_weight * rest, low, high)
         self._angles[at] = np.clip(angles + step[extra:], self._low, self._high)
         if estimate is not None:
             self._hips_m = self._hips_m + step[:3]
@@ -228,25 +234,25 @@ class InverseKinematics:
     def _system(
         self, goals: Goals, rows: list[int], extra: int
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Weighted Jacobian (6 goals, unknowns), error (6 goals,), damping (unknowns,)."""
+        """Return weighted Jacobian (6 goals, unknowns), error (6 goals,), damping (unknowns,)."""
         chain, weights = self._chain, self._weights
         count = extra + len(chain.moving)
         jacobian, error = np.zeros((6 * len(rows), count)), np.empty(6 * len(rows))
         damping = np.full(count, CALM)
         for index, row in enumerate(rows):
-            here = slice(6 * index, 6 * index + 6)
+            block = slice(6 * index, 6 * index + 6)
             position = chain.position_m(row)
-            error[here][:3] = goals.positions_m[row] - position
-            error[here][3:] = rotation_between(
+            error[block][:3] = goals.positions_m[row] - position
+            error[block][3:] = rotation_between(
                 _quaternion(chain.rotation(row)), _quaternion(goals.rotations[row])
             )
-            jacobian[here, extra:] = chain.jacobian(row)
+            jacobian[block, extra:] = chain.jacobian(row)
             if extra:
-                jacobian[here, :extra] = _rigid(position - self._hips_m)
+                jacobian[block, :extra] = _rigid(position - self._hips_m)
             for part, weight in ((slice(0, 3), weights.position), (slice(3, 6), weights.rotation)):
-                jacobian[here][part] *= weight
-                error[here][part] *= weight
-            squared = DAMPING * float(np.sum(error[here] ** 2))
+                jacobian[block][part] *= weight
+                error[block][part] *= weight
+            squared = DAMPING * float(np.sum(error[block] ** 2))
             damping[:extra] += squared
             damping[extra:][chain.moves[row]] += squared
         return jacobian, error, damping
@@ -254,11 +260,11 @@ class InverseKinematics:
     def _solution(self, goals: Goals) -> Solution:
         positions, rotations = np.full(len(goals.tracked), np.nan), np.full(6, np.nan)
         for row in np.flatnonzero(goals.tracked).tolist():
-            off = goals.positions_m[row] - self._chain.position_m(row)
+            offset = goals.positions_m[row] - self._chain.position_m(row)
             turn = rotation_between(
                 _quaternion(self._chain.rotation(row)), _quaternion(goals.rotations[row])
             )
-            positions[row] = np.sqrt(np.sum(off**2))
+            positions[row] = np.sqrt(np.sum(offset**2))
             rotations[row] = np.sqrt(np.sum(np.square(turn)))
         return Solution(
             self._angles.copy(), self._hips_m.copy(), self._hips.copy(), positions, rotations
@@ -266,7 +272,7 @@ class InverseKinematics:
 
 
 def _rigid(arm: FloatArray) -> npt.NDArray[np.float64]:
-    """How a point at `arm` from the hips moves with them, (6, 6)."""
+    """Return the (6, 6) Jacobian of a point at `arm` from the hips for movements of the hips."""
     x, y, z = arm.tolist()
     matrix = np.eye(6)
     matrix[:3, 3:] = ((0.0, z, -y), (-z, 0.0, x), (y, -x, 0.0))

@@ -106,7 +106,7 @@ def avatar_model(
     )
     colliders = Colliders(
         {part: configuration.collider_of(part) for part in body.parts},
-        both=switchable_colliders or configuration.wants_pieces,
+        both=switchable_colliders or configuration.uses_pieces,
     )
     mjcf = build_mjcf(
         body, masses, configuration.in_force, scene=scene, options=options, colliders=colliders

@@ -1,7 +1,8 @@
-"""Moving the model: the avatar's state, contacts and switches.
+"""Simulate the avatar: its state, contacts and switches.
 
 `PhysicsAvatar` steps one loaded model; `Follower` makes it follow a participant's poses, and
-`SurfaceTouches` reports which boxes it touches. Making one loads MuJoCo and the compiler.
+`SurfaceTouches` reports which boxes it touches. Creating a `PhysicsAvatar` loads MuJoCo and the
+compiler.
 """
 
 from app.science.avatar.simulation.contacts import Contact

@@ -1,4 +1,4 @@
-"""What the avatar touches, with which force."""
+"""Read what the avatar touches and with which force."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -14,15 +14,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Contact:
-    """One touch of a body part.
+    """One contact of a body part with the scene or with another part.
 
     Attributes:
         part: HumanBodyBones name.
         other: geom of the scene, such as `hand/2/left` or `floor`, or another body part.
-        force_n: force across the surface, zero or more.
+        force_n: force normal to the surface, zero or more.
         friction_n: force along the surface.
-        penetration_m: how deep the two are in each other; below zero they do not touch yet.
-        place_m: where, in the world.
+        penetration_m: depth of overlap; below zero the two do not touch yet.
+        place_m: position in the world.
     """
 
     part: str
@@ -34,27 +34,27 @@ class Contact:
 
 
 def read_contacts(model: "mujoco.MjModel", data: "mujoco.MjData") -> tuple[Contact, ...]:
-    """Return the touches of the last step."""
+    """Return the body's contacts in the last step."""
     import mujoco
 
-    found: list[Contact] = []
+    contacts: list[Contact] = []
     force = np.empty(6)
     for row in range(data.ncon):
         contact = data.contact[row]
-        first, second = (_told(model, int(geom)) for geom in contact.geom)
+        first, second = (_name(model, int(geom)) for geom in contact.geom)
         if first not in PARENT_OF:
             first, second = second, first
         if first not in PARENT_OF:
             continue
         mujoco.mj_contactForce(model, data, row, force)
         x, y, z = contact.pos.tolist()
-        along = float(np.hypot(force[1], force[2]))
-        found.append(
-            Contact(first, second, float(force[0]), along, -float(contact.dist), (x, y, z))
+        friction = float(np.hypot(force[1], force[2]))
+        contacts.append(
+            Contact(first, second, float(force[0]), friction, -float(contact.dist), (x, y, z))
         )
-    return tuple(found)
+    return tuple(contacts)
 
 
-def _told(model: "mujoco.MjModel", geom: int) -> str:
+def _name(model: "mujoco.MjModel", geom: int) -> str:
     body = model.geom_bodyid[geom]
     return str(model.geom(geom).name if body == 0 else model.body(body).name)

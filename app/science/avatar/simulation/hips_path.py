@@ -1,6 +1,7 @@
-"""How the avatar's hips follow the participant's: in straight lines, and at once when they jump.
+"""Move the avatar's hips with the participant's: in straight lines, or immediately after a jump.
 
-Plain floats: this runs at every step, and arrays of three or four numbers are slower by far.
+Plain floats, since this runs at every step and NumPy is much slower for arrays of three or four
+numbers.
 """
 
 from math import acos, dist, isfinite, pi, sqrt
@@ -15,81 +16,87 @@ if TYPE_CHECKING:
 TELEPORT_M = 0.3
 TELEPORT_RAD = pi / 3
 _UNIT_TOLERANCE = 1e-3
-_Place = tuple[Vector, Quaternion]
+_Pose = tuple[Vector, Quaternion]
 
 
 class HipsPath:
-    """The hips' place, (3,) and (4,) wxyz in the world: where they are, and where they go next."""
+    """The current and the next pose of the hips, (3,) and (4,) wxyz in the world."""
 
     def __init__(self, data: "mujoco.MjData", table: HingeTable) -> None:
         self._data, self._table = data, table
         self._position = data.mocap_pos[table.mocap]
         self._rotation = data.mocap_quat[table.mocap]
-        self._from = self._to = _place(self._position, self._rotation) or _ORIGIN
+        self._previous = self._next = _pose(self._position, self._rotation) or _ORIGIN
         self.teleports = 0
 
     def go_to(self, position_m: FloatArray, rotation: FloatArray) -> bool:
-        """Go there until the next frame, or at once where it is far; False if it is no place."""
-        place = _place(position_m, rotation)
-        if place is None:
+        """Set the pose to reach by the next frame; return False if it is invalid.
+
+        Hips that would move too far are teleported there immediately.
+        """
+        pose = _pose(position_m, rotation)
+        if pose is None:
             return False
-        if dist(place[0], self._from[0]) > TELEPORT_M or _turned(place, self._from) > TELEPORT_RAD:
-            self._be_at(place)
+        if (
+            dist(pose[0], self._previous[0]) > TELEPORT_M
+            or _angle_between(pose, self._previous) > TELEPORT_RAD
+        ):
+            self._jump_to(pose)
         else:
-            self._to = place
+            self._next = pose
         return True
 
     def teleport(self, position_m: FloatArray, rotation: FloatArray) -> None:
-        """Be there at once and at rest; raises SimulationError."""
-        place = _place(position_m, rotation)
-        if place is None:
+        """Put the hips into a pose immediately and at rest; raises SimulationError."""
+        pose = _pose(position_m, rotation)
+        if pose is None:
             raise SimulationError(f"The hips cannot be at {position_m}, turned by {rotation}.")
-        self._be_at(place)
+        self._jump_to(pose)
 
     def go(self, fraction: float) -> None:
-        """Be on the way: 0 where the last frame ended, 1 where this one ends."""
-        if self._from == self._to:
+        """Interpolate the pose: fraction 0 is that of the last frame, 1 that of this one."""
+        if self._previous == self._next:
             return
         if fraction >= 1.0:
-            self._from = self._to
-            self._position[:], self._rotation[:] = self._to
+            self._previous = self._next
+            self._position[:], self._rotation[:] = self._next
             return
-        (x, y, z), turn = self._from
-        (to_x, to_y, to_z), turned = self._to
+        (x, y, z), turn = self._previous
+        (to_x, to_y, to_z), to_turn = self._next
         self._position[0] = x + fraction * (to_x - x)
         self._position[1] = y + fraction * (to_y - y)
         self._position[2] = z + fraction * (to_z - z)
-        self._rotation[:] = q_blend(turn, turned, fraction)
+        self._rotation[:] = q_blend(turn, to_turn, fraction)
 
     def put_root(self) -> None:
-        """Put welded hips where the body is that they are welded to, at rest."""
+        """Put welded hips to the pose of the body that they are welded to, at rest."""
         angles, speeds = self._table.root_angles, self._table.root_speeds
         if angles is not None and speeds is not None:
-            self._data.qpos[angles : angles + 3] = self._from[0]
-            self._data.qpos[angles + 3 : angles + 7] = self._from[1]
+            self._data.qpos[angles : angles + 3] = self._previous[0]
+            self._data.qpos[angles + 3 : angles + 7] = self._previous[1]
             self._data.qvel[speeds : speeds + 6] = 0.0
 
-    def _be_at(self, place: _Place) -> None:
+    def _jump_to(self, pose: _Pose) -> None:
         self.teleports += 1
-        self._from = self._to = place
-        self._position[:], self._rotation[:] = place
+        self._previous = self._next = pose
+        self._position[:], self._rotation[:] = pose
         self.put_root()
 
 
-_ORIGIN: _Place = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))
+_ORIGIN: _Pose = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))
 
 
-def _place(position_m: FloatArray, rotation: FloatArray) -> _Place | None:
-    """The place with a rotation of unit length; None where a value is not finite, or no turn."""
+def _pose(position_m: FloatArray, rotation: FloatArray) -> _Pose | None:
+    """Return the pose with a unit quaternion; None if it is not finite or not nearly unit."""
     x, y, z = position_m.tolist()
     qw, qx, qy, qz = rotation.tolist()
     length = sqrt(qw * qw + qx * qx + qy * qy + qz * qz)
-    # A comparison with NaN is false.
+    # Comparisons with NaN are false.
     if not (isfinite(x) and isfinite(y) and isfinite(z) and abs(length - 1.0) <= _UNIT_TOLERANCE):
         return None
     return (x, y, z), (qw / length, qx / length, qy / length, qz / length)
 
 
-def _turned(a: _Place, b: _Place) -> float:
-    along = abs(sum(p * q for p, q in zip(a[1], b[1], strict=True)))
-    return 2.0 * acos(min(along, 1.0))
+def _angle_between(a: _Pose, b: _Pose) -> float:
+    dot = abs(sum(p * q for p, q in zip(a[1], b[1], strict=True)))
+    return 2.0 * acos(min(dot, 1.0))

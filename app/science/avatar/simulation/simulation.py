@@ -1,25 +1,26 @@
-"""The avatar under forces: one body in one scene, stepped on the study's clock.
+"""Simulate a physics avatar: one body in one scene, stepped on the study's clock.
 
-Its motors pull each hinge towards a target angle and a target speed; limits, contacts and greatest
-torques decide how far they get. Time runs in steps of 2 ms. A frame tells where the participant is
-at its time, and `step_to` simulates what led there: over the steps since the last frame, target
-angles and hips go in a straight line from where they were to where they are now, and the target
-speed is the slope of that line. Nothing is predicted, and at the frame's own time the target is the
+Its motors pull each hinge towards a target angle and a target speed; limits, contacts and torque
+limits decide how far they get. Time runs in steps of 2 ms. A frame gives the participant's pose at
+its time, and `step_to` simulates the time before it: over the steps since the last frame, target
+angles and hips move in a straight line from the previous ones to the new ones, and the target speed
+is the slope of that line. Nothing is predicted, and at the frame's own time the target is the
 frame's own.
 
-What a tracker may do to it:
+Irregular input from a tracker is handled as follows:
 
-- A target that jumps moves at most at `MAX_SPEED_RAD_S`, faster than people turn their joints;
-  and no motor exceeds its greatest torque. So a limb follows a jump at once, but not without bound.
-- Hips that jump by more than `hips_path.TELEPORT_M` or `TELEPORT_RAD` are teleported: put there at
-  once, at rest, with all the limbs as they are.
-- A value that is not finite is not taken over; that hinge, or the hips, keep their target.
-- A part that is then deep in a wall, or in another part, is pushed out gently (`soft_contacts`).
-- Should the simulation fail all the same (a state that is not finite, which MuJoCo would answer by
-  starting all over at time zero, or speeds above `WILD_RAD_S`), the angles before the frame are put
-  back, at rest and within their limits, and the clock goes on.
+- A target that jumps moves at most at `MAX_SPEED_RAD_S`, faster than people turn their joints; and
+  no motor exceeds its torque limit. So a limb follows a jump immediately, but with limited speed.
+- Hips that jump by more than `hips_path.TELEPORT_M` or `TELEPORT_RAD` are teleported: moved there
+  immediately, at rest, with all joint angles unchanged.
+- A value that is not finite is ignored; that hinge, or the hips, keep their target.
+- A part that is then deep inside a wall, or inside another part, is pushed out gently
+  (`soft_contacts`).
+- If the simulation still fails (a state that is not finite, to which MuJoCo would respond by
+  restarting at time zero, or speeds above `WILD_RAD_S`), the angles before the frame are restored,
+  at rest and within their limits, and the clock continues.
 
-Each is counted in `health`. Added latency (`switches.set_delay`) delays the motors' targets by
+`health` counts each of these. Added latency (`switches.set_delay`) delays the motors' targets by
 whole steps, inside the simulation; the hips are never delayed, and zero bypasses the buffer.
 """
 
@@ -40,14 +41,14 @@ from app.science.rotations import FloatArray
 
 @dataclass(frozen=True, eq=False)
 class AvatarState:
-    """The avatar at one moment.
+    """The avatar's pose at one moment.
 
     Attributes:
         time_s: steps taken times 2 ms.
         root_position_m: (3,) the hips' joint in the world.
         rotations: (22, 4) local rotations wxyz as in `skeleton`; row 0 is world_from_hips.
         angles_rad: (91,) in the order of `AXIS_NAMES`; NaN where the model has no hinge.
-        command_rad: (91,) likewise, the targets in force before any added latency.
+        command_rad: (91,) likewise, the current targets before any added latency.
     """
 
     time_s: float
@@ -59,13 +60,13 @@ class AvatarState:
 
 @dataclass(frozen=True)
 class Health:
-    """What happened since the beginning.
+    """Counts of irregular inputs and failures since the simulation started.
 
     Attributes:
-        restored: frames after which the simulation had failed and was put back.
+        restored: frames after which the simulation had failed and was restored.
         ignored_inputs: frames with a value that was not finite.
         limited_targets: frames in which a target moved faster than `simulation.MAX_SPEED_RAD_S`.
-        teleports: times the hips were put elsewhere.
+        teleports: times the hips were teleported.
     """
 
     restored: int
@@ -76,25 +77,26 @@ class Health:
 
 MAX_SPEED_RAD_S = 40.0
 WILD_RAD_S = 1000.0
-"""Length of the vector of all speeds; poses thrown at a body at random reach 500."""
+"""Norm of all speeds above which the simulation counts as failed; random poses as targets cause up
+to 500."""
 _FARTHEST = 1e5
 _log = logging.getLogger(__name__)
 
 
 class PhysicsAvatar:
-    """One avatar of `build_mjcf`; it begins in the T-pose, or as near as its limits let it.
+    """A running simulation of one avatar, which starts in the T-pose as far as its limits allow.
 
     Attributes:
-        model, data: MuJoCo's, for those who look closer.
+        model, data: MuJoCo's own objects, for inspection.
         switches: what can be changed while it runs.
-        hips, boxes: the hips' path; the scene's blocks, which can be shown and taken away.
+        hips, boxes: the hips' path; the scene's boxes, which can be shown and hidden.
 
     Raises:
-        SimulationError: the text is no model, or not one of an avatar.
+        SimulationError: the text is not a MuJoCo model, or not one of `build_mjcf`.
     """
 
     def __init__(self, mjcf: str) -> None:
-        import mujoco  # a server that never simulates loads neither it nor the compiler
+        import mujoco  # a server that never simulates loads neither MuJoCo nor the compiler
 
         from app.science.avatar.simulation import frame_kernels
 
@@ -103,9 +105,9 @@ class PhysicsAvatar:
         except ValueError as error:
             raise SimulationError(f"MuJoCo cannot load the model: {error}") from error
         self._mujoco, self._kernels = mujoco, frame_kernels
-        # MuJoCo would write them to a file in whatever folder this is.
+        # By default MuJoCo writes warnings to a file in the current folder.
         mujoco.set_mju_user_warning(_log.warning)
-        # Failures are answered here, not by MuJoCo's return to time zero.
+        # Failures are handled here, not by MuJoCo's reset to time zero.
         self.model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
         self.data: mujoco.MjData = mujoco.MjData(self.model)
         self._table: HingeTable = hinge_table(self.model)
@@ -115,39 +117,39 @@ class PhysicsAvatar:
         mujoco.mj_kinematics(self.model, self.data)
         self.hips = HipsPath(self.data, self._table)
         self.switches = Switches(self.model, self.data, self._table)
-        self._touch = SoftContacts(self.model, self.data, self._table)
-        self.boxes = Boxes(self.model, self._touch.soften_all)
-        self._steps = self._restored = self._ignored = self._limited = 0
+        self._soft_contacts = SoftContacts(self.model, self.data, self._table)
+        self.boxes = Boxes(self.model, self._soft_contacts.soften_all)
+        self._steps = self._restored = self._ignored_inputs = self._limited = 0
         self._speeds: FloatArray | None = None
         self._no_angles = np.full(len(AXES), np.nan)
         self._goal: FloatArray
         self._command: FloatArray
-        self._take_up(self._clamped(np.zeros(len(self._table.names))))
+        self._reset_to(self._clamped(np.zeros(len(self._table.names))))
 
     @property
     def time_s(self) -> float:
-        """Simulated time: steps taken times the step."""
+        """Return the simulated time: steps taken times the time step."""
         return self._steps * self._step_s
 
     @property
     def parts(self) -> tuple[str, ...]:
-        """The body parts that the model has."""
+        """Return the body parts that the model has."""
         return tuple(self._table.bodies)
 
     @property
     def axis_names(self) -> tuple[str, ...]:
-        """The axes that have a hinge, in the model's order."""
+        """Return the axes that have a hinge, in the model's order."""
         return self._table.names
 
     @property
     def health(self) -> Health:
-        """What happened since the beginning."""
-        return Health(self._restored, self._ignored, self._limited, self.hips.teleports)
+        """Return the counts of irregular inputs and failures since the simulation started."""
+        return Health(self._restored, self._ignored_inputs, self._limited, self.hips.teleports)
 
     def start_at(
         self, position_m: FloatArray, rotation: FloatArray, angles_rad: FloatArray
     ) -> None:
-        """Take up a pose at once and at rest; the latency buffer then holds nothing else.
+        """Put the avatar into a pose immediately and at rest, and fill the latency buffer with it.
 
         Args:
             position_m: (3,) the hips in the world.
@@ -159,30 +161,30 @@ class PhysicsAvatar:
         """
         angles = angles_rad[self._table.columns]
         if not np.isfinite(angles).all():
-            raise SimulationError("A pose to start at must be finite in every angle.")
+            raise SimulationError("Every angle of a starting pose must be finite.")
         self.hips.teleport(position_m, rotation)
-        self._touch.soften_all()
-        self._take_up(self._clamped(angles))
+        self._soft_contacts.soften_all()
+        self._reset_to(self._clamped(angles))
 
     def set_hips(self, position_m: FloatArray, rotation: FloatArray) -> None:
-        """Say where the hips are at the time of the next `step_to`: (3,) and (4,) wxyz."""
+        """Set the pose of the hips at the time of the next `step_to`: (3,) and (4,) wxyz."""
         teleports = self.hips.teleports
-        self._ignored += not self.hips.go_to(position_m, rotation)
+        self._ignored_inputs += not self.hips.go_to(position_m, rotation)
         if self.hips.teleports > teleports:
-            self._touch.soften_all()
+            self._soft_contacts.soften_all()
 
     def set_targets(self, angles_rad: FloatArray, speeds_rad_s: FloatArray | None = None) -> None:
-        """Say which angles are wanted at the time of the next `step_to`.
+        """Set the target angles at the time of the next `step_to`.
 
         Args:
             angles_rad: (91,) in the order of `AXIS_NAMES`; clamped to the limits.
-            speeds_rad_s: (91,) where they are known better than by how the angles change.
+            speeds_rad_s: (91,) target speeds; None for the slope of the target angles.
         """
         angles = angles_rad[self._table.columns]
-        known = np.isfinite(angles)
-        if not known.all():
-            self._ignored += 1
-            angles = np.where(known, angles, self._goal)
+        finite = np.isfinite(angles)
+        if not finite.all():
+            self._ignored_inputs += 1
+            angles = np.where(finite, angles, self._goal)
         self._goal = angles
         self._speeds = None
         if speeds_rad_s is not None:
@@ -201,18 +203,18 @@ class PhysicsAvatar:
         count = round(time_s / step_s) - self._steps
         if count < 1:
             return
-        good = self._qpos.copy()
-        self._walk(count, step_s)
+        previous_qpos = self._qpos.copy()
+        self._simulate(count, step_s)
         self._steps += count
         self.hips.go(1.0)
         if self._failed():
-            self._restore(good)
+            self._restore(previous_qpos)
         else:
-            self._touch.watch()
+            self._soft_contacts.watch()
         self._mujoco.mj_kinematics(self.model, self.data)
 
     def state(self) -> AvatarState:
-        """Return where the body is, as joints and as angles."""
+        """Return the current pose, as joint rotations and as angles."""
         table, data = self._table, self.data
         angles, command = self._no_angles.copy(), self._no_angles.copy()
         angles[table.columns] = self._qpos[table.angles]
@@ -226,18 +228,18 @@ class PhysicsAvatar:
         )
 
     def contacts(self) -> tuple[Contact, ...]:
-        """Return what the body touched during the last step."""
+        """Return the body's contacts in the last step."""
         return read_contacts(self.model, self.data)
 
     def _clamped(self, angles: FloatArray) -> FloatArray:
         ranges = self.switches.ranges_rad
         return np.clip(angles, ranges[:, 0], ranges[:, 1])
 
-    def _walk(self, count: int, step_s: float) -> None:
-        """Take the steps of one frame, with targets and hips on their way."""
+    def _simulate(self, count: int, step_s: float) -> None:
+        """Simulate the steps of one frame while targets and hips move to their new values."""
         slots = self._table.position_targets
         controls = np.empty((count, self._ctrl.shape[0]))
-        after, limited = self._kernels.ramp(
+        last_command, limited = self._kernels.ramp(
             self._goal, self.switches.ranges_rad, self._command, slots,
             count * step_s, MAX_SPEED_RAD_S, controls,
         )  # fmt: skip
@@ -249,25 +251,25 @@ class PhysicsAvatar:
             ctrl[:] = controls[row]
             self.hips.go((row + 1) / count)
             step(model, data)
-        self._command = after
+        self._command = last_command
 
     def _failed(self) -> bool:
         qpos, qvel = self._qpos, self._qvel
-        # A comparison with NaN is false.
+        # Comparisons with NaN are false.
         return not (np.dot(qvel, qvel) < WILD_RAD_S**2 and np.dot(qpos, qpos) < _FARTHEST**2)
 
-    def _restore(self, good: FloatArray) -> None:
+    def _restore(self, previous_qpos: FloatArray) -> None:
         self._restored += 1
         data = self.data
-        data.qpos[:] = good
-        data.qpos[self._table.angles] = self._clamped(good[self._table.angles])
+        data.qpos[:] = previous_qpos
+        data.qpos[self._table.angles] = self._clamped(previous_qpos[self._table.angles])
         data.qvel[:] = 0.0
         data.qacc_warmstart[:] = 0.0
         data.time = self.time_s
         self.hips.put_root()
-        self._touch.soften_all()
+        self._soft_contacts.soften_all()
 
-    def _take_up(self, angles: FloatArray) -> None:
+    def _reset_to(self, angles: FloatArray) -> None:
         self._goal = self._command = angles
         self._speeds = None
         data, table = self.data, self._table

@@ -1,9 +1,10 @@
-"""Contacts of parts that are where they cannot be: pushed out gently instead of thrown out.
+"""Soften the contacts of parts that are deep inside something, so that they are not thrown out.
 
-Walls are so stiff that a moving hand enters them by millimetres. A part that a teleport, or hips
-carried through a wall, has put centimetres deep into something would leave it at hundreds of metres
-a second. So a part that is deeper than `DEEP_M` in something touches softly, with a time constant
-of `SOFT_SOLREF`, until it is hardly in it any more. After a teleport this holds for all parts.
+Walls are so stiff that a moving hand enters them only by millimetres. A part that a teleport, or
+hips carried through a wall, has put centimetres deep into something would leave it at hundreds of
+metres per second. So the contacts of a part that is deeper than `DEEP_M` in something are soft,
+with a time constant of `SOFT_SOLREF`, until it is less than `FREE_M` deep. After a teleport this
+applies to all parts.
 """
 
 from typing import TYPE_CHECKING
@@ -20,16 +21,16 @@ DEEP_M = 0.03
 FREE_M = 0.005
 SOFT_SOLREF = (0.1, 1.0)
 SOFT_SOLIMP = (0.5, 0.8, 0.05, 0.5, 2.0)
-_SOFT_PRIORITY = 2  # above the scene's
+_SOFT_PRIORITY = 2  # higher than the scene's
 
 
 class SoftContacts:
-    """Watches how deep the parts of one body are in other things."""
+    """Softens contacts according to how deep the parts of one body are inside other things."""
 
     def __init__(self, model: "mujoco.MjModel", data: "mujoco.MjData", table: HingeTable) -> None:
         self._model, self._data = model, data
         self._bodies = np.array(list(table.bodies.values()))
-        self._usual = (
+        self._default = (
             model.geom_priority.copy(),
             model.geom_solref.copy(),
             model.geom_solimp.copy(),
@@ -38,12 +39,12 @@ class SoftContacts:
         self._any_soft = False
 
     def soften_all(self) -> None:
-        """Let every part touch softly for now."""
+        """Make every contact of the body soft until its part is no longer deep inside anything."""
         self._soft[self._bodies] = True
         self._write()
 
     def watch(self) -> None:
-        """Soften what is deep in something, and harden what has come out."""
+        """Soften the contacts of parts deep inside something, and restore those of the others."""
         touching = self._data.ncon > 0
         if not self._any_soft and not (touching and self._data.contact.dist.min() < -DEEP_M):
             return
@@ -54,7 +55,7 @@ class SoftContacts:
             self._write()
 
     def _deepest_m(self) -> FloatArray:
-        """How deep each body is in others; zero for the world."""
+        """Return the greatest penetration depth of each body; zero for the world."""
         deepest = np.zeros(self._model.nbody)
         if self._data.ncon:
             bodies = self._model.geom_bodyid[self._data.contact.geom]
@@ -65,7 +66,7 @@ class SoftContacts:
     def _write(self) -> None:
         self._any_soft = bool(self._soft.any())
         model = self._model
-        priority, solref, solimp = self._usual
+        priority, solref, solimp = self._default
         soft = self._soft[model.geom_bodyid]
         model.geom_priority[:] = np.where(soft, _SOFT_PRIORITY, priority)
         model.geom_solref[:] = np.where(soft[:, np.newaxis], SOFT_SOLREF, solref)

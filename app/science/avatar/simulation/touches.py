@@ -1,12 +1,12 @@
-"""Which surfaces of a task the avatar touches, as the rules of the tasks want to know it.
+"""Determine which surfaces of a task the avatar touches, in the form that the task rules use.
 
-A touch of a box is a contact that the simulation found in its last step: the hand stands at the
-panel because the panel holds it up. A mark on the floor holds nothing up; it is touched by what is
-at it. Fingers touch as the hand they are on, and any other part without a joint of its own as the
-part above it.
+A box is touched if the simulation found a contact in its last step: the hand rests against the
+panel because the panel stops it. A mark on the floor stops nothing; it is touched by parts whose
+shapes overlap it. Fingers count as the hand they belong to, and any other part without its own
+joint as the part above it.
 
-A touch, once begun, is held until the part is a little way off (hysteresis, as in
-`tasks.contacts`); so for parts that have just let go the distance is asked for.
+A touch continues until the part is farther away than a margin (hysteresis, as in `tasks.contacts`);
+so for parts that no longer touch, the distance is computed.
 """
 
 from collections.abc import Sequence
@@ -27,12 +27,12 @@ Bools = npt.NDArray[np.bool_]
 
 
 class SurfaceTouches:
-    """The touches of one avatar with S surfaces.
+    """The touches of one avatar on S surfaces.
 
     Args:
         avatar: in a scene with the surfaces (`scene.scene_of`).
         surfaces: their names.
-        margin_m: how far a part may go before a touch is over.
+        margin_m: distance at which a touch ends.
     """
 
     def __init__(self, avatar: "PhysicsAvatar", surfaces: Sequence[str], margin_m: float) -> None:
@@ -46,11 +46,14 @@ class SurfaceTouches:
         self._surface_of = np.full(avatar.model.ngeom, -1)
         self._surface_of[self._surface_geoms] = np.arange(len(surfaces))
         self._joint_of = _joints_of_geoms(avatar.model)
-        self._held: Bools = np.zeros((len(surfaces), len(JOINT_INDEX)), dtype=np.bool_)
+        self._continuing: Bools = np.zeros((len(surfaces), len(JOINT_INDEX)), dtype=np.bool_)
 
     def read(self) -> tuple[Bools, Bools]:
-        """Touches after the last step, and what is near enough to hold one: two bool (S, 22)."""
-        touched = np.zeros_like(self._held)
+        """Return two bool (S, 22): the touches of the last step, and what is near enough for one.
+
+        A touch that has begun continues while its part is near enough.
+        """
+        touched = np.zeros_like(self._continuing)
         if self._data.ncon:
             first, second = self._data.contact.geom.T
             for geoms, others in ((first, second), (second, first)):
@@ -60,17 +63,17 @@ class SurfaceTouches:
         near = touched.copy()
         for row in self._marks:
             self._read_mark(row, touched, near)
-        for surface, joint in np.argwhere(self._held & ~near):
+        for surface, joint in np.argwhere(self._continuing & ~near):
             geoms = np.flatnonzero((self._joint_of == joint) & self._solid())
             near[surface, joint] = self._distance_m(int(surface), geoms) <= self._margin_m
-        self._held = near & (self._held | touched)
+        self._continuing = near & (self._continuing | touched)
         return touched, near
 
     def _read_mark(self, surface: int, touched: Bools, near: Bools) -> None:
         mark, model = self._surface_geoms[surface], self._model
-        apart = self._data.geom_xpos - self._data.geom_xpos[mark]
+        offsets = self._data.geom_xpos - self._data.geom_xpos[mark]
         reach = model.geom_rbound + model.geom_rbound[mark] + self._margin_m
-        close = (np.einsum("gi,gi->g", apart, apart) <= reach**2) & (self._joint_of >= 0)
+        close = (np.einsum("gi,gi->g", offsets, offsets) <= reach**2) & (self._joint_of >= 0)
         close &= self._solid()
         for geom in np.flatnonzero(close):
             distance_m = self._distance_m(surface, np.array([geom]))
@@ -78,27 +81,27 @@ class SurfaceTouches:
             near[surface, self._joint_of[geom]] |= distance_m <= self._margin_m
 
     def _solid(self) -> Bools:
-        """Shapes that touch things; others of the same part may wait to be chosen."""
+        """Return whether each geom collides; another shape of the same part may be switched off."""
         return np.asarray(self._model.geom_contype > 0)
 
     def _distance_m(self, surface: int, geoms: npt.NDArray[np.intp]) -> float:
-        """Of the nearest of these shapes; twice the margin where all are further away."""
+        """Return the distance of the nearest of these geoms, at most twice the margin."""
         mark, farthest = self._surface_geoms[surface], 2.0 * self._margin_m
         distance = self._mujoco.mj_geomDistance
-        found = [
+        distances = [
             distance(self._model, self._data, int(geom), mark, farthest, None) for geom in geoms
         ]
-        return float(min(found, default=farthest))
+        return float(min(distances, default=farthest))
 
 
 def _joints_of_geoms(model: "mujoco.MjModel") -> npt.NDArray[np.int64]:
-    """(n,) joint of the skeleton that each shape counts for; -1 for the scene's."""
-    found = np.full(model.ngeom, -1, dtype=np.int64)
+    """Return (n,) the joint of the skeleton that each geom counts as; -1 for the scene's."""
+    joints = np.full(model.ngeom, -1, dtype=np.int64)
     for geom in range(model.ngeom):
         part: str | None = str(model.body(int(model.geom_bodyid[geom])).name)
         if part not in PARENT_OF:
             continue
         while part is not None and part not in JOINT_INDEX:
             part = PARENT_OF[part]
-        found[geom] = -1 if part is None else JOINT_INDEX[part]
-    return found
+        joints[geom] = -1 if part is None else JOINT_INDEX[part]
+    return joints

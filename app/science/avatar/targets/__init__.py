@@ -1,8 +1,8 @@
-"""From a pose to the angles that the motors are asked for.
+"""Compute the motors' target angles from a pose.
 
-`TargetAngles` follows poses frame by frame or as a recording, within limits and without;
-`joint_rotations` is the way back. `HingeReference` says what an avatar's joints were asked for, the
-reference from which joint errors are counted.
+`TargetAngles` follows poses frame by frame or as a recording, and gives the angles clamped to the
+limits and unclamped; `joint_rotations` is the inverse. `HingeReference` gives the rotations that
+the motors of an avatar aimed at, the reference of joint errors.
 """
 
 from app.science.avatar.targets.hinge_reference import HingeReference

@@ -1,24 +1,25 @@
-"""What an avatar moved by physics is asked for: the pose its hinges would make without limits.
+"""Compute the reference pose of a physics avatar: the one its hinges would reach without limits.
 
-The participant's own rotations are not the measure of such an avatar. Its shoulders have no hinge,
-its elbows and knees bend in one plane, and what these cannot do is given to their neighbours so
-that hands, feet and head still point where the participant's do (`targets`). Against the raw
-rotations an avatar that does exactly as it is told would be wrong in both neighbours, by the same
-turn forth and back: at a shrug by 20 degrees in the shoulder and in the upper arm, while the arm is
-where it should be. So errors of its joints are counted from the rotations that its hinges are asked
-for, joint by joint, before their limits (`TargetAngles.unclamped_rad`).
+The participant's own rotations are the wrong reference for such an avatar. Its shoulders have no
+hinge, its elbows and knees bend in one plane, and rotations that these cannot make are transferred
+to their neighbours, so that hands, feet and head still point where the participant's do
+(`targets`). Against the raw rotations, an avatar that reaches its targets exactly would have an
+error in both neighbours, of the same angle in opposite directions: after a shrug by 20 degrees, in
+the shoulder and in the upper arm, although the arm is where it should be. So joint errors are
+computed from the target rotations of the hinges, joint by joint, before their limits
+(`TargetAngles.unclamped_rad`).
 
-What is left out of this reference:
+This reference does not include:
 
-- The limits. What they take away is error, and is counted in `Clipping` beside it. A hinge that is
-  locked, such as a human elbow's third axis or a limb in a cast, is asked for what it cannot do
-  either: that is error too. It is not counted as clipped, since it is not driven.
-- In a configuration whose targets are meant in the world, the way in which head and arms give way
-  when the trunk is pushed aside (`following`). It follows from what the avatar did, so it is no
-  part of what it was asked for.
-- Fingers, which have no error.
+- The limits. What they cut off is error, and is also counted in `Clipping`. A locked hinge, such as
+  a human elbow's third axis or a limb in a cast, may have a target that it cannot reach: that is
+  error too. It is not counted as clipped, since it is not driven.
+- In a configuration with targets in the world, the way in which head and arms give way when the
+  trunk is pushed aside (`following`). It follows from the avatar's own movement, so it is not part
+  of the target.
+- Fingers, whose errors are not computed.
 
-For a delayed copy nothing of this holds: it repeats the participant's rotations.
+None of this applies to a delayed copy, which repeats the participant's rotations.
 """
 
 from collections.abc import Collection, Mapping
@@ -32,13 +33,13 @@ from app.science.joint_error import ERROR_JOINTS, Clipping, ReferenceMotion
 from app.science.rotations import FloatArray, is_unit
 
 GAP_S = 0.25
-"""After a longer one the pose before says nothing about which way a hinge went since."""
-_AT_ONCE = 1024
+"""After a longer gap the previous pose does not tell in which direction a hinge turned."""
+_CHUNK_FRAMES = 1024
 _LETTERS = ("X", "Y", "Z")
 
 
 class HingeReference:
-    """Turns a participant's poses into what the hinges of one avatar are asked for.
+    """Converts a participant's poses to the target rotations of one avatar's hinges.
 
     Args:
         limits: axis name -> limits in force, of every axis of every present part.
@@ -55,54 +56,55 @@ class HingeReference:
             if axis.part in ERROR_JOINTS and axis.part in parts:
                 joint = ERROR_JOINTS.index(axis.part)
                 self._columns[joint, _LETTERS.index(axis.letter)] = column
-        there = self._columns >= 0
+        present = self._columns >= 0
         turning = self._angles.low_rad < self._angles.high_rad
-        self._turns = there & turning[self._columns]
-        self._hinged = np.asarray(there.any(axis=1))
+        self._turns = present & turning[self._columns]
+        self._hinged = np.asarray(present.any(axis=1))
 
     def recording(self, times_s: FloatArray, rotations: FloatArray) -> ReferenceMotion:
-        """Return what was asked for in each frame of a recording.
+        """Return the target rotations of each frame of a recording.
 
-        A rotation that is none makes unknown what follows from it, in its frame.
+        An invalid rotation makes the targets that depend on it unknown in its frame.
 
         Args:
-            times_s: (N,) of the frames; may hold anything. After a gap, or a time that does not
-                rise, the hinges are followed anew.
-            rotations: (N, 22, 4) the participant's local rotations wxyz, as they came.
+            times_s: (N,) of the frames, with any values. After a gap, or a time that does not
+                increase, the hinges restart from rest.
+            rotations: (N, 22, 4) the participant's local rotations wxyz, as received.
         """
-        asked = np.empty(rotations.shape)
+        target_rotations = np.empty(rotations.shape)
         if len(rotations) == 0:
             return ReferenceMotion(
-                asked, self._clipping(np.zeros((0, *self._turns.shape), np.bool_))
+                target_rotations, self._clipping(np.zeros((0, *self._turns.shape), np.bool_))
             )
-        found = self._angles.batch(_usable(rotations), anew=_gaps(times_s))
-        for first in range(0, len(rotations), _AT_ONCE):
-            at = slice(first, first + _AT_ONCE)
-            asked[at] = joint_rotations(found.unclamped_rad[at], rotations[at, 0])
-        return ReferenceMotion(asked, self._clipping(found.clipped[:, self._columns]))
+        targets = self._angles.batch(_usable(rotations), restarts=_gaps(times_s))
+        for first in range(0, len(rotations), _CHUNK_FRAMES):
+            at = slice(first, first + _CHUNK_FRAMES)
+            target_rotations[at] = joint_rotations(targets.unclamped_rad[at], rotations[at, 0])
+        return ReferenceMotion(target_rotations, self._clipping(targets.clipped[:, self._columns]))
 
     def pose(self, rotations: FloatArray) -> FloatArray:
-        """Return what is asked for in one pose (22, 4) of which no other is known.
+        """Return the target rotations of a single pose (22, 4), without previous frames.
 
-        NaN for joints that have no hinge, and for what follows from a rotation that is none.
+        They are NaN for joints that have no hinge, and for joints that depend on an invalid
+        rotation.
         """
         self._angles.forget()
-        wanted = self._angles.follow(_usable(rotations)).unclamped_rad
-        asked = joint_rotations(wanted, rotations[0])
-        asked[1:][~self._hinged] = np.nan
-        return asked
+        unclamped_rad = self._angles.follow(_usable(rotations)).unclamped_rad
+        target_rotations = joint_rotations(unclamped_rad, rotations[0])
+        target_rotations[1:][~self._hinged] = np.nan
+        return target_rotations
 
     def _clipping(self, clipped: npt.NDArray[np.bool_]) -> Clipping:
         return Clipping(clipped, self._turns, self._hinged)
 
 
 def _usable(rotations: FloatArray) -> FloatArray:
-    """Rotations with NaN in place of those that are none."""
+    """Return the rotations with NaN in place of invalid ones."""
     return np.where(is_unit(rotations)[..., np.newaxis], rotations, np.nan)
 
 
 def _gaps(times_s: FloatArray) -> npt.NDArray[np.bool_]:
-    """(N,) frames before which there is a gap."""
+    """Return (N,) whether there is a gap before each frame."""
     with np.errstate(invalid="ignore"):
         step_s = np.diff(times_s, prepend=np.nan)
         return np.asarray(~((step_s > 0.0) & (step_s <= GAP_S)))

@@ -1,4 +1,4 @@
-"""What the way from a pose to angles needs to know about a body, as arrays for compiled code."""
+"""Prepare the arrays from which compiled code converts a body's poses to angles."""
 
 from collections.abc import Collection
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from app.science.avatar.body import AXES_OF, AXIS_NAMES, PARENT_OF, PART_NAMES, 
 from app.science.rotations import FloatArray
 
 IndexArray = npt.NDArray[np.int64]
-# Part above, hinge, letters of the hinge's bend and of the bone's own axis.
+# Part above, hinge, letters of the axes of the hinge's bend and of the bone itself.
 _BENDS: tuple[tuple[str, str, Letter, Letter], ...] = (
     ("UpperArm", "LowerArm", "Y", "X"),
     ("UpperLeg", "LowerLeg", "X", "Y"),
@@ -19,18 +19,18 @@ _BENDS: tuple[tuple[str, str, Letter, Letter], ...] = (
 
 @dataclass(frozen=True, eq=False)
 class TargetPlan:
-    """D driven parts in the order of the body.
+    """Indices and frames of D driven parts in the order of the body.
 
     Attributes:
         rows: (D,) their rows in `PART_NAMES`.
-        folded: (D, K) rows of the part itself and of what lies between it and the driven part it
-            hangs on, upwards; -1 where there is nothing.
+        folded: (D, K) rows of the part itself and of the undriven parts between it and the next
+            driven part above, upwards; padded with -1.
         columns: (D,) each part's first column in `AXIS_NAMES`.
         counts: (D,) its number of axes.
         frames: (D, 3, 3) its axes as columns, completed right-handed to three.
         hands: (D,) 1 for a right-handed frame, -1 for a left-handed one.
-        bends: (H, 2) of the bone above each hinge and of the hinge, in 0 to D - 1.
-        bend_frames: (H, 3, 3) the bend's axis, the one across, the bone's own, as columns.
+        bends: (H, 2) the bone above each hinge and the hinge, as indices from 0 to D - 1.
+        bend_frames: (H, 3, 3) as columns: the axis of the bend, the one across, the bone's own.
         wrists: (W, 2) columns of the wrist's and the forearm's turn about the forearm.
     """
 
@@ -46,7 +46,7 @@ class TargetPlan:
 
 
 def plan_targets(parts: Collection[str], locked: Collection[str]) -> TargetPlan:
-    """Plan for a body of these parts, some axes of which cannot turn."""
+    """Return the plan for a body with these parts; `locked` names the axes that cannot turn."""
     driven = [part for part in PART_NAMES if part in parts and AXES_OF[part]]
     frames = np.array([_frame(part) for part in driven])
     bends = [
@@ -95,7 +95,7 @@ def _folded(driven: list[str]) -> IndexArray:
 
 
 def _not_turning(part: str, driven: frozenset[str]) -> list[str]:
-    """What lies between a part and the driven part, or the hips, that it hangs on."""
+    """Return the undriven parts between a part and the next driven part, or the hips, above it."""
     found: list[str] = []
     above = PARENT_OF[part]
     while above is not None and above != "Hips" and above not in driven:

@@ -10,7 +10,7 @@ from app.science.avatar.configuration.axis_settings import (
     AvatarSettingsError,
     AxisSettings,
     degrees_of,
-    settled_angle,
+    rounded_angle,
 )
 from tests.science.avatar.configurations import FINE_SPRING, angles_rad, axis_settings
 
@@ -62,9 +62,9 @@ def test_limits_that_are_one_angle_lock_the_axis() -> None:
 @given(angles_rad)
 def test_degrees_give_the_angle_back_to_the_bit(angle_rad: float) -> None:
     """A settled angle is what its file says, and within 1e-11 rad of the angle that was given."""
-    settled = settled_angle(angle_rad)
+    settled = rounded_angle(angle_rad)
     assert math.radians(degrees_of(settled)) == settled
-    assert settled_angle(settled) == settled
+    assert rounded_angle(settled) == settled
     assert abs(settled - angle_rad) < 1e-11
 
 

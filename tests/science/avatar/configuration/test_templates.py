@@ -214,9 +214,9 @@ def test_a_configuration_is_edited_part_by_part() -> None:
     [
         ({"part": "LeftShoulder"}, "'LeftShoulder' is not a driven body part"),
         ({"part": "Tail"}, "'Tail' is not a driven body part"),
-        ({"limits_rad": {"LeftUpperLegY": 0.5}}, "among other axes than these"),
-        ({"shared_drive": None}, "among other axes than these"),
-        ({"limits_rad": {"LeftUpperLegY": 0.5, "LeftUpperLegZ": -0.5}}, "-28.6479 deg is not one"),
+        ({"limits_rad": {"LeftUpperLegY": 0.5}}, "do not match the axes of"),
+        ({"shared_drive": None}, "do not match the axes of"),
+        ({"limits_rad": {"LeftUpperLegY": 0.5, "LeftUpperLegZ": -0.5}}, "cannot be -28.6479 deg"),
     ],
 )
 def test_a_joint_that_does_not_fit_its_part_is_refused(

@@ -24,11 +24,11 @@ def wild_movement(frames: int = FRAMES, seed: int = 1) -> FloatArray:
     return poses
 
 
-def _one_by_one(poses: FloatArray, fingers: dict[str, FloatArray], anew: set[int]) -> Targets:
+def _one_by_one(poses: FloatArray, fingers: dict[str, FloatArray], restarts: set[int]) -> Targets:
     follower = TargetAngles(ANATOMIC)
     found = []
     for frame, pose in enumerate(poses):
-        if frame in anew:
+        if frame in restarts:
             follower.forget()
         found.append(follower.follow(pose, {name: q[frame] for name, q in fingers.items()}))
     return Targets(
@@ -39,13 +39,13 @@ def _one_by_one(poses: FloatArray, fingers: dict[str, FloatArray], anew: set[int
 
 
 @pytest.mark.parametrize("anew", [set(), {0, 1, 511, 512, 700, 1024}])
-def test_a_recording_is_the_same_to_the_bit(anew: set[int]) -> None:
+def test_a_recording_is_the_same_to_the_bit(restarts: set[int]) -> None:
     """With fingers, through blocks, and with new beginnings within and at the edges of them."""
     poses = wild_movement()
     fingers = {"LeftIndexProximal": wild_movement(seed=2)[:, 3]}
-    begins = np.isin(np.arange(FRAMES), list(anew))
-    together = TargetAngles(ANATOMIC).batch(poses, fingers, anew=begins)
-    alone = _one_by_one(poses, fingers, anew)
+    begins = np.isin(np.arange(FRAMES), list(restarts))
+    together = TargetAngles(ANATOMIC).batch(poses, fingers, restarts=begins)
+    alone = _one_by_one(poses, fingers, restarts)
     np.testing.assert_array_equal(together.unclamped_rad, alone.unclamped_rad)
     np.testing.assert_array_equal(together.angles_rad, alone.angles_rad)
     np.testing.assert_array_equal(together.residual_rad, alone.residual_rad)
@@ -55,7 +55,7 @@ def test_beginning_anew_gives_what_a_new_follower_gives() -> None:
     """Nothing of the frames before is left, and without it something would be."""
     poses = wild_movement()
     begins = np.arange(FRAMES) == 700
-    joined = TargetAngles(ANATOMIC).batch(poses, anew=begins).unclamped_rad
+    joined = TargetAngles(ANATOMIC).batch(poses, restarts=begins).unclamped_rad
     np.testing.assert_array_equal(
         joined[700:], TargetAngles(ANATOMIC).batch(poses[700:]).unclamped_rad
     )
