@@ -171,5 +171,5 @@ def test_values_without_direction_are_refused() -> None:
     """Zero quaternions and zero directions raise instead of giving NaN."""
     with pytest.raises(rot.RotationError, match="cannot be normalised"):
         rot.normalise(np.zeros((2, 4)))
-    with pytest.raises(rot.RotationError, match="no swing"):
+    with pytest.raises(rot.RotationError, match="non-finite length"):
         rot.swing_between(np.zeros(3), np.ones(3))

@@ -1,4 +1,4 @@
-"""Skeletons of any kind, markers and rigid bodies, and how they move."""
+"""Model skeletons of any kind, markers and rigid bodies, and their movement."""
 
 from app.science.rig.model import BoolArray, Rig, RigError, RigMotion, place, to_local
 from app.science.rig.points import BodyMotion, MarkerMotion

@@ -1,7 +1,7 @@
-"""A skeleton of any kind, and its movement.
+"""Define a skeleton of any kind, and its movement.
 
 The world is y up and right-handed, lengths are metres, rotations unit quaternions wxyz. A rig's
-*rest pose* is what its file or its maker calls rest; it need not be a T-pose
+*rest pose* is the one that its file or its author calls so; it need not be a T-pose
 (`app.science.retargeting.t_pose` makes one). In order of joints, with q_j the local rotation,
 
     world_from_j = world_from_parent q_j
@@ -21,18 +21,18 @@ BoolArray = npt.NDArray[np.bool_]
 
 
 class RigError(ValueError):
-    """A rig or movement cannot be: parents out of order, arrays of a wrong shape, no such joint."""
+    """A rig or movement is invalid: wrong order of parents, wrong array shape, or unknown joint."""
 
 
 @dataclass(frozen=True, eq=False)
 class Rig:
-    """Joints in a tree, each with a place and a rotation in its parent at rest.
+    """A tree of joints, each with a position and a rotation in its parent at rest.
 
     Attributes:
-        names, parents: the J joints; the root comes first with parent -1, and a parent precedes
-            its children.
-        offsets_m: (J, 3) rest position in the parent's frame; the root's row is its rest place in
-            the world, zero where a file names none.
+        names, parents: the J joints; the root comes first with parent -1, and a parent precedes its
+        children.
+        offsets_m: (J, 3) rest position in the parent's frame; the root's row is its rest position
+            in the world, zero where the file gives none.
         rest_rotations: (J, 4) parent_from_joint at rest; the root's row is world_from_root.
         ends: (joint, (x, y, z)) for each free end of a bone, in the joint's frame, metres.
     """
@@ -44,10 +44,10 @@ class Rig:
     ends: tuple[tuple[int, tuple[float, float, float]], ...] = ()
 
     def __post_init__(self) -> None:
-        """Raises RigError where names, parents and arrays do not fit each other."""
+        """Raise RigError if names, parents and arrays do not fit each other."""
         count = len(self.names)
         if count == 0 or len(set(self.names)) != count:
-            raise RigError("A rig needs at least one joint, and a name of its own for each.")
+            raise RigError("A rig needs at least one joint, and each needs a unique name.")
         wrong = [
             name
             for joint, (name, parent) in enumerate(zip(self.names, self.parents, strict=True))
@@ -68,29 +68,29 @@ class Rig:
 
     @property
     def joint_count(self) -> int:
-        """Number of joints J."""
+        """Return the number of joints J."""
         return len(self.names)
 
     @property
     def fingerprint(self) -> str:
-        """Hash of names and hierarchy: rigs that can share a joint map have the same."""
-        told = "\n".join(f"{n}\t{p}" for n, p in zip(self.names, self.parents, strict=True))
-        return hashlib.sha256(told.encode()).hexdigest()
+        """Return the hash of names and hierarchy; rigs with the same one can share a joint map."""
+        text = "\n".join(f"{n}\t{p}" for n, p in zip(self.names, self.parents, strict=True))
+        return hashlib.sha256(text.encode()).hexdigest()
 
     def index(self, name: str) -> int:
-        """Return the joint of this name; raises RigError with the valid names."""
+        """Return the index of the joint with this name; raises RigError with the valid names."""
         try:
             return self.names.index(name)
         except ValueError:
-            known = ", ".join(self.names)
-            raise RigError(f"The skeleton has no joint {name!r}: it has {known}.") from None
+            valid = ", ".join(self.names)
+            raise RigError(f"The skeleton has no joint {name!r}: it has {valid}.") from None
 
     def children(self, joint: int) -> tuple[int, ...]:
-        """The joints whose parent this one is."""
+        """Return the joints whose parent is this one."""
         return tuple(child for child, parent in enumerate(self.parents) if parent == joint)
 
     def rest_world(self) -> tuple[FloatArray, FloatArray]:
-        """Positions (J, 3) and world_from_joint (J, 4) of the rest pose; read-only."""
+        """Return positions (J, 3) and world_from_joint (J, 4) of the rest pose; read-only."""
         return self._rest_world
 
     @cached_property
@@ -103,15 +103,15 @@ class Rig:
 
 @dataclass(frozen=True, eq=False)
 class RigMotion:
-    """N frames of a rig at a constant rate.
+    """N frames of a rig at a constant sampling rate.
 
     Attributes:
-        rig: the body that moves.
-        rate_hz: frames a second.
+        rig: the skeleton that moves.
+        rate_hz: frames per second.
         root_positions_m: (N, 3) the root in the world.
-        rotations: (N, J, 4) parent_from_joint; column 0 is world_from_root. They are rotations as
-            such, not relative to the rest pose.
-        observed: (N, J) false where a value was not in the file but carried over a gap.
+        rotations: (N, J, 4) parent_from_joint; column 0 is world_from_root. They are complete
+            rotations, not relative to the rest pose.
+        observed: (N, J) false where a value was missing in the file and filled in.
     """
 
     rig: Rig
@@ -121,7 +121,7 @@ class RigMotion:
     observed: BoolArray
 
     def __post_init__(self) -> None:
-        """Raises RigError where the arrays' shapes do not belong together."""
+        """Raise RigError if the arrays' shapes do not fit together."""
         frames, joints = self.rotations.shape[:1], self.rig.joint_count
         fits = (
             self.rotations.shape == (*frames, joints, 4)
@@ -131,29 +131,29 @@ class RigMotion:
         if not fits or self.frame_count == 0 or not self.rate_hz > 0.0:
             raise RigError(
                 f"Root positions {self.root_positions_m.shape}, rotations {self.rotations.shape}"
-                f" and observed {self.observed.shape} at {self.rate_hz} Hz are no movement of"
+                f" and observed {self.observed.shape} at {self.rate_hz} Hz are not a movement of"
                 f" {joints} joints: give (N, 3), (N, {joints}, 4), (N, {joints}) and a rate."
             )
 
     @property
     def frame_count(self) -> int:
-        """Number of frames N."""
+        """Return the number of frames N."""
         return int(self.rotations.shape[0])
 
     @property
     def duration_s(self) -> float:
-        """Time from the first to the last frame."""
+        """Return the time from the first to the last frame."""
         return (self.frame_count - 1) / self.rate_hz
 
     def world(self) -> tuple[FloatArray, FloatArray]:
-        """Positions (N, J, 3) in metres and world_from_joint rotations (N, J, 4)."""
+        """Return positions (N, J, 3) in metres and world_from_joint rotations (N, J, 4)."""
         return place(self.rig, self.root_positions_m, self.rotations)
 
 
 def place(
     rig: Rig, root_positions_m: FloatArray, rotations: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Forward kinematics of one pose, (3,) and (J, 4), or of many, (..., 3) and (..., J, 4).
+    """Compute forward kinematics of one pose, (3,) and (J, 4), or of many, (..., 3), (..., J, 4).
 
     Returns:
         Positions (..., J, 3) and world_from_joint rotations (..., J, 4).
@@ -170,7 +170,7 @@ def place(
 
 
 def to_local(rig: Rig, world: FloatArray) -> FloatArray:
-    """From world_from_joint (..., J, 4) to parent_from_joint: the inverse of `place`."""
+    """Convert world_from_joint (..., J, 4) to parent_from_joint, the inverse of `place`."""
     local = world.copy()
     parents = list(rig.parents[1:])
     local[..., 1:, :] = multiply(conjugate(world[..., parents, :]), world[..., 1:, :])

@@ -1,6 +1,6 @@
-"""What captures hold besides skeletons: markers, and rigid bodies that belong to no skeleton.
+"""Hold the other contents of captures: markers, and rigid bodies that belong to no skeleton.
 
-The world is y up and right-handed, lengths are metres. What was not seen is NaN.
+The world is y up and right-handed, lengths are metres. Unobserved values are NaN.
 """
 
 from dataclasses import dataclass
@@ -13,12 +13,12 @@ from app.science.rotations import FloatArray
 
 @dataclass(frozen=True, eq=False)
 class MarkerMotion:
-    """N frames of M named markers at a constant rate.
+    """N frames of M named markers at a constant sampling rate.
 
     Attributes:
         names: labels as in the file, without a subject's prefix.
-        rate_hz: frames a second.
-        positions_m: (N, M, 3), NaN where a marker was not seen.
+        rate_hz: frames per second.
+        positions_m: (N, M, 3), NaN where a marker was not observed.
     """
 
     names: tuple[str, ...]
@@ -26,7 +26,7 @@ class MarkerMotion:
     positions_m: FloatArray
 
     def __post_init__(self) -> None:
-        """Raises RigError where the arrays' shapes do not belong together."""
+        """Raise RigError if the arrays' shapes do not fit together."""
         if self.positions_m.ndim != 3 or self.positions_m.shape[1:] != (len(self.names), 3):
             raise RigError(
                 f"{len(self.names)} markers need (N, {len(self.names)}, 3) positions, got"
@@ -35,19 +35,19 @@ class MarkerMotion:
 
     @property
     def frame_count(self) -> int:
-        """Number of frames N."""
+        """Return the number of frames N."""
         return int(self.positions_m.shape[0])
 
 
 @dataclass(frozen=True, eq=False)
 class BodyMotion:
-    """N samples of B rigid bodies, each with a place and a rotation in the world.
+    """N samples of B rigid bodies, each with a position and a rotation in the world.
 
     Attributes:
-        names: the bodies.
-        times_s: (N,) from the first sample on; loggers seldom keep a constant rate.
-        positions_m: (N, B, 3), NaN where a body was not seen.
-        rotations: (N, B, 4) world_from_body, NaN where a body was not seen.
+        names: of the bodies.
+        times_s: (N,) since the first sample; loggers seldom keep a constant sampling rate.
+        positions_m: (N, B, 3), NaN where a body was not observed.
+        rotations: (N, B, 4) world_from_body, NaN where a body was not observed.
     """
 
     names: tuple[str, ...]
@@ -56,7 +56,7 @@ class BodyMotion:
     rotations: FloatArray
 
     def __post_init__(self) -> None:
-        """Raises RigError where the arrays' shapes do not belong together."""
+        """Raise RigError if the arrays' shapes do not fit together."""
         shape = (len(self.times_s), len(self.names))
         if self.positions_m.shape != (*shape, 3) or self.rotations.shape != (*shape, 4):
             raise RigError(
@@ -66,12 +66,12 @@ class BodyMotion:
 
     @property
     def frame_count(self) -> int:
-        """Number of samples N."""
+        """Return the number of samples N."""
         return len(self.times_s)
 
     @property
     def rate_hz(self) -> float:
-        """Samples a second by the median step; 0 for fewer than two samples."""
+        """Return the samples per second by the median time step; 0 for fewer than two samples."""
         if self.frame_count < 2:
             return 0.0
         return float(1.0 / np.median(np.diff(self.times_s)))

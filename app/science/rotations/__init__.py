@@ -1,7 +1,7 @@
-"""Unit quaternions (w, x, y, z) as the one language of orientation.
+"""Represent orientations as unit quaternions (w, x, y, z).
 
 `arrays` works on whole recordings, shape (..., 4); `scalars` works on one quaternion at a time as a
-plain tuple, which is several times faster where a single frame has to be made or followed.
+plain tuple, which is several times faster for a single frame.
 """
 
 from app.science.rotations.arrays import (

@@ -1,9 +1,9 @@
-"""Quaternion algebra on arrays.
+"""Compute with arrays of quaternions.
 
 A rotation is a unit quaternion q = (w, x, y, z) = (cos(a/2), sin(a/2) u): a turn by the angle a
 about the unit axis u, right-handed. q and -q are the same rotation. `multiply(a, b)` applies b
-first and a second, so `world_from_hand = multiply(world_from_arm, arm_from_hand)` reads like its
-frames. Every function broadcasts over leading axes; angles are radians.
+first and a second, so in `world_from_hand = multiply(world_from_arm, arm_from_hand)` neighbouring
+frames match. Every function broadcasts over leading axes; angles are radians.
 
 Source: Shoemake (1985), "Animating rotation with quaternion curves", SIGGRAPH 19:245-254.
 """
@@ -16,25 +16,25 @@ import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
 
-# Below this angle sin(a)/a and its inverse are taken from their series: the quotient loses digits.
+# Below this angle sin(a)/a and its inverse are computed as series: the quotient loses digits.
 _SMALL_ANGLE_RAD = 1e-6
 _CONJUGATE: FloatArray = np.array((1.0, -1.0, -1.0, -1.0))
 _EULER_LETTERS = frozenset("XYZ")
 
 
 class RotationError(ValueError):
-    """A value is no rotation: zero length, wrong shape, unknown Euler order."""
+    """A value is not a rotation: zero length, wrong shape, or unknown Euler order."""
 
 
 def identity(*shape: int) -> FloatArray:
-    """Return the rotation that turns nothing, repeated: shape (*shape, 4)."""
+    """Return the identity rotation, repeated: shape (*shape, 4)."""
     q = np.zeros((*shape, 4))
     q[..., 0] = 1.0
     return q
 
 
 def multiply(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Return the Hamilton product a b, shape (..., 4): first b turns, then a."""
+    """Return the Hamilton product a b, shape (..., 4), the rotation by b followed by a."""
     aw, ax, ay, az = a[..., 0], a[..., 1], a[..., 2], a[..., 3]
     bw, bx, by, bz = b[..., 0], b[..., 1], b[..., 2], b[..., 3]
     return np.stack(
@@ -69,15 +69,15 @@ def normalise(q: FloatArray) -> FloatArray:
 
 
 def is_unit(q: FloatArray, tolerance: float = 1e-3) -> npt.NDArray[np.bool_]:
-    """Return, shape (...), which quaternions are finite and of unit length within `tolerance`."""
+    """Return (...) whether each quaternion is finite and of unit length within `tolerance`."""
     norm_squared = np.einsum("...i,...i->...", q, q)
-    # |norm - 1| <= tolerance without a root; a NaN compares false.
+    # |norm - 1| <= tolerance without a square root; comparisons with NaN are false.
     low, high = (1.0 - tolerance) ** 2, (1.0 + tolerance) ** 2
     return cast("npt.NDArray[np.bool_]", (norm_squared >= low) & (norm_squared <= high))
 
 
 def rotate(q: FloatArray, vectors: FloatArray) -> FloatArray:
-    """Turn vectors, shape (..., 3), by unit quaternions (..., 4): v + 2w(u x v) + 2 u x (u x v)."""
+    """Rotate vectors (..., 3) by unit quaternions (..., 4): v + 2w(u x v) + 2 u x (u x v)."""
     w, x, y, z = q[..., 0], q[..., 1], q[..., 2], q[..., 3]
     vx, vy, vz = vectors[..., 0], vectors[..., 1], vectors[..., 2]
     cx, cy, cz = 2.0 * (y * vz - z * vy), 2.0 * (z * vx - x * vz), 2.0 * (x * vy - y * vx)
@@ -92,13 +92,13 @@ def rotate(q: FloatArray, vectors: FloatArray) -> FloatArray:
 
 
 def shortest(q: FloatArray, reference: FloatArray | None = None) -> FloatArray:
-    """Return the one of q and -q that lies nearer to `reference` (default: the identity)."""
+    """Return whichever of q and -q is nearer to `reference` (default: the identity)."""
     side = q[..., 0] if reference is None else np.einsum("...i,...i->...", q, reference)
     return np.where((side < 0.0)[..., np.newaxis], -q, q)
 
 
 def from_rotation_vector(vector_rad: FloatArray) -> FloatArray:
-    """Return the rotation about a vector's direction by its length in radians; (..., 3) in."""
+    """Return the rotation about the direction of a vector (..., 3) by its length in radians."""
     angle = np.linalg.norm(vector_rad, axis=-1, keepdims=True)
     half = 0.5 * angle
     safe = np.where(angle < _SMALL_ANGLE_RAD, 1.0, angle)
@@ -107,7 +107,7 @@ def from_rotation_vector(vector_rad: FloatArray) -> FloatArray:
 
 
 def to_rotation_vector(q: FloatArray) -> FloatArray:
-    """Return axis times angle, (..., 3), of the shorter way round: 0 <= angle <= pi."""
+    """Return axis times angle (..., 3) of the shorter rotation: 0 <= angle <= pi."""
     positive = shortest(q)
     sine = np.sqrt(np.einsum("...i,...i->...", positive[..., 1:], positive[..., 1:]))
     angle = 2.0 * np.arctan2(sine, positive[..., 0])
@@ -117,9 +117,10 @@ def to_rotation_vector(q: FloatArray) -> FloatArray:
 
 
 def geodesic_angle(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Return the angle in radians, (...), of the shortest turn from a to b: 0 to pi.
+    """Return the angle in radians (...) of the shortest rotation from a to b: 0 to pi.
 
-    The arctangent keeps its digits for tiny angles, where arccos of the dot product loses half.
+    The arctangent is accurate for tiny angles, where arccos of the dot product loses half its
+    digits.
     """
     between = multiply(b, conjugate(a))
     sine = np.sqrt(np.einsum("...i,...i->...", between[..., 1:], between[..., 1:]))
@@ -127,7 +128,7 @@ def geodesic_angle(a: FloatArray, b: FloatArray) -> FloatArray:
 
 
 def slerp(a: FloatArray, b: FloatArray, fraction: npt.ArrayLike) -> FloatArray:
-    """Go from a (fraction 0) to b (fraction 1) at constant speed on the shorter great circle.
+    """Interpolate from a (fraction 0) to b (fraction 1) at constant speed on the shorter arc.
 
     `fraction` has shape (...) without the quaternion axis and broadcasts. Fraction 0 gives a and
     fraction 1 gives b or -b, the same rotation, in the hemisphere of a.
@@ -145,10 +146,10 @@ def slerp(a: FloatArray, b: FloatArray, fraction: npt.ArrayLike) -> FloatArray:
 
 
 def swing_between(start: FloatArray, end: FloatArray) -> FloatArray:
-    """Return the shortest turn that brings the direction `start` onto `end`; (..., 3) in.
+    """Return the shortest rotation that turns the direction `start` (..., 3) to `end` (..., 3).
 
     Half-vector form: q ~ (1 + v.k, v x k) for unit v, k. It needs no arccos and stays exact for
-    close directions. For opposite directions the axis is any one across `start`.
+    close directions. For opposite directions the axis is any one perpendicular to `start`.
 
     Raises:
         RotationError: a direction has no length.
@@ -158,7 +159,7 @@ def swing_between(start: FloatArray, end: FloatArray) -> FloatArray:
     q = np.concatenate((1.0 + cosine, np.cross(v, k)), axis=-1)
     opposite = 1.0 + cosine < 1e-12
     if bool(np.any(opposite)):
-        # The world axis least along v gives a well-conditioned axis across it.
+        # The world axis least aligned with v gives a well-conditioned axis perpendicular to it.
         least = np.eye(3)[np.argmin(np.abs(v), axis=-1)]
         across = _unit(np.cross(v, least))
         half_turn = np.concatenate((np.zeros_like(cosine), across), axis=-1)
@@ -169,7 +170,7 @@ def swing_between(start: FloatArray, end: FloatArray) -> FloatArray:
 def _unit(vectors: FloatArray) -> FloatArray:
     length = np.linalg.norm(vectors, axis=-1, keepdims=True)
     if not bool(np.all(np.isfinite(length) & (length > 0.0))):
-        raise RotationError("A direction of zero or non-finite length has no swing: leave it out.")
+        raise RotationError("A direction has zero or non-finite length: leave it out.")
     return cast("FloatArray", vectors / length)
 
 
@@ -177,16 +178,16 @@ def _check_order(order: str) -> None:
     repeated = any(a == b for a, b in pairwise(order))
     if not 1 <= len(order) <= 3 or not _EULER_LETTERS.issuperset(order) or repeated:
         raise RotationError(
-            f"{order!r} is no Euler order: give one to three of X, Y, Z, as 'ZYX',"
-            " no letter twice in a row."
+            f"{order!r} is not an Euler order: give one to three of X, Y, Z, such as 'ZYX',"
+            " without a letter twice in a row."
         )
 
 
 def from_euler(order: str, angles_rad: FloatArray) -> FloatArray:
     """Return q = q_1 q_2 q_3 for angles (..., len(order)) about the moving axes named in `order`.
 
-    "ZYX" turns about Z, then about the new Y, then about the newest X (intrinsic), which is also
-    how BVH channels listed as Zrotation Yrotation Xrotation are meant.
+    "ZYX" turns about Z, then about the new Y, then about the newest X (intrinsic). BVH channels
+    listed as Zrotation Yrotation Xrotation have the same meaning.
 
     Raises:
         RotationError: an unknown order, or a last axis that does not fit it.
@@ -204,9 +205,10 @@ def from_euler(order: str, angles_rad: FloatArray) -> FloatArray:
 
 
 def to_euler(order: str, q: FloatArray) -> FloatArray:
-    """Return angles (..., 3), radians, that `from_euler` turns back into the same rotation.
+    """Return angles (..., 3), radians, from which `from_euler` makes the same rotation.
 
-    At a gimbal lock the third angle is set to zero, as the split is then not determined.
+    At a gimbal lock the third angle is set to zero, as only the sum or the difference of two angles
+    is determined.
 
     Raises:
         RotationError: the order does not name three axes.

@@ -1,7 +1,7 @@
-"""Quaternions and vectors as plain tuples, for work on a single frame.
+"""Compute with quaternions and vectors as plain tuples, for work on a single frame.
 
-An array call costs about a microsecond before it computes anything; one quaternion product on
-floats costs less than that in total. The conventions are those of `arrays`.
+A call of a NumPy function costs about a microsecond before it computes anything; one quaternion
+product on floats costs less than that in total. The conventions are those of `arrays`.
 """
 
 from math import acos, sin, sqrt
@@ -14,7 +14,7 @@ _TINY_RAD = 1e-6
 
 
 def q_multiply(a: Quaternion, b: Quaternion) -> Quaternion:
-    """Return a b: first b turns, then a."""
+    """Return the Hamilton product a b, the rotation by b followed by a."""
     aw, ax, ay, az = a
     bw, bx, by, bz = b
     return (
@@ -26,7 +26,7 @@ def q_multiply(a: Quaternion, b: Quaternion) -> Quaternion:
 
 
 def q_inverse_multiply(a: Quaternion, b: Quaternion) -> Quaternion:
-    """Return a^-1 b, which is parent_from_joint for a = world_from_parent, b = world_from_joint."""
+    """Return a^-1 b: parent_from_joint for a = world_from_parent, b = world_from_joint."""
     aw, ax, ay, az = a
     bw, bx, by, bz = b
     return (
@@ -38,7 +38,7 @@ def q_inverse_multiply(a: Quaternion, b: Quaternion) -> Quaternion:
 
 
 def q_rotate(q: Quaternion, v: Vector) -> Vector:
-    """Turn a vector by a unit quaternion."""
+    """Rotate a vector by a unit quaternion."""
     w, x, y, z = q
     vx, vy, vz = v
     cx, cy, cz = 2.0 * (y * vz - z * vy), 2.0 * (z * vx - x * vz), 2.0 * (x * vy - y * vx)
@@ -50,22 +50,22 @@ def q_rotate(q: Quaternion, v: Vector) -> Vector:
 
 
 def q_blend(a: Quaternion, b: Quaternion, fraction: float) -> Quaternion:
-    """Go part of the way from a to b on the shorter side (normalised linear blend).
+    """Interpolate from a to b along the shorter arc by a normalised linear blend.
 
     The path is that of slerp; only the speed along it differs, by under 1 % for 60 degrees.
     """
     aw, ax, ay, az = a
     bw, bx, by, bz = b
-    keep = 1.0 - fraction
-    take = fraction if aw * bw + ax * bx + ay * by + az * bz >= 0.0 else -fraction
-    w, x = keep * aw + take * bw, keep * ax + take * bx
-    y, z = keep * ay + take * by, keep * az + take * bz
+    weight_a = 1.0 - fraction
+    weight_b = fraction if aw * bw + ax * bx + ay * by + az * bz >= 0.0 else -fraction
+    w, x = weight_a * aw + weight_b * bw, weight_a * ax + weight_b * bx
+    y, z = weight_a * ay + weight_b * by, weight_a * az + weight_b * bz
     scale = 1.0 / sqrt(w * w + x * x + y * y + z * z)
     return (w * scale, x * scale, y * scale, z * scale)
 
 
 def q_slerp(a: Quaternion, b: Quaternion, fraction: float) -> Quaternion:
-    """Go part of the way from a to b on the shorter side, at constant speed.
+    """Interpolate from a to b along the shorter arc at constant speed.
 
     Source: Shoemake (1985), "Animating rotation with quaternion curves", SIGGRAPH 19:245-254.
     """
@@ -73,9 +73,9 @@ def q_slerp(a: Quaternion, b: Quaternion, fraction: float) -> Quaternion:
     half = acos(min(1.0, abs(cosine)))
     if half < _TINY_RAD:
         return q_blend(a, b, fraction)
-    keep = sin((1.0 - fraction) * half) / sin(half)
-    take = sin(fraction * half) / sin(half) * (1.0 if cosine >= 0.0 else -1.0)
-    w, x, y, z = (keep * one + take * other for one, other in zip(a, b, strict=True))
+    weight_a = sin((1.0 - fraction) * half) / sin(half)
+    weight_b = sin(fraction * half) / sin(half) * (1.0 if cosine >= 0.0 else -1.0)
+    w, x, y, z = (weight_a * one + weight_b * other for one, other in zip(a, b, strict=True))
     return (w, x, y, z)
 
 
@@ -111,20 +111,20 @@ def v_subtract(a: Vector, b: Vector) -> Vector:
 
 
 def v_scale(v: Vector, factor: float) -> Vector:
-    """Return v times a number."""
+    """Return the vector multiplied by a number."""
     return (v[0] * factor, v[1] * factor, v[2] * factor)
 
 
 def v_dot(a: Vector, b: Vector) -> float:
-    """Return the scalar product."""
+    """Return the scalar product of two vectors."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def v_cross(a: Vector, b: Vector) -> Vector:
-    """Return the vector product."""
+    """Return the vector product a x b."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
 def v_length(v: Vector) -> float:
-    """Return the Euclidean length."""
+    """Return the Euclidean length of a vector."""
     return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])

@@ -1,4 +1,4 @@
-"""The product's own body: joints, proportions, forward kinematics and movement."""
+"""Model the 22-joint body of Reembody: joints, proportions, forward kinematics and movement."""
 
 from app.science.skeleton.joints import JOINT_COUNT, JOINT_INDEX, JOINT_NAMES, PARENTS
 from app.science.skeleton.kinematics import Pose, body_part_segments, forward_kinematics

@@ -1,8 +1,8 @@
-"""The 22 body joints that every part of the product speaks about, in their one fixed order.
+"""Define the 22 body joints and their order, which the whole of Reembody uses.
 
 Names and hierarchy are those of Unity's HumanBodyBones without fingers, eyes and jaw. A parent
-always comes before its children, so one pass in order is forward kinematics. The pages' tests read
-this file.
+always comes before its children, so one pass in order computes forward kinematics. The tests of the
+frontend read this file.
 """
 
 _PARENT_OF: dict[str, str | None] = {
@@ -34,7 +34,7 @@ JOINT_NAMES: tuple[str, ...] = tuple(_PARENT_OF)
 JOINT_COUNT = len(JOINT_NAMES)
 JOINT_INDEX: dict[str, int] = {name: index for index, name in enumerate(JOINT_NAMES)}
 
-#: Index of each joint's parent; -1 for the hips.
 PARENTS: tuple[int, ...] = tuple(
     -1 if parent is None else JOINT_INDEX[parent] for parent in _PARENT_OF.values()
 )
+"""Index of each joint's parent; -1 for the hips."""

@@ -1,4 +1,4 @@
-"""Forward kinematics: from local rotations to places in the world.
+"""Compute forward kinematics: from local rotations to positions in the world.
 
 With q_j = parent_from_joint and o_j the joint's offset in its parent's frame, in order of joints:
 
@@ -26,7 +26,7 @@ from app.science.skeleton.model import Skeleton, SkeletonError
 
 @dataclass(frozen=True, eq=False)
 class Pose:
-    """One moment of a body.
+    """The pose of a body at one moment, as local rotations.
 
     Attributes:
         root_position_m: (3,) the hips in the world.
@@ -39,7 +39,12 @@ class Pose:
 
 @dataclass(frozen=True, eq=False)
 class WorldPose:
-    """Joints in the world: positions_m (..., 22, 3), rotations (..., 22, 4) world_from_joint."""
+    """Poses of the joints in the world.
+
+    Attributes:
+        positions_m: (..., 22, 3).
+        rotations: (..., 22, 4) world_from_joint.
+    """
 
     positions_m: FloatArray
     rotations: FloatArray
@@ -47,7 +52,7 @@ class WorldPose:
 
 @dataclass(frozen=True, eq=False)
 class BodySegments:
-    """Capsules of the 22 body parts.
+    """Capsules of the 22 body parts in the world.
 
     Attributes:
         axes_m: (..., 22, 2, 3) start and end of each capsule's axis in the world; equal for a
@@ -62,10 +67,10 @@ class BodySegments:
 def forward_kinematics(
     skeleton: Skeleton, root_positions_m: FloatArray, rotations: FloatArray
 ) -> WorldPose:
-    """Place the joints of one frame, (3,) and (22, 4), or of many, (N, 3) and (N, 22, 4).
+    """Compute the joints of one frame, (3,) and (22, 4), or of many, (N, 3) and (N, 22, 4).
 
     Raises:
-        SkeletonError: the arrays' shapes do not belong together.
+        SkeletonError: the arrays' shapes do not fit together.
     """
     expected = (*root_positions_m.shape[:-1], JOINT_COUNT, 4)
     if root_positions_m.shape[-1:] != (3,) or rotations.shape != expected:
@@ -87,7 +92,7 @@ def forward_kinematics(
 
 
 def _one_frame(skeleton: Skeleton, root_position_m: FloatArray, rotations: FloatArray) -> WorldPose:
-    # Plain floats: a single frame is six times faster than through arrays of 22 rows.
+    # Plain floats make a single frame six times faster than arrays of 22 rows.
     local = cast("list[Quaternion]", rotations.tolist())
     offsets = cast("list[Vector]", skeleton.offsets_m.tolist())
     places = [cast("Vector", root_position_m.tolist())]

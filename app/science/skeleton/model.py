@@ -1,4 +1,4 @@
-"""The skeleton of one person, built from the stature.
+"""Build the skeleton of one person from the stature.
 
 Rest pose: the T-pose, every local rotation the identity, world axes x right, y up, -z forward, so
 the left arm runs along -x and the feet point to -z. Lengths are fractions of the stature H.
@@ -10,8 +10,9 @@ shoulder breadth .129; upper arm .186, forearm .146, hand .108; foot length .152
 Estimated by us, as the figure has no such landmark: the hips joint .015 above the hip sockets and
 the sockets .050 to each side (the figure's .0955 is half the outer hip breadth); heights of Spine
 .585, Chest .655, UpperChest .725, Neck .835, Head .875; the inner end of the collar bone .020 to
-the side at .810; the toe joint .072 before the ankle at height .014, a quarter of the foot behind
-the ankle; all radii. They shape capsules and the look of the figure, no published number of ours.
+the side at .810; the toe joint .072 in front of the ankle at height .014, a quarter of the foot
+behind the ankle; all radii. They determine capsules and the look of the figure; no published number
+of ours depends on them.
 """
 
 from dataclasses import dataclass
@@ -76,7 +77,7 @@ _RADIUS = {
 
 
 class SkeletonError(ValueError):
-    """A skeleton or pose cannot be: stature out of range, arrays of a wrong shape."""
+    """A skeleton or pose is invalid: stature out of range, or arrays of a wrong shape."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,12 +86,12 @@ class Skeleton:
 
     Attributes:
         stature_m: body height.
-        offsets_m: (22, 3) joint position in its parent's frame; the hips' row is their place in
+        offsets_m: (22, 3) joint position in its parent's frame; the hips' row is their position in
             the T-pose above the floor.
         ends_m: (22, 3) anatomical end of each joint's bone in the joint's frame: the next joint,
             the tip of the middle finger, the top of the head, the tip of the toes.
         capsule_starts_m, capsule_ends_m: (22, 3) axis of each body part's capsule in its frame;
-            equal for the head, which is a sphere, and drawn in by the radius at free ends.
+        equal for the head, which is a sphere, and shortened by the radius at free ends.
         radii_m: (22,) capsule radii.
     """
 
@@ -106,17 +107,17 @@ class Skeleton:
 
     @property
     def leg_length_m(self) -> float:
-        """Thigh plus shank."""
+        """Return the length of thigh plus shank."""
         return self.length_m("LeftLowerLeg") + self.length_m("LeftFoot")
 
     @property
     def ankle_height_m(self) -> float:
-        """Height of the ankle joint above the sole of a flat foot."""
+        """Return the height of the ankle joint above the sole of a flat foot."""
         return 0.039 * self.stature_m
 
     @property
     def standing_hips_m(self) -> float:
-        """Height of the hips joint above the floor with straight legs."""
+        """Return the height of the hips joint above the floor with straight legs."""
         return float(self.offsets_m[0, 1])
 
     def length_m(self, joint: str) -> float:

@@ -1,8 +1,9 @@
-"""A recorded or made movement of the 22 joints at a constant rate, and how to make it endless.
+"""Resample movements of the 22 joints at a constant sampling rate, and turn them into loops.
 
-A short walk has to accompany a session of many minutes. Its end is therefore cut where the body is
-most like at its beginning, that is after whole strides, and the rest is cross-faded into the start:
-over the overlap of L frames the loop goes from the old end to the beginning with a smooth weight,
+A short recorded walk has to accompany a session of many minutes. So it is cut where the body's pose
+is most similar to the beginning, that is after whole strides, and the end is cross-faded into the
+start: over the overlap of L frames the loop goes from the old end to the beginning with a smooth
+weight,
 
     loop[i] = slerp(clip[M - L + i], clip[i], s(i / L))   for i < L,
     loop[i] = clip[i]                                     for L <= i < M - L,
@@ -22,10 +23,10 @@ _SHORTEST_LOOP_S = 0.5
 
 @dataclass(frozen=True, eq=False)
 class Movement:
-    """N frames of a body's own movement, facing -z.
+    """N frames of a body's movement in its own proportions, facing -z.
 
     Attributes:
-        rate_hz: frames a second.
+        rate_hz: frames per second.
         root_positions_m: (N, 3) the hips in the world.
         rotations: (N, 22, 4) wxyz, parent_from_joint; joint 0 is world_from_hips.
         loops: whether frame 0 follows frame N - 1 smoothly.
@@ -38,17 +39,17 @@ class Movement:
 
     @property
     def frame_count(self) -> int:
-        """Number of frames N."""
+        """Return the number of frames N."""
         return int(self.rotations.shape[0])
 
     @property
     def duration_s(self) -> float:
-        """Time until the movement repeats, or to its last frame where it does not loop."""
+        """Return the time until the movement repeats, or to its last frame if it does not loop."""
         return (self.frame_count - (0 if self.loops else 1)) / self.rate_hz
 
 
 def largest_step_rad(movement: Movement) -> float:
-    """Return the largest turn of any joint from one frame to the next, the seam of a loop included.
+    """Return the largest rotation of any joint between consecutive frames, including a loop's seam.
 
     Raises:
         SkeletonError: fewer than two frames.
@@ -56,35 +57,39 @@ def largest_step_rad(movement: Movement) -> float:
     if movement.frame_count < 2:
         raise SkeletonError("A movement of one frame has no step: give at least two frames.")
     q = movement.rotations
-    following = np.concatenate((q[1:], q[:1])) if movement.loops else q[1:]
-    return float(np.max(geodesic_angle(q[: following.shape[0]], following)))
+    next_q = np.concatenate((q[1:], q[:1])) if movement.loops else q[1:]
+    return float(np.max(geodesic_angle(q[: next_q.shape[0]], next_q)))
 
 
 def resample(movement: Movement, rate_hz: float) -> Movement:
-    """Return the movement at another rate: slerp for rotations, straight lines for the root.
+    """Return the movement at another sampling rate.
+
+    Rotations are interpolated by slerp, root positions linearly.
 
     Raises:
         SkeletonError: the rate is not above zero, the movement loops (resample before looping) or
-            is shorter than one frame at the new rate.
+            has fewer than two frames.
     """
     if not rate_hz > 0.0 or not np.isfinite(rate_hz):
         raise SkeletonError(f"A rate of {rate_hz} Hz is not valid: it must be above zero.")
     if movement.loops or movement.frame_count < 2:
         raise SkeletonError(
-            "Only a movement of two frames or more that does not loop yet can be"
-            " resampled: resample first, loop then."
+            "Only a movement of two or more frames that does not loop yet can be"
+            " resampled: resample before looping."
         )
-    # The small allowance keeps the last frame when the durations agree but for rounding.
+    # The small tolerance keeps the last frame where the durations differ only by rounding.
     count = int(np.floor(movement.duration_s * rate_hz + 1e-6)) + 1
-    where = np.minimum(np.arange(count) * (movement.rate_hz / rate_hz), movement.frame_count - 1)
-    before = np.minimum(where.astype(np.intp), movement.frame_count - 2)
-    fraction = where - before
+    positions = np.minimum(
+        np.arange(count) * (movement.rate_hz / rate_hz), movement.frame_count - 1
+    )
+    previous = np.minimum(positions.astype(np.intp), movement.frame_count - 2)
+    fraction = positions - previous
     root, q = movement.root_positions_m, movement.rotations
     line = fraction[:, np.newaxis]
     return Movement(
         rate_hz,
-        root[before] * (1.0 - line) + root[before + 1] * line,
-        slerp(q[before], q[before + 1], fraction[:, np.newaxis]),
+        root[previous] * (1.0 - line) + root[previous + 1] * line,
+        slerp(q[previous], q[previous + 1], fraction[:, np.newaxis]),
     )
 
 
@@ -92,8 +97,8 @@ def loop(movement: Movement, crossfade_s: float = 0.4) -> Movement:
     """Return a loop of the movement's most repeatable stretch, cross-faded at the seam.
 
     Args:
-        movement: at least half a second longer than the cross-fade.
-        crossfade_s: overlap that is blended. Longer is smoother and costs as much of the clip.
+        movement: at least half a second longer than twice the cross-fade.
+        crossfade_s: overlap that is blended. Longer is smoother and shortens the loop by as much.
 
     Raises:
         SkeletonError: the movement is too short or already loops.
@@ -105,7 +110,7 @@ def loop(movement: Movement, crossfade_s: float = 0.4) -> Movement:
             f"{movement.frame_count} frames cannot be looped with a cross-fade of {crossfade_s} s:"
             f" {max(shortest_end, 2)} frames that do not loop yet are needed."
         )
-    end = _most_alike_end(movement, overlap, max(shortest_end, movement.frame_count // 2))
+    end = _most_similar_end(movement, overlap, max(shortest_end, movement.frame_count // 2))
     ramp = np.arange(overlap) / overlap
     weight = (ramp * ramp * (3.0 - 2.0 * ramp))[:, np.newaxis]
     q, root = movement.rotations, movement.root_positions_m
@@ -119,18 +124,20 @@ def loop(movement: Movement, crossfade_s: float = 0.4) -> Movement:
     )
 
 
-def _most_alike_end(movement: Movement, overlap: int, lowest: int) -> int:
-    """Return the cut M whose last `overlap` frames are nearest to the first ones."""
+def _most_similar_end(movement: Movement, overlap: int, lowest: int) -> int:
+    """Return the cut M whose last `overlap` frames are most similar to the first ones."""
     q = movement.rotations
     ends = range(lowest, movement.frame_count + 1)
-    unlike = [float(np.mean(geodesic_angle(q[end - overlap : end], q[:overlap]))) for end in ends]
-    return ends[int(np.argmin(unlike))]
+    differences = [
+        float(np.mean(geodesic_angle(q[end - overlap : end], q[:overlap]))) for end in ends
+    ]
+    return ends[int(np.argmin(differences))]
 
 
 def continuous(rotations: FloatArray) -> FloatArray:
-    """Choose between q and -q so that no frame lies across the sphere from the one before."""
-    along = np.einsum("nji,nji->nj", rotations[1:], rotations[:-1])
-    signs = np.cumprod(np.where(along < 0.0, -1.0, 1.0), axis=0)
+    """Choose between q and -q in each frame so that it is the one nearer to the previous frame."""
+    dots = np.einsum("nji,nji->nj", rotations[1:], rotations[:-1])
+    signs = np.cumprod(np.where(dots < 0.0, -1.0, 1.0), axis=0)
     result = rotations.copy()
     result[1:] *= signs[..., np.newaxis]
     return result
@@ -139,7 +146,7 @@ def continuous(rotations: FloatArray) -> FloatArray:
 def mean_rotations(rotations: FloatArray) -> FloatArray:
     """Return each joint's chordal mean rotation over the frames, (22, 4).
 
-    The mean q maximises the sum of (q . q_n)^2: the main eigenvector of sum q_n q_n^T.
+    The mean q maximises the sum of (q . q_n)^2: the principal eigenvector of sum q_n q_n^T.
     Source: Markley et al. (2007), "Averaging quaternions", J. Guidance, Control and Dynamics 30.
     """
     outer = np.einsum("nji,njk->jik", rotations, rotations)

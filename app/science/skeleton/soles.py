@@ -1,8 +1,8 @@
-"""Feet that stand flat: a correction of how a capture's feet were measured.
+"""Correct the pitch of a capture's feet so that standing feet are flat.
 
-Captures disagree by up to 20 degrees about the pitch of a standing foot, as their markers sat
-differently on the shoe. A standing foot is flat, and it stands when its ankle is lowest. So each
-foot, and its toes, is turned by one constant pitch that makes it flat in those frames.
+Captures disagree by up to 20 degrees about the pitch of a standing foot, as their markers were
+placed differently on the shoe. A foot stands when its ankle is lowest, and is then flat. So each
+foot, and its toes, is rotated by one constant pitch that makes it flat in those frames.
 """
 
 import numpy as np
@@ -13,7 +13,7 @@ from app.science.skeleton.joints import JOINT_INDEX
 from app.science.skeleton.model import Skeleton
 
 _STANDING_SHARE = 0.1
-# Beyond this the frames show no flat foot (dancing on the toes), and nothing is corrected.
+# Beyond this angle the frames show no flat foot (as in dancing on the toes); nothing is corrected.
 _LARGEST_CORRECTION_RAD = np.radians(25.0)
 
 
@@ -23,7 +23,7 @@ def flat_soles(world: FloatArray, skeleton: Skeleton, root_m: FloatArray) -> Flo
     Args:
         world: (N, 22, 4) world_from_joint.
         skeleton: gives the pitch of a flat foot, from ankle to toes.
-        root_m: (N, 3) hips, with the height they have over the floor up to a constant.
+        root_m: (N, 3) hips, whose height above the floor needs to be known only up to a constant.
     """
     result = world.copy()
     for side in ("Left", "Right"):
@@ -40,9 +40,10 @@ def flat_soles(world: FloatArray, skeleton: Skeleton, root_m: FloatArray) -> Flo
 
 
 def ground_height(world: FloatArray, skeleton: Skeleton, root_m: FloatArray) -> float:
-    """Return the height of the floor the capture's lower foot stands on, flat; see `flat_soles`.
+    """Return the height of the floor under the capture's lower foot when it stands flat.
 
-    The lowest point of all would be a toe in the swing, which a stiff model pushes too low.
+    The lowest point of all would be a toe in the swing phase, which a rigid model places too low.
+    See `flat_soles`.
     """
     heights = [_ankle_height(world, skeleton, root_m, side) for side in ("Left", "Right")]
     ankle = min(float(np.median(height[_lowest_frames(height)])) for height in heights)

@@ -38,7 +38,7 @@ def _one_by_one(poses: FloatArray, fingers: dict[str, FloatArray], restarts: set
     )
 
 
-@pytest.mark.parametrize("anew", [set(), {0, 1, 511, 512, 700, 1024}])
+@pytest.mark.parametrize("restarts", [set(), {0, 1, 511, 512, 700, 1024}])
 def test_a_recording_is_the_same_to_the_bit(restarts: set[int]) -> None:
     """With fingers, through blocks, and with new beginnings within and at the edges of them."""
     poses = wild_movement()
