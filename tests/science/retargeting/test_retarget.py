@@ -155,7 +155,7 @@ def test_movement_that_cannot_be_looped_or_resampled_is_refused(rng: np.random.G
         loop(loop(movement))
     with pytest.raises(SkeletonError, match="not valid"):
         resample(movement, 0.0)
-    with pytest.raises(SkeletonError, match="resample first"):
+    with pytest.raises(SkeletonError, match="resample before looping"):
         resample(loop(movement), 90.0)
 
 

@@ -46,7 +46,7 @@ class AvatarModel:
     mjcf: str
 
     @property
-    def simple_instead(self) -> tuple[str, ...]:
+    def fallback_parts(self) -> tuple[str, ...]:
         """Return the parts that are configured to collide as meshes but have no convex piece.
 
         They keep their simple shapes.

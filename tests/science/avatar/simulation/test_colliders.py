@@ -152,7 +152,7 @@ def test_a_part_without_skin_keeps_its_simple_shapes() -> None:
     whole = figure()
     pieces = {part: one for part, one in whole.pieces.items() if part != "LeftHand"}
     built = model("mesh", own=replace(whole, pieces=pieces), scene=WALL)
-    assert built.simple_instead == ("LeftHand",)
+    assert built.fallback_parts == ("LeftHand",)
     body = PhysicsAvatar(built.mjcf)
     assert body.switches.collider("LeftHand") == "simple"
     assert body.model.geom_contype[body.model.geom("LeftHand/0").id] > 0
