@@ -124,8 +124,12 @@ def test_listed_orders_are_used_as_they_are() -> None:
         (explicit("c0, c0"), "orders.sequences[0]", "every condition once"),
         (explicit("c0, c1", "c0"), "orders.sequences[1]", "every condition once"),
         (explicit("c0, c1", "c0, c1"), "orders.sequences[1]", "twice"),
-        (explicit("c0, c1").replace("explicit", "williams"), "orders.sequences", "no other"),
-        (with_levels(2).replace("all_permutations", "explicit"), "orders.sequences", "no other"),
+        (explicit("c0, c1").replace("explicit", "williams"), "orders.sequences", "only for that"),
+        (
+            with_levels(2).replace("all_permutations", "explicit"),
+            "orders.sequences",
+            "only for that",
+        ),
     ],
 )
 def test_a_list_that_cannot_be_used_is_refused_at_its_place(

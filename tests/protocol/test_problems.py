@@ -89,7 +89,7 @@ from tests.protocol.helpers import edited, problems
             "Hip",
             "",
         ),
-        (("default: standard", "default: dark"), "appearance.default", "not there", "palette"),
+        (("default: standard", "default: dark"), "appearance.default", "does not exist", "palette"),
         (('"#8a8f98"', "red"), "appearance.palettes[0].colours.panel", "'red'", "#rrggbb"),
         (("avatar: delayed_copy", "avatar: puppet"), "avatar", "'puppet'", "delayed_copy"),
         (("key: reembodiment-latency", "key: Re embody"), "key", "'Re embody'", "lower-case"),

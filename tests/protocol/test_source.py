@@ -100,7 +100,7 @@ def test_what_is_refused_is_refused_at_its_place(
 @pytest.mark.parametrize(
     ("text", "place", "said"),
     [
-        ("a: 1\nb: 2\na: 3\n", (3, 1), "there twice; first in line 1"),
+        ("a: 1\nb: 2\na: 3\n", (3, 1), "occurs twice; first in line 1"),
         ("a: .nan\n", (1, 4), "not a finite number"),
         ("a: -.inf\n", (1, 4), "not a finite number"),
         ("a: Infinity\n", (1, 4), "not a finite number"),

@@ -50,7 +50,7 @@ def test_both_variants_are_in_the_content() -> None:
     ("words", "path", "message"),
     [
         ("[avatar: ghost] Hold still.", "texts.freeze.en", "There is no avatar 'ghost'"),
-        ("Hold [avatar: physics] still.", "texts.freeze.en", "where it is not read"),
+        ("Hold [avatar: physics] still.", "texts.freeze.en", "where it has no effect"),
         ("[avatar: physics] Hold still.", "texts.freeze.en", "Nothing is left of this text"),
     ],
 )

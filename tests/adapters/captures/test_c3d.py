@@ -150,7 +150,7 @@ def test_a_file_that_is_cut_off_is_refused() -> None:
     with pytest.raises(CaptureError, match="50 frames but contains 49"):
         _read(whole[:-8])
     huge = C3dFile(_some_places(1), ("A", "B", "C"), frames_told=65_535).to_bytes()
-    with pytest.raises(CaptureError, match="holds 1"):
+    with pytest.raises(CaptureError, match="contains 1"):
         _read(huge)
 
 
