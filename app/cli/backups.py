@@ -42,7 +42,7 @@ from app.features.care.rights import (
     tombstone_file,
 )
 from app.features.people.audit import COMMAND_LINE, record_copy
-from app.features.record.erasure import expect_erasure, forget_erasure
+from app.features.record.erasure import clear_erasure_mark, mark_erasure
 from app.platform.context import AppContext
 from app.platform.folders import backups_of, home_of
 from app.platform.half_made import Notes
@@ -189,7 +189,7 @@ def _restored(
                     progress=activity.rows("restoring"),
                 )
     if expected and not done.erasures_reapplied:
-        forget_erasure(settings)
+        clear_erasure_mark(settings)
     activity.now("overwriting what had been erased")
     _overwrite(context, outliving.given)
     _stop_clocks(context)
@@ -215,13 +215,13 @@ def _undone_if_refused(context: AppContext) -> Iterator[bool]:
 
     Yields whether the mark was made for this restore.
     """
-    expected = expect_erasure(context.settings)
+    expected = mark_erasure(context.settings)
     try:
         yield expected
     except BaseException:
         context.database.close()
         if expected:
-            forget_erasure(context.settings)
+            clear_erasure_mark(context.settings)
         raise
 
 

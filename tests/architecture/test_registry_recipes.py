@@ -41,7 +41,7 @@ CODE = StateCheck(
         ),
         Finding("ok", "ok", Words(en="Known", de="Bekannt")),
     ),
-    look=_code,
+    run=_code,
 )
 '''
     },
@@ -318,7 +318,7 @@ from app.features.record.preflight.checks import CHECKS
 from app.features.record.preflight.schemas import Check, OverrideRequest
 from app.features.record.preflight.service import _line
 check = CHECKS[-1]
-found = check.look(Situation(SimpleNamespace(participant_id=None), None, None))
+found = check.run(Situation(SimpleNamespace(participant_id=None), None, None))
 OverrideRequest(check="code", reason="known")
 answer = [_line(check, found).model_dump(), Check.model_json_schema()["properties"]["key"]["enum"]]
 """,

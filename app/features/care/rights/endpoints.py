@@ -21,7 +21,7 @@ from app.features.care.rights.service import keep_tombstones
 from app.features.design.studies import study_by_key
 from app.features.movement.files import streamed
 from app.features.people.audit import download_place, record, record_copy
-from app.features.record.erasure import expect_erasure, overwrite
+from app.features.record.erasure import mark_erasure, overwrite
 from app.features.record.questionnaires import StoredAnswers, stored_answers
 from app.features.results.exports import ExportDesk
 from app.models import Study, StudySession
@@ -72,7 +72,7 @@ def _expect(context: AppContext, key: str, participant_id: str, confirm: str) ->
     with context.database.reading() as db:
         participant = participant_of(db, study_by_key(db, key), participant_id)
         require_erasable(db, participant, confirm)
-    expect_erasure(context.settings)
+    mark_erasure(context.settings)
 
 
 def _finished(context: AppContext, participant_id: str) -> ErasureView:

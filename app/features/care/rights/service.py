@@ -11,7 +11,7 @@ from app.errors import NotDurable
 from app.features.care.rights.erasing import erase_now, erasure_of, locked_sessions
 from app.features.care.rights.tombstones import Tombstone, moment, tombstone_file, tombstones_of
 from app.features.people.audit import record
-from app.features.record.erasure import expect_erasure, overwrite_what_is_left
+from app.features.record.erasure import finish_overwriting, mark_erasure
 from app.models import Participant, StudySession
 from app.platform.context import AppContext
 
@@ -99,9 +99,9 @@ def finish_erasures(context: AppContext) -> int:
     except NotDurable as error:
         log.warning("%s. %s", error.message, error.remedy)
     if again:
-        expect_erasure(settings)
+        mark_erasure(settings)
         log.warning("%d erasure(s) that the database did not know were made again", again)
-    overwrite_what_is_left(database, settings)
+    finish_overwriting(database, settings)
     return again
 
 

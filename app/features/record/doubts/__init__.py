@@ -1,6 +1,6 @@
-"""What of a session's record cannot be true, and so is never believed."""
+"""Doubts: contradictions in a session's record, which show that reported data cannot be true."""
 
-from app.features.record.doubts.laws import KINDS, Doubt, beyond_reason
+from app.features.record.doubts.laws import KINDS, Doubt, exceeds_possible
 from app.features.record.doubts.service import (
     OBSERVED,
     doubts_of,
@@ -12,8 +12,8 @@ __all__ = [
     "KINDS",
     "OBSERVED",
     "Doubt",
-    "beyond_reason",
     "doubts_of",
     "doubts_of_sessions",
+    "exceeds_possible",
     "judge_with_doubts",
 ]

@@ -1,7 +1,7 @@
-"""The claims of sessions from the record, and the doubts about them.
+"""Read the claims of sessions from the record, and determine the doubts about them.
 
-Everything is made anew from what is stored, for one session or for many with the same few queries.
-Contacts, which are the many, are put together in SQL.
+Everything is recomputed from what is stored, with the same few queries for one session or for many.
+Contacts are the most numerous, so they are aggregated in SQL.
 """
 
 import json
@@ -41,7 +41,7 @@ from app.models import (
 from app.protocol import BOX_KINDS, StudyProtocol
 
 OBSERVED = "impossible"
-"""The alarm of what a connection itself sees and the record would not show."""
+"""The code of the alarm for contradictions that only the connection can see, not the record."""
 _MOMENTS = (
     "phase_prepared",
     "phase_paused",
@@ -54,38 +54,38 @@ _MOMENTS = (
 )
 _NS_PER_S = 1e9
 Key = tuple[str, int]
-"""Session and phase."""
+"""Session id and phase id."""
 
 
 def doubts_of(db: Session, session_id: str) -> tuple[Doubt, ...]:
-    """What of a session's record cannot be true; the session's own first, then phase by phase."""
+    """Return the doubts about a session: first those about it as a whole, then phase by phase."""
     return doubts_of_sessions(db, StudySession.id == session_id).get(session_id, ())
 
 
 def doubts_of_sessions(db: Session, chosen: ColumnElement[bool]) -> dict[str, tuple[Doubt, ...]]:
-    """The same for every session that is `chosen`; those without a doubt are left out."""
+    """Return the doubts by session id for all `chosen` sessions that have any."""
     claims = _Reader(db, chosen).read()
     found = {session_id: doubts_about(one) for session_id, one in claims}
     return {session_id: doubts for session_id, doubts in found.items() if doubts}
 
 
 def judge_with_doubts(db: Session, session: StudySession) -> None:
-    """Decide whether a session counts if it is completed, knowing what of it cannot be true.
+    """Decide whether a completed session is valid, taking the doubts about it into account.
 
-    Call it wherever a step ends that may have been the last.
+    Call this after every step that may have been the last one.
     """
     if session.status == "completed":
         judge_again(db, session, [one.phase_id for one in doubts_of(db, session.id)])
 
 
 class _Reader:
-    """Reads the claims of the chosen sessions, table by table."""
+    """Read the claims of the chosen sessions, table by table."""
 
     def __init__(self, db: Session, chosen: ColumnElement[bool]) -> None:
         self._db, self._chosen = db, chosen
 
     def read(self) -> Iterator[tuple[str, SessionClaims]]:
-        """Session by session, each with its claims."""
+        """Yield each session's id with its claims."""
         reports = self._by_session(self._reports())
         moments, lengths_s = self._moments()
         streams = self._streams(lengths_s)
@@ -105,7 +105,7 @@ class _Reader:
             )
 
     def _of_chosen(self, query: Any, table: Any) -> Any:
-        """The rows of a query on a table of sessions, for those that are chosen."""
+        """Execute a query on a table that has a session id, restricted to the chosen sessions."""
         joined = query.join(StudySession, StudySession.id == table.session_id)
         return self._db.execute(joined.where(self._chosen))
 
@@ -141,7 +141,7 @@ class _Reader:
             )
 
     def _moments(self) -> tuple[dict[Key, list[Moment]], dict[str, float]]:
-        """The events of each phase's clock, and how long each session has lasted, in s."""
+        """Return each phase's clock events, and the duration of each session in seconds."""
         query = (
             select(
                 SessionEvent.session_id,
@@ -157,15 +157,15 @@ class _Reader:
         first: dict[str, Moment] = {}
         lengths_s: dict[str, float] = {}
         for session_id, kind, payload, monotonic_ns, utc in self._of_chosen(query, SessionEvent):
-            told = json.loads(payload)
+            fields = json.loads(payload)
             moment = Moment(
                 type=kind,
                 monotonic_s=monotonic_ns / _NS_PER_S,
                 utc=utc,
-                active_s=told.get("active_s"),
-                stands=told.get("client_t_s") is not None,
+                active_s=fields.get("active_s"),
+                clock_stopped=fields.get("client_t_s") is not None,
             )
-            found[session_id, told["phase_id"]].append(moment)
+            found[session_id, fields["phase_id"]].append(moment)
             begin = first.setdefault(session_id, moment)
             lengths_s[session_id] = max(
                 moment.monotonic_s - begin.monotonic_s, (utc - begin.utc).total_seconds()
@@ -187,8 +187,8 @@ class _Reader:
         )
         found: dict[str, list[StreamClaim]] = defaultdict(list)
         for session_id, stream, epoch, stored, produced, *times in self._of_chosen(query, table):
-            known_s = max(_lasted_s(*times), lengths_s.get(session_id, 0.0))
-            found[session_id].append(StreamClaim(stream, epoch, stored, produced, known_s))
+            age_s = max(_lasted_s(*times), lengths_s.get(session_id, 0.0))
+            found[session_id].append(StreamClaim(stream, epoch, stored, produced, age_s))
         return found
 
     def _observed(self) -> Iterator[tuple[str, str]]:
@@ -279,7 +279,10 @@ class _Reader:
         return found
 
     def _coverage(self) -> dict[Key, Coverage]:
-        """Of both streams the one that covers more: the other may have been lost."""
+        """Return, for each phase, the coverage of the stream that covers more.
+
+        The other stream may have been lost.
+        """
         query = select(
             PhaseQuality.session_id,
             PhaseQuality.phase_id,
@@ -303,13 +306,16 @@ def _count(condition: ColumnElement[bool]) -> ColumnElement[int]:
 
 
 def _lasted_s(first: datetime, last: datetime, created: datetime, ended: datetime | None) -> float:
-    """For how long a run was known, or its session lasted: either clock may have been set."""
+    """Return how long an epoch was known or its session lasted, whichever is longer.
+
+    Either clock may have been set in the meantime.
+    """
     session_s = 0.0 if ended is None else (ended - created).total_seconds()
     return max((last - first).total_seconds(), session_s)
 
 
 def _boxes(protocol: StudyProtocol, phase: Phase) -> int:
-    """How many boxes a phase has; none where there is no task."""
+    """Return how many boxes a phase has: 0 if it has no task."""
     if phase.kind not in BOX_KINDS:
         return 0
     task = protocol.tasks.hand if phase.limb == "hand" else protocol.tasks.foot

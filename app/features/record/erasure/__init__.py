@@ -1,19 +1,19 @@
-"""What the record holds about a person: removing it, and overwriting what is left of it."""
+"""Erase what the record contains about a person, and overwrite the bytes that remain on disk."""
 
 from app.features.record.erasure.overwriting import (
-    expect_erasure,
-    forget_erasure,
+    clear_erasure_mark,
+    finish_overwriting,
     is_overwritten,
+    mark_erasure,
     overwrite,
-    overwrite_what_is_left,
 )
 from app.features.record.erasure.traces import remove_traces
 
 __all__ = [
-    "expect_erasure",
-    "forget_erasure",
+    "clear_erasure_mark",
+    "finish_overwriting",
     "is_overwritten",
+    "mark_erasure",
     "overwrite",
-    "overwrite_what_is_left",
     "remove_traces",
 ]

@@ -1,14 +1,14 @@
-"""The bytes: what a database keeps of rows that are gone.
+"""Overwrite the bytes that a database retains of deleted rows.
 
-SQLite overwrites deleted rows with zeros (`secure_delete`), but copies of them can be left in three
+SQLite overwrites deleted rows with zeros (`secure_delete`), but copies of them can remain in three
 places: in its write-ahead log, in pages that were freed by earlier versions of the product, and in
-the gaps of pages whose rows were moved when others came. So after an erasure the log is copied and
-cut to nothing, and the file is written anew (VACUUM). The latter holds writers up, so it waits for
-the next start of the server if a session is running now, or if the disk has no room for a second
-copy; a marker in the data folder remembers it, also over a crash.
+the gaps of pages whose rows were moved when others were inserted. So after an erasure the log is
+checkpointed and truncated, and the file is rewritten (VACUUM). The latter blocks writers, so it is
+postponed to the next start of the server if a session is running or if the disk has no room for a
+second copy. A marker file in the data folder records that it is pending, even across a crash.
 
-PostgreSQL gets a VACUUM of the tables that were touched. See docs/participants-rights.md for what
-that leaves.
+On PostgreSQL, the affected tables are vacuumed. See docs/participants-rights.md for what that
+leaves behind.
 """
 
 import logging
@@ -30,11 +30,14 @@ log = logging.getLogger(__name__)
 MARKER = "erasure-unfinished"
 TRIES, PAUSE_S = 20, 0.25
 ROOM = 1.2
-"""How much of the database's size must be free to write it anew."""
+"""Rewriting the database needs this many times its size as free space."""
 
 
-def expect_erasure(settings: Settings) -> bool:
-    """Remember that bytes will have to be overwritten, before the rows go; whether that is new."""
+def mark_erasure(settings: Settings) -> bool:
+    """Create the marker file, before rows are deleted; return whether it is new.
+
+    The marker records that the bytes of deleted rows must be overwritten.
+    """
     marker = _marker(settings)
     new = not marker.exists()
     marker.parent.mkdir(parents=True, exist_ok=True)
@@ -43,47 +46,48 @@ def expect_erasure(settings: Settings) -> bool:
 
 
 def is_overwritten(settings: Settings) -> bool:
-    """Whether no byte of erased rows is left in the database."""
+    """Return whether the database contains no more bytes of erased rows."""
     return not _marker(settings).exists()
 
 
-def forget_erasure(settings: Settings) -> None:
-    """Nothing is to be overwritten, or nothing any more.
+def clear_erasure_mark(settings: Settings) -> None:
+    """Remove the marker file, because nothing is left to overwrite.
 
-    A mark that cannot be removed is no reason to fail: the next start overwrites once more.
+    If it cannot be removed, that is only logged: the next start then overwrites once more.
     """
     try:
         _marker(settings).unlink(missing_ok=True)
     except OSError as error:
-        log.warning("the mark of an erasure stays, and the next start overwrites again: %s", error)
+        log.warning("the erasure marker remains; the next start will overwrite again: %s", error)
 
 
 def overwrite(database: Database, settings: Settings, *, starting: bool = False) -> bool:
-    """Overwrite what the erased rows left behind; whether nothing is left to do.
+    """Overwrite what the erased rows left behind; return whether nothing is left to do.
 
-    Call it outside of any transaction. What could not be done now is done at the next start;
-    `starting`: this is it, and no session is held up.
+    Call this outside any transaction. What cannot be done now is done at the next start.
+    `starting`:
+    the server is starting, so a running session is no reason to postpone.
     """
     try:
-        done = _anew(database, starting=starting)
+        done = _overwrite(database, starting=starting)
         if done:
-            forget_erasure(settings)
+            clear_erasure_mark(settings)
     except (DBAPIError, sqlite3.Error, OSError) as error:
-        words = getattr(error, "orig", error)
-        log.warning("erased rows are still to be overwritten: %s", words)
+        cause = getattr(error, "orig", error)
+        log.warning("erased rows could not be overwritten yet: %s", cause)
         return False
     return done and is_overwritten(settings)
 
 
-def overwrite_what_is_left(database: Database, settings: Settings) -> bool:
-    """At a start: finish what an earlier erasure could not; whether there was anything."""
+def finish_overwriting(database: Database, settings: Settings) -> bool:
+    """Finish a pending overwrite when the server starts; return whether one was pending."""
     if is_overwritten(settings):
         return False
     overwrite(database, settings, starting=True)
     return True
 
 
-def _anew(database: Database, *, starting: bool) -> bool:
+def _overwrite(database: Database, *, starting: bool) -> bool:
     if database.is_sqlite:
         return _sqlite(database, starting=starting)
     return _postgresql(database)
@@ -94,30 +98,30 @@ def _marker(settings: Settings) -> Path:
 
 
 def _sqlite(database: Database, *, starting: bool) -> bool:
-    # Nobody else copies the log, and nobody writes, from the first cut to the last.
+    # Block checkpoints and writers from the first truncation of the log to the last.
     with database.commits.copying, database.write_turn():
         cut = _cut_log(database)
-        anew = cut and (starting or _nobody_waits(database)) and _has_room(database)
-        if anew:
+        rewrite = cut and (starting or _no_session_runs(database)) and _has_room(database)
+        if rewrite:
             _execute(database, "VACUUM")
             cut = _cut_log(database)
         if cut:
             database.commits.copied = database.commits.number
-    return cut and anew
+    return cut and rewrite
 
 
 def _cut_log(database: Database) -> bool:
-    """Copy the whole log and cut it to nothing; a reader may be in the way for a moment."""
+    """Checkpoint the whole log and truncate it; retry for a while if a reader blocks this."""
     for _ in range(TRIES):
         busy, *_rest = _execute(database, "PRAGMA wal_checkpoint(TRUNCATE)") or (0,)
         if not busy:
             return True
         time.sleep(PAUSE_S)
-    log.warning("the log could not be cut: somebody reads for long")
+    log.warning("the write-ahead log could not be truncated: a reader is still using it")
     return False
 
 
-def _nobody_waits(database: Database) -> bool:
+def _no_session_runs(database: Database) -> bool:
     with database.reading() as db:
         running = select(StudySession.id).where(StudySession.status == "active").limit(1)
         return db.scalar(running) is None
@@ -136,7 +140,7 @@ def _postgresql(database: Database) -> bool:
 
 
 def _execute(database: Database, statement: str) -> tuple[int, ...] | None:
-    """Outside of any transaction, which the engine would open."""
+    """Execute a statement outside the transaction that the engine would otherwise open."""
     connection = database.engine.raw_connection()
     try:
         cursor = connection.cursor()

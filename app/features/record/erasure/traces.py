@@ -1,8 +1,8 @@
-"""What the tables hold about a person, and removing it.
+"""Remove what the tables contain about a person.
 
-What stays is the skeleton of the record: that there was a session, in which slot of the ledger, and
-the chain of its events. The chain points at words and answers by salted hashes; the salts go with
-the words, so that no hash can be tried out against the few answers that a form allows.
+What remains is the skeleton of the record: that there was a session, its slot of the ledger, and
+the chain of its events. The chain refers to texts and answers by salted hashes. The salts are
+removed along with the texts, so that the few answers a form allows cannot be tried against a hash.
 """
 
 from collections.abc import Sequence
@@ -50,17 +50,17 @@ OF_SESSIONS = (
     Device,
     PairingCode,
 )
-"""Tables whose rows of a session go as a whole."""
+"""Tables whose rows of a session are deleted."""
 OF_FORMS = (AnswerCorrection, Answer, ScoreValue)
-"""Tables whose rows of a filled-in form go as a whole; those that refer to another first."""
+"""Tables whose rows of a filled-in form are deleted, in an order that respects foreign keys."""
 EMPTIED = (Submission, SessionContent, Suggestion)
-"""Tables whose rows stay, without what is personal in them."""
+"""Tables whose rows remain, with their personal content blanked."""
 TOUCHED = tuple(model.__tablename__ for model in (*OF_SESSIONS, *OF_FORMS, *EMPTIED))
-"""Every table that an erasure takes something from, but for the participant's own row."""
+"""Every table that an erasure changes, except for the participant's own row."""
 
 
 def remove_traces(db: Session, session_ids: Sequence[str]) -> dict[str, int]:
-    """Remove what these sessions hold about their participant; how many rows, by table."""
+    """Remove what these sessions contain about their participant; return row counts by table."""
     removed: dict[str, int] = {}
     forms = select(Submission.id).where(Submission.session_id.in_(session_ids))
     for model in OF_FORMS:
@@ -79,7 +79,10 @@ def remove_traces(db: Session, session_ids: Sequence[str]) -> dict[str, int]:
 
 
 def _empty_forms(db: Session, session_ids: Sequence[str]) -> int:
-    """Keep which form was filled in when; the hash of the request is one of the bare answers."""
+    """Blank the filled-in forms, so that only which form was filled in when remains.
+
+    The request's hash is removed too, because it is a hash of the unsalted answers.
+    """
     rows = db.scalars(select(Submission).where(Submission.session_id.in_(session_ids))).all()
     for row in rows:
         row.idempotency_key = row.id

@@ -1,10 +1,10 @@
-"""Joining: participants and the counterbalancing ledger."""
+"""The counterbalancing ledger, and the participants whose sessions take its slots."""
 
 from app.features.record.ledger.codes import find_or_add_participant, is_code
 from app.features.record.ledger.schemas import Kind
 from app.features.record.ledger.service import (
     close_attempt,
-    hold_slot,
+    open_attempt,
     planned_slots,
     settle_attempt,
     slot_of,
@@ -18,8 +18,8 @@ __all__ = [
     "ShortfallCode",
     "close_attempt",
     "find_or_add_participant",
-    "hold_slot",
     "is_code",
+    "open_attempt",
     "planned_slots",
     "settle_attempt",
     "shortfalls_of",

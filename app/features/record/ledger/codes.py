@@ -1,4 +1,4 @@
-"""Participants by the codes that stand for them: pseudonyms, each used by one person of a study."""
+"""Participants and their codes: pseudonyms, each used by one person of a study."""
 
 import re
 from datetime import datetime
@@ -16,10 +16,10 @@ _PREFIX = {"people": "P", "simulated": "SIM", "test": "TEST", "expert": "EXPERT"
 def find_or_add_participant(
     db: Session, *, study_id: str, kind: str, code: str | None, now: datetime
 ) -> Participant:
-    """The participant of that code, or a new one with the next free code.
+    """Return the participant with this code, or add one; without a code, use the next free one.
 
-    Raises InvalidInput for an unusable code and Conflict where that participant is in a session or
-    has completed one.
+    Raises InvalidInput for an invalid code, and Conflict if that participant is in a session or has
+    completed one.
     """
     if code is None or not code.strip():
         return _add_participant(db, study_id, kind, _next_code(db, study_id, kind), now)
@@ -31,22 +31,22 @@ def find_or_add_participant(
             valid="1 to 40 letters, digits, - and _",
             remedy="Use a pseudonym such as P-0007, never a name.",
         )
-    known = db.scalar(
+    existing = db.scalar(
         select(Participant).where(
             Participant.study_id == study_id, Participant.kind == kind, Participant.code == code
         )
     )
-    if known is None:
+    if existing is None:
         return _add_participant(db, study_id, kind, code, now)
-    if db.scalar(select(Erasure.id).where(Erasure.participant_id == known.id)) is not None:
+    if db.scalar(select(Erasure.id).where(Erasure.participant_id == existing.id)) is not None:
         raise Conflict(
-            f"the data of {code} were erased, and nobody can be added to what is left",
+            f"the data of {code} were erased, and no session can be added to an erased participant",
             value=code,
             remedy="Use another code.",
         )
     busy = db.scalar(
         select(StudySession).where(
-            StudySession.participant_id == known.id,
+            StudySession.participant_id == existing.id,
             StudySession.status.in_(("planned", "active", "completed")),
         )
     )
@@ -57,11 +57,11 @@ def find_or_add_participant(
             remedy="Open that session, or use another code.",
             details=[{"session_id": busy.id, "status": busy.status}],
         )
-    return known
+    return existing
 
 
 def is_code(code: str) -> bool:
-    """Whether a participant may have this code."""
+    """Return whether `code` is a valid participant code."""
     return _CODE.fullmatch(code) is not None
 
 

@@ -1,4 +1,4 @@
-"""The counterbalancing ledger over HTTP."""
+"""HTTP endpoint for the counterbalancing ledger."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -14,14 +14,14 @@ from app.platform.access import hidden_sessions, is_blind
 from app.platform.dependencies import Reading, SignedIn
 
 router = APIRouter(tags=["participants"])
-GIVEN_UP = ("aborted", "withdrawn")
+ENDED_EARLY = ("aborted", "withdrawn")
 
 
 @router.get("/studies/{key}/ledger")
 def get_ledger(key: str, db: Reading, caller: SignedIn, kind: Kind = "people") -> LedgerView:
-    """Every slot with its attempts; before the first join, the slots as they will be.
+    """Return every slot with its attempts; before the first session, the slots as planned.
 
-    In a blinded study only the orders are told that are known by now, and to operators none.
+    In a blinded study only the orders that are already existing are shown, and none to operators.
     """
     study = study_by_key(db, key)
     version = newest_version(db, study)
@@ -40,7 +40,7 @@ def get_ledger(key: str, db: Reading, caller: SignedIn, kind: Kind = "people") -
         for index, (sequence, replicate) in enumerate(planned_slots(protocol))
     ]
     hidden = hidden_sessions(db, study, caller)
-    # A slot that is free is for a session of the newest version.
+    # A free slot will be taken by a session of the newest version.
     free = is_blind(db, caller, protocol, None)
     blinded = free or bool(hidden)
     return LedgerView(
@@ -68,21 +68,21 @@ def _row(db: Session, view: SlotView, latency_ms: dict[str, float]) -> SlotRow:
         state=view.state,
         attempts=[
             AttemptView(
-                session_id=held.attempt.session_id,
-                participant_code=held.code,
-                outcome=held.attempt.outcome,
-                opened_at=held.attempt.opened_at,
-                closed_at=held.attempt.closed_at,
-                reason=_reason(db, held.attempt),
-                shortfalls=list(held.shortfalls),
+                session_id=one.attempt.session_id,
+                participant_code=one.code,
+                outcome=one.attempt.outcome,
+                opened_at=one.attempt.opened_at,
+                closed_at=one.attempt.closed_at,
+                reason=_reason(db, one.attempt),
+                shortfalls=list(one.shortfalls),
             )
-            for held in view.attempts
+            for one in view.attempts
         ],
     )
 
 
 def _reason(db: Session, attempt: SlotAttempt) -> str | None:
-    return end_reason(db, attempt.session_id) if attempt.outcome in GIVEN_UP else None
+    return end_reason(db, attempt.session_id) if attempt.outcome in ENDED_EARLY else None
 
 
 def _sequences(rows: Sequence[SlotRow]) -> list[SequenceRow]:

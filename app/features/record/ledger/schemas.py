@@ -1,4 +1,4 @@
-"""The counterbalancing ledger as pages see it."""
+"""Response models of the ledger endpoint."""
 
 from datetime import datetime
 from typing import Literal
@@ -8,14 +8,14 @@ from pydantic import BaseModel
 from app.features.record.ledger.shortfalls import Shortfall
 
 Kind = Literal["people", "simulated", "test", "expert"]
-"""Whose sessions a ledger orders; each kind has slots of its own."""
+"""The kind of sessions that a ledger is for; each kind has its own slots."""
 
 
 class AttemptView(BaseModel):
-    """A session that holds or held a slot.
+    """A session that occupies, or once occupied, a slot.
 
-    `reason`: why it was aborted or withdrawn. `shortfalls`: why it was completed and does not count
-    (`invalid`); without any it counts, and its slot had been given to somebody else by then.
+    `reason`: why it was aborted or withdrawn. `shortfalls`: why it was completed but is not valid
+    (`invalid`). If there are none, it is valid, but its slot had been taken by another session.
     """
 
     session_id: str
@@ -28,7 +28,7 @@ class AttemptView(BaseModel):
 
 
 class SlotRow(BaseModel):
-    """A slot of the ledger; `sequence` holds latencies in ms, null for who must not know."""
+    """A slot of the ledger; `sequence` contains latencies in ms, and is null for blind readers."""
 
     index: int
     block: int
@@ -39,7 +39,7 @@ class SlotRow(BaseModel):
 
 
 class SequenceRow(BaseModel):
-    """How far one order is filled."""
+    """An order, with how many of its slots are completed, open, and available in total."""
 
     sequence: list[float]
     completed: int
@@ -48,7 +48,7 @@ class SequenceRow(BaseModel):
 
 
 class LedgerView(BaseModel):
-    """The counterbalancing ledger of one kind of sessions."""
+    """The counterbalancing ledger for one kind of session."""
 
     kind: str
     seed: int | None

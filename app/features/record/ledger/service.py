@@ -1,10 +1,10 @@
-"""Joining a study: one transaction takes the next slot of the ledger.
+"""The counterbalancing ledger: each new session takes the next slot, in one transaction.
 
-The ledger is an immutable list of slots, every order in every replicate, with the slots permuted
-within each block by a stored seed. A session holds a slot by an attempt. When it is withdrawn or
-aborted, or is completed and does not count by the study's rules, the attempt closes with its data
-and the same slot is the next to be taken, so balance counts completed sessions that are valid.
-People, simulated, test and expert sessions have ledgers of their own.
+The ledger is an immutable list of slots (every order in every replicate), with the slots permuted
+within each block by a stored seed. A session occupies a slot by an attempt. When the session is
+withdrawn or aborted, or is completed but not valid by the study's rules, the attempt closes with
+its data and the same slot is the next to be taken. So balance counts valid completed sessions.
+People, simulated, test and expert sessions have separate ledgers.
 """
 
 import json
@@ -31,14 +31,14 @@ from app.models import (
 )
 from app.protocol import StudyProtocol, ledger_block
 
-HOLDING = ("open", "completed")
+OCCUPYING = ("open", "completed")
 ENDED = ("completed", "invalid")
-"""Outcomes of completed sessions: that count, and that do not."""
+"""Outcomes of completed sessions: valid, and not valid."""
 
 
 @dataclass(frozen=True)
-class Held:
-    """An attempt with the participant's code, and what its session lacks in order to count."""
+class SlotAttemptDetails:
+    """An attempt with its participant's code, and the reasons why its session is not valid."""
 
     attempt: SlotAttempt
     code: str
@@ -47,15 +47,15 @@ class Held:
 
 @dataclass(frozen=True)
 class SlotView:
-    """A slot with everybody who ever held it, oldest first."""
+    """A slot with all attempts on it, oldest first."""
 
     slot: LedgerSlot
-    attempts: tuple[Held, ...]
+    attempts: tuple[SlotAttemptDetails, ...]
 
     @property
     def state(self) -> str:
-        """free, open or completed."""
-        outcomes = {held.attempt.outcome for held in self.attempts}
+        """Return the state of the slot: free, open or completed."""
+        outcomes = {one.attempt.outcome for one in self.attempts}
         if "completed" in outcomes:
             return "completed"
         return "open" if "open" in outcomes else "free"
@@ -64,9 +64,9 @@ class SlotView:
 def take_slot(
     db: Session, version: StudyVersion, protocol: StudyProtocol, kind: str, now: datetime
 ) -> LedgerSlot:
-    """The next free slot; the caller attaches its attempt in the same transaction.
+    """Return the next free slot; the caller opens its attempt in the same transaction.
 
-    Raises Conflict when every slot is held and the study is `closed`.
+    Raises Conflict if every slot is occupied and the study is `closed`.
     """
     ledger = _locked_ledger(db, version, protocol, kind, now)
     while True:
@@ -89,14 +89,14 @@ def take_slot(
 
 
 def _free_slots(ledger_id: str) -> Select[LedgerSlot]:
-    held = (
+    occupied = (
         select(SlotAttempt.id)
-        .where(SlotAttempt.slot_id == LedgerSlot.id, SlotAttempt.outcome.in_(HOLDING))
+        .where(SlotAttempt.slot_id == LedgerSlot.id, SlotAttempt.outcome.in_(OCCUPYING))
         .exists()
     )
     return (
         select(LedgerSlot)
-        .where(LedgerSlot.ledger_id == ledger_id, ~held)
+        .where(LedgerSlot.ledger_id == ledger_id, ~occupied)
         .order_by(LedgerSlot.position)
     )
 
@@ -104,7 +104,7 @@ def _free_slots(ledger_id: str) -> Select[LedgerSlot]:
 def _locked_ledger(
     db: Session, version: StudyVersion, protocol: StudyProtocol, kind: str, now: datetime
 ) -> Ledger:
-    """The ledger row, locked so that simultaneous joins queue here."""
+    """Return the ledger row, locked so that simultaneous joins queue here."""
     query = (
         select(Ledger)
         .where(
@@ -116,8 +116,9 @@ def _locked_ledger(
     )
     ledger = db.scalar(query)
     if ledger is None:
-        # Two first joins may both find nothing: queue on the study, then look again. Sharing its
-        # key, or whoever holds the ledger already could not refer to the study: a deadlock.
+        # Two first joins may both find no ledger: queue on the study, then query again. The lock
+        # leaves the study's key shareable: otherwise a transaction that already holds the ledger
+        # could not insert rows that refer to the study, which would be a deadlock.
         study = select(Study.id).where(Study.id == version.study_id)
         db.execute(study.with_for_update(key_share=True))
         ledger = db.scalar(query)
@@ -138,7 +139,7 @@ def _locked_ledger(
 
 
 def _grow(db: Session, ledger: Ledger, protocol: StudyProtocol) -> None:
-    """Add one whole seeded block: every order once."""
+    """Add a whole seeded block to the ledger: every order once."""
     block = ledger_block(protocol, ledger.blocks)
     first = ledger.blocks * len(block)
     db.add_all(
@@ -155,14 +156,17 @@ def _grow(db: Session, ledger: Ledger, protocol: StudyProtocol) -> None:
     db.flush()
 
 
-def hold_slot(db: Session, slot: LedgerSlot, session: StudySession, now: datetime) -> None:
-    """Attach a session to its slot."""
+def open_attempt(db: Session, slot: LedgerSlot, session: StudySession, now: datetime) -> None:
+    """Open an attempt, by which a session occupies its slot."""
     db.add(SlotAttempt(slot_id=slot.id, session_id=session.id, outcome="open", opened_at=now))
     db.flush()
 
 
 def close_attempt(db: Session, session: StudySession, outcome: str, now: datetime) -> None:
-    """The session has ended: completed keeps the slot for now, withdrawn and aborted free it."""
+    """Close the attempt of a session that has ended.
+
+    A completed session keeps its slot for now; a withdrawn or aborted one frees it.
+    """
     attempt = db.scalar(select(SlotAttempt).where(SlotAttempt.session_id == session.id))
     if attempt is not None and attempt.outcome == "open":
         attempt.outcome = outcome
@@ -170,9 +174,9 @@ def close_attempt(db: Session, session: StudySession, outcome: str, now: datetim
 
 
 def settle_attempt(db: Session, session: StudySession, *, counts: bool) -> None:
-    """A completed session keeps its slot if it counts, and frees it if not.
+    """Keep the slot of a completed session that is valid, and free that of one that is not.
 
-    One that turns out to count after all takes its slot back, unless somebody else has it by then.
+    A session that becomes valid later takes its slot back, unless another session has taken it.
     """
     attempt = db.scalar(select(SlotAttempt).where(SlotAttempt.session_id == session.id))
     if attempt is None or attempt.outcome not in ENDED:
@@ -181,17 +185,17 @@ def settle_attempt(db: Session, session: StudySession, *, counts: bool) -> None:
         attempt.outcome = "invalid"
     elif attempt.outcome == "invalid":
         slot = kept_row(db, LedgerSlot, attempt.slot_id)
-        # Simultaneous joins queue on the ledger, too.
+        # Simultaneous joins queue on the same lock of the ledger.
         db.scalar(select(Ledger.id).where(Ledger.id == slot.ledger_id).with_for_update())
-        held = select(SlotAttempt.id).where(
-            SlotAttempt.slot_id == attempt.slot_id, SlotAttempt.outcome.in_(HOLDING)
+        occupied = select(SlotAttempt.id).where(
+            SlotAttempt.slot_id == attempt.slot_id, SlotAttempt.outcome.in_(OCCUPYING)
         )
-        if db.scalar(held) is None:
+        if db.scalar(occupied) is None:
             attempt.outcome = "completed"
 
 
 def slot_of(db: Session, session: StudySession) -> LedgerSlot:
-    """The slot a session holds or held."""
+    """Return the slot that a session occupies or once occupied."""
     return db.scalars(
         select(LedgerSlot)
         .join(SlotAttempt, SlotAttempt.slot_id == LedgerSlot.id)
@@ -200,7 +204,7 @@ def slot_of(db: Session, session: StudySession) -> LedgerSlot:
 
 
 def ledger_of(db: Session, version: StudyVersion, kind: str) -> tuple[SlotView, ...]:
-    """Every slot of a ledger in order, with its attempts; empty before the first join."""
+    """Return a ledger's slots in order, with their attempts; empty before the first session."""
     ledger = db.scalar(
         select(Ledger).where(
             Ledger.study_id == version.study_id,
@@ -221,22 +225,22 @@ def ledger_of(db: Session, version: StudyVersion, kind: str) -> tuple[SlotView, 
         .where(LedgerSlot.ledger_id == ledger.id)
         .order_by(SlotAttempt.opened_at)
     )
-    held: dict[str, list[Held]] = {}
+    attempts: dict[str, list[SlotAttemptDetails]] = {}
     for attempt, code, stored in rows:
-        one = Held(attempt, code, shortfalls_of(stored))
-        held.setdefault(attempt.slot_id, []).append(one)
-    return tuple(SlotView(slot, tuple(held.get(slot.id, ()))) for slot in slots)
+        one = SlotAttemptDetails(attempt, code, shortfalls_of(stored))
+        attempts.setdefault(attempt.slot_id, []).append(one)
+    return tuple(SlotView(slot, tuple(attempts.get(slot.id, ()))) for slot in slots)
 
 
 def planned_slots(protocol: StudyProtocol) -> Sequence[tuple[tuple[str, ...], int]]:
-    """The slots a ledger will have before anybody joined: (order, replicate) in slot order."""
+    """Return the slots a ledger will have at first, as (order, replicate) in slot order."""
     return [
         row for block in range(protocol.orders.replicates) for row in ledger_block(protocol, block)
     ]
 
 
 def end_reason(db: Session, session_id: str) -> str | None:
-    """Why a session was aborted or withdrawn, in the words of the lab; None once erased."""
+    """Return the lab's reason for aborting or withdrawing a session; None once it was erased."""
     ended = db.scalar(
         select(SessionEvent).where(
             SessionEvent.session_id == session_id, SessionEvent.type == "session_ended"

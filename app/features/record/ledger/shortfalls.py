@@ -1,4 +1,4 @@
-"""Why a completed session does not count: what it lacks of the rules of its study."""
+"""Shortfalls: the rules of a study that a completed session does not meet, so it is not valid."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, Literal
@@ -20,12 +20,12 @@ ShortfallCode = Literal[
 
 
 class Shortfall(BaseModel):
-    """One thing that a session lacks in order to count.
+    """A rule of the study that a session does not meet.
 
-    `step` is the step's key in the plan and `phase` what the rules call it; both name the phase
-    that a form asks about, if it has one. `value` is what was found and `limit` what was asked for:
-    seconds of active time, or milliseconds between the achieved and the ordered latency. Neither
-    tells the condition.
+    `step` is the step's key in the plan and `phase` its name in the rules; for a form, both name
+    the phase that the form is about, if there is one. `value` is what was found and `limit` what is
+    required: seconds of active time, or milliseconds between the achieved and the set latency.
+    Neither reveals the condition.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -39,7 +39,7 @@ class Shortfall(BaseModel):
     limit: float | None = None
 
     def words(self) -> str:
-        """The shortfall as a clause in English."""
+        """Describe the shortfall as a clause in English."""
         parts = (
             None if self.block is None else f"block {self.block}",
             None if self.phase is None else _name(self.phase),
@@ -56,9 +56,9 @@ class Shortfall(BaseModel):
             case "phase_short":
                 return f"{self.value:.1f} s of active time, at least {self.limit:g} s needed"
             case "phase_doubtful":
-                return "what the headset said of it cannot be true"
+                return "what the headset reported about it cannot be true"
             case "headset_doubtful":
-                return "what the headset said of the whole session cannot be true"
+                return "what the headset reported about the whole session cannot be true"
             case "form_skipped":
                 return f"questionnaire {self.instrument} not answered"
             case "latency_missing":
@@ -68,7 +68,7 @@ class Shortfall(BaseModel):
 
 
 def _name(phase: str) -> str:
-    """What a sentence calls the phase; its key where it is of no kind that we still know."""
+    """Return the name of a phase for use in a sentence, or its key if its kind is unknown."""
     return PHASES[phase].in_a_sentence.en if phase in PHASES else phase
 
 
@@ -76,5 +76,5 @@ _STORED = TypeAdapter(tuple[Shortfall, ...])
 
 
 def shortfalls_of(stored: Sequence[Mapping[str, Any]] | None) -> tuple[Shortfall, ...]:
-    """Those that are stored with a session (`StudySession.shortfalls`)."""
+    """Parse the shortfalls that are stored with a session (`StudySession.shortfalls`)."""
     return _STORED.validate_python(list(stored or ()))

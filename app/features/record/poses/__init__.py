@@ -1,1 +1,1 @@
-"""The movement of a running session as consoles draw it: the newest pose, and nothing older."""
+"""Live poses of a running session for the console, always the latest and never a backlog."""

@@ -1,8 +1,8 @@
-"""Showing poses to a console over a WebSocket.
+"""Stream live poses to a console over a WebSocket.
 
-The console answers every pose that it has drawn with any message. No more than `MOST_UNDRAWN` are
-ever on the way: one that is slow gets fewer, and always the newest, however much the network and
-the browser would buffer.
+The console answers every pose that it has drawn, with any message. At most `MAX_UNDRAWN` poses are
+in flight: a slow console gets fewer poses but always the latest, regardless of how much the network
+and the browser would buffer.
 """
 
 import asyncio
@@ -23,14 +23,14 @@ from app.wire import StreamName
 router = APIRouter(tags=["sessions"])
 CLOSE_NOT_SIGNED_IN = 4401
 CLOSE_REFUSED = 4403
-LOOK_AGAIN_S = 5.0
-"""A login that expires, or a study that is taken away, is noticed within this time."""
-MOST_UNDRAWN = 4
+RECHECK_S = 5.0
+"""How often access is checked: the expiry of a login, or a lost study, is noticed so soon."""
+MAX_UNDRAWN = 4
 
 
 @router.websocket("/sessions/{session_id}/pose")
 async def show_poses(socket: WebSocket, session_id: str) -> None:
-    """The movement of a session, as it comes."""
+    """Stream the movement of a session live to a console."""
     try:
         await _serve(socket, socket.app.state.context, session_id)
     except asyncio.CancelledError:
@@ -38,7 +38,7 @@ async def show_poses(socket: WebSocket, session_id: str) -> None:
 
 
 async def _serve(socket: WebSocket, context: AppContext, session_id: str) -> None:
-    """Accept a console and show it the session until it goes, or may not look any more."""
+    """Accept a console and stream to it until it disconnects or loses access."""
     await socket.accept()
     viewer = _Viewer(socket, context, session_id)
     try:
@@ -53,30 +53,30 @@ async def _serve(socket: WebSocket, context: AppContext, session_id: str) -> Non
 
 @dataclass(eq=False)
 class _Viewer:
-    """One console."""
+    """The connection of one console."""
 
     socket: WebSocket
     context: AppContext
     session_id: str
-    _told: Setup | None = None
-    _looked_s: float = float("-inf")
+    _sent_setup: Setup | None = None
+    _checked_s: float = float("-inf")
     _undrawn: int = 0
     _drawn: asyncio.Event = field(default_factory=asyncio.Event)
 
     async def run(self) -> None:
-        await self._look()
-        talking = asyncio.create_task(self._talk())
-        listening = asyncio.create_task(self._listen())
+        await self._check_access()
+        sending = asyncio.create_task(self._send())
+        receiving = asyncio.create_task(self._receive())
         try:
-            done, _ = await asyncio.wait((talking, listening), return_when=asyncio.FIRST_COMPLETED)
+            done, _ = await asyncio.wait((sending, receiving), return_when=asyncio.FIRST_COMPLETED)
             for task in done:
                 task.result()
         finally:
-            for task in (talking, listening):
+            for task in (sending, receiving):
                 task.cancel()
-            await asyncio.gather(talking, listening, return_exceptions=True)
+            await asyncio.gather(sending, receiving, return_exceptions=True)
 
-    async def _listen(self) -> None:
+    async def _receive(self) -> None:
         while True:
             received = await self.socket.receive()
             if received["type"] == "websocket.disconnect":
@@ -84,27 +84,27 @@ class _Viewer:
             self._undrawn = max(0, self._undrawn - 1)
             self._drawn.set()
 
-    async def _talk(self) -> None:
+    async def _send(self) -> None:
         topics = (*TOPICS.values(), TOUCHES)
         with self.context.hub.subscribe(self.session_id, *topics) as subscription:
-            # What has changed between the first look and now.
-            news: Mapping[str, Any] = {"session": None}
+            # Covers changes made between the first access check and the subscription.
+            messages: Mapping[str, Any] = {"session": None}
             while True:
-                if "session" in news or "access" in news or self._is_due():
-                    await self._look()
-                await self._show(news)
+                if "session" in messages or "access" in messages or self._is_due():
+                    await self._check_access()
+                await self._show(messages)
                 await self._until_drawn()
-                news = await subscription.next(LOOK_AGAIN_S)
+                messages = await subscription.next(RECHECK_S)
 
     def _is_due(self) -> bool:
-        return asyncio.get_running_loop().time() - self._looked_s >= LOOK_AGAIN_S
+        return asyncio.get_running_loop().time() - self._checked_s >= RECHECK_S
 
-    async def _look(self) -> None:
-        """Raise where the console may not look any more; tell the setup if it has changed."""
-        self._looked_s = asyncio.get_running_loop().time()
+    async def _check_access(self) -> None:
+        """Raise an error if the console has lost access; send the setup if it has changed."""
+        self._checked_s = asyncio.get_running_loop().time()
         setup = await asyncio.to_thread(self._setup)
-        if setup != self._told:
-            self._told = setup
+        if setup != self._sent_setup:
+            self._sent_setup = setup
             await self.socket.send_text(setup.model_dump_json())
 
     def _setup(self) -> Setup:
@@ -112,9 +112,9 @@ class _Viewer:
         with self.context.database.reading() as db:
             return setup_of(db, caller, self.session_id)
 
-    async def _show(self, news: Mapping[str, Any]) -> None:
-        blinded = self._told is None or self._told.blinded
-        for message in visible(news, blinded=blinded):
+    async def _show(self, messages: Mapping[str, Any]) -> None:
+        blinded = self._sent_setup is None or self._sent_setup.blinded
+        for message in visible(messages, blinded=blinded):
             if isinstance(message, bytes):
                 self._undrawn += 1
                 await self.socket.send_bytes(message)
@@ -122,23 +122,23 @@ class _Viewer:
                 await self.socket.send_text(message.model_dump_json())
 
     async def _until_drawn(self) -> None:
-        while self._undrawn > MOST_UNDRAWN - len(TOPICS):
+        while self._undrawn > MAX_UNDRAWN - len(TOPICS):
             self._drawn.clear()
             await self._drawn.wait()
 
 
-def visible(news: Mapping[str, Any], *, blinded: bool) -> Iterator[bytes | Touches]:
-    """What of the news a console may see.
+def visible(messages: Mapping[str, Any], *, blinded: bool) -> Iterator[bytes | Touches]:
+    """Yield those messages that a console may see.
 
-    Two figures side by side show the latency, and so does a box that lights up after the
-    participant has reached it: a blinded console sees the participant alone, as they stand there.
+    Target and actual figure side by side reveal the latency, and so does a box that lights up after
+    the participant has reached it. So a blinded console sees only the participant's own pose.
     """
     target, actual = TOPICS[StreamName.TARGET], TOPICS[StreamName.ACTUAL]
-    if target in news:
-        yield news[target]
+    if target in messages:
+        yield messages[target]
     if blinded:
         return
-    if actual in news:
-        yield news[actual]
-    if TOUCHES in news:
-        yield Touches(touches=news[TOUCHES])
+    if actual in messages:
+        yield messages[actual]
+    if TOUCHES in messages:
+        yield Touches(touches=messages[TOUCHES])

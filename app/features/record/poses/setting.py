@@ -1,4 +1,4 @@
-"""What a console needs before it can draw a pose: the body, the boxes, and whether it is blind."""
+"""What a console needs to draw poses: the body, the boxes, and whether the reader is blinded."""
 
 from typing import Literal
 
@@ -13,21 +13,21 @@ from app.protocol import StudyProtocol
 from app.science.skeleton import JOINT_NAMES, PARENTS, SkeletonError, build_skeleton
 from app.science.tasks import SurfaceKind
 
-USUAL_STATURE_M = 1.72
-"""Until the participant's is known."""
+DEFAULT_STATURE_M = 1.72
+"""The stature that is drawn until the participant's is known."""
 Limb = str | None
 Vector = tuple[float, float, float]
 
 
 class Touches(BaseModel):
-    """The last few touches, the oldest first: who has missed some finds them here again."""
+    """The last few touches, oldest first, so that a console that missed some still gets them."""
 
     type: Literal["touches"] = "touches"
     touches: tuple[Touch, ...]
 
 
 class SurfaceView(BaseModel):
-    """A block of the task's place: world frame, metres."""
+    """A surface of the task: an axis-aligned block in the world frame, in metres."""
 
     key: str
     kind: SurfaceKind
@@ -37,11 +37,12 @@ class SurfaceView(BaseModel):
 
 
 class Setup(BaseModel):
-    """What poses are drawn with; told first, and again whenever it has changed.
+    """What a console needs to draw poses; sent first, and again whenever it changes.
 
-    Joint j stands at `offsets_m[j]` in its parent's frame (-1: the world); the rest pose is the
-    T-pose facing -z, y up. `surfaces` are those of the present step's task. Who is `blinded` gets
-    the participant's figure only, and no touches: both would tell by how much the avatar lags.
+    Joint j is at `offsets_m[j]` in its parent's frame (-1: the world); the rest pose is the T-pose
+    facing -z, y up. `surfaces` are those of the current step's task. A `blinded` reader gets only
+    the participant's figure and no touches, because both would reveal how far the avatar lags
+    behind.
     """
 
     type: Literal["setup"] = "setup"
@@ -58,7 +59,7 @@ class Setup(BaseModel):
 
 
 def setup_of(db: Session, caller: Caller, session_id: str) -> Setup:
-    """The setup as `caller` may see it. Raises NotFound."""
+    """Return the setup for drawing a session as `caller` may see it; raises NotFound."""
     session = session_by_id(db, session_id)
     protocol = protocol_of_session(db, session)
     state = headset_state(db, session)
@@ -69,11 +70,11 @@ def setup_of(db: Session, caller: Caller, session_id: str) -> Setup:
         simulated=session.kind == "simulated",
         recording=state.recording,
         limb=limb,
-        stature_m=stature_m or USUAL_STATURE_M,
+        stature_m=stature_m or DEFAULT_STATURE_M,
         stature_known=stature_m is not None,
         joints=JOINT_NAMES,
         parents=PARENTS,
-        offsets_m=_offsets_m(stature_m or USUAL_STATURE_M),
+        offsets_m=_offsets_m(stature_m or DEFAULT_STATURE_M),
         surfaces=_surfaces(protocol, limb),
     )
 
@@ -89,7 +90,7 @@ def _offsets_m(stature_m: float) -> tuple[Vector, ...]:
     try:
         offsets_m = build_skeleton(stature_m).offsets_m
     except SkeletonError:
-        offsets_m = build_skeleton(USUAL_STATURE_M).offsets_m
+        offsets_m = build_skeleton(DEFAULT_STATURE_M).offsets_m
     return tuple((float(x), float(y), float(z)) for x, y, z in offsets_m)
 
 

@@ -1,7 +1,7 @@
-"""What a pre-flight check is: a key, words in both languages, what it can find, and how it looks.
+"""The definition of a pre-flight check: key, texts in both languages, findings, and function.
 
-The status belongs to the finding: "the tablet is not paired" is a failure whenever it is found, and
-says what to do. A check only names the finding and the figures that go with it.
+The status belongs to the finding: "the tablet is not paired" is always a failure and says what to
+do. A check returns only the key of its finding and the figures that go with it.
 """
 
 from collections.abc import Awaitable, Callable, Mapping
@@ -20,13 +20,13 @@ Unit = Literal["s", "ms", "Hz", "GB", "joints", "phases", "instruments", "texts"
 
 @dataclass(frozen=True)
 class Finding:
-    """One thing that a check can find.
+    """One of the possible findings of a check.
 
     Attributes:
-        key: unique within its check; check and finding together are the code, as in "disk.low".
-        status: "wait" where it cannot be judged yet and will be without anybody's doing.
-        words: `{{value}}` and `{{limit}}` are filled with what was measured.
-        remedy: what to do about it; failures have one, nothing else has.
+        key: unique within its check; check and finding together form the code, as in "disk.low".
+        status: "wait" if it cannot be judged yet and will be without any action.
+        words: `{{value}}` and `{{limit}}` are replaced by what was measured.
+        remedy: what to do about it; required for failures, and absent otherwise.
     """
 
     key: str
@@ -38,19 +38,19 @@ class Finding:
         if (self.status == "fail") != (self.remedy is not None):
             raise ValueError(
                 f"The finding {self.key!r} has the status {self.status!r} and the remedy "
-                f"{self.remedy!r}; a failure says what to do, and nothing else does."
+                f"{self.remedy!r}; failures must have a remedy, and other findings must not."
             )
 
 
 @dataclass(frozen=True)
 class Found:
-    """What a check has found this time.
+    """The result of running a check once.
 
     Attributes:
         finding: key of one of the check's findings.
         value, unit: what was measured.
-        expected, limit: what the value must keep to, in the same unit.
-        details: names and hashes, in no language.
+        expected, limit: how the value must compare with the limit, in the same unit.
+        details: names and hashes, which are not translated.
     """
 
     finding: str
@@ -63,9 +63,9 @@ class Found:
 
 @dataclass(frozen=True)
 class Situation:
-    """Where a check looks: the session, the database (for reading), and the running server.
+    """What a check can inspect: the session, the database (read-only), and the running server.
 
-    `signal`: figures of the headset's live watch; empty while none is connected.
+    `signal`: figures of the headset's live watch; empty while no headset is connected.
     """
 
     session: StudySession
@@ -75,20 +75,20 @@ class Situation:
 
     @property
     def headset_connected(self) -> bool:
-        """Whether the session's headset is connected now."""
+        """Return whether the session's headset is currently connected."""
         return self.context.hub.headset_connected(self.session.id)
 
 
 @dataclass(frozen=True)
 class PreflightCheck:
-    """One line of the list.
+    """A check of the pre-flight list.
 
     Attributes:
-        key: also in events and overrides, so it is never renamed.
+        key: also stored in events and overrides, so it is never renamed.
         title: what is checked.
         findings: in the order of the interface's codes.
-        mended_in_seconds: whether somebody at hand can put it right at once, as by waking the
-            tablet; the page looks at such a check more often.
+        mended_in_seconds: whether somebody nearby can fix the problem immediately, for example by
+            waking the tablet; the page repeats such a check more often.
     """
 
     key: str
@@ -97,20 +97,20 @@ class PreflightCheck:
     mended_in_seconds: bool = field(default=False, kw_only=True)
 
     def finding(self, key: str) -> Finding:
-        """One of the findings; raises KeyError where the check has none of that key."""
+        """Return the finding with this key; raises KeyError if the check has none."""
         return {one.key: one for one in self.findings}[key]
 
     def code(self, finding: str) -> str:
-        """The finding's name in the interface and on record."""
+        """Return the code of a finding, as used in the interface and in the record."""
         return f"{self.key}.{finding}"
 
     @property
     def codes(self) -> tuple[str, ...]:
-        """Of all findings."""
+        """Return the codes of all findings."""
         return tuple(self.code(one.key) for one in self.findings)
 
     def texts(self) -> dict[str, Words]:
-        """Every text of this check by its key in the tables of the pages."""
+        """Return every text of this check by its key in the pages' text tables."""
         texts = {f"preflight.check.{self.key}": self.title}
         for one in self.findings:
             texts[f"preflight.found.{self.code(one.key)}"] = one.words
@@ -122,16 +122,16 @@ class PreflightCheck:
 
 @dataclass(frozen=True)
 class StateCheck(PreflightCheck):
-    """A check that reads: `look` gets one reading transaction, shared with the other checks."""
+    """A check that only reads: `run` is given a read transaction shared with the other checks."""
 
-    look: Callable[[Situation], Found]
+    run: Callable[[Situation], Found]
 
 
 @dataclass(frozen=True)
 class TrialCheck(PreflightCheck):
-    """A check that tries something out: `attempt` opens the transactions that it needs itself.
+    """A check that tries something: `attempt` opens the transactions it needs itself.
 
-    It gets the session's id, since no transaction is open when it is called.
+    It is given the session's id, since no transaction is open when it is called.
     """
 
     attempt: Callable[[AppContext, str], Awaitable[Found]]

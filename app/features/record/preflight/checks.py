@@ -1,7 +1,8 @@
-"""The registry of the pre-flight checks, in the order of the list.
+"""The registry of pre-flight checks, in the order of the list.
 
-A new check stands in one of the files imported here, or in a new one, and gets its place in
-`CHECKS`: the interface, the list in the cockpit and its words in both languages follow from that.
+To add a check, define it in one of the modules imported here or in a new one, and add it to
+`CHECKS`. The interface, the list in the cockpit and its texts in both languages are derived from
+that.
 """
 
 from app.features.record.preflight.check import PreflightCheck
@@ -33,5 +34,5 @@ CHECKS: tuple[PreflightCheck, ...] = (
 
 
 def check_texts() -> dict[str, Words]:
-    """The words of every check, by their keys in the tables of the pages."""
+    """Return the texts of all checks by their keys in the pages' text tables."""
     return {key: words for check in CHECKS for key, words in check.texts().items()}

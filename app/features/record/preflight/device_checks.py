@@ -1,7 +1,7 @@
-"""Tablet, headset, and how good what the headset sends is.
+"""Checks of the tablet, the headset, and the quality of what the headset sends.
 
-The headset's figures are those of its live watch, so they exist only while it is connected.
-Movement comes from the avatar's appearance on; until then what depends on it waits.
+The headset's figures come from its live watch, so they exist only while it is connected. Movement
+is sent only once the avatar has appeared; until then the checks that depend on it wait.
 """
 
 from app.features.record.alarms import WatchLimits, open_alarms
@@ -12,11 +12,11 @@ from app.science.skeleton import JOINT_COUNT
 from app.texts import Words
 
 LIMITS = WatchLimits()
-LEAST_RATE_HZ = 60.0
-"""A headset that comes to less repeats pictures, however steady it is."""
+MIN_RATE_HZ = 60.0
+"""A headset with a lower frame rate repeats images, however steady the rate is."""
 MS_PER_S = 1000.0
 _BROKEN = frozenset({"frozen", "bad_values"})
-"""Alarms that say that joints are not sound; the check's findings have their names."""
+"""Codes of the alarms about invalid joints, which are also keys of the check's findings."""
 
 UNPAIRED = Finding(
     "unpaired",
@@ -65,7 +65,7 @@ TABLET = StateCheck(
             Words(en="Paired, seen {{value}} ago", de="Gekoppelt, vor {{value}} gesehen"),
         ),
     ),
-    look=_tablet,
+    run=_tablet,
     mended_in_seconds=True,
 )
 
@@ -93,7 +93,7 @@ HEADSET = StateCheck(
         ),
         Finding("ok", "ok", Words(en="Paired and connected", de="Gekoppelt und verbunden")),
     ),
-    look=_headset,
+    run=_headset,
     mended_in_seconds=True,
 )
 
@@ -116,13 +116,13 @@ def _frame_rate(situation: Situation) -> Found:
         return Found("no_movement")
     if usual_hz is None:
         return Found("measuring", value=rate_hz, unit="Hz")
-    least_hz = round(max(LEAST_RATE_HZ, LIMITS.low_rate_share * usual_hz), 1)
+    min_hz = round(max(MIN_RATE_HZ, LIMITS.low_rate_share * usual_hz), 1)
     return Found(
-        "low" if rate_hz < least_hz else "ok",
+        "low" if rate_hz < min_hz else "ok",
         value=rate_hz,
         unit="Hz",
         expected="at_least",
-        limit=least_hz,
+        limit=min_hz,
     )
 
 
@@ -156,7 +156,7 @@ FRAME_RATE = StateCheck(
         ),
         Finding("ok", "ok", Words(en="{{value}}", de="{{value}}")),
     ),
-    look=_frame_rate,
+    run=_frame_rate,
 )
 
 
@@ -166,13 +166,13 @@ def _clock(situation: Situation) -> Found:
     uncertainty_ms = situation.signal.get("clock_uncertainty_ms")
     if uncertainty_ms is None:
         return Found("measuring")
-    most_ms = MS_PER_S * LIMITS.clock_uncertain_s
+    max_ms = MS_PER_S * LIMITS.clock_uncertain_s
     return Found(
-        "uncertain" if uncertainty_ms > most_ms else "ok",
+        "uncertain" if uncertainty_ms > max_ms else "ok",
         value=uncertainty_ms,
         unit="ms",
         expected="at_most",
-        limit=most_ms,
+        limit=max_ms,
     )
 
 
@@ -196,15 +196,18 @@ CLOCK = StateCheck(
                 "Sie Downloads an.",
             ),
         ),
-        Finding("ok", "ok", Words(en="Known to ± {{value}}", de="Auf ± {{value}} bekannt")),
+        Finding("ok", "ok", Words(en="Accurate to ± {{value}}", de="Auf ± {{value}} genau")),
     ),
-    look=_clock,
+    run=_clock,
     mended_in_seconds=True,
 )
 
 
 def _trackers(situation: Situation) -> Found:
-    """Clients send joints, not trackers: one that is off shows in joints that are not sound."""
+    """Check that no joint is frozen or invalid.
+
+    Clients send joints, not trackers, so a tracker that is off shows as joints that are not valid.
+    """
     for alarm in open_alarms(situation.db, situation.session.id):
         if alarm.code in _BROKEN:
             return Found(alarm.code, details=(alarm.message,))
@@ -255,5 +258,5 @@ TRACKERS = StateCheck(
             ),
         ),
     ),
-    look=_trackers,
+    run=_trackers,
 )

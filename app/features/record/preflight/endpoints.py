@@ -1,4 +1,4 @@
-"""The pre-flight over HTTP."""
+"""HTTP endpoints for the pre-flight checks."""
 
 from typing import Annotated
 
@@ -13,27 +13,27 @@ router = APIRouter(prefix="/sessions/{session_id}/preflight", tags=["preflight"]
 
 @router.get("")
 async def get_preflight(session_id: str, context: Context, _: SignedIn) -> Preflight:
-    """Every check, made now: devices, signal, storage, latency, and the study's content.
+    """Run all pre-flight checks: devices, signal, storage, latency, and the study's content.
 
-    It writes 64 kB to the database and to the data folder, reads them back and removes them.
+    This writes 64 kB to the database and to the data folder, reads them back and removes them.
     """
     return await preflight_of(context, session_id)
 
 
 async def _before(session_id: str, context: Context, _: SignedIn) -> Preflight:
-    """The list as it is before anything is written: the checks need transactions of their own."""
+    """Run the checks before the request's write transaction, since they open their own."""
     return await preflight_of(context, session_id)
 
 
 @router.post("/overrides", status_code=201)
 def post_override(
     session_id: str,
-    wish: OverrideRequest,
+    request: OverrideRequest,
     before: Annotated[Preflight, Depends(_before)],
     db: Writing,
     context: Context,
     caller: SignedIn,
 ) -> Check:
-    """Go on although a check is not green, for a reason that goes on record."""
-    found = next(check for check in before.checks if check.key == wish.check)
-    return override(db, context, session_id, wish, found, caller.actor)
+    """Record that the session proceeds although a check is not green, and why."""
+    found = next(check for check in before.checks if check.key == request.check)
+    return override(db, context, session_id, request, found, caller.actor)

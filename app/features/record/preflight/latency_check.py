@@ -1,8 +1,8 @@
-"""Whether the equipment delays by what it is told to: the newest phases that were measured.
+"""Check that the equipment achieves the latency that is set, from the last session measured.
 
-The added latency is measured in every phase that moves enough, practice included, so the session
-before is a self-test of today's. Where there is none yet, the equipment's calibrations are shown.
-Nothing here names a latency that was ordered or achieved: blinded operators see it too.
+The added latency is measured in every phase with enough movement, practice included, so the
+previous session is a test of today's equipment. If there is none yet, the equipment's calibrations
+are shown. No latency, set or achieved, is named here, because blinded operators see the list, too.
 """
 
 from sqlalchemy import select
@@ -15,9 +15,10 @@ from app.texts import Words
 
 
 def _latency(situation: Situation) -> Found:
-    """The achieved latency, from sessions of the same study.
+    """Check the achieved latency in the last measured session of the same study.
 
-    A scripted headset says nothing of a real one: simulated sessions are judged by their own kind.
+    A scripted headset says nothing about a real one, so simulated sessions are compared only with
+    each other.
     """
     db, session = situation.db, situation.session
     simulated = session.kind == "simulated"
@@ -104,5 +105,5 @@ LATENCY = StateCheck(
             ),
         ),
     ),
-    look=_latency,
+    run=_latency,
 )

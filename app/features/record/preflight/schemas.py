@@ -1,4 +1,7 @@
-"""The list of checks as pages see it. Its words are the page's: `code` names what was found."""
+"""Request and response models of the pre-flight endpoints.
+
+A response contains no texts: the page looks up the text of each finding by its `code`.
+"""
 
 from datetime import datetime
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -13,13 +16,13 @@ if TYPE_CHECKING:
     CheckKey = str
     CheckCode = str
 else:
-    # The interface lists what the registry holds; no type checker reads a computed Literal.
+    # The interface lists the registry's entries; type checkers do not support a computed Literal.
     CheckKey = Literal[tuple(check.key for check in CHECKS)]
     CheckCode = Literal[tuple(code for check in CHECKS for code in check.codes)]
 
 
 class Override(BaseModel):
-    """Somebody goes on all the same, although this was `found`."""
+    """The decision to proceed although a check had the finding `found`."""
 
     reason: str
     found: CheckCode
@@ -28,11 +31,12 @@ class Override(BaseModel):
 
 
 class Check(BaseModel):
-    """One line of the list.
+    """A check of the pre-flight list, with its result.
 
-    `wait`: it cannot be told yet, and comes by itself. `value` with its `unit` is what was found,
-    `limit` with `expected` what it must keep to. `details` are names and hashes, in no language.
-    `override`: the newest one; it counts while the finding is the one it was said of.
+    `wait`: it cannot be judged yet, but will be without any action. `value` with its `unit` is what
+    was measured; `limit` with `expected` is what it must comply with. `details` are names and
+    hashes, which are not translated. `override`: the latest one; it applies only while the check
+    still has the finding that was overridden.
     """
 
     key: CheckKey
@@ -47,10 +51,11 @@ class Check(BaseModel):
 
 
 class Preflight(BaseModel):
-    """The whole list, made anew. `clear`: nothing has failed, or what did was overridden.
+    """The results of all pre-flight checks.
 
-    `asks`: whether a start with failures is asked about. Only sessions with people are: the others
-    show the list and never stand in the way.
+    `clear`: nothing has failed, or all failures are overridden. `asks`: whether starting in spite
+    of failures requires a confirmation. This is the case only for sessions with people; for other
+    kinds the list is only shown.
     """
 
     at: datetime
@@ -60,7 +65,7 @@ class Preflight(BaseModel):
 
 
 class OverrideRequest(BaseModel):
-    """Go on although a check is not green."""
+    """A request to proceed although a check is not green."""
 
     model_config = ConfigDict(extra="forbid")
 

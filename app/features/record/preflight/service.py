@@ -1,7 +1,7 @@
-"""The pre-flight list: made for every request, never stored.
+"""Run the pre-flight checks; their results are computed for every request and never stored.
 
-What is stored is that somebody went on although a check had failed: an event of the session, with
-the reason and the finding as content of their own, so that an erasure takes the words along.
+What is stored is an override, by which somebody proceeds although a check has failed: an event of
+the session, with reason and finding as separate content, so that an erasure removes these texts.
 """
 
 from collections.abc import Mapping
@@ -32,13 +32,13 @@ from app.platform.access import OVER, session_by_id
 from app.platform.context import AppContext
 
 CONTENT = "preflight"
-"""Kind of the contents that hold reasons."""
+"""The kind of stored content that contains the reasons of overrides."""
 
 
 async def preflight_of(context: AppContext, session_id: str) -> Preflight:
-    """The whole list. Raises NotFound, and Conflict for a session that is over.
+    """Run all checks of a session; raises NotFound, and Conflict if the session has ended.
 
-    It takes transactions of its own: the written row must be committed before it is read back.
+    This opens its own transactions, since the test row must be committed before it is read back.
     """
     await run_sync(_open_session, context, session_id)
     tried = {
@@ -55,15 +55,15 @@ def _open_session(context: AppContext, session_id: str) -> None:
 
 
 def _list(context: AppContext, session_id: str, found: dict[str, Found]) -> Preflight:
-    """The list, from what the trials have found and what the other checks read now."""
+    """Combine the results of the trials with those of the read-only checks and the overrides."""
     with context.database.reading() as db:
         session = session_by_id(db, session_id)
         overrides = overrides_of(db, session_id)
         situation = Situation(session, db, context, context.hub.signal(session_id) or {})
-        looked = {
-            check.key: check.look(situation) for check in CHECKS if isinstance(check, StateCheck)
+        read = {
+            check.key: check.run(situation) for check in CHECKS if isinstance(check, StateCheck)
         }
-    checks = [_line(check, (found | looked)[check.key]) for check in CHECKS]
+    checks = [_line(check, (found | read)[check.key]) for check in CHECKS]
     shown = [_with(check, overrides) for check in checks]
     return Preflight(
         at=context.clock.utc_now(),
@@ -87,35 +87,42 @@ def _line(check: PreflightCheck, found: Found) -> Check:
 
 
 def require_open(session: StudySession) -> None:
-    """Raise Conflict where the session is over."""
+    """Raise Conflict if the session has ended."""
     if session.status in OVER:
         raise Conflict(
-            "the session is over, so there is nothing left to check",
+            "the session has ended, so there is nothing left to check",
             value=session.status,
             valid=["planned", "active"],
-            remedy="Its overrides stand in the event log.",
+            remedy="Its overrides are in the event log.",
         )
 
 
 def override(
-    db: Session, context: AppContext, session_id: str, wish: OverrideRequest, found: Check, by: str
+    db: Session,
+    context: AppContext,
+    session_id: str,
+    request: OverrideRequest,
+    found: Check,
+    by: str,
 ) -> Check:
-    """Put on record that somebody goes on although a check is not green; the check after it.
+    """Record that somebody proceeds although a check is not green; return the overridden check.
 
-    `found` is the check as it is now. One that has turned green needs nobody's word: it is returned
-    as it is, and nothing is recorded. Raises Conflict where the session is over.
+    `found` is the check's current result. If it has turned green in the meantime, it is returned
+    unchanged and nothing is recorded. Raises Conflict if the session has ended.
     """
     session = session_by_id(db, session_id, lock=True)
     require_open(session)
     if found.status == "ok":
         return found
     now = context.clock.utc_now()
-    said = Override(reason=wish.reason, by=by, at=now, found=found.code)
-    body = {"check": wish.check, **said.model_dump(mode="json", include={"reason", "found"})}
+    latest = Override(reason=request.reason, by=by, at=now, found=found.code)
+    body = {"check": request.check, **latest.model_dump(mode="json", include={"reason", "found"})}
     body["value"], body["unit"], body["details"] = found.value, found.unit, list(found.details)
     content = store_content(db, session_id=session.id, kind=CONTENT, body=body, by=by, now=now)
-    apply_command(db, context, session, OverrideCheck(check=wish.check, content=content), actor=by)
-    details = {"check": wish.check}
+    apply_command(
+        db, context, session, OverrideCheck(check=request.check, content=content), actor=by
+    )
+    details = {"check": request.check}
     record(
         db,
         actor=by,
@@ -124,11 +131,11 @@ def override(
         details=details,
         now=now,
     )
-    return found.model_copy(update={"status": "overridden", "override": said})
+    return found.model_copy(update={"status": "overridden", "override": latest})
 
 
 def overrides_of(db: Session, session_id: str) -> dict[str, Override]:
-    """The newest override of each check that has one; none once they were erased."""
+    """Return the latest override of each check that has one; none once they were erased."""
     newest: dict[str, Override] = {}
     for row in contents_of(db, session_id, CONTENT):
         body = content_body(row)
@@ -140,14 +147,14 @@ def overrides_of(db: Session, session_id: str) -> dict[str, Override]:
 
 
 def _with(check: Check, overrides: Mapping[str, Override]) -> Check:
-    """The check with what was said about it.
+    """Return the check with its latest override.
 
-    One that has become green stays green. Words about one finding do not cover another.
+    A check that is green stays green, and the override of one finding does not apply to another.
     """
-    said = overrides.get(check.key)
-    if said is None:
+    latest = overrides.get(check.key)
+    if latest is None:
         return check
-    covered = check.status != "ok" and check.code == said.found
+    covered = check.status != "ok" and check.code == latest.found
     return check.model_copy(
-        update={"status": "overridden" if covered else check.status, "override": said}
+        update={"status": "overridden" if covered else check.status, "override": latest}
     )

@@ -1,4 +1,4 @@
-"""Whether what will be recorded gets onto the disk: tried, not assumed."""
+"""Check by a test write that data reach the disk, and that the disk has enough free space."""
 
 import os
 import secrets
@@ -26,18 +26,18 @@ from app.texts import Words
 
 KIND = "write_test"
 WRITTEN_BYTES = 64 * 1024
-"""About a second of movement."""
+"""The size of the test row and file: about a second of movement."""
 NS_PER_MS = 1e6
 BYTES_PER_GB = 1e9
 
 
 class DiffersError(Exception):
-    """What was read is not what was written."""
+    """What was read back differs from what was written."""
 
 
 async def _written(context: AppContext, session_id: str) -> Found:
-    """A row and a file are written, flushed to the disk, read back and removed."""
-    began_ns = context.clock.monotonic_ns()
+    """Check that a row and a file can be written, flushed to disk, read back and removed."""
+    start_ns = context.clock.monotonic_ns()
     try:
         await write_and_read_back(context, session_id)
     except DiffersError:
@@ -46,29 +46,29 @@ async def _written(context: AppContext, session_id: str) -> Found:
         trouble = explain(error)
         message = str(error)[:200] if trouble is None else trouble.message
         return Found("failing", details=(message,))
-    took_ms = (context.clock.monotonic_ns() - began_ns) / NS_PER_MS
+    took_ms = (context.clock.monotonic_ns() - start_ns) / NS_PER_MS
     return Found("ok", value=round(took_ms, 1), unit="ms")
 
 
 async def write_and_read_back(context: AppContext, session_id: str) -> None:
-    """Leaves nothing behind.
+    """Write a test row and a test file, read them back, and remove them.
 
     Raises DiffersError, or what the database or the file system raises.
     """
-    words = secrets.token_hex(WRITTEN_BYTES // 2)
+    text = secrets.token_hex(WRITTEN_BYTES // 2)
     database = context.database
     async with database.writing_async() as db:
-        row_id = await run_sync(_put, db, session_id, words, context.clock.utc_now())
+        row_id = await run_sync(_put, db, session_id, text, context.clock.utc_now())
     try:
-        await run_sync(_compare, database, row_id, words)
+        await run_sync(_compare, database, row_id, text)
     finally:
         async with database.writing_async() as db:
             await run_sync(db.execute, delete(SessionContent).where(SessionContent.id == row_id))
-    await run_sync(_file, context.settings.data_dir, words.encode())
+    await run_sync(_file, context.settings.data_dir, text.encode())
 
 
-def _put(db: Session, session_id: str, words: str, now: datetime) -> str:
-    # First what a crash in the midst of an earlier test has left.
+def _put(db: Session, session_id: str, text: str, now: datetime) -> str:
+    # First remove what an earlier test may have left behind in a crash.
     db.execute(
         delete(SessionContent).where(
             SessionContent.session_id == session_id, SessionContent.kind == KIND
@@ -78,7 +78,7 @@ def _put(db: Session, session_id: str, words: str, now: datetime) -> str:
         session_id=session_id,
         kind=KIND,
         salt=None,
-        body=words,
+        body=text,
         created_at=now,
         created_by="server",
     )
@@ -87,15 +87,15 @@ def _put(db: Session, session_id: str, words: str, now: datetime) -> str:
     return row.id
 
 
-def _compare(database: Database, row_id: str, words: str) -> None:
+def _compare(database: Database, row_id: str, text: str) -> None:
     with database.reading() as db:
-        if db.scalar(select(SessionContent.body).where(SessionContent.id == row_id)) != words:
+        if db.scalar(select(SessionContent.body).where(SessionContent.id == row_id)) != text:
             raise DiffersError
 
 
 def _file(folder: Path, content: bytes) -> None:
     if not folder.is_dir():
-        return  # The data are on a database server.
+        return  # The data are on a database server, so there is no local folder to test.
     file = folder / f".write-test-{secrets.token_hex(8)}"
     try:
         with file.open("wb") as out:
@@ -180,5 +180,5 @@ DISK = StateCheck(
         ),
         Finding("ok", "ok", Words(en="{{value}} free", de="{{value}} frei")),
     ),
-    look=_disk,
+    run=_disk,
 )

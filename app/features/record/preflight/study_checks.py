@@ -1,4 +1,4 @@
-"""Whether what the session will be shown is what the study says, word for word."""
+"""Check that the study, its instruments and its avatar are stored unchanged and translated."""
 
 from sqlalchemy import select
 from sqlalchemy.orm import Session
@@ -15,7 +15,7 @@ from app.protocol import sha256_of
 from app.texts import Words
 
 SHORT = 12
-"""Hexadecimal digits of a hash that people compare."""
+"""How many hexadecimal digits of a hash are shown for people to compare."""
 _RESTORE = Words(
     en="The database was changed by hand. Restore it from a backup.",
     de="Die Datenbank wurde von Hand geändert. Stellen Sie sie aus einer Sicherung wieder her.",
@@ -27,9 +27,9 @@ def _version(situation: Situation) -> StudyVersion:
 
 
 def _instruments(situation: Situation) -> Found:
-    """Each stored as it was when the study took it up, and readable."""
+    """Check that every instrument is unchanged since the study adopted it, and can be parsed."""
     db, version = situation.db, _version(situation)
-    kept: list[str] = []
+    intact: list[str] = []
     damaged: list[str] = []
     for key in sorted(version.instruments):
         try:
@@ -39,12 +39,14 @@ def _instruments(situation: Situation) -> Found:
             damaged.append(key)
             continue
         if sha256_of(row.canonical_json) == row.content_hash:
-            kept.append(f"{key} v{number} {row.content_hash[:SHORT]}")
+            intact.append(f"{key} v{number} {row.content_hash[:SHORT]}")
         else:
             damaged.append(key)
     if damaged:
         return Found("damaged", value=len(damaged), unit="instruments", details=tuple(damaged))
-    return Found("ok" if kept else "none", value=len(kept), unit="instruments", details=tuple(kept))
+    return Found(
+        "ok" if intact else "none", value=len(intact), unit="instruments", details=tuple(intact)
+    )
 
 
 INSTRUMENTS = StateCheck(
@@ -60,23 +62,23 @@ INSTRUMENTS = StateCheck(
         Finding("none", "ok", Words(en="The study has none", de="Die Studie hat keine")),
         Finding("ok", "ok", Words(en="{{value}} unchanged", de="{{value}} unverändert")),
     ),
-    look=_instruments,
+    run=_instruments,
 )
 
 
 def _configuration(situation: Situation) -> Found:
-    """The study's content, and the avatar's if it has one, still have the hashes on record."""
+    """Check that the content of the study, and of any avatar, matches the recorded hashes."""
     db, session, version = situation.db, situation.session, _version(situation)
     details = [f"study v{version.number} {version.content_hash[:SHORT]}"]
     sound = sha256_of(version.canonical_json) == version.content_hash
     if session.avatar_configuration_hash is not None:
         details.append(f"avatar {session.avatar_configuration_hash[:SHORT]}")
-        sound = sound and _is_kept(db, session.avatar_configuration_hash)
+        sound = sound and _is_intact(db, session.avatar_configuration_hash)
     return Found("ok" if sound else "differs", details=tuple(details))
 
 
-def _is_kept(db: Session, content_hash: str) -> bool:
-    """Whether an avatar's configuration is stored as it was, and readable."""
+def _is_intact(db: Session, content_hash: str) -> bool:
+    """Return whether an avatar's configuration is stored unchanged and can be parsed."""
     query = select(AvatarVersion.canonical_json).where(AvatarVersion.content_hash == content_hash)
     content = db.scalar(query.limit(1))
     if content is None or sha256_of(content) != content_hash:
@@ -100,12 +102,12 @@ CONFIGURATION = StateCheck(
         ),
         Finding("ok", "ok", Words(en="Unchanged", de="Unverändert")),
     ),
-    look=_configuration,
+    run=_configuration,
 )
 
 
 def _language(situation: Situation) -> Found:
-    """Every text of the study and every instrument exists in the session's language."""
+    """Check that every text of the study and every instrument exists in the session's language."""
     db, session, version = situation.db, situation.session, _version(situation)
     language = session.language
     texts = {f"text {key}": text for key, text in protocol_of(version).texts.items()}
@@ -115,7 +117,7 @@ def _language(situation: Situation) -> Found:
         try:
             languages = instrument_of(instrument_for(db, version, key)).languages
         except (ReembodyError, ValueError):
-            continue  # The check of the instruments says so.
+            continue  # The check of the instruments reports this.
         if language not in languages:
             missing.append(f"instrument {key}")
     if missing:
@@ -143,5 +145,5 @@ LANGUAGE = StateCheck(
             "ok", "ok", Words(en="All {{value}} texts present", de="Alle {{value}} Texte vorhanden")
         ),
     ),
-    look=_language,
+    run=_language,
 )

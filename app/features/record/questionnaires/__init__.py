@@ -1,4 +1,4 @@
-"""Forms, answers and scores."""
+"""Questionnaires of a session: forms, answers, corrections and scores."""
 
 from app.features.record.questionnaires.schemas import (
     Administration,

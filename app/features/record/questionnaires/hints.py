@@ -1,17 +1,17 @@
-"""What in a stored form's answers the operator may want to know while the participant is there.
+"""Hints about a stored form's answers, for the operator while the participant is still there.
 
 A hint is a reason to ask "was anything unclear?", and never more: answers are stored and scored as
-they are, nothing is refused, and the participant does not learn of it. Three things are told:
+they are, nothing is rejected, and the participant does not see it. There are three kinds:
 
-- *alike*: every rating on one scale is the same step. At least `ALIKE_ITEMS` of them. Where all are
-  the lowest step and no item is keyed the other way, nothing is told: a list of symptoms of which
-  somebody has none is answered like that. (Straight-lining: Curran 2016, Journal of Experimental
-  Social Psychology 66, 4-19.)
-- *fast*: half of at least `FAST_ITEMS` ratings took less than `FAST_S` each. Huang et al. (2012,
-  Journal of Business and Psychology 27, 99-114) take less than 2 s an item for careless; the
-  half of it is our choice, since items here are short and a wrong hint costs trust. Only for
-  answers that came from the tablet: an operator types what was said.
-- *left_out*: questions without an answer, but for open ones, which are often empty for good reason.
+- *alike*: all ratings on one scale are the same, and there are at least `ALIKE_ITEMS` of them. If
+  all are the lowest step and no item is reverse-keyed, there is no hint, because a person without
+  any symptoms answers a list of symptoms in this way. (Straight-lining: Curran 2016, Journal of
+  Experimental Social Psychology 66, 4-19.)
+- *fast*: half of the ratings took less than `FAST_S` each, and there are at least `FAST_ITEMS` of
+  them. Huang et al. (2012, Journal of Business and Psychology 27, 99-114) regard less than 2 s per
+  item as careless; half of that is our choice, since items here are short and a wrong hint costs
+  trust. Only for answers given on the tablet: an operator types what the participant says.
+- *left_out*: questions without an answer, except open ones, which are often empty for good reason.
 """
 
 from collections.abc import Mapping
@@ -30,7 +30,7 @@ Answers = Mapping[str, str | float | None]
 
 
 def hints_of(instrument: Instrument, submission: Submission, answers: Answers) -> list[AnswerHint]:
-    """The hints on a stored form, from the answers that count; none where they were erased."""
+    """Return the hints about a stored form's current answers; none if they were erased."""
     rated = [
         item
         for item in instrument.items

@@ -1,4 +1,4 @@
-"""Forms as they travel to a tablet and back."""
+"""Request and response models for forms, answers and scores."""
 
 from datetime import datetime
 from typing import Annotated, Any, Literal
@@ -11,7 +11,7 @@ AnswerValue = bool | Whole | FiniteFloat | str | None
 
 
 class Administration(BaseModel):
-    """A form to fill in now: the exact instrument, in the order to show its items."""
+    """A form to be filled in now: the exact instrument, and the order of its items."""
 
     key: str
     step_index: int
@@ -26,9 +26,9 @@ class ItemTrace(BaseModel):
     """How one item was answered.
 
     `response_s`: seconds from when the item was the next to be answered (its page was shown, or
-    another item of the page was answered) to its first answer, where one was given; of typed
-    answers to the end of the first writing. `changes`: how often the answer was changed afterwards;
-    typed answers count each return to the field once.
+    another item of the page was answered) to its first answer, if one was given; for typed answers,
+    to the end of the first typing. `changes`: how often the answer was changed afterwards; for
+    typed answers, each return to the field counts once.
     """
 
     model_config = ConfigDict(extra="forbid")
@@ -38,7 +38,7 @@ class ItemTrace(BaseModel):
 
 
 class SubmissionRequest(BaseModel):
-    """A filled-in form. The same `idempotency_key` may be sent any number of times.
+    """A filled-in form. It can be resent any number of times with the same `idempotency_key`.
 
     `timings`: seconds from the opening of the form to the last change of each answer.
     """
@@ -57,7 +57,7 @@ class SubmissionRequest(BaseModel):
 
 
 class Receipt(BaseModel):
-    """Proof that the form is stored; `duplicate` if it was stored before."""
+    """Confirmation that a form is stored; `duplicate` if it was already stored before."""
 
     receipt_id: str
     stored_at: datetime
@@ -65,7 +65,7 @@ class Receipt(BaseModel):
 
 
 class ScoreView(BaseModel):
-    """A score with its name and the range its instrument states."""
+    """A score with its label and the range that its instrument states."""
 
     key: str
     label: str
@@ -75,9 +75,9 @@ class ScoreView(BaseModel):
 
 
 class AnswerHint(BaseModel):
-    """Something about a form's answers that the operator may want to know; see `hints`.
+    """A hint about a form's answers for the operator; see the module `hints`.
 
-    alike: `items` ratings on one scale are all `value`. fast: half of the `items` ratings took less
+    alike: all `items` ratings on one scale are `value`. fast: half of the `items` ratings took less
     than `seconds` each. left_out: `items` questions have no answer.
     """
 
@@ -88,7 +88,7 @@ class AnswerHint(BaseModel):
 
 
 class StoredScores(BaseModel):
-    """The scores of one stored form: as numbers by key, and as a page shows them."""
+    """The scores of a stored form: as numbers by key, and with labels and ranges for display."""
 
     administration: str
     step_index: int
@@ -100,7 +100,7 @@ class StoredScores(BaseModel):
 
 
 class CorrectionView(BaseModel):
-    """A later value of one answer. `previous` is what counted before; null is "left out"."""
+    """A correction of one answer. `previous` is the value before it; null means "left out"."""
 
     item: str
     previous: AnswerValue
@@ -111,10 +111,10 @@ class CorrectionView(BaseModel):
 
 
 class StoredAnswers(StoredScores):
-    """One stored form with the answers that count: as given, unless they were corrected since.
+    """A stored form with its current answers: as given, unless they were corrected later.
 
     `corrections`: oldest first; the first one's `previous` is the answer as given. `definition`:
-    the exact instrument, for the wordings.
+    the exact instrument, for the wording.
     """
 
     submission_id: str

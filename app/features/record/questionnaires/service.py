@@ -1,6 +1,7 @@
-"""Forms: which one is due, storing it once, scoring it, moving the session on.
+"""Forms: determine which one is due, store and score it once, and advance the session.
 
-Answers that come too late or twice are refused, and kept for the record.
+Answers that arrive late or conflict with stored ones are rejected; conflicting ones are stored
+separately for the record.
 """
 
 import hashlib
@@ -58,7 +59,7 @@ _STORED = (
 
 @dataclass(frozen=True)
 class DueForm:
-    """A step that asks for a form, and the wording it asks for; `attempt` counts from 1."""
+    """A step that requires a form, with the instrument to use; `attempt` counts from 1."""
 
     step: Step
     attempt: int
@@ -66,12 +67,12 @@ class DueForm:
 
     @property
     def key(self) -> str:
-        """The name of one filling-in of a step: doing the step over makes another."""
+        """Return the key of this administration; repeating the step gives a new key."""
         return f"{self.step.key}#{self.attempt}"
 
 
 def due_form(db: Session, session: StudySession) -> DueForm | None:
-    """The form that is due now, or None."""
+    """Return the form that is due now, or None."""
     state = state_of(session)
     if state.current is None:
         return None
@@ -83,7 +84,7 @@ def due_form(db: Session, session: StudySession) -> DueForm | None:
 
 
 def current_administration(db: Session, session: StudySession) -> Administration | None:
-    """The form that is due now as a page gets it, or None."""
+    """Return the form that is due now in the format in which pages receive it, or None."""
     due = due_form(db, session)
     if due is None:
         return None
@@ -113,11 +114,11 @@ def submit(
     mode: str,
     actor: str,
 ) -> Receipt:
-    """Store a form and move the session on; its receipt, the first one if it was stored before.
+    """Store a form, advance the session, and return the receipt.
 
-    `session` must be locked. Raises InvalidInput with every answer that does not fit, NotNow when
-    this form is not due, KeptConflict when other answers are stored already; these are then kept
-    beside them.
+    A form that is already stored returns its first receipt. `session` must be locked. Raises
+    InvalidInput with every invalid answer, NotNow if this form is not due, and KeptConflict if
+    different answers are already stored; the new ones are then stored separately.
     """
     require_capture_of(db, session)
     hash_ = request_hash(request)
@@ -166,7 +167,7 @@ def _stored(db: Session, session: StudySession, request: SubmissionRequest) -> S
 
 
 def _store(db: Session, submission: Row, answers: list[Row], scores: list[Row]) -> None:
-    """A form with its answers and scores, a statement for each table."""
+    """Insert a form with its answers and scores, with one statement per table."""
     db.connection().execute(insert(Submission), submission)
     insert_rows(db, ANSWERS, answers)
     if scores:
@@ -174,7 +175,7 @@ def _store(db: Session, submission: Row, answers: list[Row], scores: list[Row]) 
 
 
 def _submission_row(due: DueForm, request: SubmissionRequest) -> Row:
-    """What the form and the request say of a submission."""
+    """Return those columns of a submission that follow from the form and the request."""
     return {
         "administration": due.key,
         "step_index": due.step.index,
@@ -225,8 +226,9 @@ def _score_rows(id_: str, instrument: Instrument, answers: Mapping[str, AnswerVa
 def check_answers(
     instrument: Instrument, request: SubmissionRequest, *, allow_missing: bool
 ) -> None:
-    """Raise InvalidInput with every answer that does not fit, or for an order or a language that
-    is not the form's. `allow_missing`: required answers may be left out.
+    """Raise InvalidInput with every invalid answer, or for a wrong item order or language.
+
+    `allow_missing`: required answers may be left out.
     """
     problems = [
         problem
@@ -264,7 +266,7 @@ def check_answers(
 
 
 def request_hash(request: SubmissionRequest) -> str:
-    """What makes two requests the same: the form and its answers, not when they were sent."""
+    """Return a hash of the form and its answers, by which a repeated request is recognised."""
     covered = canonical([request.administration, request.answers, request.shown_order])
     return hashlib.sha256(covered.encode()).hexdigest()
 
@@ -278,7 +280,7 @@ def keep_refused(
     stands: Submission,
     actor: str,
 ) -> NoReturn:
-    """Keep answers that differ from the stored ones, once however often they come, and refuse them.
+    """Reject answers that differ from the stored ones, but store them separately, once.
 
     Raises KeptConflict, with which this transaction is committed.
     """

@@ -1,8 +1,8 @@
-"""Stop rules: what the newest scores of a session mean for its safety.
+"""Stop rules: check the latest scores of a session against the study's safety limits.
 
-Every rule is looked at again whenever a form comes, on the newest scores there are, so a warning
-stays until a later form of the same instrument is below it. A score that is missing, because an
-item was left out, is a warning of its own: it must not pass for a good one.
+Every rule is evaluated on the latest scores whenever a form is submitted, so a warning stays until
+a later form of the same instrument is below the limit. A score that is missing, because an item was
+left out, raises its own warning: it must not be mistaken for a good score.
 """
 
 from collections import defaultdict
@@ -25,7 +25,7 @@ MET, NEAR, UNKNOWN = "stop_rule_met", "stop_rule_near", "stop_rule_unknown"
 
 @dataclass(frozen=True)
 class Judgement:
-    """Each rule's level on the newest scores, and which rules the form that came now meets."""
+    """The level of each rule on the latest scores, and which rules the new form meets."""
 
     levels: tuple[Level, ...]
     met: tuple[int, ...]
@@ -33,7 +33,7 @@ class Judgement:
 
 @dataclass(frozen=True)
 class Scored:
-    """A stored form, by what a rule may want of it."""
+    """A stored form, with what a stop rule needs of it."""
 
     instrument: str
     administration: str
@@ -41,7 +41,7 @@ class Scored:
 
 
 def judge(db: Session, session: StudySession, instrument: str) -> Judgement:
-    """Look at all stop rules after a form of `instrument` and its scores were stored."""
+    """Evaluate all stop rules after a form of `instrument` and its scores were stored."""
     rules = _rules(db, session)
     stored = _newest_first(db, session, rules)
     levels = tuple(_level(stored, rule) for rule in rules)
@@ -54,7 +54,7 @@ def judge(db: Session, session: StudySession, instrument: str) -> Judgement:
 
 
 def tell(db: Session, session: StudySession, judgement: Judgement, now: datetime) -> None:
-    """Raise the alarms that follow from the levels, and clear the warnings that are over."""
+    """Raise the alarms that follow from the levels, and clear warnings that no longer apply."""
     rules = _rules(db, session)
     if not rules:
         return
@@ -76,7 +76,7 @@ def _rules(db: Session, session: StudySession) -> Sequence[StopRule]:
 
 
 def _message(code: str, rule: StopRule) -> str:
-    """In the words of the study file; the value itself stays with the answers."""
+    """Describe a rule by the keys of the study file, without the value, which is an answer."""
     what = f"{rule.score} of {rule.instrument}"
     if code == UNKNOWN:
         return f"the stop rule on {what} could not be applied: the score is missing"
@@ -103,7 +103,7 @@ def _level(stored: Sequence[Scored], rule: StopRule) -> Level:
 
 
 def _newest(stored: Sequence[Scored], instrument: str, administration: str = "") -> Scored | None:
-    """The newest form of an instrument whose administration begins so."""
+    """Return the latest form of an instrument whose administration key has this prefix."""
     wanted = (
         form
         for form in stored
@@ -115,7 +115,7 @@ def _newest(stored: Sequence[Scored], instrument: str, administration: str = "")
 def _newest_first(
     db: Session, session: StudySession, rules: Sequence[StopRule]
 ) -> Sequence[Scored]:
-    """The session's stored forms that any rule asks about."""
+    """Return the session's stored forms that any rule refers to, newest first."""
     if not rules:
         return ()
     rows = db.execute(

@@ -1,7 +1,7 @@
-"""Stored forms as they count now: each answer as given, unless it was corrected since.
+"""Stored forms with their current answers: each as given, unless it was corrected later.
 
-An answer row is never changed. A correction stands beside it, the newest one counts, and the scores
-are those of the answers that count. What the scores were at first follows from the answer rows.
+An answer row is never changed. A correction is a separate row, of which the latest applies, and the
+scores are those of the current answers. The original scores can be computed from the answer rows.
 """
 
 import json
@@ -36,7 +36,7 @@ _TICK = timedelta(microseconds=1)
 
 
 def stored_answers(db: Session, session: StudySession) -> list[StoredAnswers]:
-    """Every stored form of a session, oldest first, with the answers that count."""
+    """Return every stored form of a session with its current answers, oldest first."""
     submissions = db.scalars(
         select(Submission)
         .where(Submission.session_id == session.id)
@@ -46,7 +46,7 @@ def stored_answers(db: Session, session: StudySession) -> list[StoredAnswers]:
 
 
 def stored_scores(db: Session, session: StudySession) -> list[StoredScores]:
-    """The scores of every stored form that has any, and the hints on every form."""
+    """Return the scores and hints of every stored form that has any."""
     return [
         StoredScores(**answers.model_dump(include=set(StoredScores.model_fields)))
         for answers in stored_answers(db, session)
@@ -55,7 +55,7 @@ def stored_scores(db: Session, session: StudySession) -> list[StoredScores]:
 
 
 def answers_of(db: Session, submission_id: str) -> dict[str, str | float | None]:
-    """The answers of a form that count, in the order in which its items were shown."""
+    """Return the current answers of a form, in the order in which its items were shown."""
     rows = db.scalars(
         select(Answer).where(Answer.submission_id == submission_id).order_by(Answer.position)
     )
@@ -71,7 +71,10 @@ def answers_of(db: Session, submission_id: str) -> dict[str, str | float | None]
 def newest_corrections(
     db: Session, submissions: Select[str]
 ) -> dict[tuple[str, str], AnswerCorrection]:
-    """The correction that counts, by submission and item, of the submissions of a query."""
+    """Return the latest correction of each answer, by submission and item.
+
+    `submissions` is a query of submission ids.
+    """
     return {(row.submission_id, row.item): row for row in _corrections(db, submissions)}
 
 
@@ -85,10 +88,10 @@ def correct_answer(
     by: str,
     now: datetime,
 ) -> AnswerCorrection:
-    """Put another value beside an answer and compute the scores anew; None leaves it out.
+    """Add a correction of an answer and recompute the scores; None means left out.
 
-    Its session must be locked. Raises InvalidInput where the form has no such item, the value is
-    not a possible answer to it, or it is the one that counts already.
+    The session must be locked. Raises InvalidInput if the form has no such item, if the value is
+    not a possible answer to it, or if it is already the current answer.
     """
     instrument = instrument_of(kept_row(db, InstrumentVersion, submission.instrument_version_id))
     _require_fit(instrument, item, value)
@@ -135,7 +138,7 @@ def _require_fit(instrument: Instrument, item: str, value: AnswerValue) -> None:
 
 
 def _after_all_others(db: Session, submission: Submission, now: datetime) -> datetime:
-    """The newest correction counts, so none may be as old as another one."""
+    """Return a time later than all corrections so far, since the latest correction applies."""
     earlier = _corrections(db, select(Submission.id).where(Submission.id == submission.id))
     return max([now, *(row.at + _TICK for row in earlier)])
 

@@ -1,4 +1,4 @@
-"""The receipt: what of a session is there, proven from what is stored."""
+"""Receipts: what of a session was made, stored and is missing, computed from the record."""
 
 from app.features.record.receipts.service import SessionReceipt, receipt_of, receipt_text
 

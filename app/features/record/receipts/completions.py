@@ -1,4 +1,4 @@
-"""Playing the task rules again over the stored contacts: do they lead to the stored completions?"""
+"""Rerun the task rules on the stored contacts, and compare with the stored completions."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -33,9 +33,10 @@ Found = tuple[int, float, float, int]
 
 @dataclass(frozen=True)
 class CompletionReceipt:
-    """A task phase: how many completions are stored, how many follow from its contacts.
+    """How many completions of a task phase are stored, and how many follow from its contacts.
 
-    `agree`: the same numbers at the same instants, with the same durations. `reason` says why not.
+    `agree`: the same numbers at the same times, with the same durations; otherwise `reason` says
+    what differs.
     """
 
     phase_id: int
@@ -46,7 +47,7 @@ class CompletionReceipt:
 
 
 def completion_receipts(db: Session, session: StudySession) -> tuple[CompletionReceipt, ...]:
-    """All task phases that were carried through."""
+    """Return a receipt for every task phase that was finished."""
     phases = db.scalars(
         select(Phase)
         .where(Phase.session_id == session.id, Phase.kind.in_(_COUNTED), Phase.status == "done")
@@ -84,13 +85,13 @@ def _difference(stored: Sequence[Found], derived: Sequence[Found]) -> str | None
 
 
 def _derive(db: Session, session: StudySession, phase: Phase) -> list[Found]:
-    """The completions of every client run of a phase, counted on from run to run."""
+    """Derive the completions of a phase from its contacts, numbered across all epochs."""
     rules = _rules(db, session, phase)
     found: list[Found] = []
     for epoch, commands in _commands_by_epoch(db, phase):
         initial, before = rules.initial(), len(found)
         if rules.layout.reverse_after_task and before % 2:
-            # A run that takes over finds the order turned round as the last one left it.
+            # An epoch that takes over starts with the order reversed as the previous epoch left it.
             initial = replace(initial, order=initial.order[::-1])
         done = rederive(rules, _intervals(db, phase, epoch), commands, initial=initial)
         found += [
@@ -106,7 +107,7 @@ def _rules(db: Session, session: StudySession, phase: Phase) -> TaskRules:
 
 
 def _commands_by_epoch(db: Session, phase: Phase) -> list[tuple[int, list[Command]]]:
-    """What each client run did to the clock of its task, by its own reports, accepted or not."""
+    """Return, for each epoch, the clock commands that the headset reported, accepted or not."""
     rows = db.execute(
         select(ClientReport.epoch, ClientReport.payload)
         .where(ClientReport.session_id == phase.session_id, ClientReport.type == "phase")
@@ -121,7 +122,10 @@ def _commands_by_epoch(db: Session, phase: Phase) -> list[tuple[int, list[Comman
 
 
 def _from_the_start(told: list[Command]) -> list[Command]:
-    """A run that took over began standing still, and goes on at its first resume."""
+    """Make the commands of an epoch begin with a start.
+
+    An epoch that took over began with a stopped clock, and continues at its first resume.
+    """
     if told[0].kind is CommandKind.START:
         return told
     resumed = [command for command in told if command.kind is CommandKind.RESUME]

@@ -1,4 +1,4 @@
-"""A session's receipt over HTTP."""
+"""HTTP endpoint for the receipt of a session."""
 
 from fastapi import APIRouter
 
@@ -12,7 +12,7 @@ router = APIRouter(tags=["receipts"])
 
 @router.get("/sessions/{session_id}/receipt")
 def get_receipt(session_id: str, db: Reading, caller: SignedIn) -> SessionReceipt:
-    """Prove from the record what of a session is there; a blinded operator sees no latencies."""
+    """Compute the receipt of a session from its record; blinded operators see no latencies."""
     receipt = receipt_of(db, session_id)
     session = session_by_id(db, session_id)
     if is_blind(db, caller, protocol_of_session(db, session), session):

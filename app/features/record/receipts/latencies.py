@@ -1,4 +1,4 @@
-"""The delay that the avatar had in each phase, beside the ordered one."""
+"""The achieved latency of the avatar in each phase, together with the latency that was set."""
 
 from dataclasses import dataclass
 
@@ -12,9 +12,10 @@ MS_PER_S = 1000.0
 
 @dataclass(frozen=True)
 class LatencyReceipt:
-    """One phase. Null where it could not be told, with the reason; low and high span 95 %.
+    """The achieved latency of one phase with its 95 % interval.
 
-    `off`: by more than 10 ms and more than one frame.
+    It is null if it could not be determined; `reason` then says why. `off`: it deviates by more
+    than 10 ms and more than one frame.
     """
 
     phase_id: int
@@ -30,7 +31,7 @@ class LatencyReceipt:
 
 
 def latency_receipts(db: Session, session_id: str) -> tuple[LatencyReceipt, ...]:
-    """Every phase that was carried through and whose frames have been looked at."""
+    """Return a receipt for every finished phase whose frames have been analysed."""
     rows = db.execute(
         select(Phase, PhaseLatency)
         .join(

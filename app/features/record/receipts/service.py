@@ -1,4 +1,4 @@
-"""One session's receipt, made from the record at the moment it is asked for."""
+"""Compute the receipt of a session from its record whenever it is requested."""
 
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Self
@@ -19,12 +19,12 @@ from app.platform.access import session_by_id
 
 @dataclass(frozen=True)
 class SessionReceipt:
-    """What a session's record holds and what it lacks.
+    """What a session's record contains and what it lacks.
 
-    `complete` is true where `problems` is empty: nothing that was made is missing or damaged, the
-    event log's hash chain holds, the stored completions follow from the stored contacts, and there
-    are no `doubts`: nothing in it is known to be untrue. A session that still runs may lack what
-    its headset has yet to send.
+    `complete` is true if `problems` is empty: nothing that was made is missing or damaged, the
+    event log's hash chain is intact, the stored completions follow from the stored contacts, and
+    there are no `doubts`, that is, nothing in the record is known to be untrue. A session that is
+    still running may lack what its headset has yet to send.
     """
 
     product_version: str
@@ -42,18 +42,18 @@ class SessionReceipt:
     achieved_latency: tuple[LatencyReceipt, ...]
 
     def as_json(self) -> dict[str, Any]:
-        """For machines."""
+        """Return the receipt as a dictionary for JSON output."""
         return asdict(self)
 
     def without_latencies(self) -> Self:
-        """For who must not know the session's condition."""
+        """Return the receipt without latencies, for readers who must not know the condition."""
         return replace(self, achieved_latency=())
 
 
 def receipt_of(db: Session, session_id: str) -> SessionReceipt:
-    """Count, verify and derive everything anew; takes about a second per ten minutes of session.
+    """Count, verify and derive everything from the record; raises NotFound for an unknown session.
 
-    Raises NotFound for an unknown session.
+    This takes about a second per ten minutes of session.
     """
     session = session_by_id(db, session_id)
     streams = stream_receipts(db, session_id)
@@ -100,11 +100,11 @@ def _stream_problems(streams: tuple[StreamReceipt, ...]) -> list[str]:
 
 def _doubt_problem(doubt: Doubt) -> str:
     where = "" if doubt.phase_id is None else f"phase {doubt.phase_id}: "
-    return f"{where}cannot be true: {doubt.words}"
+    return f"{where}cannot be true: {doubt.message}"
 
 
 def _phase_problems(db: Session, session_id: str) -> list[str]:
-    """A phase that counts and has no movement is a recording that never took place."""
+    """Report finished phases without frames, in which nothing can have been recorded."""
     phases = db.scalars(
         select(Phase)
         .where(Phase.session_id == session_id, Phase.status == "done")
@@ -138,7 +138,7 @@ def _chain_problems(chain: ChainCheck) -> list[str]:
 
 
 def receipt_text(receipt: SessionReceipt) -> str:
-    """Verdict, what is wrong, then streams, event log, completions and latencies."""
+    """Format a receipt as text: verdict, problems, streams, event log, completions, latencies."""
     verdict = "COMPLETE" if receipt.complete else "NOT COMPLETE"
     simulated = ", simulated" if receipt.simulated else ""
     lines = [

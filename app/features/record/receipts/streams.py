@@ -1,4 +1,4 @@
-"""Counting a stream from its rows: every chunk is opened, nothing is taken from a counter."""
+"""Count what is stored of each stream by decoding every chunk, without relying on counters."""
 
 import hashlib
 from collections.abc import Iterable, Iterator
@@ -17,13 +17,13 @@ from app.wire import MAX_TIME_S, REPORT_STREAM
 
 @dataclass(frozen=True)
 class StreamReceipt:
-    """One stream of one client run.
+    """What is stored and missing of one stream of one epoch.
 
-    `sent`: how many frames (or reports) the client made, as far as it could still tell. `gaps`:
-    the seqs that are missing, as (first, end). `damaged`: stored frames that can no longer be read;
+    `sent`: how many frames (or reports) the client made, as far as it could report it. `gaps`: the
+    seqs that are missing, as (first, end). `damaged`: stored frames that can no longer be decoded;
     they count as missing. `flagged`: frames with values that no summary uses. `backwards`: readable
-    frames that are not later than the one before, or whose time is no number. `sha256` covers every
-    bit of every readable frame in the order of seqs, so two copies of a record can be compared.
+    frames that are not later than the previous one, or whose time is not a number. `sha256` covers
+    every bit of every readable frame in order of seq, so two copies of a record can be compared.
     """
 
     stream: str
@@ -40,7 +40,7 @@ class StreamReceipt:
 
 @dataclass
 class _Count:
-    """What has been found so far of one stream."""
+    """The running counts of one stream."""
 
     next_seq: int = 0
     stored: int = 0
@@ -50,15 +50,15 @@ class _Count:
     newest_s: float = -np.inf
 
     def timed(self, times_s: NDArray[np.float64]) -> None:
-        """These are the times of the next frames."""
+        """Count those of the next frames' times that run backwards or are invalid."""
         told_s = np.where(np.abs(times_s) <= MAX_TIME_S, times_s, np.nan)
         newest_s = np.fmax.accumulate(np.concatenate(([self.newest_s], told_s)))
-        # No number is later than another, so that a time that is none counts, too.
+        # A comparison with NaN is false, so an invalid time is counted, too.
         self.backwards += int((~(newest_s[:-1] < told_s)).sum())
         self.newest_s = float(newest_s[-1])
 
     def found(self, seq_first: int, count: int, *, readable: bool = True) -> None:
-        """So many seqs from `seq_first` on are there."""
+        """Count `count` seqs from `seq_first` on as stored, or as damaged if not `readable`."""
         if seq_first > self.next_seq:
             self.gaps.append((self.next_seq, seq_first))
         self.next_seq = seq_first + count
@@ -68,13 +68,13 @@ class _Count:
             self.gaps.append((seq_first, self.next_seq))
 
     def until(self, sent: int) -> None:
-        """Nothing more is there."""
+        """Count everything from here up to `sent` as missing."""
         if self.next_seq < sent:
             self.gaps.append((self.next_seq, sent))
 
 
 def stream_receipts(db: Session, session_id: str) -> tuple[StreamReceipt, ...]:
-    """All streams of a session, by epoch."""
+    """Return a receipt for every stream of a session, sorted by epoch."""
     rows = db.scalars(
         select(TelemetryStream)
         .where(TelemetryStream.session_id == session_id)
@@ -118,7 +118,7 @@ def _frames(db: Session, row: TelemetryStream, count: _Count) -> Iterator[bytes]
 
 
 def frame_bytes(frames: Frames, phase_id: int) -> bytes:
-    """Every bit of the frames, row by row, so that it does not matter how they were cut.
+    """Return every bit of the frames row by row, regardless of how they were split into chunks.
 
     A row: phase_id u32, time f64, flags u8, values f32, little-endian.
     """

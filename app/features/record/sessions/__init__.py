@@ -1,4 +1,4 @@
-"""Running a session: its event log, its state, its commands."""
+"""Sessions: their event log, their state, and the commands that change it."""
 
 from app.features.record.sessions.closed_sessions import (
     closed_sessions,

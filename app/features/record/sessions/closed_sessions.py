@@ -1,7 +1,7 @@
-"""Whose sessions take no more data: those of participants who withdrew or whose data were erased.
+"""Sessions that accept no more data, because the participant withdrew or was erased.
 
-A headset that was away may bring what a finished session still lacks. After a withdrawal nothing
-more is taken, from wherever it comes: it is refused with the reason, and not stored.
+A headset that was offline may deliver data that a finished session still lacks. After a withdrawal
+or an erasure, data from any source are rejected with the reason, and not stored.
 """
 
 from collections.abc import Collection
@@ -16,9 +16,10 @@ RUNS = ("planned", "active")
 
 
 def closed_sessions(db: Session, session_ids: Collection[str]) -> frozenset[str]:
-    """Those of the sessions that take no more data.
+    """Return those of the sessions that accept no more data.
 
-    Until the transaction ends none of them can be erased: what it stores would be left behind.
+    All of them are locked against erasure until the transaction ends, because whatever the
+    transaction stores would escape the erasure.
     """
     ended: dict[str, str] = {}
     closed = set()
@@ -34,7 +35,7 @@ def closed_sessions(db: Session, session_ids: Collection[str]) -> frozenset[str]
         elif status not in RUNS:
             ended[session_id] = participant_id
     if ended:
-        # Asked after the lock was there: an erasure that held it is seen.
+        # Queried after the lock was acquired, so that an erasure that held it before is seen.
         query = select(Erasure.participant_id).where(Erasure.participant_id.in_(ended.values()))
         erased = set(db.scalars(query))
         closed.update(one for one, participant in ended.items() if participant in erased)
@@ -42,7 +43,7 @@ def closed_sessions(db: Session, session_ids: Collection[str]) -> frozenset[str]
 
 
 def erased_session(db: Session, session_id: str) -> bool:
-    """Whether the data of a session's participant were erased; lock the session first."""
+    """Return whether a session's participant was erased; lock the session first."""
     query = select(StudySession.id).where(
         StudySession.id == session_id, ~not_erased(StudySession.id)
     )
@@ -50,7 +51,7 @@ def erased_session(db: Session, session_id: str) -> bool:
 
 
 def not_erased(session_id: InstrumentedAttribute[str]) -> ColumnElement[bool]:
-    """The condition under which a row's session still has its data."""
+    """Return the SQL condition that a row's session has not been erased."""
     mine, erasure = aliased(StudySession), aliased(Erasure)
     found = (
         select(erasure.id)
@@ -61,20 +62,20 @@ def not_erased(session_id: InstrumentedAttribute[str]) -> ColumnElement[bool]:
 
 
 def require_capture(db: Session, session_id: str) -> None:
-    """Raise Withdrawn where nothing more is taken of the session's participant."""
+    """Raise Withdrawn if the session accepts no more data."""
     if closed_sessions(db, [session_id]):
         raise refusal()
 
 
 def require_capture_of(db: Session, session: StudySession) -> None:
-    """The same for a session that this transaction has locked."""
+    """Raise Withdrawn if a session that this transaction has locked accepts no more data."""
     erased = session.status not in RUNS and erased_session(db, session.id)
     if session.status == "withdrawn" or erased:
         raise refusal()
 
 
 def refusal() -> Withdrawn:
-    """What a device is told that brings data all the same."""
+    """Return the error for a device that sends data to a closed session."""
     return Withdrawn(
         "the participant has withdrawn: nothing more is stored of this session",
         remedy="Stop recording, and discard what this device still keeps of it.",

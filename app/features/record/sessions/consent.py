@@ -1,8 +1,8 @@
-"""Consent: checking what was given against what the study asks, storing it, showing it again.
+"""Consent: check what was given against what the study requires, store it, and show it later.
 
-The record is content beside the event log: it holds a name or a signature, so it can be erased, and
-it stands in no export. Statements are named by their place in the study version, whose content hash
-is part of the record: nobody can change what was agreed to.
+The record is stored as content next to the event log: it contains a name or a signature, so it must
+be erasable, and it is never exported. Statements are identified by their index in the study
+version, whose content hash is part of the record, so what was agreed to cannot be changed.
 """
 
 from collections.abc import Sequence
@@ -33,7 +33,7 @@ CONTENT = "consent"
 
 
 def consent_form(step: Step, language: str) -> ConsentForm | None:
-    """What the tablet asks for besides the text; None where the step is no consent."""
+    """Return what a consent requires besides its text; None if the step is not a consent."""
     if step.consent is None:
         return None
     return ConsentForm(
@@ -47,7 +47,7 @@ def consent_form(step: Step, language: str) -> ConsentForm | None:
 
 @dataclass(frozen=True)
 class ConsentDesk:
-    """Takes consents of one session in the caller's transaction; `actor` hands them in."""
+    """Store the consents of one session in the caller's transaction, on behalf of `actor`."""
 
     db: Session
     context: AppContext
@@ -55,7 +55,7 @@ class ConsentDesk:
     actor: str
 
     def from_tablet(self, step: Step, given: ConsentGiven) -> ContentRef:
-        """What the participant gave; raises InvalidInput where something wanted is missing."""
+        """Store the participant's consent; raises InvalidInput if something required is missing."""
         wanted = _wanted(step)
         _check_ticks(wanted, given.ticked)
         if wanted.signature == "typed" and given.name is None:
@@ -76,7 +76,7 @@ class ConsentDesk:
         )
 
     def from_operator(self, step: Step, paper: PaperConsent | None) -> ContentRef:
-        """A consent on paper: nobody else can agree in the participant's place."""
+        """Store a consent on paper, the only kind that an operator can enter."""
         _wanted(step)
         if paper is None:
             raise InvalidInput(
@@ -113,7 +113,7 @@ class ConsentDesk:
 
 
 def consent_record(db: Session, session: StudySession) -> ConsentRecord | None:
-    """The newest consent of a session, or None where none was given."""
+    """Return the latest consent of a session, or None if none was given."""
     rows = contents_of(db, session.id, CONTENT)
     return _record(db, session, rows) if rows else None
 

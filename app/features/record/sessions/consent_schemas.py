@@ -1,4 +1,4 @@
-"""A consent as it is given, and as it is shown afterwards."""
+"""Models of a consent: what is requested, what is given, and the printable record."""
 
 from datetime import datetime
 from typing import Annotated, Literal
@@ -19,7 +19,7 @@ Mode = Literal["tablet", "operator", "paper"]
 
 
 class ConsentGiven(BaseModel):
-    """What the participant did on the tablet; `ticked` names statements by their index."""
+    """A consent given on the tablet; `ticked` lists the indices of the statements ticked."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -30,7 +30,7 @@ class ConsentGiven(BaseModel):
 
 
 class PaperConsent(BaseModel):
-    """A consent that was signed on paper: where the sheet is kept, and why on paper."""
+    """A consent signed on paper: where the sheet is stored, and why paper was used."""
 
     model_config = ConfigDict(extra="forbid", str_strip_whitespace=True)
 
@@ -39,31 +39,31 @@ class PaperConsent(BaseModel):
 
 
 class StatementForm(BaseModel):
-    """A line to tick, in the participant's language."""
+    """A statement of a consent that can be ticked, in the participant's language."""
 
     text: str
     optional: bool
 
 
 class ConsentForm(BaseModel):
-    """What a consent asks for besides its text."""
+    """What a consent requires besides its text: statements to tick and a kind of signature."""
 
     signature: Literal["none", "typed", "drawn"]
     statements: list[StatementForm]
 
 
 class StatementRecord(StatementForm):
-    """A line with what became of it; null where that stands on paper."""
+    """A statement of a consent, with whether it was ticked; null if that is only on paper."""
 
     ticked: bool | None
 
 
 class ConsentRecord(BaseModel):
-    """Who agreed to what, and when: everything a printed record shows.
+    """Who agreed to what, and when: everything that a printed record shows.
 
     `text` and `statements` are taken from the study version that was shown; `text_matches` says
-    that the text still has the hash that was stored with the consent. Of an erased consent only
-    `erased` and the time are left.
+    whether the text still has the hash stored with the consent. For an erased consent, only
+    `erased` and the time remain.
     """
 
     session_id: str

@@ -1,7 +1,7 @@
-"""Words kept beside the event log, so that they can be erased without breaking it.
+"""Texts stored separately from the event log, so that they can be erased without breaking it.
 
-An event holds the content's id and sha256(salt + body). Without the salt the hash tells nothing
-about the words; erasing body and salt leaves a chain that still verifies.
+An event contains the content's id and sha256(salt + body). Without the salt the hash reveals
+nothing about the text; erasing body and salt leaves a chain that still verifies.
 """
 
 import hashlib
@@ -19,7 +19,7 @@ from app.models import SessionContent
 def store_content(
     db: Session, *, session_id: str, kind: str, body: object, by: str, now: datetime
 ) -> ContentRef:
-    """Store `body` (JSON-able) and give what an event may hold of it."""
+    """Store `body` (JSON-serialisable) and return the reference that an event may contain."""
     salt = secrets.token_hex(32)
     text = json.dumps(body, ensure_ascii=False, sort_keys=True)
     row = SessionContent(
@@ -31,12 +31,12 @@ def store_content(
 
 
 def salted_hash(salt: str, text: str) -> str:
-    """The hash an event holds of a content."""
+    """Return the salted hash of a content's text, as events contain it."""
     return hashlib.sha256(f"{salt}{text}".encode()).hexdigest()
 
 
 def contents_of(db: Session, session_id: str, kind: str | None = None) -> list[SessionContent]:
-    """Contents of a session, oldest first, of one kind or all."""
+    """Return the contents of a session, oldest first, of one kind or of all kinds."""
     query = select(SessionContent).where(SessionContent.session_id == session_id)
     if kind is not None:
         query = query.where(SessionContent.kind == kind)
@@ -44,5 +44,5 @@ def contents_of(db: Session, session_id: str, kind: str | None = None) -> list[S
 
 
 def content_body(row: SessionContent) -> object:
-    """What was stored, or None once erased."""
+    """Return the stored body of a content, or None if it was erased."""
     return None if row.body is None else json.loads(row.body)

@@ -1,7 +1,7 @@
-"""The event log in SQL: appending with a hash chain, reading back, verifying.
+"""The event log in SQL: append events with a hash chain, read them back, and verify the chain.
 
 Each row's hash covers the previous hash and everything in the row, so the chain breaks at the first
-row that was edited, removed or put in.
+row that was edited, removed or inserted.
 """
 
 import hashlib
@@ -29,7 +29,7 @@ _HASH_AT = select(SessionEvent.hash).where(
 
 @dataclass(frozen=True)
 class ChainCheck:
-    """Whether a log verifies; `broken_at` is the first seq that does not."""
+    """The result of verifying an event log; `broken_at` is the first seq that fails."""
 
     ok: bool
     events: int
@@ -46,7 +46,7 @@ def append_events(
     command_id: str | None,
     clock: Clock,
 ) -> None:
-    """Append `events` behind seq `version`.
+    """Append `events` after seq `version`.
 
     A second writer at the same seq violates the primary key, so a log can never fork.
     """
@@ -71,21 +71,21 @@ def append_events(
 
 
 def events_of(db: Session, session_id: str) -> list[SessionEvent]:
-    """The whole log in order."""
+    """Return the whole event log of a session, in order."""
     query = select(SessionEvent).where(SessionEvent.session_id == session_id)
     return list(db.scalars(query.order_by(SessionEvent.seq)))
 
 
 def event_of(row: SessionEvent) -> Event:
-    """The typed event of a row."""
+    """Return the typed event of a row."""
     return event_from_json(row.type, json.loads(row.payload))
 
 
 def verify_chain(rows: Sequence[SessionEvent], *, version: int | None = None) -> ChainCheck:
-    """Check a whole log: consecutive seqs, linked hashes, every hash recomputed.
+    """Verify a whole log: consecutive seqs, linked hashes, every hash recomputed.
 
-    `version` is the session's own count of events; without it a log whose end was cut off cannot be
-    told from a shorter one.
+    `version` is the session's own count of events; without it, a log whose end was removed cannot
+    be distinguished from a shorter one.
     """
     previous = FIRST_HASH
     for expected_seq, row in enumerate(rows, start=1):
@@ -101,12 +101,12 @@ def verify_chain(rows: Sequence[SessionEvent], *, version: int | None = None) ->
 
 
 def without_condition(payload: Mapping[str, Any]) -> dict[str, Any]:
-    """An event's payload for who must not know the session's condition."""
+    """Return an event's payload without the fields that reveal the session's condition."""
     return {name: value for name, value in payload.items() if name not in TELLS_CONDITION}
 
 
 def canonical(value: object) -> str:
-    """JSON with one spelling: sorted keys, no spaces, no NaN."""
+    """Serialise a value as canonical JSON: sorted keys, no spaces, no NaN."""
     return json.dumps(
         value, sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False
     )

@@ -1,6 +1,6 @@
-"""Rows folded from events for queries: phases, the session's status, its hold on the ledger.
+"""Update the rows that are derived from events for queries: phases, session status, alarms, slot.
 
-They hold nothing that the events do not; they could be rebuilt at any time.
+They contain nothing that the events do not contain, so they could be rebuilt at any time.
 """
 
 from collections.abc import Sequence
@@ -22,7 +22,7 @@ from app.protocol import Step
 def project(
     db: Session, session: StudySession, plan: Sequence[Step], event: Event, now: datetime
 ) -> None:
-    """Bring the rows of `session` up to date with one event."""
+    """Update the rows of `session` for one event."""
     match event:
         case e.SessionStarted():
             session.started_at = now
@@ -51,7 +51,7 @@ def project(
 
 
 def _note_said(db: Session, session: StudySession, event: Event, now: datetime) -> None:
-    """The alarms that follow from what the participant said, by hand or on the tablet."""
+    """Raise and clear the alarms that follow from what the participant said."""
 
     def change(state: Literal["raised", "cleared"], code: str, message: str) -> None:
         store_change(db, session.id, Change(state, Condition(code, message), now))
@@ -98,7 +98,7 @@ def _update_phase(phase: Phase, event: Event, now: datetime) -> None:
         case e.PhaseStarted(client_t_s=client_t_s):
             phase.status, phase.started_at, phase.client_started_s = "running", now, client_t_s
         case e.PhasePaused():
-            # The headset's own report may confirm a pause that the server had to assume.
+            # The headset's own report may confirm a pause that the server had assumed.
             phase.paused_count += phase.status != "paused"
             phase.status = "paused"
         case e.WalkBackStarted():

@@ -1,4 +1,4 @@
-"""Running sessions: joining, and applying commands to the event log in one transaction."""
+"""Create sessions, and apply commands to their event logs, each in one transaction."""
 
 import secrets
 from collections.abc import Collection, Iterable
@@ -18,7 +18,7 @@ from app.features.design.studies import (
     version_content,
 )
 from app.features.movement.avatar import version_of
-from app.features.record.ledger import find_or_add_participant, hold_slot, slot_of, take_slot
+from app.features.record.ledger import find_or_add_participant, open_attempt, slot_of, take_slot
 from app.features.record.sessions.engine import (
     Command,
     Refused,
@@ -43,18 +43,18 @@ _plans: Unchanging[str, tuple[Step, ...]] = Unchanging(1024)
 
 
 def plan_of(db: Session, session: StudySession) -> tuple[Step, ...]:
-    """The procedure of this session: its protocol in its own order of conditions.
+    """Return the procedure of a session: its protocol in the session's order of conditions.
 
-    A session's version and slot never change, so neither does its plan.
+    A session's version and slot never change, so neither does its plan, which is cached.
     """
     return _plans.get(db, session.id, lambda: read_plan(db, session))
 
 
 def read_plan(db: Session, session: StudySession) -> tuple[Step, ...]:
-    """The same, read anew: for rows that have just taken the place of others.
+    """Return the procedure of a session without the cache, for rows that were just replaced.
 
-    Raises sqlalchemy.exc.NoResultFound without a slot, DamagedValue without a study version,
-    ConfigError or PlanError for stored texts that are no study or no order of its conditions.
+    Raises sqlalchemy.exc.NoResultFound without a slot, DamagedValue without a study version, and
+    ConfigError or PlanError if the stored texts are not a study or not an order of its conditions.
     """
     version = kept_row(db, StudyVersion, session.study_version_id)
     slot = slot_of(db, session)
@@ -79,7 +79,7 @@ MAX_TIME_SCALE = 100.0
 
 @dataclass(frozen=True)
 class Applied:
-    """What a command led to; `events` is empty when it was a repetition or had nothing to do."""
+    """The result of a command; `events` is empty if it was a repetition or changed nothing."""
 
     session: StudySession
     state: SessionState
@@ -87,20 +87,20 @@ class Applied:
 
 
 def protocol_of_session(db: Session, session: StudySession) -> StudyProtocol:
-    """The protocol of the study version that this session follows."""
+    """Return the protocol of the study version that this session follows."""
     return version_content(db, session.study_version_id).protocol
 
 
 def state_of(session: StudySession) -> SessionState:
-    """The folded state, from the snapshot."""
+    """Return the current state of a session, from its snapshot."""
     return state_from_json(session.snapshot)
 
 
 def folded(log: Iterable[SessionEvent], steps: int) -> SessionState:
-    """The state that a whole log leads to, from the first event on; the plan has `steps` steps.
+    """Fold a whole log into a state, from the first event on; the plan has `steps` steps.
 
-    Raises KeyError for an event of an unknown type, ValueError for a payload that is none of its
-    type, IndexError for one of a step that there is not.
+    Raises KeyError for an event of an unknown type, ValueError for a payload that does not match
+    its type, and IndexError for a step that does not exist.
     """
     return reduce(evolve, map(event_of, log), initial_state(steps))
 
@@ -115,7 +115,7 @@ def join(
     language: str,
     time_scale: float = 1.0,
 ) -> StudySession:
-    """A new session on the next slot of the ledger.
+    """Create a session on the next slot of the ledger.
 
     `time_scale` is how many seconds of the client's clock pass per real second; only simulated
     sessions may set it. Raises InvalidInput, NotFound, Conflict or NotDurable.
@@ -127,7 +127,7 @@ def join(
     protocol = protocol_of(version)
     _check_join(protocol, kind, language, time_scale)
     now = context.clock.utc_now()
-    # The ledger first: it is what simultaneous joins queue on.
+    # Lock the ledger first, since simultaneous joins queue on it.
     slot = take_slot(db, version, protocol, kind, now)
     participant = find_or_add_participant(
         db, study_id=study.id, kind=kind, code=participant_code, now=now
@@ -150,14 +150,14 @@ def join(
     )
     db.add(session)
     db.flush()
-    hold_slot(db, slot, session, now)
+    open_attempt(db, slot, session, now)
     session.snapshot = state_to_json(initial_state(len(plan_of(db, session))))
     db.flush()
     return session
 
 
 def _avatar_hash(db: Session, protocol: StudyProtocol) -> str | None:
-    """Which content the avatar's configuration has; versions are never edited."""
+    """Return the content hash of the avatar configuration, whose versions are never edited."""
     chosen = protocol.avatar_configuration
     return None if chosen is None else version_of(db, chosen.key, chosen.version).content_hash
 
@@ -198,9 +198,9 @@ def apply_command(
 ) -> Applied:
     """Decide a command and record its events. `session` must have been read with `lock=True`.
 
-    A repeated `command_id` changes nothing. `expected_version` is what the caller saw: if the
-    session has moved on, StaleVersion says what happened since. Raises NotNow when the command
-    cannot be done in the present state.
+    A repeated `command_id` changes nothing. `expected_version` is the version that the caller saw:
+    if the session has changed since, StaleVersion lists the events since then. Raises NotNow if the
+    command cannot be carried out in the current state.
     """
     state = state_of(session)
     if command_id is not None and is_repeated(db, session.id, command_id):
@@ -241,15 +241,16 @@ def apply_command(
 
 
 def judge_again(db: Session, session: StudySession, doubted: Collection[int | None]) -> None:
-    """Decide once more whether a session counts: a latency was measured, or data are in doubt.
+    """Decide again whether a session is valid, after a latency was measured or data were doubted.
 
-    `doubted`: phases of which the headset said what cannot be true, None for the whole session.
+    `doubted`: phases for which the headset reported something that cannot be true; None stands for
+    the whole session.
     """
     settle_validity(db, session, plan_of(db, session), state_of(session), doubted)
 
 
 def is_repeated(db: Session, session_id: str, command_id: str) -> bool:
-    """Whether this command was applied before, so that sending it again changes nothing."""
+    """Return whether this command was applied before, so that resending it changes nothing."""
     query = select(SessionEvent.seq).where(
         SessionEvent.session_id == session_id, SessionEvent.command_id == command_id
     )

@@ -1,8 +1,8 @@
-"""Whether a completed session counts, by the rules of the study version that it followed.
+"""Decide whether a completed session is valid, by the rules of the study version it followed.
 
-This is the one place where that is decided. It is decided when the session ends, and again when a
-measured latency comes in later; the outcome is stored on the session (`shortfalls`), and ledger,
-dashboard, statistics, export and cockpit read it there.
+This is the only place where that is decided. It is decided when the session ends, and again when a
+latency is measured later. The result is stored on the session (`shortfalls`), from where ledger,
+dashboard, statistics, export and cockpit read it.
 """
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -24,7 +24,7 @@ MS_PER_S = 1000.0
 
 @dataclass(frozen=True)
 class PhaseDelay:
-    """What is known of a phase's latency, s; `achieved_s` is None where it could not be told."""
+    """A phase's latencies in seconds; `achieved_s` is None if it could not be determined."""
 
     ordered_s: float
     achieved_s: float | None
@@ -39,17 +39,17 @@ def judged(
     *,
     of_people: bool = True,
 ) -> tuple[Shortfall, ...]:
-    """What a session lacks, in the order of its steps; nothing if it counts.
+    """Return the shortfalls of a session in the order of its steps; none if it is valid.
 
     Args:
-        rules: of its study version.
+        rules: the rules of its study version.
         plan: its steps.
-        state: where it stands.
-        delays: by phase id. A phase without one has not been looked at yet: nothing is held against
-            it until it has.
-        doubted: ids of phases of which the headset said what cannot be true; None stands for the
-            whole session.
-        of_people: nobody's consent is needed for a test, an expert's try or a simulation.
+        state: its state.
+        delays: by phase id. A phase that is missing here has not been measured yet, so its latency
+            is not judged.
+        doubted: ids of phases for which the headset reported something that cannot be true; None
+            stands for the whole session.
+        of_people: whether consent is required: not for a test, an expert's try or a simulation.
     """
     whole = [Shortfall(code="headset_doubtful", step="session")] if None in doubted else []
     if of_people:
@@ -59,7 +59,7 @@ def judged(
 
 
 def _without_consent(plan: Sequence[Step], state: SessionState) -> list[Shortfall]:
-    """Where a study asks for consent, nobody's data count who gave none."""
+    """Return a shortfall for every consent of the study that was not given."""
     return [
         Shortfall(code="consent_skipped", step=step.key)
         for step in plan
@@ -113,7 +113,7 @@ def _of_step(
 
 
 class Found(NamedTuple):
-    """A shortfall without its place."""
+    """A shortfall of a phase, without the phase."""
 
     code: ShortfallCode
     value: float | None = None
@@ -128,7 +128,7 @@ def _of_phase(
     *,
     doubtful: bool,
 ) -> Iterator[Found]:
-    """What a phase that was carried through lacks."""
+    """Yield the shortfalls of a phase that was finished."""
     if doubtful:
         yield Found("phase_doubtful")
     if run.active_s < least_s:
@@ -151,10 +151,11 @@ def settle_validity(
     state: SessionState,
     doubted: Collection[int | None] = (),
 ) -> None:
-    """Decide whether a completed session counts, and whether it keeps its slot.
+    """Decide whether a completed session is valid, and so whether it keeps its slot.
 
-    `doubted` as for `judged`: who asks knows the doubts, since they are made from the whole record.
-    Nothing is decided of one that still runs or was broken off, nor where the study has no rules.
+    `doubted` as for `judged`; the caller supplies it, since doubts are computed from the whole
+    record. Nothing is decided for a session that is still running or was broken off, nor if the
+    study has no rules.
     """
     rules = version_content(db, session.study_version_id).protocol.valid_when
     if rules is None or state.status != "completed" or state.erased:

@@ -9,7 +9,7 @@ from typing import Any, cast
 from sqlalchemy import Table, func, select
 from sqlalchemy.orm import Session
 
-from app.features.record.doubts import beyond_reason
+from app.features.record.doubts import exceeds_possible
 from app.models import TelemetryStream
 from app.rows import insert_rows
 from app.wire import MAX_EPOCH, REPORT_STREAM, Message, StreamPosition
@@ -25,7 +25,7 @@ _MOVED = (*MOVING, "last_at")
 class Position:
     """Where one stream stands within the writer's transaction; see `TelemetryStream`.
 
-    `known_s`: for how long the server has known of the run.
+    `age_s`: for how long the server has known of the run.
     """
 
     key: Key
@@ -36,7 +36,7 @@ class Position:
     phase_id: int = 0
     active_s: float = 0.0
     is_changed: bool = False
-    known_s: float = 0.0
+    age_s: float = 0.0
 
     def claimed(self, made: int) -> None:
         """The client says that it has made so much.
@@ -44,7 +44,7 @@ class Position:
         What it once said stays, since what has not come by the end is missing. A count that no
         headset can have reached is no such evidence: the next one takes its place, whatever it is.
         """
-        if made > self.produced or beyond_reason(self.produced, self.known_s):
+        if made > self.produced or exceeds_possible(self.produced, self.age_s):
             self.produced, self.is_changed = made, True
 
     def stored(self, frames: int) -> None:
@@ -81,8 +81,8 @@ class Positions:
         for row in self.db.execute(select(TABLE).where(TABLE.c.session_id.in_(asked))).mappings():
             key = (row["session_id"], row["stream"], row["epoch"])
             values = {name: row[name] for name in MOVING}
-            known_s = (self.now - row["first_at"]).total_seconds()
-            self._held[key] = Position(key, **values, known_s=known_s)
+            age_s = (self.now - row["first_at"]).total_seconds()
+            self._held[key] = Position(key, **values, age_s=age_s)
 
     def at(self, session_id: str, stream: str, epoch: int) -> Position:
         """A stream's position, 0 at its first message."""

@@ -117,7 +117,7 @@ class Summariser(Part):
         if not doubts:
             return
         now = self.context.clock.utc_now()
-        words = f"phase {phase_id} does not count: {'; '.join(one.words for one in doubts)}"
+        words = f"phase {phase_id} does not count: {'; '.join(one.message for one in doubts)}"
         told = Condition("doubtful", words)
         with self.context.database.writing() as db:
             if session_by_id(db, session_id, lock=True).ended_at is None:

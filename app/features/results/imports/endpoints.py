@@ -9,7 +9,7 @@ from sqlalchemy.orm import Session
 from app.errors import ReembodyError
 from app.features.design.studies import study_by_key
 from app.features.people.audit import download_place, record, record_copy
-from app.features.record.erasure import expect_erasure, forget_erasure, overwrite
+from app.features.record.erasure import clear_erasure_mark, mark_erasure, overwrite
 from app.features.results.imports.previewing import check, look
 from app.features.results.imports.schemas import (
     CheckRequest,
@@ -152,12 +152,12 @@ def post_erase_imported(
 @contextmanager
 def _erasing(context: AppContext) -> Iterator[Session]:
     """Open a transaction that deletes people's answers, then overwrite the freed bytes."""
-    new = expect_erasure(context.settings)
+    new = mark_erasure(context.settings)
     try:
         with context.database.writing() as db:
             yield db
     except ReembodyError:
         if new:
-            forget_erasure(context.settings)
+            clear_erasure_mark(context.settings)
         raise
     overwrite(context.database, context.settings)

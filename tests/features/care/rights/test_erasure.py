@@ -10,7 +10,7 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.features.people.audit import verify_trail
-from app.features.record.erasure import expect_erasure, forget_erasure, is_overwritten
+from app.features.record.erasure import clear_erasure_mark, is_overwritten, mark_erasure
 from app.features.record.sessions import canonical, events_of, verify_chain
 from app.models import (
     AuditEntry,
@@ -223,14 +223,14 @@ def test_a_mark_that_cannot_be_removed_fails_nothing(
 ) -> None:
     """What was done stays done; the bytes are overwritten once more at the next start."""
     settings = Settings(data_dir=tmp_path)
-    expect_erasure(settings)
+    mark_erasure(settings)
 
     def refuse(path: Path, **_: object) -> None:
         raise PermissionError(13, "Permission denied", str(path))
 
     with monkeypatch.context() as patch:
         patch.setattr(Path, "unlink", refuse)
-        forget_erasure(settings)
+        clear_erasure_mark(settings)
     assert not is_overwritten(settings)
-    forget_erasure(settings)
+    clear_erasure_mark(settings)
     assert is_overwritten(settings)

@@ -18,8 +18,8 @@ from app.features.record.doubts.laws import (
     PhaseClaims,
     SessionClaims,
     StreamClaim,
-    beyond_reason,
     doubts_about,
+    exceeds_possible,
 )
 
 NOON = datetime(2026, 3, 1, 12, tzinfo=UTC)
@@ -33,7 +33,7 @@ def report(what: str, t_s: float, active_s: float, epoch: int = 1) -> ClockRepor
 def moment(kind: str, at_s: float, active_s: float | None = None, wall_s: float = 0.0) -> Moment:
     """An event of it at so many seconds, the wall clock `wall_s` off."""
     utc = NOON + timedelta(seconds=at_s + wall_s)
-    return Moment(kind, 100.0 + at_s, utc, active_s, stands=active_s is not None)
+    return Moment(kind, 100.0 + at_s, utc, active_s, clock_stopped=active_s is not None)
 
 
 STARTED, UP, ENDED = (
@@ -90,7 +90,7 @@ def test_every_kind_that_is_found_is_explained() -> None:
     """Each doubt has words, and its kind a meaning."""
     (doubt,) = doubts_about(with_reports(STARTED, report("time_up", 11.0, 60.0)))[:1]
     assert isinstance(doubt, Doubt)
-    assert (doubt.kind in KINDS, doubt.words != "") == (True, True)
+    assert (doubt.kind in KINDS, doubt.message != "") == (True, True)
 
 
 @pytest.mark.parametrize(
@@ -243,12 +243,12 @@ def test_runs_are_those_that_were_numbered() -> None:
 
 def test_a_count_is_within_reason_as_long_as_a_headset_can_have_made_it() -> None:
     """An hour of a fast headset that was offline all the time is; a million in a minute is not."""
-    assert not beyond_reason(144 * 3600, 3600.0)
-    assert beyond_reason(1_000_000, 60.0)
-    assert not beyond_reason(1_000_000, 60.0, time_scale=20.0)
+    assert not exceeds_possible(144 * 3600, 3600.0)
+    assert exceeds_possible(1_000_000, 60.0)
+    assert not exceeds_possible(1_000_000, 60.0, time_scale=20.0)
 
 
 def test_what_the_server_saw_itself_is_told_in_its_own_words() -> None:
     """Two observations are two doubts about the session."""
     seen = replace(HONEST, observed=("one thing", "another"))
-    assert [one.words for one in doubts_about(seen)] == ["another", "one thing"]
+    assert [one.message for one in doubts_about(seen)] == ["another", "one thing"]

@@ -11,7 +11,7 @@ from starlette.testclient import WebSocketTestSession
 from starlette.websockets import WebSocketDisconnect
 
 from app.features.record.headset.poses import HEADER, PoseFeed
-from app.features.record.poses.endpoints import MOST_UNDRAWN
+from app.features.record.poses.endpoints import MAX_UNDRAWN
 from app.science.skeleton import JOINT_NAMES, build_skeleton
 from app.wire import Batch, StreamName, decode_batch
 from tests.features.lab import STUDY, Json, Lab, ok
@@ -119,7 +119,7 @@ def test_a_console_that_does_not_draw_gets_the_newest_afterwards(lab: Lab) -> No
     with watching(lab, session_id) as socket:
         socket.receive_json()
         feed = feed_of(lab, session_id)
-        last = MOST_UNDRAWN - 1
+        last = MAX_UNDRAWN - 1
         for seq in range(last):
             feed.take(batch(seq), float(seq))
             assert seq_of(socket.receive_bytes()) == seq

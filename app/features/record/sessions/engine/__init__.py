@@ -1,8 +1,8 @@
 """The session as pure functions: `decide(plan, state, command) -> events`, `evolve(...) -> state`.
 
-Nothing here knows of a database, a clock or a network. A command is decided against the state and
-gives events; the state is the fold of the events. So a crash resumes by folding again, and what is
-recorded is exactly what the state was made of.
+Nothing here uses a database, a clock or a network. A command is decided against the state and gives
+events; the state is the fold of the events. So a server resumes after a crash by folding the events
+again, and the record contains exactly what determined the state.
 """
 
 from app.features.record.sessions.engine.allowed import allowed_commands

@@ -1,4 +1,4 @@
-"""Which commands make sense now, so that a page offers those and no others."""
+"""Determine which commands a session's state allows, so that pages offer only those."""
 
 from collections.abc import Sequence
 
@@ -7,7 +7,7 @@ from app.protocol import TIMED_KINDS, Step
 
 
 def allowed_commands(plan: Sequence[Step], state: SessionState) -> list[str]:
-    """Command types in the order a page shows them: the next action first."""
+    """Return the allowed command types in display order, the next action first."""
     if state.erased:
         return []
     if state.status is SessionStatus.PLANNED:

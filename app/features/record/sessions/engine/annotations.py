@@ -1,7 +1,7 @@
-"""What can be put on record whatever the session is doing: words, questions, corrections, an
-erasure.
+"""Decide the commands that do not advance the session: notes, questions, corrections, erasure.
 
-Once the participant's data are erased nothing is added any more, or they would come back in words.
+They are possible in (almost) any state. Once the participant's data are erased, nothing more can be
+added, since a text might contain the data again.
 """
 
 from app.features.record.sessions.engine import commands as c
@@ -11,7 +11,7 @@ from app.features.record.sessions.engine.state import SessionState, SessionStatu
 
 
 def decide_annotation(state: SessionState, command: c.Command) -> list[e.Event] | None:
-    """The events of a command that does not move the session on; None for every other one."""
+    """Return the events of a command that does not advance the session; None for other commands."""
     if isinstance(command, c.EraseData):
         return _erase(state, command)
     if state.erased:
@@ -41,7 +41,7 @@ def decide_annotation(state: SessionState, command: c.Command) -> list[e.Event] 
 
 
 def _question(state: SessionState, command: c.AskQuestion | c.CloseQuestion) -> list[e.Event]:
-    """A question while nobody has answered the one before is the same question."""
+    """Open or close a question; while one is open, asking again adds no event."""
     if isinstance(command, c.CloseQuestion):
         return [e.QuestionClosed(outcome=command.outcome)] if state.question_open else []
     if state.status not in (SessionStatus.PLANNED, SessionStatus.ACTIVE):
@@ -55,7 +55,7 @@ def _question(state: SessionState, command: c.AskQuestion | c.CloseQuestion) -> 
 
 
 def _erase(state: SessionState, command: c.EraseData) -> list[e.Event]:
-    """A session that has not begun is over with it; one that is running must be ended first."""
+    """Erase a session's data: a planned session ends with it, an active one must be ended first."""
     if state.erased:
         return []
     if state.status is SessionStatus.ACTIVE and not command.even_though_active:

@@ -1,11 +1,11 @@
-"""What can be asked of a session: by the operator, the tablet, the headset, or the server."""
+"""The commands of a session, issued by the operator, the tablet, the headset, or the server."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
 class ContentRef:
-    """Words stored elsewhere: their id and salted hash."""
+    """A reference to a text stored as content: its id and salted hash."""
 
     content_id: str
     content_hash: str
@@ -13,7 +13,7 @@ class ContentRef:
 
 @dataclass(frozen=True, kw_only=True)
 class Command:
-    """Base of all commands."""
+    """The base class of all commands."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,9 +23,9 @@ class Start(Command):
 
 @dataclass(frozen=True, kw_only=True)
 class CompleteStep(Command):
-    """The current step without a clock is done (consent given, instructions read, ...).
+    """Complete the current step, which has no clock (consent given, instructions read, ...).
 
-    `step` guards against a late click: it must be the current one where it is given.
+    `step` guards against a late click: if given, it must be the current step.
     """
 
     by: str
@@ -35,9 +35,9 @@ class CompleteStep(Command):
 
 @dataclass(frozen=True, kw_only=True)
 class SubmitForm(Command):
-    """The form of step `step` was stored as `submission_id`.
+    """Complete step `step`, whose form was stored as `submission_id`.
 
-    `rules_met`: which stop rules of the study its scores meet, by their index.
+    `rules_met`: the indices of the study's stop rules that its scores meet.
     """
 
     step: int
@@ -48,7 +48,7 @@ class SubmitForm(Command):
 
 @dataclass(frozen=True, kw_only=True)
 class Materialise(Command):
-    """The participant stands in T-pose and the avatar appears."""
+    """Make the avatar appear, now that the participant stands in T-pose."""
 
     by: str
     headset_connected: bool
@@ -57,28 +57,28 @@ class Materialise(Command):
 
 @dataclass(frozen=True, kw_only=True)
 class BeginPhase(Command):
-    """Call the current timed step."""
+    """Prepare the phase of the current timed step."""
 
     headset_connected: bool
 
 
 @dataclass(frozen=True, kw_only=True)
 class Pause(Command):
-    """Stop the clock."""
+    """Request a pause of the phase's clock."""
 
     content: ContentRef | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
 class Resume(Command):
-    """Let the clock go on."""
+    """Request that the phase's clock continues."""
 
     headset_connected: bool
 
 
 @dataclass(frozen=True, kw_only=True)
 class Redo(Command):
-    """Do step `step` (the current one if None) over, and what came after it."""
+    """Repeat step `step` (the current one if None), and the steps after it."""
 
     content: ContentRef
     step: int | None = None
@@ -86,14 +86,14 @@ class Redo(Command):
 
 @dataclass(frozen=True, kw_only=True)
 class Skip(Command):
-    """Leave the current step out."""
+    """Skip the current step."""
 
     content: ContentRef
 
 
 @dataclass(frozen=True, kw_only=True)
 class Stop(Command):
-    """End the session before its time: `aborted` by the lab or `withdrawn` by the participant."""
+    """End the session early: `aborted` by the lab or `withdrawn` by the participant."""
 
     status: str
     content: ContentRef
@@ -101,9 +101,9 @@ class Stop(Command):
 
 @dataclass(frozen=True, kw_only=True)
 class RefuseConsent(Command):
-    """The participant does not want to take part: said at the consent of step `step`.
+    """Record that the participant refuses to take part, at the consent of step `step`.
 
-    It may come late, from a tablet that was offline: so the step need not be the current one.
+    It may arrive late, from a tablet that was offline, so the step need not be the current one.
     """
 
     by: str
@@ -112,9 +112,9 @@ class RefuseConsent(Command):
 
 @dataclass(frozen=True, kw_only=True)
 class RetractRefusal(Command):
-    """The participant has changed their mind and wants to see the consent again.
+    """Record that the participant has changed their mind and wants to see the consent again.
 
-    By the tablet where they said so there, else by the operator, whose `content` holds the reason.
+    It comes from the tablet, or else from the operator, whose `content` contains the reason.
     """
 
     by: str
@@ -123,40 +123,40 @@ class RetractRefusal(Command):
 
 @dataclass(frozen=True, kw_only=True)
 class AskQuestion(Command):
-    """The participant has a question about what the tablet shows."""
+    """Record that the participant has a question about what the tablet shows."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class CloseQuestion(Command):
-    """The question is `answered`, or was `taken_back` by the participant."""
+    """Close the question: it was `answered`, or was `taken_back` by the participant."""
 
     outcome: str
 
 
 @dataclass(frozen=True, kw_only=True)
 class LiftBlinding(Command):
-    """Show the condition of a blinded session before it is over."""
+    """Show the condition of a blinded session before the session has ended."""
 
     content: ContentRef
 
 
 @dataclass(frozen=True, kw_only=True)
 class OverrideStop(Command):
-    """Go on although a stop rule was met."""
+    """Continue the session although a stop rule was met."""
 
     content: ContentRef
 
 
 @dataclass(frozen=True, kw_only=True)
 class AddNote(Command):
-    """Write something down."""
+    """Add a note to the session."""
 
     content: ContentRef
 
 
 @dataclass(frozen=True, kw_only=True)
 class RecordAvatar(Command):
-    """The headset takes up a physics avatar; `content` holds its model."""
+    """Record that the headset uses a physics avatar; `content` contains its model."""
 
     configuration_hash: str
     content: ContentRef
@@ -164,7 +164,7 @@ class RecordAvatar(Command):
 
 @dataclass(frozen=True, kw_only=True)
 class OverrideCheck(Command):
-    """Go on although the pre-flight's check is not green; `content` holds reason and finding."""
+    """Proceed although a pre-flight check is not green; `content` has the reason and finding."""
 
     check: str
     content: ContentRef
@@ -172,7 +172,7 @@ class OverrideCheck(Command):
 
 @dataclass(frozen=True, kw_only=True)
 class KeepRefusedForm(Command):
-    """Other answers came for a form that is stored; `submission_id` is the one that stands."""
+    """Record that different answers for the stored form `submission_id` were rejected."""
 
     submission_id: str
     content: ContentRef
@@ -180,7 +180,7 @@ class KeepRefusedForm(Command):
 
 @dataclass(frozen=True, kw_only=True)
 class CorrectAnswers(Command):
-    """A stored answer is wrong; `content` holds the item, both values and the reason."""
+    """Correct a stored answer; `content` contains the item, both values and the reason."""
 
     submission_id: str
     content: ContentRef
@@ -188,7 +188,7 @@ class CorrectAnswers(Command):
 
 @dataclass(frozen=True, kw_only=True)
 class EraseData(Command):
-    """The participant's data are erased from this session, for the reason of this code.
+    """Record that the participant's data are erased from this session, with a reason code.
 
     `even_though_active`: a backup was restored in which the session had not ended yet.
     """
@@ -200,10 +200,10 @@ class EraseData(Command):
 
 @dataclass(frozen=True, kw_only=True)
 class Report(Command):
-    """What the headset did to a phase's clock, at its own time.
+    """A headset's report of a change to a phase's clock, at the headset's own time.
 
     `what`: started, paused, resumed, walk_back_started, walk_back_ended, time_up or ended.
-    `completions`: how many tasks of the phase are stored, counted by the server.
+    `completions`: how many completed tasks of the phase are stored, counted by the server.
     """
 
     what: str
@@ -216,14 +216,14 @@ class Report(Command):
 
 @dataclass(frozen=True, kw_only=True)
 class HeadsetLost(Command):
-    """The headset's connection or the server broke off; `active_s` is the last stored value."""
+    """Record that the headset or the server failed; `active_s` is the last stored active time."""
 
     active_s: float
     cause: str
 
 
 class Refused(ValueError):
-    """A command that cannot be done now: what, the value met, what would be valid, the way out."""
+    """A command cannot be carried out now; says why, the value found, what is valid, the remedy."""
 
     def __init__(self, message: str, *, value: object, valid: object, remedy: str = "") -> None:
         super().__init__(message)

@@ -1,4 +1,4 @@
-"""What may happen next: a command against the state gives events, or is refused with its reason."""
+"""Decide what may happen next: a command against the state gives events or is rejected."""
 
 from collections.abc import Sequence
 
@@ -23,9 +23,9 @@ __all__ = ["Refused", "decide"]
 
 
 def decide(plan: Sequence[Step], state: SessionState, command: c.Command) -> list[e.Event]:
-    """The events that `command` gives in `state`; raises Refused if it cannot be done now.
+    """Return the events of `command` in `state`; raises Refused if it cannot be carried out now.
 
-    A refusal leaves everything as it was. Ending the last step also ends the session.
+    A rejected command changes nothing. Ending the last step also ends the session.
     """
     beside = decide_annotation(state, command)
     if beside is not None:
@@ -61,7 +61,7 @@ def decide(plan: Sequence[Step], state: SessionState, command: c.Command) -> lis
 
 
 def _report(plan: Sequence[Step], state: SessionState, command: c.Report) -> list[e.Event]:
-    """What the headset did; a clock that it started after a refusal is asked to stop again."""
+    """Decide a headset's report; if it started a clock after a refusal, also request a pause."""
     decided = decide_report(plan, state, command)
     starts = isinstance(decided[0], e.PhaseStarted | e.PhaseResumed | e.WalkBackEnded)
     if state.refused_consent is None or not starts:
@@ -213,7 +213,7 @@ def _void_running(state: SessionState, cause: str) -> list[e.Event]:
 
 
 def _then_end(plan: Sequence[Step], state: SessionState, decided: list[e.Event]) -> list[e.Event]:
-    """Add the end of the session where the last step was left."""
+    """Append the end of the session if the events complete its last step."""
     leaves = (e.StepCompleted, e.FormSubmitted, e.StepSkipped, e.AvatarMaterialised, e.PhaseEnded)
     last = state.current == len(plan) - 1
     if last and any(isinstance(event, leaves) for event in decided):
@@ -260,7 +260,10 @@ def _ref(content: c.ContentRef) -> dict[str, str]:
 def _decide_refusal(
     plan: Sequence[Step], state: SessionState, command: c.RefuseConsent | c.RetractRefusal
 ) -> list[e.Event]:
-    """The refusal, and the end of any running clock; saying it twice changes nothing."""
+    """Decide a refusal or its retraction; repeating one changes nothing.
+
+    A refusal also requests a pause of a running phase.
+    """
     if isinstance(command, c.RetractRefusal):
         return _retract_refusal(state, command)
     if state.refused_consent is not None:
@@ -281,7 +284,7 @@ def _decide_refusal(
 
 
 def _pause_for_refusal(state: SessionState) -> list[e.Event]:
-    """The wish that a running phase stops: nobody takes part against their will."""
+    """Request a pause of a running phase, since the participant refuses to take part."""
     phase = state.phase
     if phase is None or phase.status is not PhaseStatus.RUNNING or phase.pausing:
         return []
@@ -303,7 +306,7 @@ def _retract_refusal(state: SessionState, command: c.RetractRefusal) -> list[e.E
 
 
 def require_not_held(state: SessionState, command: c.Command) -> None:
-    """Raise Refused where `command` would move on a session that is held."""
+    """Raise Refused if the session is held and `command` would advance it."""
     if state.refused_consent is not None and isinstance(command, (*GOES_ON, c.SubmitForm)):
         raise Refused(
             "the session is held: the participant does not want to take part",
@@ -322,7 +325,7 @@ def require_not_held(state: SessionState, command: c.Command) -> None:
 
 
 def decide_override(state: SessionState, command: c.OverrideStop) -> list[e.Event]:
-    """Going on although the rule was met; raises Refused where nothing is held."""
+    """Override the stop rule that holds the session; raises Refused if none does."""
     if state.held is None:
         raise Refused(
             "no stop rule holds the session",
@@ -335,7 +338,7 @@ def decide_override(state: SessionState, command: c.OverrideStop) -> list[e.Even
 
 
 def rules_met(command: c.SubmitForm) -> list[e.Event]:
-    """One event for each rule that the form meets."""
+    """Return one event for each stop rule that the submitted form meets."""
     return [
         e.StopRuleMet(rule=rule, submission_id=command.submission_id) for rule in command.rules_met
     ]

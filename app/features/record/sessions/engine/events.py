@@ -1,7 +1,7 @@
-"""What can have happened. Events are facts: appended, hashed, never edited.
+"""The events of a session: facts that are appended, hashed and never edited.
 
-Payloads hold no answers, notes or personal text. Where an event needs words it points at content
-by id, with a salted hash: erasure removes content and salt, and the chain still verifies.
+Payloads contain no answers, notes or personal text. An event that needs a text refers to content by
+id, with a salted hash: an erasure removes content and salt, and the chain still verifies.
 """
 
 from dataclasses import asdict, dataclass
@@ -12,21 +12,21 @@ from pydantic import TypeAdapter
 
 @dataclass(frozen=True, kw_only=True)
 class Event:
-    """Base of all events; `type` is its stored name."""
+    """The base class of all events; `type` is the stored name."""
 
     type: ClassVar[str]
 
 
 @dataclass(frozen=True, kw_only=True)
 class SessionStarted(Event):
-    """The operator started the session; the study version is frozen from here."""
+    """The operator started the session, which freezes the study version."""
 
     type = "session_started"
 
 
 @dataclass(frozen=True, kw_only=True)
 class StepCompleted(Event):
-    """A step without a clock is done, by the operator, the tablet or the headset."""
+    """A step without a clock was completed by the operator, the tablet or the headset."""
 
     type = "step_completed"
     step: int
@@ -47,7 +47,7 @@ class FormSubmitted(Event):
 
 @dataclass(frozen=True, kw_only=True)
 class AvatarMaterialised(Event):
-    """The remote avatar exists from here: recording starts."""
+    """The avatar appeared; from here on movement is recorded."""
 
     type = "avatar_materialised"
     step: int
@@ -57,7 +57,7 @@ class AvatarMaterialised(Event):
 
 @dataclass(frozen=True, kw_only=True)
 class StepSkipped(Event):
-    """The operator skipped a step and said why."""
+    """The operator skipped a step, for a recorded reason."""
 
     type = "step_skipped"
     step: int
@@ -67,7 +67,7 @@ class StepSkipped(Event):
 
 @dataclass(frozen=True, kw_only=True)
 class StepReopened(Event):
-    """The operator goes back to a step to do it over; later steps are open again too."""
+    """The operator went back to repeat a step; later steps are reopened, too."""
 
     type = "step_reopened"
     step: int
@@ -77,7 +77,7 @@ class StepReopened(Event):
 
 @dataclass(frozen=True, kw_only=True)
 class PhasePrepared(Event):
-    """A timed phase was called; the headset counts its preparation down."""
+    """A timed phase was prepared; the headset counts down its preparation time."""
 
     type = "phase_prepared"
     step: int
@@ -97,7 +97,7 @@ class PhaseStarted(Event):
 
 @dataclass(frozen=True, kw_only=True)
 class PauseRequested(Event):
-    """The operator asked for a pause."""
+    """The operator requested a pause, or a refusal did."""
 
     type = "pause_requested"
     phase_id: int
@@ -107,10 +107,10 @@ class PauseRequested(Event):
 
 @dataclass(frozen=True, kw_only=True)
 class PhasePaused(Event):
-    """The clock stands. `cause`: operator, headset_lost, server_restarted or headset.
+    """The phase's clock was paused. `cause`: operator, headset_lost, server_restarted or headset.
 
-    Where the headset could not be asked, `client_t_s` is null and `active_s` the last stored value;
-    the headset's own report follows when it is back.
+    If the headset could not be reached, `client_t_s` is null and `active_s` is the last stored
+    value; the headset's own report follows when it reconnects.
     """
 
     type = "phase_paused"
@@ -122,7 +122,7 @@ class PhasePaused(Event):
 
 @dataclass(frozen=True, kw_only=True)
 class ResumeRequested(Event):
-    """The operator asked to go on."""
+    """The operator requested that the phase continues."""
 
     type = "resume_requested"
     phase_id: int
@@ -130,7 +130,7 @@ class ResumeRequested(Event):
 
 @dataclass(frozen=True, kw_only=True)
 class PhaseResumed(Event):
-    """The clock runs again."""
+    """The phase's clock was resumed."""
 
     type = "phase_resumed"
     phase_id: int
@@ -140,7 +140,7 @@ class PhaseResumed(Event):
 
 @dataclass(frozen=True, kw_only=True)
 class WalkBackStarted(Event):
-    """A foot task was completed: the clock stands while the participant walks back."""
+    """A foot task was completed: the clock is stopped while the participant walks back."""
 
     type = "walk_back_started"
     phase_id: int
@@ -150,7 +150,7 @@ class WalkBackStarted(Event):
 
 @dataclass(frozen=True, kw_only=True)
 class WalkBackEnded(Event):
-    """The start square was reached: the clock runs again."""
+    """The participant reached the start square: the clock was resumed."""
 
     type = "walk_back_ended"
     phase_id: int
@@ -160,7 +160,7 @@ class WalkBackEnded(Event):
 
 @dataclass(frozen=True, kw_only=True)
 class PhaseFrozen(Event):
-    """The active time is used up; scene and avatar freeze."""
+    """The phase's active time is over: scene and avatar freeze."""
 
     type = "phase_frozen"
     phase_id: int
@@ -170,7 +170,7 @@ class PhaseFrozen(Event):
 
 @dataclass(frozen=True, kw_only=True)
 class PhaseEnded(Event):
-    """The freeze is over; the phase counts."""
+    """The freeze has ended, and with it the phase, which counts."""
 
     type = "phase_ended"
     phase_id: int
@@ -180,7 +180,7 @@ class PhaseEnded(Event):
 
 @dataclass(frozen=True, kw_only=True)
 class PhaseVoided(Event):
-    """The phase does not count (redo, skip, abort, withdraw); its data stay."""
+    """The phase no longer counts (redo, skip, abort, withdraw); its data are retained."""
 
     type = "phase_voided"
     phase_id: int
@@ -189,7 +189,7 @@ class PhaseVoided(Event):
 
 @dataclass(frozen=True, kw_only=True)
 class SessionEnded(Event):
-    """The session is over: completed, aborted or withdrawn."""
+    """The session ended: it was completed, aborted or withdrawn."""
 
     type = "session_ended"
     status: str
@@ -199,7 +199,7 @@ class SessionEnded(Event):
 
 @dataclass(frozen=True, kw_only=True)
 class BlindingLifted(Event):
-    """The session's condition was shown to somebody on purpose, for the reason given."""
+    """The session's condition was deliberately shown to a person, for a recorded reason."""
 
     type = "blinding_lifted"
     content_id: str
@@ -217,9 +217,9 @@ class NoteAdded(Event):
 
 @dataclass(frozen=True, kw_only=True)
 class AvatarBuilt(Event):
-    """The headset took up a physics avatar: how it behaves, by the hash of its configuration.
+    """The headset uses a physics avatar, identified by the hash of its configuration.
 
-    The content holds the stature it was built for and the model itself.
+    The content contains the stature it was built for and the model itself.
     """
 
     type = "avatar_built"
@@ -230,9 +230,9 @@ class AvatarBuilt(Event):
 
 @dataclass(frozen=True, kw_only=True)
 class CheckOverridden(Event):
-    """Somebody goes on although the pre-flight's check `check` was not green.
+    """Somebody proceeded although the pre-flight check `check` was not green.
 
-    The content holds the reason, and what the check had found.
+    The content contains the reason, and what the check had found.
     """
 
     type = "check_overridden"
@@ -243,7 +243,7 @@ class CheckOverridden(Event):
 
 @dataclass(frozen=True, kw_only=True)
 class FormRefused(Event):
-    """Other answers came for a form that is stored: that one stands, these are kept beside."""
+    """Different answers arrived for a stored form: they were rejected, and stored separately."""
 
     type = "form_refused"
     submission_id: str
@@ -253,7 +253,7 @@ class FormRefused(Event):
 
 @dataclass(frozen=True, kw_only=True)
 class AnswersCorrected(Event):
-    """A stored answer was corrected: the first one is kept, the newest counts."""
+    """A stored answer was corrected: the original is retained, the latest correction applies."""
 
     type = "answers_corrected"
     submission_id: str
@@ -263,7 +263,7 @@ class AnswersCorrected(Event):
 
 @dataclass(frozen=True, kw_only=True)
 class DataErased(Event):
-    """The participant's data are gone; `erasure_id` is the tombstone's.
+    """The participant's data were erased; `erasure_id` is the id of the tombstone.
 
     `reason_code`: withdrawn, requested, retention or mistake.
     """
@@ -275,7 +275,7 @@ class DataErased(Event):
 
 @dataclass(frozen=True, kw_only=True)
 class StopRuleMet(Event):
-    """A form met a stop rule of the study, by its index: the session is held from here."""
+    """A form met the study's stop rule with the index `rule`, so the session is held."""
 
     type = "stop_rule_met"
     rule: int
@@ -284,7 +284,7 @@ class StopRuleMet(Event):
 
 @dataclass(frozen=True, kw_only=True)
 class StopRuleOverridden(Event):
-    """The operator goes on although a stop rule was met, for the reason given."""
+    """The operator continued although a stop rule was met, for a recorded reason."""
 
     type = "stop_rule_overridden"
     content_id: str
@@ -293,7 +293,7 @@ class StopRuleOverridden(Event):
 
 @dataclass(frozen=True, kw_only=True)
 class ConsentRefused(Event):
-    """The participant does not want to take part: the session is held from here."""
+    """The participant refused to take part, so the session is held."""
 
     type = "consent_refused"
     step: int
@@ -302,9 +302,9 @@ class ConsentRefused(Event):
 
 @dataclass(frozen=True, kw_only=True)
 class RefusalRetracted(Event):
-    """The participant changed their mind: nothing is agreed to, the consent is shown again.
+    """The participant took the refusal back, so the consent is shown again; nothing is agreed yet.
 
-    By the tablet or the operator; the operator's reason is content.
+    It comes from the tablet or the operator, whose reason is stored as content.
     """
 
     type = "refusal_retracted"
@@ -316,7 +316,7 @@ class RefusalRetracted(Event):
 
 @dataclass(frozen=True, kw_only=True)
 class QuestionAsked(Event):
-    """The participant has a question about the text of a step, null before the start."""
+    """The participant has a question about a step's text; `step` is null before the start."""
 
     type = "question_asked"
     step: int | None = None
@@ -324,7 +324,7 @@ class QuestionAsked(Event):
 
 @dataclass(frozen=True, kw_only=True)
 class QuestionClosed(Event):
-    """The question is over. `outcome`: answered by the experimenter, or taken_back."""
+    """The question was closed. `outcome`: answered by the experimenter, or taken_back."""
 
     type = "question_closed"
     outcome: str
@@ -370,10 +370,10 @@ _ADAPTERS = {name: TypeAdapter(cls) for name, cls in EVENT_TYPES.items()}
 
 
 def event_to_json(event: Event) -> dict[str, Any]:
-    """The payload of an event; its type is stored beside it."""
+    """Return the payload of an event; its type is stored separately."""
     return asdict(event)
 
 
 def event_from_json(event_type: str, payload: dict[str, Any]) -> Event:
-    """The event that was stored; raises KeyError for a type this version does not know."""
+    """Rebuild a stored event; raises KeyError for a type that this version does not define."""
     return _ADAPTERS[event_type].validate_python(payload)

@@ -1,4 +1,4 @@
-"""How the state follows from an event. Total: every stored event folds, whatever came before."""
+"""Compute the state that follows from an event; total, so every stored event can be folded."""
 
 from dataclasses import replace
 
@@ -15,7 +15,7 @@ from app.features.record.sessions.engine.state import (
 
 
 def initial_state(step_count: int) -> SessionState:
-    """A session that has joined and not begun."""
+    """Return the state of a session that was created and not started."""
     return SessionState(
         version=0,
         status=SessionStatus.PLANNED,
@@ -24,7 +24,7 @@ def initial_state(step_count: int) -> SessionState:
 
 
 def evolve(state: SessionState, event: e.Event) -> SessionState:
-    """The state after `event`."""
+    """Return the state after `event`."""
     return replace(_applied(state, event), version=state.version + 1)
 
 
@@ -70,10 +70,10 @@ MARKS = (
 
 
 def _marked(state: SessionState, event: e.Event) -> SessionState:
-    """The state after an event that moves nothing: a hold, its end, a question, an erasure."""
+    """Apply an event that does not advance the session: a hold, its end, a question, an erasure."""
     match event:
         case e.StopRuleMet(rule=rule, submission_id=submission_id):
-            # Of several rules that one form meets, the first is named.
+            # If one form meets several rules, the first one holds the session.
             return replace(state, held=state.held or Hold(rule, submission_id))
         case e.StopRuleOverridden():
             return replace(state, held=None)
@@ -88,7 +88,7 @@ def _marked(state: SessionState, event: e.Event) -> SessionState:
 
 
 def _clocked(phase: PhaseState | None, event: e.Event) -> PhaseState | None:
-    """The phase after an event of its clock."""
+    """Apply an event of the phase's clock to the phase."""
     if isinstance(event, e.PhasePrepared):
         return PhaseState(event.phase_id, event.step, event.attempt, PhaseStatus.PREPARING)
     if phase is None:
@@ -112,7 +112,7 @@ def _clocked(phase: PhaseState | None, event: e.Event) -> PhaseState | None:
         case e.PhaseResumed(active_s=active_s) | e.WalkBackEnded(active_s=active_s):
             return _running(phase, active_s)
         case e.WalkBackStarted(active_s=active_s):
-            # Nobody waits for a resume any more: the walk back ends by itself.
+            # A pending resume request lapses, because the walk back ends without one.
             return replace(
                 phase,
                 status=PhaseStatus.WALK_BACK,

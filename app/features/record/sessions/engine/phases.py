@@ -1,12 +1,12 @@
-"""A phase's clock as the headset reports it.
+"""Decide what a headset's reports about a phase's clock mean for the session.
 
 The headset runs the phase on its own monotonic clock and reports each change with its active time;
-here the report is checked against the state. Active time never runs backwards and a phase cannot
-end before its duration is used up; a practice may once enough tasks are completed.
+here the report is checked against the state. Active time never runs backwards, and a phase cannot
+end before its duration is over; only a practice may, once enough tasks are completed.
 
-When the headset is lost the server assumes that the clock stands. What the headset did before it
-noticed is still in its journal and comes first when it is back: these reports correct the
-assumption, else the two sides would wait for each other for ever.
+When the headset is lost, the server assumes that the clock is paused. What the headset did before
+it noticed is still in its journal and arrives first when it reconnects. These reports correct the
+assumption; otherwise the two sides would wait for each other for ever.
 """
 
 from collections.abc import Sequence
@@ -27,7 +27,7 @@ ASSUMED_CAUSES = ("headset_lost", "headset_silent", "server_restarted")
 
 _EXPECTED: dict[str, tuple[PhaseStatus, ...]] = {
     "started": (PhaseStatus.PREPARING,),
-    # A pause may confirm one that the server had to assume when the headset was lost.
+    # A pause report may confirm a pause that the server assumed when the headset was lost.
     "paused": (PhaseStatus.RUNNING, PhaseStatus.PAUSED),
     "resumed": (PhaseStatus.PAUSED,),
     "walk_back_started": (PhaseStatus.RUNNING,),
@@ -40,7 +40,7 @@ _BEFORE_THE_LOSS = ("walk_back_started", "time_up")
 
 
 def decide_report(plan: Sequence[Step], state: SessionState, report: c.Report) -> list[e.Event]:
-    """The event of a headset's report; raises Refused when it does not fit the state."""
+    """Return the event of a headset's report; raises Refused if it does not fit the state."""
     phase = state.phase
     if phase is None or phase.phase_id != report.phase_id:
         raise Refused(
@@ -59,18 +59,18 @@ def decide_report(plan: Sequence[Step], state: SessionState, report: c.Report) -
             remedy="Follow the newest state message.",
         )
     _require_active_time(phase, report, plan[phase.step])
-    # A step back within the tolerance is rounding: what is known stands.
+    # A decrease within the tolerance is a rounding error: keep the value that is already known.
     return [_event(replace(report, active_s=max(phase.active_s, report.active_s)), phase)]
 
 
 def _has_enough(step: Step, report: c.Report) -> bool:
-    """Whether a practice may end before its time: as many tasks are done as the study wants."""
+    """Return whether a practice may end early, since it has the completions the study requires."""
     wanted = step.until_completions
     return wanted is not None and report.completions >= wanted
 
 
 def _corrects(phase: PhaseState, report: c.Report) -> bool:
-    """Whether the headset tells late what came before a pause that the server assumed."""
+    """Return whether the report is a late one, from before a pause that the server assumed."""
     assumed = phase.status is PhaseStatus.PAUSED and phase.pause_cause in ASSUMED_CAUSES
     return assumed and report.what in _BEFORE_THE_LOSS
 
@@ -113,9 +113,10 @@ def _stamped(event: type[_Stamped], report: c.Report) -> _Stamped:
 def decide_headset_lost(
     plan: Sequence[Step], state: SessionState, command: c.HeadsetLost
 ) -> list[e.Event]:
-    """A running clock stops where it was last known; other phases wait as they are.
+    """Pause a running phase at its last known active time; other phases are left as they are.
 
-    Nobody is there to refuse, so an impossible time is cut to the phase's duration.
+    There is no headset that could be sent an error, so an impossible time is limited to the phase's
+    duration.
     """
     phase = state.phase
     if phase is None or phase.status is not PhaseStatus.RUNNING:

@@ -1,4 +1,4 @@
-"""Where a session stands: a frozen value, folded from its events."""
+"""The state of a session: an immutable value folded from its events."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -8,7 +8,7 @@ from pydantic import TypeAdapter
 
 
 class SessionStatus(StrEnum):
-    """The life of a session."""
+    """The status of a session."""
 
     PLANNED = "planned"
     ACTIVE = "active"
@@ -18,7 +18,7 @@ class SessionStatus(StrEnum):
 
 
 class StepStatus(StrEnum):
-    """The life of a step of the procedure."""
+    """The status of a step of the procedure."""
 
     PENDING = "pending"
     CURRENT = "current"
@@ -27,10 +27,10 @@ class StepStatus(StrEnum):
 
 
 class PhaseStatus(StrEnum):
-    """The life of a timed phase.
+    """The status of a timed phase.
 
-    preparing -> running <-> paused, running <-> walk_back, running -> freezing -> done.
-    `voided` phases were redone, skipped or broken off: their data stay, no summary uses them.
+    preparing -> running <-> paused, running <-> walk_back, running -> freezing -> done. `voided`
+    phases were repeated, skipped or broken off: their data are retained, but no summary uses them.
     """
 
     PREPARING = "preparing"
@@ -44,7 +44,7 @@ class PhaseStatus(StrEnum):
 
 @dataclass(frozen=True)
 class StepState:
-    """One step. `attempt` starts at 1 and grows when the step is done over."""
+    """The state of one step. `attempt` starts at 1 and increases when the step is repeated."""
 
     status: StepStatus = StepStatus.PENDING
     attempt: int = 1
@@ -52,11 +52,11 @@ class StepState:
 
 @dataclass(frozen=True)
 class PhaseState:
-    """The timed phase under way, or one that has ended.
+    """The state of the current timed phase, or of one that has ended.
 
-    `active_s` is the last value that is known for certain: the headset reports it at every change
-    and the telemetry carries it in between. `pausing` and `resuming` are the operator's wish until
-    the headset reports that it did so.
+    `active_s` is the last value that is certain: the headset reports it at every change, and the
+    telemetry carries it in between. `pausing` and `resuming`: the operator has requested it, and
+    the headset has not confirmed it yet.
     """
 
     phase_id: int
@@ -71,7 +71,7 @@ class PhaseState:
 
 @dataclass(frozen=True)
 class Hold:
-    """Why the session may not simply go on: a form met a stop rule of the study (its index)."""
+    """The stop rule (its index) that a form met, so that the session is held."""
 
     rule: int
     submission_id: str
@@ -79,13 +79,13 @@ class Hold:
 
 @dataclass(frozen=True)
 class SessionState:
-    """The whole state. `version` is the number of events folded so far.
+    """The state of a session. `version` is the number of events folded so far.
 
-    `held`: set from a stop rule that was met until the operator goes on with a reason.
-    `refused_consent`: the consent step at which the participant said that they do not want to take
-    part; set until they change their mind, also after the session has ended because of it.
-    `question_open`: the participant has asked a question that nobody has answered yet.
-    `erased`: the participant's data are gone, and nothing is added any more.
+    `held`: set from when a stop rule is met until the operator continues with a reason.
+    `refused_consent`: the consent step at which the participant refused to take part; set until
+    they change their mind, and also after the session has ended because of it. `question_open`: the
+    participant has asked a question that has not been answered yet. `erased`: the participant's
+    data were erased, and nothing more can be added.
     """
 
     version: int
@@ -102,7 +102,7 @@ class SessionState:
 
     @property
     def next_phase_id(self) -> int:
-        """Phase ids count from 1 in order of preparation."""
+        """Return the id of the next phase; ids count from 1 in order of preparation."""
         return len(self.ended_phases) + (self.phase is not None) + 1
 
 
@@ -110,12 +110,12 @@ _ADAPTER = TypeAdapter(SessionState)
 
 
 def state_to_json(state: SessionState) -> dict[str, Any]:
-    """The snapshot that is stored beside the events."""
-    # Every command writes one: dataclasses.asdict took sixteen times as long.
+    """Return the snapshot of a state, which is stored with the session."""
+    # Every command writes a snapshot, and dataclasses.asdict took sixteen times as long.
     snapshot: dict[str, Any] = _ADAPTER.dump_python(state)
     return snapshot
 
 
 def state_from_json(snapshot: dict[str, Any]) -> SessionState:
-    """The state in a snapshot; raises pydantic.ValidationError if it is not one."""
+    """Rebuild a state from its snapshot; raises pydantic.ValidationError if it is invalid."""
     return _ADAPTER.validate_python(snapshot)
