@@ -15,7 +15,7 @@ from app.clock import Clock
 from app.database import Base, Database, open_database
 from app.features.care.opening import bring_up_to_date
 from app.features.design.studies import add_shipped, newest_version, protocol_of, study_by_key
-from app.features.record.ledger import hold_slot, take_slot
+from app.features.record.ledger import open_attempt, take_slot
 from app.models import (
     Answer,
     ClockProbe,
@@ -110,7 +110,7 @@ def _copy(db: Session, built: Sequence[StudySession], at: int) -> str:
     session = StudySession(**(values | own))
     db.add(session)
     db.flush()
-    hold_slot(db, slot, session, NOW)
+    open_attempt(db, slot, session, NOW)
     connection = db.connection()
     for table in OWN:
         _copy_rows(connection, _table(table), model.id, session.id)

@@ -13,7 +13,7 @@ from sqlalchemy.orm import Session
 from app.clock import Clock
 from app.features.design.studies import add_shipped, newest_version, protocol_of, study_by_key
 from app.features.movement.avatar import SHIPPED, version_of
-from app.features.record.ledger import close_attempt, hold_slot, take_slot
+from app.features.record.ledger import close_attempt, open_attempt, take_slot
 from app.features.record.sessions import store_content
 from app.features.record.sessions.engine import events as e
 from app.features.record.sessions.engine import initial_state, state_to_json
@@ -68,7 +68,7 @@ def build_session(db: Session, spec: SessionSpec, study: str = STUDY) -> StudySe
     )
     db.add(session)
     db.flush()
-    hold_slot(db, slot, session, NOW)
+    open_attempt(db, slot, session, NOW)
     if spec.status in ENDED:
         close_attempt(db, session, spec.status, NOW)
     body = {"stated": 1.75, "matched": 1.73}
