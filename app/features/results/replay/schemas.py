@@ -16,7 +16,7 @@ from pydantic import BaseModel
 from app.features.record.cockpit import LimbName, PhaseStatus
 from app.features.record.questionnaires import StoredScores
 from app.protocol import StepKind
-from app.wire.messages import PhaseEvent
+from app.wire import PhaseEvent
 
 View = Literal["full", "participant"]
 """What a replay shows; `participant`, for blinded readers: only the participant's own movement.
