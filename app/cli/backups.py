@@ -28,9 +28,9 @@ from app.features.care.backups import (
 )
 from app.features.care.opening import (
     Damaged,
-    begun_if_missing,
+    created_if_missing,
     existing_database,
-    put_away_if_damaged,
+    quarantine_if_damaged,
 )
 from app.features.care.ownership import own_data
 from app.features.care.rights import (
@@ -167,10 +167,10 @@ def _restored(
     ):
         activity.now("checking the existing database")
         try:
-            put_away_if_damaged(settings, clock, every_row=True)
+            quarantine_if_damaged(settings, clock, every_row=True)
         except Damaged as error:
             warn(error.message)
-        with begun_if_missing(settings, clock):
+        with created_if_missing(settings, clock):
             # The application is not started, but changing sessions needs its parts.
             context: AppContext = create_app(settings, clock=clock).state.context
             with _undone_if_refused(context) as expected:

@@ -20,7 +20,7 @@ from app.cli.serve.output import addresses, certificate_text
 from app.clock import Clock
 from app.database_address import first_line, shown_address
 from app.errors import InvalidInput, ReembodyError
-from app.features.care.opening import prepare_database, put_away_if_damaged
+from app.features.care.opening import prepare_database, quarantine_if_damaged
 from app.features.care.ownership import Ownership, own_data
 from app.gc_tuning import freeze_startup_objects
 from app.lan import Network
@@ -217,7 +217,7 @@ def why_not(error: Exception, settings: Settings) -> Exception:
     is neither damage nor caused by the disk or the database is a fault of the program.
     """
     try:
-        put_away_if_damaged(settings, Clock(), every_row=True)
+        quarantine_if_damaged(settings, Clock(), every_row=True)
     except ReembodyError as said:
         return said
     return in_plain_words("the server cannot start", error) if isinstance(error, OSError) else error

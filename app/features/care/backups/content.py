@@ -74,9 +74,9 @@ def wrong_rows(driver: sqlite3.Connection, shapes: Iterable[TableShape]) -> Iter
     """
     for shape in shapes:
         wrong: set[str] = set()
-        asked = ", ".join(_asked(one.name, one.kind) for one in shape.columns)
+        selected = ", ".join(_select_expression(one.name, one.kind) for one in shape.columns)
         # The names are those of the schema, from the models or migrations.
-        rows = driver.execute(f'SELECT {asked} FROM "{shape.name}"')  # noqa: S608 - names of our schema
+        rows = driver.execute(f'SELECT {selected} FROM "{shape.name}"')  # noqa: S608 - names of our schema
         while portion := rows.fetchmany(AT_ONCE):
             for one, values in zip(shape.columns, zip(*portion, strict=True), strict=True):
                 if one.name not in wrong and not _fit(one.kind, values):
@@ -95,7 +95,7 @@ _NAMES = {
 }
 
 
-def _asked(name: str, kind: Kind) -> str:
+def _select_expression(name: str, kind: Kind) -> str:
     return f'typeof("{name}")' if kind is Kind.BYTES else f'"{name}"'
 
 

@@ -116,12 +116,12 @@ class Lifetimes:
 
     def shorten(self, db: Session) -> None:
         """Limit the expiry of logins, pairing codes and invitations to that of new ones."""
-        for row, lasts in (
+        for row, lifetime in (
             (LoginToken, self.login),
             (PairingCode, self.pairing),
             (Invitation, LONGEST_INVITATION),
         ):
-            latest = self.now + lasts
+            latest = self.now + lifetime
             db.execute(update(row).where(row.expires_at > latest).values(expires_at=latest))
 
 
@@ -189,17 +189,17 @@ def require_readable(db: Session, *, even_though_altered: bool = False) -> None:
 
 def _refused(row: object, key: object, column: str, value: object, why: str) -> InvalidInput:
     table = getattr(row, "__tablename__", row)
-    said = _shortened(value)
+    shown = _shortened(value)
     return InvalidInput(
-        f"in the backup, {table} {key} has the {column} {said}, {why}; nothing was changed",
-        value=said,
+        f"in the backup, {table} {key} has the {column} {shown}, {why}; nothing was changed",
+        value=shown,
         remedy="Take another copy of this backup, or another backup.",
     )
 
 
 def _shortened(value: object) -> str:
-    said = repr(value)
-    return said if len(said) <= _SHOWN else f"{said[: _SHOWN - 1]}…"
+    shown = repr(value)
+    return shown if len(shown) <= _SHOWN else f"{shown[: _SHOWN - 1]}…"
 
 
 def _row_name(key: tuple[object, ...]) -> str:
@@ -235,11 +235,11 @@ def _check_json(db: Session) -> None:
         columns = [one for one in table.columns if isinstance(one.type, JSON)]
         if not columns or not isinstance(table, Table):
             continue
-        wanted = [_json_types(hints[mapper.get_property_by_column(one).key]) for one in columns]
+        expected = [_json_types(hints[mapper.get_property_by_column(one).key]) for one in columns]
         keys = list(table.primary_key)
         query = select(*keys, *columns).execution_options(yield_per=_AT_ONCE)
         for row in db.execute(query):
-            for column, types, value in zip(columns, wanted, row[len(keys) :], strict=True):
+            for column, types, value in zip(columns, expected, row[len(keys) :], strict=True):
                 if not isinstance(value, types):
                     key = _row_name(tuple(row[: len(keys)]))
                     why = f"not {' or '.join(sorted(_JSON_NAMES[one] for one in types))}"
@@ -332,19 +332,22 @@ def _check_ledgers(db: Session, protocols: Mapping[str, StudyProtocol]) -> None:
     for slot in db.scalars(select(LedgerSlot).order_by(LedgerSlot.ledger_id, LedgerSlot.position)):
         slots.setdefault(slot.ledger_id, []).append(slot)
     for ledger in db.scalars(select(Ledger)):
-        wanted = designs.get((ledger.study_id, ledger.design_hash))
-        if wanted is None:
+        expected = designs.get((ledger.study_id, ledger.design_hash))
+        if expected is None:
             why = "the design of no version of the study"
             raise _refused(Ledger, ledger.id, "design_hash", ledger.design_hash, why)
-        held = slots.get(ledger.id, [])
-        for slot in held:
+        ledger_slots = slots.get(ledger.id, [])
+        for slot in ledger_slots:
             order: list[object] = slot.sequence
-            if not all(isinstance(key, str) for key in order) or sorted(map(str, order)) != wanted:
-                why = f"not each of {', '.join(wanted)} once"
+            if (
+                not all(isinstance(key, str) for key in order)
+                or sorted(map(str, order)) != expected
+            ):
+                why = f"not each of {', '.join(expected)} once"
                 raise _refused(LedgerSlot, slot.id, "sequence", order, why)
-        sizes = Counter(slot.block for slot in held)
+        sizes = Counter(slot.block for slot in ledger_slots)
         if (
-            [slot.position for slot in held] != list(range(len(held)))
+            [slot.position for slot in ledger_slots] != list(range(len(ledger_slots)))
             or len(sizes) != ledger.blocks
             or len(set(sizes.values())) > 1
             or any(not 0 <= block < ledger.blocks for block in sizes)
@@ -397,6 +400,8 @@ def _check_session(
         return
     log = events_of(db, session.id)
     with _reading(StudySession, session.id, "its log", f"{len(log)} events"):
-        told = folded(log, len(plan))
-    if told != state:
-        raise refused("snapshot", f"not what its log leads to: {told.status}, {told.version}")
+        replayed = folded(log, len(plan))
+    if replayed != state:
+        raise refused(
+            "snapshot", f"not what its log leads to: {replayed.status}, {replayed.version}"
+        )

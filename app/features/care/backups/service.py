@@ -75,7 +75,7 @@ class Restored:
     erasures_reapplied: int
 
 
-class Outliving(Protocol):
+class LastingChanges(Protocol):
     """Changes that a restore must not undo; called inside its transaction."""
 
     def snapshot(self, db: Session) -> None:
@@ -149,7 +149,7 @@ def restore(
     clock: Clock,
     replace: bool,
     even_though_active: bool = False,
-    erasures: Outliving | None = None,
+    erasures: LastingChanges | None = None,
     content: Callable[[Session], None] | None = None,
     progress: Progress = silent,
 ) -> Restored:
@@ -174,7 +174,7 @@ def restore(
     they are committed, and rejects them by raising ReembodyError.
     """
     began_ns = clock.monotonic_ns()
-    with _Before(database) as kept, database.writing() as db:
+    with _Before(database) as previous, database.writing() as db:
         target = db.connection()
         hold_still(target, backup.shapes)
         if not even_though_active:
@@ -183,8 +183,8 @@ def restore(
             erasures.snapshot(db)
         if not is_empty(target, backup.shapes):
             to = _place_before(backup.path, keep_in, clock.utc_now(), replace=replace)
-            kept.manifest = write_backup(target, to, now=clock.utc_now(), progress=progress)
-            kept.path = to
+            previous.manifest = write_backup(target, to, now=clock.utc_now(), progress=progress)
+            previous.path = to
         replace_rows(target, backup, progress)
         if content is not None:
             content(db)
@@ -196,7 +196,7 @@ def restore(
         rows=sum(table.rows for table in backup.tables.values()),
         duration_s=(clock.monotonic_ns() - began_ns) * _S_PER_NS,
         sha256=backup.manifest.sha256,
-        before=kept.path,
+        before=previous.path,
         unpaired=unpaired,
         erasures_reapplied=reapplied,
     )

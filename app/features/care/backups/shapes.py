@@ -84,12 +84,14 @@ def shapes_of(connection: Connection) -> tuple[TableShape, ...]:
     Raises ValueError for a column of a type that cannot be copied exactly.
     """
     # A backup needs one schema several times; it is cached by the SQL that created it.
-    words = tuple(connection.scalars(text("SELECT sql FROM sqlite_master ORDER BY type, name")))
-    if words not in _known:
-        _known[words] = _read(connection)
-        while len(_known) > _KEPT:
-            _known.popitem(last=False)
-    return _known[words]
+    definition = tuple(
+        connection.scalars(text("SELECT sql FROM sqlite_master ORDER BY type, name"))
+    )
+    if definition not in _cache:
+        _cache[definition] = _read(connection)
+        while len(_cache) > _MAX_CACHED:
+            _cache.popitem(last=False)
+    return _cache[definition]
 
 
 @lru_cache(maxsize=1)
@@ -98,14 +100,14 @@ def shapes_of_models() -> tuple[TableShape, ...]:
     return tuple(_shape(table) for table in Base.metadata.sorted_tables)
 
 
-_KEPT = 16
-_known: OrderedDict[tuple[str | None, ...], tuple[TableShape, ...]] = OrderedDict()
+_MAX_CACHED = 16
+_cache: OrderedDict[tuple[str | None, ...], tuple[TableShape, ...]] = OrderedDict()
 
 
 def _read(connection: Connection) -> tuple[TableShape, ...]:
     # Not `MetaData.reflect`: most of its time goes into constraints that no copy needs.
-    asked = inspect(connection)
-    columns, keys = asked.get_multi_columns(), asked.get_multi_pk_constraint()
+    inspector = inspect(connection)
+    columns, keys = inspector.get_multi_columns(), inspector.get_multi_pk_constraint()
     return tuple(
         TableShape(
             name,
@@ -115,7 +117,7 @@ def _read(connection: Connection) -> tuple[TableShape, ...]:
             ),
             tuple(keys[None, name]["constrained_columns"]),
         )
-        for name, _ in asked.get_sorted_table_and_fkc_names()
+        for name, _ in inspector.get_sorted_table_and_fkc_names()
         if name is not None and name not in {VERSION_TABLE, MANIFEST_TABLE}
     )
 

@@ -45,9 +45,9 @@ def write_backup(
     missing, NotDurable if the file cannot be written. Then nothing is left of it.
     """
     check_place(to)
-    revision = _known(revision_of(source))
+    revision = _require_known(revision_of(source))
     _require_space(source, to)
-    with _told_as_not_durable(to), _beside(to, now, notes) as partial:
+    with _raising_not_durable(to), _temporary_file(to, now, notes) as partial:
         _make_tables(partial, revision)
         _fill(source, partial, revision, now, progress)
         with opened_backup(partial) as made:
@@ -72,7 +72,7 @@ def check_place(to: Path) -> None:
         )
 
 
-def _known(revision: str | None) -> str:
+def _require_known(revision: str | None) -> str:
     if revision is None:
         raise NotFound(
             "there is no database of ours here",
@@ -115,14 +115,14 @@ def _mb(size: int) -> str:
 
 
 @contextmanager
-def _beside(to: Path, now: datetime, notes: Notes | None) -> Iterator[Path]:
+def _temporary_file(to: Path, now: datetime, notes: Notes | None) -> Iterator[Path]:
     """Yield a file in a private temporary folder beside `to`, which is removed afterwards."""
     with made_beside("backup", to, now=now, notes=notes) as folder:
         yield folder / to.name
 
 
 @contextmanager
-def _told_as_not_durable(to: Path) -> Iterator[None]:
+def _raising_not_durable(to: Path) -> Iterator[None]:
     try:
         yield
     except (sqlite3.Error, OSError, InvalidInput) as error:

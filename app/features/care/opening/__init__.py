@@ -8,18 +8,18 @@ service      the steps of every start: inspect, quarantine, create, back up, mig
 
 from app.features.care.opening.service import (
     Damaged,
-    begun_if_missing,
     bring_up_to_date,
+    created_if_missing,
     existing_database,
     prepare_database,
-    put_away_if_damaged,
+    quarantine_if_damaged,
 )
 
 __all__ = [
     "Damaged",
-    "begun_if_missing",
     "bring_up_to_date",
+    "created_if_missing",
     "existing_database",
     "prepare_database",
-    "put_away_if_damaged",
+    "quarantine_if_damaged",
 ]

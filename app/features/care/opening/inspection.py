@@ -90,10 +90,10 @@ def damage_of(file: Path, *, every_row: bool = False) -> str | None:
         if not unclean and size % _page_size(start):
             return "it was cut off"
         report = inspect_log(log)
-        if not report.header_fits:
+        if not report.header_valid:
             return "the beginning of its log is damaged"
         if report.damaged:
-            return f"its log is damaged: {report.commits_behind} stored transactions cannot be read"
+            return f"its log is damaged: {report.commits_after_invalid} stored transactions cannot be read"
         missing = frames_noted(log, index_of(file)) - report.usable
         if missing > 0:
             return f"its log is damaged: {missing} stored pages at its end cannot be read"
@@ -101,10 +101,10 @@ def damage_of(file: Path, *, every_row: bool = False) -> str | None:
             pages = unclean or size <= ALWAYS_CHECKED_BYTES or every_row
             return _checked(file, pages=pages, rows=every_row or size <= ROWS_READ_BYTES)
         except (sqlite3.Error, UnicodeDecodeError) as error:
-            said = _said(error)
-            if said is None:
+            description = _proven_damage(error)
+            if description is None:
                 raise
-            return said
+            return description
     return None
 
 
@@ -128,7 +128,7 @@ def _unless_hindered(file: Path) -> Iterator[None]:
         raise in_plain_words(words, error) from error
 
 
-def _said(error: Exception) -> str | None:
+def _proven_damage(error: Exception) -> str | None:
     """Return the damage that an error of SQLite proves; None if it proves none.
 
     Only a few simple queries are made, so SQLite's failure to understand them (SQLITE_ERROR: an
@@ -144,9 +144,9 @@ def _said(error: Exception) -> str | None:
     return UNREADABLE if "decode" in str(error) else _plain(str(error))
 
 
-def _plain(said: str) -> str:
+def _plain(description: str) -> str:
     """Return one line without the unprintable characters that damage brings into messages."""
-    return "".join(letter if letter.isprintable() else "?" for letter in said)[:200]
+    return "".join(letter if letter.isprintable() else "?" for letter in description)[:200]
 
 
 def _beginning(file: Path) -> bytes:
@@ -225,12 +225,13 @@ def _wrong_content(connection: sqlite3.Connection) -> str | None:
 
 def _too_new(found: Mapping[str, set[str]], shapes: Iterable[TableShape]) -> list[str]:
     """Return tables and columns that only later schemas have; a migration would clash with them."""
-    there = {shape.name: {one.name for one in shape.columns} for shape in shapes}
+    columns_by_table = {shape.name: {one.name for one in shape.columns} for shape in shapes}
     return [
         f"it has {shape.name}.{column.name} of a later schema than it names"
         for shape in shapes_at(newest_revision())
         for column in shape.columns
-        if column.name in found.get(shape.name, ()) and column.name not in there.get(shape.name, ())
+        if column.name in found.get(shape.name, ())
+        and column.name not in columns_by_table.get(shape.name, ())
     ]
 
 

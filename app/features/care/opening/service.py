@@ -39,7 +39,7 @@ class Damaged(Conflict):
     """The database is damaged, and was put into quarantine."""
 
 
-def put_away_if_damaged(settings: Settings, clock: Clock, *, every_row: bool = False) -> None:
+def quarantine_if_damaged(settings: Settings, clock: Clock, *, every_row: bool = False) -> None:
     """Inspect the embedded database, and move a damaged one into quarantine, with its log.
 
     Raises Damaged if that happened, Conflict if the file is another program's, and NotDurable if it
@@ -59,11 +59,11 @@ def put_away_if_damaged(settings: Settings, clock: Clock, *, every_row: bool = F
         return
     damage = damage_of(file, every_row=every_row)
     if damage is not None:
-        raise _put_away(file, damage, settings, clock)
+        raise _quarantined(file, damage, settings, clock)
     _refuse_foreign(foreign_tables(file), str(file))
 
 
-def refuse_to_begin_unasked(settings: Settings, *, new_database: bool) -> None:
+def refuse_unconfirmed_new_database(settings: Settings, *, new_database: bool) -> None:
     """Raise Conflict instead of creating an empty database where there was one before.
 
     There was one if one is in quarantine, or if the data folder has what belongs to one: backups,
@@ -105,7 +105,7 @@ def bring_up_to_date(settings: Settings, clock: Clock) -> Path | None:
     """
     url, file = settings.resolved_database_url, database_file(settings)
     if file is not None and not is_there(file):
-        begin(file, clock)
+        create_database(file, clock)
         return None
     with plainly(f"the database {_name_of(settings)} cannot be worked with, and was left as it is"):
         database = open_database(url)
@@ -114,23 +114,23 @@ def bring_up_to_date(settings: Settings, clock: Clock) -> Path | None:
                 found = _revision(db.connection())
             if found == newest_revision():
                 return None
-            kept = None if found is None else _keep(database, found, settings, clock)
+            backup = None if found is None else _keep(database, found, settings, clock)
         finally:
             database.close()
         migrate(url)
-    return kept
+    return backup
 
 
 @contextmanager
-def begun_if_missing(settings: Settings, clock: Clock) -> Iterator[None]:
+def created_if_missing(settings: Settings, clock: Clock) -> Iterator[None]:
     """Prepare the database for the block; if it is new and the block fails, delete it."""
     file = database_file(settings)
-    begun = file is not None and not is_there(file)
+    created = file is not None and not is_there(file)
     bring_up_to_date(settings, clock)
     try:
         yield
     except BaseException:
-        if begun and file is not None and not is_open_elsewhere(file):
+        if created and file is not None and not is_open_elsewhere(file):
             for suffix in reversed(DATABASE_SUFFIXES):
                 file.with_name(file.name + suffix).unlink(missing_ok=True)
         raise
@@ -144,9 +144,9 @@ def prepare_database(
     `to_write`: also check that it can be written, as a server does. Raises NotDurable, or what the
     single steps raise.
     """
-    put_away_if_damaged(settings, clock)
-    refuse_to_begin_unasked(settings, new_database=new_database)
-    kept = bring_up_to_date(settings, clock)
+    quarantine_if_damaged(settings, clock)
+    refuse_unconfirmed_new_database(settings, new_database=new_database)
+    backup = bring_up_to_date(settings, clock)
     if to_write:
         with plainly(f"the database {_name_of(settings)} cannot be written"):
             database = open_database(settings.resolved_database_url)
@@ -155,7 +155,7 @@ def prepare_database(
                     db.connection()
             finally:
                 database.close()
-    return kept
+    return backup
 
 
 def existing_database(settings: Settings) -> Database:
@@ -220,7 +220,7 @@ def _refuse_foreign(tables: list[str], name: str) -> None:
         )
 
 
-def _put_away(file: Path, damage: str, settings: Settings, clock: Clock) -> ReembodyError:
+def _quarantined(file: Path, damage: str, settings: Settings, clock: Clock) -> ReembodyError:
     """Move a damaged database into quarantine and return the error to raise."""
     try:
         place = Quarantine(file).put_away(damage, clock.utc_now())
@@ -266,7 +266,7 @@ def _is_missing(settings: Settings) -> bool:
             database.close()
 
 
-def begin(file: Path, clock: Clock) -> None:
+def create_database(file: Path, clock: Clock) -> None:
     """Create an empty database with the newest schema at `file`, atomically.
 
     A log that is there without its database is put into quarantine: SQLite would use it for the new
@@ -280,8 +280,8 @@ def begin(file: Path, clock: Clock) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(
             prefix=BEGINNING, dir=folder, ignore_cleanup_errors=True
-        ) as beside:
-            fresh = Path(beside) / file.name
+        ) as temporary:
+            fresh = Path(temporary) / file.name
             make_file(fresh)
             flush_to_disk(fresh)
             if not is_there(file):

@@ -37,27 +37,27 @@ class LogReport:
     `commits_behind`: transactions of this log that ended after the first invalid frame.
     """
 
-    header_fits: bool
+    header_valid: bool
     usable: int
-    commits_behind: int
+    commits_after_invalid: int
 
     @property
     def damaged(self) -> bool:
         """Return whether transactions are lost that a power failure alone would not have lost."""
-        return not self.header_fits or self.commits_behind > 1
+        return not self.header_valid or self.commits_after_invalid > 1
 
 
 def inspect_log(path: Path) -> LogReport:
     """Inspect a log without SQLite; a missing or empty log is valid."""
     if not path.is_file() or path.stat().st_size <= HEADER:
-        return LogReport(header_fits=True, usable=0, commits_behind=0)
+        return LogReport(header_valid=True, usable=0, commits_after_invalid=0)
     with path.open("rb") as file:
         head = file.read(HEADER)
         magic, _, page_size, _, *salt_and_sum = struct.unpack(">8I", head)
         order = ">" if magic & 1 else "<"
         state = _Checksum(3).each(_words(head[:24], order)[None], np.zeros((1, 2), np.uint32))[0]
         if magic not in MAGICS or list(state) != salt_and_sum[2:] or not _possible(page_size):
-            return LogReport(header_fits=False, usable=0, commits_behind=0)
+            return LogReport(header_valid=False, usable=0, commits_after_invalid=0)
         return _frames(file, page_size, order, tuple(salt_and_sum[:2]), state)
 
 
@@ -96,7 +96,7 @@ def _frames(
 ) -> LogReport:
     length = FRAME_HEADER + page_size
     checksum = _Checksum((8 + page_size) // 8)
-    usable, behind, before, fits = 0, 0, 0, True
+    usable, after_invalid, previous, all_valid = 0, 0, 0, True
     last_sum = np.array([state], np.uint32)
     while block := file.read(length * FRAMES_AT_ONCE):
         frames = np.frombuffer(block, np.uint8)
@@ -108,16 +108,16 @@ def _frames(
         sums_before = np.concatenate([last_sum, heads[:, 4:6]])
         covered = np.concatenate([frames[:, :8], frames[:, FRAME_HEADER:]], axis=1)
         sums = checksum.each(_words(covered.tobytes(), order, len(frames)), sums_before[:-1])
-        right, last_sum = own & (sums == heads[:, 4:6]).all(axis=1), sums_before[-1:]
-        ends, good = right & (heads[:, 1] > 0), 0
-        if fits:
-            good = len(right) if right.all() else int(np.argmin(right))
-            fits = good == len(right)
-        if ends[:good].any():
-            usable = before + int(np.flatnonzero(ends[:good])[-1]) + 1
-        behind += int(ends[good:].sum())
-        before += len(frames)
-    return LogReport(header_fits=True, usable=usable, commits_behind=behind)
+        valid, last_sum = own & (sums == heads[:, 4:6]).all(axis=1), sums_before[-1:]
+        ends, valid_count = valid & (heads[:, 1] > 0), 0
+        if all_valid:
+            valid_count = len(valid) if valid.all() else int(np.argmin(valid))
+            all_valid = valid_count == len(valid)
+        if ends[:valid_count].any():
+            usable = previous + int(np.flatnonzero(ends[:valid_count])[-1]) + 1
+        after_invalid += int(ends[valid_count:].sum())
+        previous += len(frames)
+    return LogReport(header_valid=True, usable=usable, commits_after_invalid=after_invalid)
 
 
 def _words(data: bytes, order: str, frames: int = 0) -> Words:
@@ -143,10 +143,10 @@ class _Checksum:
         self._power: Words = np.array(power, dtype=np.uint32)
         self._weights: Words = np.array(weights[::-1], dtype=np.uint32)
 
-    def each(self, blocks: Words, before: Words) -> Words:
+    def each(self, blocks: Words, previous: Words) -> Words:
         """Return the states (n, 2) after n blocks (n, pairs, 2), given those before them."""
         added = np.einsum("npx,psx->ns", blocks, self._weights)
-        return np.asarray(before @ self._power.T + added, np.uint32)
+        return np.asarray(previous @ self._power.T + added, np.uint32)
 
 
 _Matrix = tuple[tuple[int, int], tuple[int, int]]

@@ -109,19 +109,19 @@ def _locks(settings: Settings, owner: Owner) -> list[_Lock]:
     if file is not None:
         # SQLite keeps its log beside the file itself, not beside a link to it.
         folders |= {home_of(settings).resolve(), file.resolve().parent}
-    with ExitStack() as otherwise:
-        taken: list[_Lock] = []
+    with ExitStack() as cleanup:
+        acquired: list[_Lock] = []
 
         def keep(lock: _Lock) -> None:
-            taken.append(lock)
-            otherwise.callback(lock.release)
+            acquired.append(lock)
+            cleanup.callback(lock.release)
 
         for folder in sorted(folders):
             keep(FolderLock(folder, owner))
         if settings.resolved_database_url.startswith("postgres"):
             keep(DatabaseLock(settings.resolved_database_url, owner))
-        otherwise.pop_all()
-        return taken
+        cleanup.pop_all()
+        return acquired
 
 
 @contextmanager

@@ -83,11 +83,11 @@ def register_found(db: Session, settings: Settings, now: datetime) -> Sequence[C
     Unfinished ones are recorded, too: a backup or an export in progress may see the data before an
     erasure, and one that a crash left is removed, or is on a disk that is not connected.
     """
-    known = set(db.scalars(select(CopyMade.place).where(CopyMade.kind == "backup")))
+    recorded = set(db.scalars(select(CopyMade.place).where(CopyMade.kind == "backup")))
     found = []
     for path in _files(backups_of(settings)):
         place = str(path)[-MAX_PLACE_LENGTH:]
-        if place not in known:
+        if place not in recorded:
             size = path.stat().st_size
             found.append(
                 record_copy(db, kind="backup", place=place, by=FOUND_BY, now=now, size_bytes=size)
@@ -95,7 +95,7 @@ def register_found(db: Session, settings: Settings, now: datetime) -> Sequence[C
     remove_left(settings)
     for one in Notes.of(settings).all():
         place = str(one.to or one.path)[-MAX_PLACE_LENGTH:]
-        if one.kind == "backup" and place not in known:
+        if one.kind == "backup" and place not in recorded:
             found.append(record_copy(db, kind="backup", place=place, by=FOUND_BY, now=now))
         elif one.kind == "export":
             study = db.scalar(select(Study.id).where(Study.key == one.study_key))

@@ -83,7 +83,7 @@ def _participant(
 def erasure_view(db: Session, settings: Settings, row: Erasure) -> ErasureView:
     """Return a tombstone with the current state of the copies that it lists."""
     ids = [str(one["id"]) for one in row.remaining]
-    known = {one.id: one for one in db.scalars(select(CopyMade).where(CopyMade.id.in_(ids)))}
+    current = {one.id: one for one in db.scalars(select(CopyMade).where(CopyMade.id.in_(ids)))}
     return ErasureView(
         id=row.id,
         at=row.at,
@@ -91,7 +91,8 @@ def erasure_view(db: Session, settings: Settings, row: Erasure) -> ErasureView:
         reason_code=_reason(db, row),
         removed={str(table): int(count) for table, count in row.removed.items()},
         remaining=[
-            _left(known[one["id"]]) if one["id"] in known else _told(one) for one in row.remaining
+            _left(current[one["id"]]) if one["id"] in current else _from_tombstone(one)
+            for one in row.remaining
         ],
         overwritten=is_overwritten(settings),
     )
@@ -121,7 +122,7 @@ def _left(row: CopyMade) -> CopyLeft:
     )
 
 
-def _told(one: Mapping[str, str]) -> CopyLeft:
+def _from_tombstone(one: Mapping[str, str]) -> CopyLeft:
     """Return a copy that is only in the tombstone, because the database is from an older backup."""
     return CopyLeft.model_validate({**one, "destroyed_at": None, "destroyed_by": None})
 

@@ -15,7 +15,7 @@ from app.features.record.erasure import finish_overwriting, mark_erasure
 from app.models import Participant, StudySession
 from app.platform.context import AppContext
 
-AGAIN = "restored"
+REPEATED = "restored"
 """The reason code of a repeated erasure."""
 log = logging.getLogger(__name__)
 
@@ -30,23 +30,23 @@ class ErasureReplay:
 
     context: AppContext
     given: Sequence[Tombstone] = ()
-    _known: dict[str, Tombstone] = field(default_factory=dict)
+    _tombstones: dict[str, Tombstone] = field(default_factory=dict)
 
     def snapshot(self, db: Session) -> None:
         """Remember every erasure in the table or in the list beside the database."""
         listed = tombstone_file(self.context.settings).read()
-        known = (*self.given, *listed, *tombstones_of(db))
-        self._known = {one.erasure_id: one for one in known}
+        remembered = (*self.given, *listed, *tombstones_of(db))
+        self._tombstones = {one.erasure_id: one for one in remembered}
 
     def reapply(self, db: Session) -> int:
         """Repeat the erasures that the restored rows undid; return how many there were."""
-        return erase_again(db, self.context, list(self._known.values()))
+        return repeat_erasures(db, self.context, list(self._tombstones.values()))
 
 
-def erase_again(db: Session, context: AppContext, known: Sequence[Tombstone]) -> int:
+def repeat_erasures(db: Session, context: AppContext, remembered: Sequence[Tombstone]) -> int:
     """Erase every participant with sessions in the database who was erased before."""
     done = 0
-    for one in known:
+    for one in remembered:
         owners = db.scalars(
             select(StudySession.participant_id)
             .where(StudySession.id.in_(one.sessions))
@@ -55,12 +55,12 @@ def erase_again(db: Session, context: AppContext, known: Sequence[Tombstone]) ->
         ).all()
         for participant_id in owners:
             if erasure_of(db, participant_id) is None:
-                _erase_again(db, context, one, participant_id)
+                _repeat_erasure(db, context, one, participant_id)
                 done += 1
     return done
 
 
-def _erase_again(db: Session, context: AppContext, one: Tombstone, participant_id: str) -> None:
+def _repeat_erasure(db: Session, context: AppContext, one: Tombstone, participant_id: str) -> None:
     participant = db.get_one(Participant, participant_id)
     sessions = locked_sessions(db, participant)
     erasure = erase_now(
@@ -71,7 +71,7 @@ def _erase_again(db: Session, context: AppContext, one: Tombstone, participant_i
         erasure_id=one.erasure_id,
         by=one.by,
         at=moment(one),
-        why=AGAIN,
+        why=REPEATED,
     )
     record(
         db,
@@ -90,19 +90,19 @@ def finish_erasures(context: AppContext) -> int:
     """
     database, settings = context.database, context.settings
     listed = tombstone_file(settings).read()
-    again = 0
+    repeated = 0
     if listed:
         with database.writing() as db:
-            again = erase_again(db, context, listed)
+            repeated = repeat_erasures(db, context, listed)
     try:
         keep_tombstones(context)
     except NotDurable as error:
         log.warning("%s. %s", error.message, error.remedy)
-    if again:
+    if repeated:
         mark_erasure(settings)
-        log.warning("%d erasure(s) that the database did not know were made again", again)
+        log.warning("%d erasure(s) that the database did not know were made again", repeated)
     finish_overwriting(database, settings)
-    return again
+    return repeated
 
 
 def knows_erasures(context: AppContext) -> bool:
@@ -116,5 +116,5 @@ def knows_erasures(context: AppContext) -> bool:
 def keep_tombstones(context: AppContext) -> None:
     """Complete the list beside the database from its table; raise NotDurable."""
     with context.database.reading() as db:
-        known = tombstones_of(db)
-    tombstone_file(context.settings).add(known)
+        remembered = tombstones_of(db)
+    tombstone_file(context.settings).add(remembered)

@@ -67,8 +67,8 @@ class TombstoneFile:
 
     def add(self, tombstones: Iterable[Tombstone]) -> None:
         """Append new erasures, flushed to the disk; raise NotDurable."""
-        known = {one.erasure_id for one in self.read()}
-        new = [one for one in tombstones if one.erasure_id not in known]
+        known_ids = {one.erasure_id for one in self.read()}
+        new = [one for one in tombstones if one.erasure_id not in known_ids]
         if not new:
             return
         # Start on a new line if the last one was truncated.
@@ -76,7 +76,7 @@ class TombstoneFile:
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
             with self.path.open("a", encoding="utf-8") as file:
-                file.write(lines.removeprefix("\n") if self._ends_well() else lines)
+                file.write(lines.removeprefix("\n") if self._ends_with_newline() else lines)
                 file.flush()
                 os.fsync(file.fileno())
         except OSError as error:
@@ -85,7 +85,7 @@ class TombstoneFile:
                 remedy="Free some space there, then start the server again: it completes the list.",
             ) from error
 
-    def _ends_well(self) -> bool:
+    def _ends_with_newline(self) -> bool:
         return not self.path.exists() or self.path.read_bytes()[-1:] in (b"", b"\n")
 
 

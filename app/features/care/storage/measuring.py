@@ -64,15 +64,15 @@ class StorageDesk(Part):
         """Create the measurement of a server's database and disk."""
         return cls(context.database, context.settings, context.clock)
 
-    def measured(self, *, anew: bool = False) -> Measured:
+    def measured(self, *, refresh: bool = False) -> Measured:
         """Return the sizes, measured at most a minute ago; `anew` measures again."""
         with self._lock:
             now_ns = self.clock.monotonic_ns()
-            known = self._measured
-            if known is None or anew or now_ns - self._measured_ns > KEPT_NS:
-                known = self._measured = self._measure()
+            cached = self._measured
+            if cached is None or refresh or now_ns - self._measured_ns > KEPT_NS:
+                cached = self._measured = self._measure()
                 self._measured_ns = self.clock.monotonic_ns()
-            return known
+            return cached
 
     def _measure(self) -> Measured:
         with self.database.reading() as db:

@@ -24,9 +24,11 @@ def try_answers(instrument: Instrument, answers: dict[str, TriedAnswer]) -> TryR
             valid=list(instrument.by_key),
         )
     given = {key: value for key, value in answers.items() if value is not None and value != ""}
-    unfit = [one for one in validate_answers(instrument, given) if one.item in given]
-    fit = {key: value for key, value in given.items() if key not in {one.item for one in unfit}}
-    steps = explain_scoring(instrument, fit)
+    invalid = [one for one in validate_answers(instrument, given) if one.item in given]
+    valid_answers = {
+        key: value for key, value in given.items() if key not in {one.item for one in invalid}
+    }
+    steps = explain_scoring(instrument, valid_answers)
     return TryResult(
         recode=instrument.recode,
         items=[
@@ -41,7 +43,7 @@ def try_answers(instrument: Instrument, answers: dict[str, TriedAnswer]) -> TryR
         scores=[_score(score) for score in steps.scores],
         problems=[
             AnswerProblemView(item=one.item, message=one.message, remedy=one.remedy)
-            for one in unfit
+            for one in invalid
         ],
     )
 

@@ -48,8 +48,8 @@ VersionNumber = Annotated[int, Query(ge=1, lt=1_000_000)]
 @router.get("/studies")
 def get_studies(db: Reading, caller: SignedIn, *, archived: bool = False) -> list[StudySummary]:
     """Return the caller's studies in their newest version; `archived`: only archived ones."""
-    wanted = Study.archived_at.is_not(None) if archived else Study.archived_at.is_(None)
-    studies = db.scalars(select(Study).where(wanted, is_theirs(caller)).order_by(Study.key))
+    condition = Study.archived_at.is_not(None) if archived else Study.archived_at.is_(None)
+    studies = db.scalars(select(Study).where(condition, is_theirs(caller)).order_by(Study.key))
     return [_summary(db, study, newest_version(db, study)) for study in studies]
 
 
@@ -58,7 +58,7 @@ def post_study(file: StudyFile, db: Writing, context: Context, caller: SignedIn)
     """Create a study from its file."""
     now = context.clock.utc_now()
     version = create_study(db, file.yaml, now)
-    return _begun(db, version, caller, "study.created", now)
+    return _created(db, version, caller, "study.created", now)
 
 
 @router.get("/studies/{key}")
@@ -114,7 +114,7 @@ def post_duplicate(
     source = study_by_key(db, key)
     now = context.clock.utc_now()
     version = duplicate(db, source, key=request.key, title=request.title, now=now)
-    return _begun(db, version, caller, "study.duplicated", now, {"from": source.key})
+    return _created(db, version, caller, "study.duplicated", now, {"from": source.key})
 
 
 @router.post("/studies/{key}/archive")
@@ -136,7 +136,7 @@ def post_restore(key: str, db: Writing, context: Context, caller: SignedIn) -> S
     return _view(db, study, caller)
 
 
-def _begun(
+def _created(
     db: Session,
     version: StudyVersion,
     caller: Caller,

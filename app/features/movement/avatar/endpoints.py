@@ -116,7 +116,7 @@ def get_avatar_model(
     model = model_of(db, key, version, stature_m)
     tag = f'"{model.content_hash}"'
     headers = {"etag": tag, "cache-control": "private, no-cache"}
-    known = [one.strip().removeprefix("W/") for one in (if_none_match or "").split(",")]
-    if tag in known or "*" in known:
+    cached_tags = [one.strip().removeprefix("W/") for one in (if_none_match or "").split(",")]
+    if tag in cached_tags or "*" in cached_tags:
         return Response(status_code=304, headers=headers)
     return Response(model.mjcf, media_type=MEDIA_TYPE, headers=headers)

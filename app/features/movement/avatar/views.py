@@ -132,11 +132,11 @@ def _sessions_by_hash(
 ) -> dict[str, int]:
     """Return the number of sessions in the caller's studies by configuration hash."""
     column = StudySession.avatar_configuration_hash
-    wanted = column.is_not(None) if content_hash is None else column == content_hash
+    condition = column.is_not(None) if content_hash is None else column == content_hash
     rows = db.execute(
         select(column, func.count())
         .join(Study, Study.id == StudySession.study_id)
-        .where(wanted, is_theirs(caller))
+        .where(condition, is_theirs(caller))
         .group_by(column)
     )
     return {str(found): count for found, count in rows}

@@ -80,10 +80,10 @@ async def get_verification(
 ) -> Response:
     """Return whether the movement keeps its characteristics on avatars of these statures."""
     mapped = await run_in_threadpool(mapped_capture, context, capture_id)
-    wanted = tuple(dict.fromkeys(avatars))
+    statures = tuple(dict.fromkeys(avatars))
     return Response(
         await context.part(Workbench).computed(
-            verification_json, mapped, wanted, lock_feet=lock_feet
+            verification_json, mapped, statures, lock_feet=lock_feet
         ),
         media_type="application/json",
     )

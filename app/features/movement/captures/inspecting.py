@@ -89,15 +89,15 @@ def _observed(motion: RigMotion | MarkerMotion | BodyMotion) -> float:
 
 
 def _conventions(capture: Capture) -> ConventionsView:
-    said = capture.conventions
+    conventions = capture.conventions
     return ConventionsView(
         **{
             name: ConventionView(value=one.value, origin=one.origin)
             for name, one in (
-                ("length", said.length),
-                ("axes", said.axes),
-                ("rotations", said.rotations),
-                ("rate", said.rate),
+                ("length", conventions.length),
+                ("axes", conventions.axes),
+                ("rotations", conventions.rotations),
+                ("rate", conventions.rate),
             )
         }
     )

@@ -82,10 +82,12 @@ def encode(points: Points) -> bytes:
     return struct.pack("<I", len(header)) + header + kept.tobytes()
 
 
-def step_for(frames: int, rate_hz: float, numbers_a_frame: int, most: int = MOST_NUMBERS) -> int:
+def step_for(
+    frames: int, rate_hz: float, numbers_a_frame: int, max_numbers: int = MOST_NUMBERS
+) -> int:
     """Return n such that keeping every nth frame stays below `MOST_HZ` and `most` numbers."""
     for_rate = math.ceil(rate_hz / MOST_HZ - 1e-6)
-    return max(1, for_rate, math.ceil(frames * numbers_a_frame / most))
+    return max(1, for_rate, math.ceil(frames * numbers_a_frame / max_numbers))
 
 
 def _evenly(motion: BodyMotion) -> tuple[float, FloatArray]:

@@ -73,14 +73,14 @@ async def add_capture(
         )
     async with uploaded(context, body, wish.companion_bytes) as files:
         source = _source(wish, files)
-        there = await run_sync(_id_of, context, source.identity)
-        if there is not None:
-            return there, False
+        existing_id = await run_sync(_id_of, context, source.identity)
+        if existing_id is not None:
+            return existing_id, False
         paths = tuple(file.path for file in files)
-        most = context.settings.max_capture_bytes
-        inspected = await context.part(Workbench).run(inspect_upload, most, source, paths)
+        max_bytes = context.settings.max_capture_bytes
+        inspected = await context.part(Workbench).run(inspect_upload, max_bytes, source, paths)
         async with context.database.writing_async() as db:
-            return await run_sync(_keep, db, context, caller, wish, source, files, inspected)
+            return await run_sync(_store, db, context, caller, wish, source, files, inspected)
 
 
 async def change_capture(
@@ -122,7 +122,7 @@ def _id_of(context: AppContext, identity: str) -> str | None:
         return db.scalar(select(CaptureRow.id).where(CaptureRow.identity == identity))
 
 
-def _keep(
+def _store(
     db: Session,
     context: AppContext,
     caller: Caller,
@@ -148,11 +148,11 @@ def _keep(
     }
     insert = (postgresql if db.get_bind().dialect.name == "postgresql" else sqlite).insert
     new = insert(CaptureRow).values(values).on_conflict_do_nothing().returning(CaptureRow.id)
-    made = db.execute(new).scalar()
+    inserted_id = db.execute(new).scalar()
     row = db.scalars(select(CaptureRow).where(CaptureRow.identity == source.identity)).one()
-    if made is not None:
+    if inserted_id is not None:
         _record(db, context, caller, row, action="capture.added")
-    return row.id, made is not None
+    return row.id, inserted_id is not None
 
 
 def _change(

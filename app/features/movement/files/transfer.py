@@ -108,13 +108,13 @@ async def _received(body: AsyncIterator[bytes], to: Path) -> int:
 def _split(whole: Path, size: int, companion_bytes: int | None) -> tuple[Uploaded, ...]:
     if companion_bytes is None:
         return (_measured(whole),)
-    beside = whole.with_name("companion")
-    with whole.open("r+b") as file, beside.open("wb") as companion:
+    companion_path = whole.with_name("companion")
+    with whole.open("r+b") as file, companion_path.open("wb") as companion:
         file.seek(size - companion_bytes)
         while block := file.read(BLOCK_BYTES):
             companion.write(block)
         file.truncate(size - companion_bytes)
-    return (_measured(whole), _measured(beside))
+    return (_measured(whole), _measured(companion_path))
 
 
 def _measured(path: Path) -> Uploaded:

@@ -36,14 +36,14 @@ async def add_humanoid(
             return file.hash, False
         measured = await _measured(context, name, file)
         async with context.database.writing_async() as db:
-            new = await run_sync(_keep, db, context, caller, name, file, measured)
+            new = await run_sync(_store, db, context, caller, name, file, measured)
             return file.hash, new
 
 
 async def _measured(context: AppContext, name: str, file: Uploaded) -> Measured:
     try:
-        most = context.settings.max_capture_bytes
-        found = await context.part(Workbench).run(measure, most, file.path)
+        max_bytes = context.settings.max_capture_bytes
+        found = await context.part(Workbench).run(measure, max_bytes, file.path)
     except InvalidInput as error:
         # A limit was exceeded; the message for captures does not apply to models.
         raise InvalidInput(
@@ -67,7 +67,7 @@ def _is_known(context: AppContext, content_hash: str) -> bool:
         return is_known(db, content_hash)
 
 
-def _keep(
+def _store(
     db: Session,
     context: AppContext,
     caller: Caller,

@@ -47,8 +47,8 @@ class _Fit:
     order: FitOrder
     files: FitFolder
     worker: Worker = field(default_factory=lambda: new_worker())
-    given_up: bool = False
-    begun: bool = False
+    cancelled: bool = False
+    started_making: bool = False
 
 
 @dataclass(eq=False)
@@ -115,7 +115,7 @@ class FittingDesk(Part):
             fit = self._fits.pop(model_id, None)
             if fit is None:
                 return
-            fit.given_up = True
+            fit.cancelled = True
         fit.worker.end()
 
     def forget(self, model_id: str) -> None:
@@ -127,14 +127,14 @@ class FittingDesk(Part):
         """Return the progress of a running or stopped fit, None if it has no files."""
         with self._lock:
             fit = self._fits.get(model_id)
-            if fit is not None and not fit.begun:
-                kept = fit.files.progress()
-                return Progress("waiting", kept.maps, kept.maps_total)
+            if fit is not None and not fit.started_making:
+                stored = fit.files.progress()
+                return Progress("waiting", stored.maps, stored.maps_total)
         files = FitFolder(self.folder / model_id)
-        told = files.progress() if files.folder.is_dir() else None
-        if fit is not None and told is not None and told.stage == "waiting":
+        progress = files.progress() if files.folder.is_dir() else None
+        if fit is not None and progress is not None and progress.stage == "waiting":
             return Progress("walks")  # its process is starting
-        return told
+        return progress
 
     def _make_or_fail(self, fit: _Fit) -> None:
         """Run a fit; mark it as failed on an unexpected error, and raise that for the queue."""
@@ -146,13 +146,13 @@ class FittingDesk(Part):
 
     def _make(self, fit: _Fit) -> None:
         with self._lock:
-            if fit.given_up:
+            if fit.cancelled:
                 return
-            fit.begun = True
+            fit.started_making = True
             future = fit.worker.submit(fit_model, Store(self.url), fit.order, fit.files.folder)
         summary, trouble = _outcome(future)
         fit.worker.end()
-        if fit.given_up:
+        if fit.cancelled:
             return
         try:
             self._settle(fit, summary, trouble)
@@ -166,7 +166,7 @@ class FittingDesk(Part):
             # Store the content first, because `store` expunges every row from the session.
             content_hash = None if keep is None else keep(db)
             row = db.get(WalkingModelRow, fit.model_id, with_for_update=True)
-            if row is None or row.state != "fitting" or fit.given_up:
+            if row is None or row.state != "fitting" or fit.cancelled:
                 db.rollback()
                 return
             row.content_hash = content_hash

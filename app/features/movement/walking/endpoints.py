@@ -135,15 +135,15 @@ def delete_walk_set(set_id: str, db: Writing, context: Context, caller: SignedIn
 def _statures(texts: list[str]) -> dict[str, float]:
     found = {}
     for text in texts:
-        name, _, told = text.rpartition("=")
+        name, _, height_text = text.rpartition("=")
         try:
-            found[name.strip()] = float(told)
+            found[name.strip()] = float(height_text)
         except ValueError:
             found[name.strip()] = 0.0
         if not 0.5 <= found[name.strip()] <= 2.6:
             raise InvalidInput(
-                f"{name!r} cannot be {told} m tall",
-                value=told,
+                f"{name!r} cannot be {height_text} m tall",
+                value=height_text,
                 valid="0.5 to 2.6 m",
                 remedy="Give statures in metres, such as A=1.78.",
             )

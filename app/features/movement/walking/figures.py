@@ -19,7 +19,7 @@ from app.science.walking.records import PlannedWalk
 Json = dict[str, Any]
 
 
-def walks_told(entries: Sequence[PlannedWalk]) -> Json:
+def walks_summary(entries: Sequence[PlannedWalk]) -> Json:
     """Return a `WalksSummary` of walks."""
     walks = [entry.walk for entry in entries]
     names = sorted({name for entry in entries for name in entry.dependencies})
@@ -37,7 +37,7 @@ def walks_told(entries: Sequence[PlannedWalk]) -> Json:
     }
 
 
-def model_told(fit: FittedWalking, digest: str) -> Json:
+def model_summary(fit: FittedWalking, digest: str) -> Json:
     """Return a `ModelSummary` of a fitted model."""
     base, static = fit.database, fit.static
     seeds = np.random.default_rng(fit.options.seed).spawn(2)

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from app.adapters.walks.model_file import write_model
-from app.features.movement.walking.figures import model_told
+from app.features.movement.walking.figures import model_summary
 from app.features.movement.walking.progress import RECORD_BYTES, FitFolder
 from app.features.movement.walking.reading import planned_walks
 from app.features.movement.walking.sources import Cannot, FitOrder, Store
@@ -45,18 +45,18 @@ Json = dict[str, Any]
 def fit(store: Store, order: FitOrder, folder: Path) -> Json:
     """Fit a model in a folder and return a `ModelSummary`; raise Cannot."""
     files = FitFolder(folder)
-    files.tell("walks", 0, 0)
+    files.write_stage("walks", 0, 0)
     entries = planned_walks(store, order.source, order.scene)
     _check_people(entries)
     follower = SteeringFollower()
     maker = MapMaker(regular_grid(PAPER_PARAMETERS, order.steps), follower)
     try:
         database = _database(files, entries, maker)
-        files.tell("blending", len(entries), maker.grid.size)
+        files.write_stage("blending", len(entries), maker.grid.size)
         options = FitOptions(order.seed, order.k, order.entries, READINGS[order.reading])
         found = fitted(database, options)
         digest = write_model(files.model, found, follower.rules)
-        return model_told(found, digest)
+        return model_summary(found, digest)
     except WalkingError as error:
         raise Cannot(str(error)) from None
 
@@ -73,7 +73,7 @@ def _check_people(entries: list[PlannedWalk]) -> None:
 
 def _database(files: FitFolder, entries: list[PlannedWalk], maker: MapMaker) -> WalkDatabase:
     grid = maker.grid
-    files.tell("maps", len(entries), grid.size)
+    files.write_stage("maps", len(entries), grid.size)
     made = _kept_maps(files, entries, maker)
     with files.maps.open("ab") as file:
         threads = max(1, (os.cpu_count() or 2) - 1)

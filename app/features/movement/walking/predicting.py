@@ -47,7 +47,7 @@ def _planner(text: str) -> LazyThetaPlanner:
     return LazyThetaPlanner(scene_of(text))
 
 
-def way_asked(question: Question) -> PlannedPath:
+def path_of(question: Question) -> PlannedPath:
     """Return the path of a question: as drawn, or the shortest path between its ends.
 
     Raises:
@@ -83,10 +83,10 @@ def _check_drawn(scene: Scene, points: tuple[tuple[float, float], ...]) -> None:
                 )
 
 
-def predicted(store: Store, content_hash: str, question: Question) -> Json:
+def predict(store: Store, content_hash: str, question: Question) -> Json:
     """Predict how long people take on a path, as a `PredictionView`; raise Cannot."""
     fit, follower = opened(store, content_hash)
-    path = way_asked(question)
+    path = path_of(question)
     try:
         dependencies, assumed = _dependencies(fit, path, question.stature_m)
         rng = np.random.default_rng(question.seed)

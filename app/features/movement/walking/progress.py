@@ -45,21 +45,21 @@ class FitFolder:
         return self.folder / "maps.f32"
 
     @property
-    def _told(self) -> Path:
+    def _stage_file(self) -> Path:
         return self.folder / "told"
 
-    def tell(self, stage: Stage, total: int, nodes: int) -> None:
+    def write_stage(self, stage: Stage, total: int, nodes: int) -> None:
         """Write the current stage atomically."""
-        part = self._told.with_suffix(".part")
+        part = self._stage_file.with_suffix(".part")
         part.write_text(f"{stage} {total} {nodes}", encoding="utf-8")
-        part.replace(self._told)
+        part.replace(self._stage_file)
 
     def progress(self) -> Progress:
         """Return the progress from the last stage written and the size of the file of maps."""
         try:
-            told, total, nodes = self._told.read_text(encoding="utf-8").split()
+            stage_text, total, nodes = self._stage_file.read_text(encoding="utf-8").split()
             size = self.maps.stat().st_size if self.maps.exists() else 0
-            stage = next(one for one in STAGES if one == told)
+            stage = next(one for one in STAGES if one == stage_text)
         except (OSError, ValueError, StopIteration):
             return Progress()
         done = size // (RECORD_BYTES * int(nodes)) if int(nodes) else 0

@@ -58,7 +58,7 @@ def planned_walks(store: Store, source: WalkSource, scene: str | None) -> list[P
     """Return all walks of a source with the paths planned for them; raise Cannot."""
     try:
         if isinstance(source, PopulationSource):
-            return _made_up(source)
+            return _synthetic(source)
         tracks = tracks_of(content_of(store, source.content_hash), source)
         return planned(walks_in(tracks), None if scene is None else scene_of(scene))
     except WalkingError as error:
@@ -148,11 +148,11 @@ def _track_of_capture(store: Store, name: str, capture: CapturedWalk) -> Track:
         raise Cannot(f"{capture.name}: {error}") from None
 
 
-def _made_up(source: PopulationSource) -> list[PlannedWalk]:
+def _synthetic(source: PopulationSource) -> list[PlannedWalk]:
     population = next((one for one in POPULATIONS if one.name == source.name), None)
     if population is None:
-        known = ", ".join(one.name for one in POPULATIONS)
-        raise Cannot(f"there is no population {source.name!r}", f"There are {known}.")
+        names = ", ".join(one.name for one in POPULATIONS)
+        raise Cannot(f"there is no population {source.name!r}", f"There are {names}.")
     scenes = laboratory_scenes() if source.scene == LABORATORY else [scene_of(source.scene)]
     paths = sum(len(scene.paths) for scene in scenes)
     if not paths:

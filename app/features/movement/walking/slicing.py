@@ -13,7 +13,7 @@ from app.science.walking.records import WalkingError
 Json = dict[str, Any]
 
 
-def sliced(store: Store, content_hash: str, question: SliceQuestion) -> Json:
+def compute_slice(store: Store, content_hash: str, question: SliceQuestion) -> Json:
     """Return one slice of the map as a `SliceView`; raise Cannot."""
     fit, _ = opened(store, content_hash)
     grid = fit.space.grid

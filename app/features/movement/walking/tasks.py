@@ -28,15 +28,15 @@ class CapturedTable:
 
 def inspected_tracks(source: TrackSource, path: Path) -> dict[str, Any]:
     """Return a `WalksSummary` of a table on disk; raise Cannot."""
-    return _tracks_told(path.read_bytes(), source)
+    return _tracks_summary(path.read_bytes(), source)
 
 
 def inspected_population(source: PopulationSource) -> dict[str, Any]:
     """Return a `WalksSummary` of synthetic walkers; raise Cannot."""
-    from app.features.movement.walking.figures import walks_told
+    from app.features.movement.walking.figures import walks_summary
     from app.features.movement.walking.reading import planned_walks
 
-    return walks_told(planned_walks(Store(""), source, None))
+    return walks_summary(planned_walks(Store(""), source, None))
 
 
 def captured_table(
@@ -46,7 +46,7 @@ def captured_table(
     from app.features.movement.walking.reading import table_of_captures
 
     table = table_of_captures(store, captures)
-    return CapturedTable(table, _tracks_told(table, source))
+    return CapturedTable(table, _tracks_summary(table, source))
 
 
 def fit_model(store: Store, order: FitOrder, folder: Path) -> dict[str, Any]:
@@ -58,27 +58,27 @@ def fit_model(store: Store, order: FitOrder, folder: Path) -> dict[str, Any]:
 
 def plan_way(question: Question) -> list[tuple[float, float]]:
     """Return the points of a path; raise Cannot."""
-    from app.features.movement.walking.predicting import way_asked
+    from app.features.movement.walking.predicting import path_of
 
-    return [(float(x), float(y)) for x, y in way_asked(question).points_m]
+    return [(float(x), float(y)) for x, y in path_of(question).points_m]
 
 
 def predict_walk(store: Store, content_hash: str, question: Question) -> dict[str, Any]:
     """Predict how long people take on a path, as a `PredictionView`; raise Cannot."""
-    from app.features.movement.walking.predicting import predicted
+    from app.features.movement.walking.predicting import predict
 
-    return predicted(store, content_hash, question)
+    return predict(store, content_hash, question)
 
 
 def slice_of(store: Store, content_hash: str, question: SliceQuestion) -> dict[str, Any]:
     """Return one slice of the map as a `SliceView`; raise Cannot."""
-    from app.features.movement.walking.slicing import sliced
+    from app.features.movement.walking.slicing import compute_slice
 
-    return sliced(store, content_hash, question)
+    return compute_slice(store, content_hash, question)
 
 
-def _tracks_told(data: bytes, source: TrackSource) -> dict[str, Any]:
-    from app.features.movement.walking.figures import walks_told
+def _tracks_summary(data: bytes, source: TrackSource) -> dict[str, Any]:
+    from app.features.movement.walking.figures import walks_summary
     from app.features.movement.walking.reading import planned, tracks_of, walks_in
 
-    return walks_told(planned(walks_in(tracks_of(data, source)), None))
+    return walks_summary(planned(walks_in(tracks_of(data, source)), None))

@@ -83,7 +83,7 @@ async def add_table(
         found = await context.part(Bench).run(inspected_tracks, source, file.path)
         row = _row(context, caller, wish.title, wish.kind, wish.origin, file.hash)
         row.summary = WalksSummary.model_validate(found).model_dump(mode="json")
-        return await _kept(context, caller, row, _storing(file.hash, file.path))
+        return await _stored(context, caller, row, _storing(file.hash, file.path))
 
 
 async def add_walk_set(context: AppContext, caller: Caller, wish: NewWalkSet) -> WalkSetView:
@@ -94,7 +94,7 @@ async def add_walk_set(context: AppContext, caller: Caller, wish: NewWalkSet) ->
     found = await context.part(Bench).run(inspected_population, source)
     row = _row(context, caller, wish.title, "synthetic", wish.origin, None)
     row.summary = WalksSummary.model_validate(found).model_dump(mode="json")
-    return await _kept(context, caller, row, lambda _: None)
+    return await _stored(context, caller, row, lambda _: None)
 
 
 def remove_walk_set(db: Session, context: AppContext, caller: Caller, set_id: str) -> None:
@@ -131,7 +131,7 @@ async def _add_captured(
     with TemporaryDirectory(dir=uploads_of(context.settings)) as folder:
         file = Path(folder) / "tracks.csv"
         await run_sync(file.write_bytes, found.table)
-        return await _kept(context, caller, row, _storing(content_hash, file))
+        return await _stored(context, caller, row, _storing(content_hash, file))
 
 
 def _storing(content_hash: str, file: Path) -> Callable[[Session], None]:
@@ -159,7 +159,7 @@ def _row(
     )
 
 
-async def _kept(
+async def _stored(
     context: AppContext, caller: Caller, row: WalkSetRow, storing: Callable[[Session], None]
 ) -> WalkSetView:
     def keep(db: Session) -> WalkSetView:

@@ -23,8 +23,8 @@ from app.features.results.analysis.schemas import (
 )
 
 TITLE_PREFIX = {"people": "", "simulated": "Simulated: ", "test": "Test: "}
-NONE_COUNTS = "There are data, but none that count: choose all rows to see them."
-BLINDED_NOTE = "The study is blinded: measures of sessions that are still open are left out."
+NONE_COUNTS = "There are data, but none are valid: choose all rows to see them."
+BLINDED_NOTE = "The study is blinded: measures of open sessions are left out."
 
 
 def build_dashboard(
@@ -42,14 +42,14 @@ def dashboard_of(
     `group` limits the result to one group of figures. Only the tables that these figures need are
     read from `material`.
     """
-    left = material.chosen(chosen)
+    filtered = material.chosen(chosen)
     return DashboardFigures(
         kind=material.kind,
         simulated=material.kind == "simulated",
-        n_sessions=len(left.sessions),
-        n_completed=int((left.sessions["status"] == "completed").sum()),
-        n_not_valid=n_not_valid(left.sessions),
-        avatar=sorted(set(left.sessions["avatar"])),
+        n_sessions=len(filtered.sessions),
+        n_completed=int((filtered.sessions["status"] == "completed").sum()),
+        n_not_valid=n_not_valid(filtered.sessions),
+        avatar=sorted(set(filtered.sessions["avatar"])),
         filter=chosen,
         choices=_choices(material),
         figures=[_view(drawing) for drawing in drawings_of(material, chosen, group)],
@@ -67,17 +67,19 @@ def drawings_of(
         if group not in (None, figure.group):
             continue
         for drawing in _explained(figure, rows):
-            told = drawing if chosen.is_all else drawing.among_chosen()
-            yield told.marked(prefix, note)
+            shown = drawing if chosen.is_all else drawing.among_chosen()
+            yield shown.marked(prefix, note)
 
 
 def _explained(figure: Figure, rows: Rows) -> Iterator[Drawing]:
     """Yield the drawings of a figure; an empty one says if there are only invalid rows."""
     everything: dict[str, Drawing] | None = None
     for drawing in figure.draw(rows):
-        if drawing.empty is not None and not rows.invalid and not rows.left.sessions.empty:
+        if drawing.empty is not None and not rows.invalid and not rows.filtered.sessions.empty:
             if everything is None:
-                everything = {one.key: one for one in figure.draw(Rows(rows.left, invalid=True))}
+                everything = {
+                    one.key: one for one in figure.draw(Rows(rows.filtered, invalid=True))
+                }
             other = everything.get(drawing.key)
             if other is not None and other.empty is None:
                 yield replace(drawing, empty=f"{drawing.empty} {NONE_COUNTS}")

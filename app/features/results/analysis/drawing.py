@@ -31,17 +31,17 @@ from app.platform.workers import Worker
 
 log = logging.getLogger(__name__)
 FIRST_WITHIN_S = 180.0
-AGAIN_WITHIN_S = 0.05
+REFRESH_WITHIN_S = 0.05
 """How long a page waits for newer figures before it gets the older ones."""
-MOST_KEPT_BYTES = 64_000_000
-What = Literal["dashboard", "statistics"]
+MAX_CACHED_BYTES = 64_000_000
+ResultKind = Literal["dashboard", "statistics"]
 
 
 @dataclass(frozen=True)
-class Asked:
+class DrawingRequest:
     """A request for a dashboard or for the study's tests; also the key of the cached result."""
 
-    what: What
+    result_kind: ResultKind
     study_key: str
     kind: DashboardKind
     chosen: FigureFilter = NO_FILTER
@@ -70,8 +70,8 @@ class Drawings(Part):
 
     url: str
     utc_now: Callable[[], datetime]
-    _drawn: "OrderedDict[Asked, Drawn]" = field(default_factory=OrderedDict)
-    _under_way: dict[Asked, "Future[None]"] = field(default_factory=dict)
+    _cache: "OrderedDict[DrawingRequest, Drawn]" = field(default_factory=OrderedDict)
+    _in_progress: dict[DrawingRequest, "Future[None]"] = field(default_factory=dict)
     _worker: Worker = field(default_factory=Worker)
     _tester: Worker = field(default_factory=Worker)
     _lock: threading.RLock = field(default_factory=threading.RLock)
@@ -101,22 +101,22 @@ class Drawings(Part):
         where
         drawing fails.
         """
-        return self._newest(db, Asked("dashboard", study_key, kind, chosen, group))
+        return self._newest(db, DrawingRequest("dashboard", study_key, kind, chosen, group))
 
     def statistics(self, db: Session, study_key: str, kind: DashboardKind) -> tuple[Drawn, bool]:
         """Return the latest results of the study's tests, and whether they are of the current data.
 
         Raises as `dashboard` does.
         """
-        return self._newest(db, Asked("statistics", study_key, kind))
+        return self._newest(db, DrawingRequest("statistics", study_key, kind))
 
     def sheet(
         self, study_key: str, kind: DashboardKind, chosen: FigureFilter, figure: str
     ) -> bytes:
         """Return the rows of one figure as CSV; raise NotFound for an unknown study or figure."""
-        making = self._worker.submit(sheet, self.url, study_key, kind, chosen, figure)
+        future = self._worker.submit(sheet, self.url, study_key, kind, chosen, figure)
         try:
-            return making.result(FIRST_WITHIN_S)
+            return future.result(FIRST_WITHIN_S)
         except NotYet:
             raise _failed("it takes too long") from None
         except ReembodyError:
@@ -124,59 +124,64 @@ class Drawings(Part):
         except Exception as error:
             raise _failed(type(error).__name__) from error
 
-    def _newest(self, db: Session, asked: Asked) -> tuple[Drawn, bool]:
-        state = state_of_data(db, asked.study_key, asked.kind)
+    def _newest(self, db: Session, request: DrawingRequest) -> tuple[Drawn, bool]:
+        state = state_of_data(db, request.study_key, request.kind)
         with self._lock:
-            drawn = self._drawn.get(asked)
+            drawn = self._cache.get(request)
             if drawn is not None:
-                self._drawn.move_to_end(asked)
+                self._cache.move_to_end(request)
                 if drawn.state == state:
                     return drawn, True
-            drawing = self._under_way.get(asked) or self._begin(asked, state)
+            drawing = self._in_progress.get(request) or self._start(request, state)
         try:
-            drawing.result(FIRST_WITHIN_S if drawn is None else AGAIN_WITHIN_S)
+            drawing.result(FIRST_WITHIN_S if drawn is None else REFRESH_WITHIN_S)
         except NotYet:
             if drawn is None:
                 raise _failed("it takes too long") from None
         except Exception as error:
             raise _failed(type(error).__name__) from error
         with self._lock:
-            newest = self._drawn.get(asked) or drawn
+            newest = self._cache.get(request) or drawn
         if newest is None:
             raise _failed("nothing was drawn")
         return newest, newest.state == state
 
-    def _begin(self, asked: Asked, state: State) -> "Future[None]":
-        worker = self._tester if asked.what == "statistics" else self._worker
-        drawing = worker.submit(draw, self.url, asked)
+    def _start(self, request: DrawingRequest, state: State) -> "Future[None]":
+        worker = self._tester if request.result_kind == "statistics" else self._worker
+        drawing = worker.submit(draw, self.url, request)
         # Not the worker's future: whoever waits for that one resumes before the result is cached.
-        kept: Future[None] = Future()
-        self._under_way[asked] = kept
-        drawing.add_done_callback(lambda done: self._keep(asked, state, done, kept))
-        return kept
+        stored: Future[None] = Future()
+        self._in_progress[request] = stored
+        drawing.add_done_callback(lambda done: self._store_result(request, state, done, stored))
+        return stored
 
-    def _keep(
-        self, asked: Asked, state: State, done: "Future[bytes]", kept: "Future[None]"
+    def _store_result(
+        self, request: DrawingRequest, state: State, done: "Future[bytes]", stored: "Future[None]"
     ) -> None:
         error = CancelledError() if done.cancelled() else done.exception()
         with self._lock:
-            self._under_way.pop(asked, None)
+            self._in_progress.pop(request, None)
             if error is None:
-                self._drawn[asked] = Drawn(done.result(), state, self.utc_now())
-                self._drawn.move_to_end(asked)
-                self._let_go()
+                self._cache[request] = Drawn(done.result(), state, self.utc_now())
+                self._cache.move_to_end(request)
+                self._evict()
         if error is None:
-            kept.set_result(None)
+            stored.set_result(None)
             return
-        kept.set_exception(error)
+        stored.set_exception(error)
         if not done.cancelled():
-            log.error("the %s of %s could not be made", asked.what, asked.study_key, exc_info=error)
+            log.error(
+                "the %s of %s could not be made",
+                request.result_kind,
+                request.study_key,
+                exc_info=error,
+            )
 
-    def _let_go(self) -> None:
+    def _evict(self) -> None:
         """Evict the least recently requested results; keep the newest, however large it is."""
-        size = sum(len(one.body) for one in self._drawn.values())
-        while size > MOST_KEPT_BYTES and len(self._drawn) > 1:
-            _, oldest = self._drawn.popitem(last=False)
+        size = sum(len(one.body) for one in self._cache.values())
+        while size > MAX_CACHED_BYTES and len(self._cache) > 1:
+            _, oldest = self._cache.popitem(last=False)
             size -= len(oldest.body)
 
     def stop(self) -> None:
@@ -185,14 +190,14 @@ class Drawings(Part):
         self._tester.end()
 
 
-def draw(url: str, asked: Asked) -> bytes:
+def draw(url: str, request: DrawingRequest) -> bytes:
     """Return a dashboard or the study's test results as JSON; runs in the worker process."""
     # Loads pandas and plotly, which the server's own process does not need.
     from app.features.results.analysis import in_process
 
-    if asked.what == "statistics":
-        return in_process.compute(url, asked.study_key, asked.kind)
-    return in_process.draw(url, asked.study_key, asked.kind, asked.chosen, asked.group)
+    if request.result_kind == "statistics":
+        return in_process.compute(url, request.study_key, request.kind)
+    return in_process.draw(url, request.study_key, request.kind, request.chosen, request.group)
 
 
 def sheet(
@@ -207,5 +212,5 @@ def sheet(
 def _failed(why: str) -> NotDurable:
     return NotDurable(
         f"the figures could not be drawn: {why}",
-        remedy="Reload the page; if it stays, the server's log has the reason.",
+        remedy="Reload the page; if the problem remains, see the server's log.",
     )

@@ -10,10 +10,10 @@ from app.features.people.audit import count_sessions, download_place, record, re
 from app.features.results.analysis.drawing import Drawings, Drawn
 from app.features.results.analysis.schemas import (
     ColumnView,
-    DashboardAsked,
     DashboardKind,
+    DashboardQuery,
     DashboardView,
-    GroupAsked,
+    GroupQuery,
     StatisticsView,
 )
 from app.platform.dependencies import Context, Reading, SignedIn
@@ -24,7 +24,7 @@ FigureKey = Annotated[str, Path(pattern=r"^[a-z][a-z0-9_]{0,79}$")]
 
 @router.get("/studies/{key}/dashboard", response_model=DashboardView)
 def get_dashboard(
-    key: str, db: Reading, context: Context, _: SignedIn, asked: Annotated[GroupAsked, Query()]
+    key: str, db: Reading, context: Context, _: SignedIn, query: Annotated[GroupQuery, Query()]
 ) -> Response:
     """Return the latest figures of a study's sessions of one kind; repeat while not current.
 
@@ -32,7 +32,7 @@ def get_dashboard(
     sooner than all of them.
     """
     return _answer(
-        *context.part(Drawings).dashboard(db, key, asked.kind, asked.filter, asked.group)
+        *context.part(Drawings).dashboard(db, key, query.kind, query.filter, query.group)
     )
 
 
@@ -47,11 +47,11 @@ def get_figure_rows(
     db: Reading,
     context: Context,
     caller: SignedIn,
-    asked: Annotated[DashboardAsked, Query()],
+    query: Annotated[DashboardQuery, Query()],
 ) -> Response:
     """Return the rows that a figure is drawn from as CSV, with comment lines that describe them."""
     study_by_key(db, key)
-    body = context.part(Drawings).sheet(key, asked.kind, asked.filter, figure)
+    body = context.part(Drawings).sheet(key, query.kind, query.filter, figure)
     now = context.clock.utc_now()
     # People's data leave the database, so the copy is recorded for a later erasure.
     with context.database.writing() as writing:
@@ -60,11 +60,11 @@ def get_figure_rows(
             writing,
             kind="export",
             study_id=study.id,
-            session_kind=asked.kind,
+            session_kind=query.kind,
             place=f"{download_place(caller.actor)}: rows of the figure {figure}",
             by=caller.actor,
             now=now,
-            sessions=count_sessions(writing, study, asked.kind),
+            sessions=count_sessions(writing, study, query.kind),
             size_bytes=len(body),
         )
         record(
@@ -72,10 +72,10 @@ def get_figure_rows(
             actor=caller.actor,
             action="study.exported",
             subject=f"study:{study.key}",
-            details={"kind": asked.kind, "figure": figure},
+            details={"kind": query.kind, "figure": figure},
             now=now,
         )
-    name = f"{key}_{figure}_{asked.kind}_{now.date().isoformat()}.csv"
+    name = f"{key}_{figure}_{query.kind}_{now.date().isoformat()}.csv"
     return Response(
         body,
         media_type="text/csv; charset=utf-8",

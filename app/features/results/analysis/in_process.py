@@ -42,13 +42,13 @@ def sheet(
 
     Raises NotFound, with the keys of all figures, for an unknown figure.
     """
-    known = []
+    keys = []
     with _material(url, study_key, kind) as material:
         for drawing in drawings_of(material, chosen):
             if drawing.key == figure:
                 return sheet_of(drawing, material)
-            known.append(drawing.key)
-    raise NotFound("there is no such figure", value=figure, valid=known)
+            keys.append(drawing.key)
+    raise NotFound("there is no such figure", value=figure, valid=keys)
 
 
 def compute(url: str, study_key: str, kind: DashboardKind) -> bytes:

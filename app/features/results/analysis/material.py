@@ -33,7 +33,7 @@ from app.platform.access import hidden_sessions
 from app.protocol import StudyProtocol
 from app.science.instruments import Instrument
 
-KEPT = 3
+MAX_CACHED = 3
 """Number of studies and kinds whose tables are cached; a thousand sessions take about 200 MB."""
 READ: Mapping[str, Callable[[Session, str, DashboardKind], pd.DataFrame]] = {
     "sessions": sessions_table,
@@ -134,14 +134,14 @@ class Material:
     @property
     def visible(self) -> pd.DataFrame:
         """Return the sessions whose measures are shown; if blinded, only completed ones."""
-        known = self.sessions[~self.sessions["session_id"].isin(list(self.hidden))]
-        return known[known["status"] == "completed"] if self.blinded else known
+        candidates = self.sessions[~self.sessions["session_id"].isin(list(self.hidden))]
+        return candidates[candidates["status"] == "completed"] if self.blinded else candidates
 
     def chosen(self, chosen: FigureFilter) -> "Material":
         """Return the rows that pass a filter, valid or not."""
         # In a blinded study, filtering by order must not reveal the order of an open session.
-        known = self.visible if chosen.order is not None else self.sessions
-        sessions = _sessions(known, chosen)
+        candidates = self.visible if chosen.order is not None else self.sessions
+        sessions = _sessions(candidates, chosen)
         ids = set(sessions["session_id"])
         return self._of(sessions, ids, chosen.limb)
 
@@ -201,7 +201,7 @@ class _Reader:
 class MaterialStore:
     """A cache of tables by database, study and kind, valid until the state of the data changes."""
 
-    _kept: "OrderedDict[tuple[URL, str, str], tuple[object, _Reader, Material]]" = field(
+    _cache: "OrderedDict[tuple[URL, str, str], tuple[object, _Reader, Material]]" = field(
         default_factory=OrderedDict
     )
 
@@ -213,16 +213,16 @@ class MaterialStore:
         they are first used. If the state has changed, all are read again.
         """
         name = (db.get_bind().engine.url, study_key, kind)
-        found = self._kept.pop(name, None)
+        found = self._cache.pop(name, None)
         if found is None or found[0] != state:
             # Release the old tables first: two sets of a large study's would take too much memory.
             found = None
             reader = _Reader(study_key, kind, db)
             found = (state, reader, reader.material())
         found[1].db = db
-        self._kept[name] = found
-        while len(self._kept) > KEPT:
-            self._kept.popitem(last=False)
+        self._cache[name] = found
+        while len(self._cache) > MAX_CACHED:
+            self._cache.popitem(last=False)
         return found[2]
 
 
@@ -232,22 +232,22 @@ def _instruments(db: Session) -> dict[tuple[str, int], Instrument]:
 
 
 def _sessions(sessions: pd.DataFrame, chosen: FigureFilter) -> pd.DataFrame:
-    kept = pd.Series(data=True, index=sessions.index)
+    mask = pd.Series(data=True, index=sessions.index)
     if chosen.participant:
-        kept &= sessions["participant_code"].isin(chosen.participant)
+        mask &= sessions["participant_code"].isin(chosen.participant)
     if chosen.order is not None:
-        kept &= sessions["order"] == chosen.order
+        mask &= sessions["order"] == chosen.order
     days = sessions["created_at_utc"].dt.date
     if chosen.since is not None:
-        kept &= days >= chosen.since
+        mask &= days >= chosen.since
     if chosen.until is not None:
-        kept &= days <= chosen.until
-    return sessions[kept]
+        mask &= days <= chosen.until
+    return sessions[mask]
 
 
 def _rows(rows: pd.DataFrame, ids: set[str], limb: str | None) -> pd.DataFrame:
-    kept = rows["session_id"].isin(ids)
+    mask = rows["session_id"].isin(ids)
     if limb is not None and "limb" in rows.columns:
         # Rows without a limb belong to the whole session.
-        kept &= rows["limb"].isna() | (rows["limb"] == limb)
-    return rows[kept]
+        mask &= rows["limb"].isna() | (rows["limb"] == limb)
+    return rows[mask]

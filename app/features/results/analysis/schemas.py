@@ -41,26 +41,24 @@ class FigureFilter(BaseModel):
 
     def words(self) -> str:
         """Return the filter as a sentence for captions and files, empty for the default filter."""
-        told = [*self._of_whom(), *self._when()]
+        parts = [*self._participant_parts(), *self._period_parts()]
         if self.limb is not None:
-            told.append(f"the {self.limb} task")
-        chosen = f"Only {', '.join(told)}." if told else ""
-        everything = (
-            "Rows that do not count are drawn too (broken off, not valid, superseded, skipped)."
-        )
+            parts.append(f"the {self.limb} task")
+        chosen = f"Only {', '.join(parts)}." if parts else ""
+        everything = "Invalid rows are included, too (broken off, not valid, superseded, skipped)."
         return f"{chosen} {everything if self.rows == 'all' else ''}".strip()
 
-    def _of_whom(self) -> list[str]:
-        told = []
+    def _participant_parts(self) -> list[str]:
+        parts = []
         if self.participant:
             shown = ", ".join(self.participant[:_SHOWN])
             more = len(self.participant) - _SHOWN
-            told.append(f"participants {shown}{f' and {more} more' if more > 0 else ''}")
+            parts.append(f"participants {shown}{f' and {more} more' if more > 0 else ''}")
         if self.order is not None:
-            told.append(f"order {self.order.replace(' ', ' → ')} ms")
-        return told
+            parts.append(f"order {self.order.replace(' ', ' → ')} ms")
+        return parts
 
-    def _when(self) -> list[str]:
+    def _period_parts(self) -> list[str]:
         if self.since is not None and self.until is not None:
             return [f"sessions from {self.since} to {self.until} (UTC)"]
         if self.since is not None:
@@ -71,7 +69,7 @@ class FigureFilter(BaseModel):
 NO_FILTER = FigureFilter()
 
 
-class DashboardAsked(FigureFilter):
+class DashboardQuery(FigureFilter):
     """The query of a dashboard: the kind of sessions and a filter."""
 
     kind: DashboardKind = "people"
@@ -82,7 +80,7 @@ class DashboardAsked(FigureFilter):
         return FigureFilter(**self.model_dump(include=set(FigureFilter.model_fields)))
 
 
-class GroupAsked(DashboardAsked):
+class GroupQuery(DashboardQuery):
     """The query of a dashboard, or of one group of its figures (`group`)."""
 
     group: FigureGroup | None = None

@@ -38,16 +38,16 @@ def sheet_of(drawing: Drawing, material: Material) -> bytes:
 
 
 def _head(drawing: Drawing, material: Material) -> list[str]:
-    said = {
+    origin = {
         "people": "Data of people.",
         "simulated": "SIMULATED DATA: made by a simulation, not by people.",
-        "test": "TEST DATA: made to try things out, not data of a study.",
+        "test": "TEST DATA: from test sessions, not data of a study.",
     }[material.kind]
-    words = [f"Reembody, study {material.protocol.key}. {said}", drawing.title]
-    words += textwrap.wrap(drawing.caption, _WIDTH)
+    texts = [f"Reembody, study {material.protocol.key}. {origin}", drawing.title]
+    texts += textwrap.wrap(drawing.caption, _WIDTH)
     if drawing.empty:
-        words.append(drawing.empty)
-    return [f"# {line}" for line in words]
+        texts.append(drawing.empty)
+    return [f"# {line}" for line in texts]
 
 
 def _cells(row: Sequence[Any]) -> list[str]:

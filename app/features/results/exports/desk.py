@@ -18,28 +18,28 @@ from typing import Self
 
 from app.clock import Clock
 from app.errors import NotFound, NotNow
-from app.features.results.exports.jobs import KEPT, Job
-from app.features.results.exports.orders import Made, NotMade, Order
+from app.features.results.exports.jobs import KEEP_FOR, Job
+from app.features.results.exports.orders import ExportFailure, ExportResult, Order
 from app.features.results.exports.schemas import ExportTrouble, ExportView
 from app.platform.background import Background
 from app.platform.context import AppContext, Part
 
 log = logging.getLogger(__name__)
 QUEUE = "exports"
-AT_ONCE = 5
+MAX_OPEN = 5
 """How many exports an account may have queued or in progress."""
-ENDED = NotMade(
+ENDED = ExportFailure(
     "the process that made the export ended",
     "Make it again; if that fails too, look at the server's log and memory.",
 )
 
 
-def make_archive(order: Order) -> Made | NotMade:
+def make_archive(order: Order) -> ExportResult | ExportFailure:
     """Write the file, or return why it could not be made; runs in the worker process."""
     # Loads pandas, which the server's own process does not need.
-    from app.features.results.exports.writing import made
+    from app.features.results.exports.writing import make_export
 
-    return made(order)
+    return make_export(order)
 
 
 @dataclass(eq=False)
@@ -87,17 +87,19 @@ class ExportDesk(Part):
 
         Raises NotNow if too many of the account's exports are open.
         """
-        self._forget_old()
+        self._remove_expired()
         with self._lock:
-            mine = [one for one in self._jobs.values() if one.owner == job.owner and one.is_open]
-            same = next((one for one in mine if one.is_the_same(job)), None)
-            if same is not None:
-                return self._view(same)
-            if len(mine) >= AT_ONCE:
+            own_jobs = [
+                one for one in self._jobs.values() if one.owner == job.owner and one.is_open
+            ]
+            existing = next((one for one in own_jobs if one.is_same_order(job)), None)
+            if existing is not None:
+                return self._view(existing)
+            if len(own_jobs) >= MAX_OPEN:
                 raise NotNow(
                     "too many of your exports are waiting",
-                    value=len(mine),
-                    valid=f"up to {AT_ONCE}",
+                    value=len(own_jobs),
+                    valid=f"up to {MAX_OPEN}",
                     remedy="Wait until one is ready, or cancel one.",
                 )
             self.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
@@ -107,17 +109,17 @@ class ExportDesk(Part):
 
     def exports_of(self, owner: str) -> list[ExportView]:
         """Return an account's exports, newest first."""
-        self._forget_old()
+        self._remove_expired()
         with self._lock:
-            mine = [self._view(job) for job in self._jobs.values() if job.owner == owner]
-        return mine[::-1]
+            own_jobs = [self._view(job) for job in self._jobs.values() if job.owner == owner]
+        return own_jobs[::-1]
 
     def find(self, owner: str, export_id: str) -> Job:
         """Return one of an account's exports.
 
         Raises NotFound if there is none, or if it belongs to another account.
         """
-        self._forget_old()
+        self._remove_expired()
         with self._lock:
             job = self._jobs.get(export_id)
         if job is None or job.owner != owner:
@@ -134,8 +136,8 @@ class ExportDesk(Part):
 
     def cancel(self, owner: str, export_id: str) -> None:
         """Cancel an export, or remove its file; raise NotFound if there is none."""
-        wanted = self.find(owner, export_id)
-        self._drop(lambda job: job is wanted)
+        cancelled_job = self.find(owner, export_id)
+        self._drop(lambda job: job is cancelled_job)
 
     def forget_study(self, study_key: str) -> None:
         """Remove all exports of a study, because one of its participants was erased."""
@@ -166,7 +168,7 @@ class ExportDesk(Part):
             keep_free_bytes=self.keep_free_bytes,
         )
         with self._lock:
-            if job.given_up:
+            if job.cancelled:
                 return
             job.state, job.began_ns = "making", self.clock.monotonic_ns()
             future = job.worker.submit(make_archive, order)
@@ -175,7 +177,7 @@ class ExportDesk(Part):
             self.background.well(QUEUE)
         except (BrokenProcessPool, CancelledError) as error:
             result = ENDED
-            if not job.given_up:
+            if not job.cancelled:
                 self.background.failed(QUEUE, error)
         except Exception as error:
             log.exception("an export could not be made")
@@ -183,49 +185,49 @@ class ExportDesk(Part):
             self.background.failed(QUEUE, error)
         finally:
             job.worker.end()
-        self._settle(job, result)
+        self._finish(job, result)
 
-    def _settle(self, job: Job, result: Made | NotMade) -> None:
+    def _finish(self, job: Job, result: ExportResult | ExportFailure) -> None:
         with self._lock:
             job.ended_ns = self.clock.monotonic_ns()
-            if isinstance(result, Made) and not job.given_up:
+            if isinstance(result, ExportResult) and not job.cancelled:
                 job.size_bytes, job.sha256 = result.size_bytes, result.sha256
                 job.sessions, job.revealed = result.sessions, result.revealed
                 job.made_at = self.clock.utc_now()
                 job.state = "ready"
-                self._forget_later()
+                self._schedule_expiry()
                 return
             job.remove_files()
-            if isinstance(result, NotMade):
+            if isinstance(result, ExportFailure):
                 job.trouble = ExportTrouble(message=result.message, remedy=result.remedy)
             job.state = "failed"
 
-    def _drop(self, which: Callable[[Job], bool]) -> None:
+    def _drop(self, matches: Callable[[Job], bool]) -> None:
         with self._lock:
-            dropped = [job for job in self._jobs.values() if which(job)]
+            dropped = [job for job in self._jobs.values() if matches(job)]
             for job in dropped:
-                job.given_up = True
+                job.cancelled = True
                 del self._jobs[job.id]
         for job in dropped:
             # Kill the process first, so that nothing is written after the files are removed.
             job.worker.end()
             job.remove_files()
 
-    def _forget_old(self) -> None:
+    def _remove_expired(self) -> None:
         now = self.clock.utc_now()
         self._drop(lambda job: job.expires_at is not None and job.expires_at <= now)
 
-    def _forget_in_time(self) -> None:
+    def _expire_on_timer(self) -> None:
         try:
-            self._forget_old()
+            self._remove_expired()
         except OSError as error:
             log.exception("a file that is due could not be removed")
             self.background.failed(QUEUE, error)
         with self._lock:
             if any(job.state == "ready" for job in self._jobs.values()):
-                self._forget_later()
+                self._schedule_expiry()
 
-    def _forget_later(self) -> None:
-        timer = threading.Timer(KEPT.total_seconds() + 1, self._forget_in_time)
+    def _schedule_expiry(self) -> None:
+        timer = threading.Timer(KEEP_FOR.total_seconds() + 1, self._expire_on_timer)
         timer.daemon = True
         timer.start()

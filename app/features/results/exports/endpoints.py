@@ -41,7 +41,7 @@ def get_export(
 
     study = study_by_key(db, key)
     now = context.clock.utc_now()
-    _put_on_record(
+    _record_copy(
         *(db, caller.actor, study, kind, now, {"kind": kind}),
         revealed=_revealed(db, study, kind),
         sessions=count_sessions(db, study, kind),
@@ -104,7 +104,7 @@ async def get_export_file(export_id: str, context: Context, caller: SignedIn) ->
     job = await run_in_threadpool(_ready, context, caller, export_id)
     if not job.recorded:
         async with context.database.writing_async() as db:
-            await run_in_threadpool(_put_job_on_record, db, context, caller, job)
+            await run_in_threadpool(_record_job_copy, db, context, caller, job)
     job.recorded, job.fetched_at = True, context.clock.utc_now()
     return FileResponse(
         job.path,
@@ -139,10 +139,10 @@ def _ready(context: AppContext, caller: Caller, export_id: str) -> Job:
     return job
 
 
-def _put_job_on_record(db: Session, context: AppContext, caller: Caller, job: Job) -> None:
+def _record_job_copy(db: Session, context: AppContext, caller: Caller, job: Job) -> None:
     study, now = study_by_key(db, job.study_key), context.clock.utc_now()
     details = {"kind": job.kind, "session": job.session_id}
-    _put_on_record(
+    _record_copy(
         *(db, caller.actor, study, job.kind, now, details),
         revealed=job.revealed,
         sessions=job.sessions,
@@ -150,7 +150,7 @@ def _put_job_on_record(db: Session, context: AppContext, caller: Caller, job: Jo
     )
 
 
-def _put_on_record(
+def _record_copy(
     db: Session,
     actor: str,
     study: Study,
@@ -178,13 +178,13 @@ def _put_on_record(
         size_bytes=size_bytes,
     )
     subject = f"study:{study.key}"
-    told = {**details, **({"revealed": sorted(revealed)} if revealed else {})}
-    record(db, actor=actor, action="study.exported", subject=subject, details=told, now=now)
+    all_details = {**details, **({"revealed": sorted(revealed)} if revealed else {})}
+    record(db, actor=actor, action="study.exported", subject=subject, details=all_details, now=now)
 
 
 def _revealed(db: Session, study: Study, kind: Kind) -> frozenset[str]:
     revealed = revealed_sessions(db, study)
     if not revealed:
         return revealed
-    wanted = StudySession.kind == kind if kind != "all" else StudySession.kind != "expert"
-    return revealed & frozenset(db.scalars(select(StudySession.id).where(wanted)))
+    of_kind = StudySession.kind == kind if kind != "all" else StudySession.kind != "expert"
+    return revealed & frozenset(db.scalars(select(StudySession.id).where(of_kind)))

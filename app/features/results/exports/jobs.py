@@ -10,7 +10,7 @@ from app.features.results.exports.schemas import ExportState, ExportTrouble, Exp
 from app.models import new_id
 from app.platform.workers import Worker
 
-KEPT = timedelta(hours=2)
+KEEP_FOR = timedelta(hours=2)
 """How long a finished file is kept after it was made or last downloaded."""
 FEWEST_ROWS = 2_000
 """The file's size is estimated only after this many rows have been written."""
@@ -45,7 +45,7 @@ class Job:
     fetched_at: datetime | None = None
     recorded: bool = False
     trouble: ExportTrouble | None = None
-    given_up: bool = False
+    cancelled: bool = False
     worker: Worker = field(default_factory=Worker)
 
     @property
@@ -67,9 +67,9 @@ class Job:
     def expires_at(self) -> datetime | None:
         """Return when the file is removed unless it is downloaded; None if it is not ready."""
         last = self.fetched_at or self.made_at
-        return None if last is None or self.state != "ready" else last + KEPT
+        return None if last is None or self.state != "ready" else last + KEEP_FOR
 
-    def is_the_same(self, other: "Job") -> bool:
+    def is_same_order(self, other: "Job") -> bool:
         """Return whether two jobs are orders of the same file by the same account."""
         return (self.owner, self.study_key, self.kind, self.session_id) == (
             other.owner,
@@ -89,7 +89,7 @@ class Job:
         elapsed_s = self._elapsed_s(now_ns)
         size = self.size_bytes or done.bytes
         share = done.rows / done.rows_total if done.rows_total else 0.0
-        tells = self.state == "making" and done.rows >= FEWEST_ROWS and 0 < share <= 1
+        can_estimate = self.state == "making" and done.rows >= FEWEST_ROWS and 0 < share <= 1
         return ExportView(
             id=self.id,
             study_key=self.study_key,
@@ -104,10 +104,10 @@ class Job:
             sessions=done.sessions,
             sessions_total=done.sessions_total,
             bytes=size,
-            bytes_expected=round(size / share) if tells else None,
+            bytes_expected=round(size / share) if can_estimate else None,
             bytes_per_s=size / elapsed_s if elapsed_s > 0 and size else None,
             elapsed_s=elapsed_s,
-            remaining_s=elapsed_s * (1 - share) / share if tells else None,
+            remaining_s=elapsed_s * (1 - share) / share if can_estimate else None,
             sha256=self.sha256,
             fetched_at=self.fetched_at,
             expires_at=self.expires_at,

@@ -29,7 +29,7 @@ class Order:
 
 
 @dataclass(frozen=True)
-class Made:
+class ExportResult:
     """The result of a finished export: the file's size and hash, and its number of sessions.
 
     `revealed`: the open sessions of a blinded study whose condition the file shows.
@@ -42,7 +42,7 @@ class Made:
 
 
 @dataclass(frozen=True)
-class NotMade:
+class ExportFailure:
     """Why an export failed, in words for the person who ordered it."""
 
     message: str
@@ -72,7 +72,7 @@ class Meter:
 
     path: Path
 
-    def tell(self, progress: Progress) -> None:
+    def write(self, progress: Progress) -> None:
         """Overwrite the progress in the file."""
         handle = os.open(self.path, os.O_WRONLY | os.O_CREAT, 0o600)
         try:

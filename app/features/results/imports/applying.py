@@ -85,7 +85,7 @@ class _Run:
             found = [form for one in self._mapping.sets for form in self._form(row, one)]
             self._out.skipped_rows += not found
             self._out.forms += found
-        self._find_doubled()
+        self._find_duplicates()
         return self._out
 
     def _form(self, row: SheetRow, columns: ColumnSet) -> Iterator[Form]:
@@ -118,11 +118,13 @@ class _Run:
         value = self._value(item, cell)
         if value is None:
             self._out.unknown_words[cell[:_SHOWN]] = None
-            self._tell(row, column, "These words have no number.", "Give the word a number above.")
+            self._report(
+                row, column, "These words have no number.", "Give the word a number above."
+            )
         elif not fits(self._instrument, item, value):
             became = f" (becomes {value:g})" if isinstance(value, float) else ""
             valid = valid_answers(self._instrument, item)
-            self._tell(
+            self._report(
                 row,
                 column,
                 f"{key}: not a possible answer{became}; it must be {valid}.",
@@ -149,7 +151,7 @@ class _Run:
                 return None
             self._out.numbers.setdefault(item.key, []).append(number)
             number = self._mapping.multiply * number + self._mapping.add
-        return self._turn_back(item, number)
+        return self._reverse_back(item, number)
 
     def _is_missing(self, cell: str) -> bool:
         word = cell.casefold()
@@ -176,7 +178,7 @@ class _Run:
             return None
         return number if math.isfinite(number) else None
 
-    def _turn_back(self, item: Item, number: float) -> float:
+    def _reverse_back(self, item: Item, number: float) -> float:
         scale = self._instrument.scale_of(item)
         if item.key not in self._turned or scale is None:
             return number
@@ -186,22 +188,22 @@ class _Run:
         name = self._mapping.condition
         word = columns.condition or "" if name is None else self._cell(row, name)
         if name is not None and not word:
-            self._tell(row, name, "The condition is missing.", "Fill it in, or remove the row.")
+            self._report(row, name, "The condition is missing.", "Fill it in, or remove the row.")
         if len(word) > MAX_CODE and name is not None:
-            self._tell(row, name, "The condition is too long.", f"At most {MAX_CODE} letters.")
+            self._report(row, name, "The condition is too long.", f"At most {MAX_CODE} letters.")
         return self._mapping.conditions.get(word, word)[:MAX_CODE]
 
     def _code(self, row: SheetRow) -> str:
         name = self._mapping.participant
         code = self._cell(row, name)
         if not code:
-            self._tell(row, name, "The participant is missing.", "Fill it in, or remove the row.")
+            self._report(row, name, "The participant is missing.", "Fill it in, or remove the row.")
         elif "@" in code:
-            self._tell(
+            self._report(
                 row, name, "An e-mail address is no pseudonym.", "Replace addresses by codes first."
             )
         elif len(code) > MAX_CODE:
-            self._tell(row, name, "The code is too long.", f"At most {MAX_CODE} letters.")
+            self._report(row, name, "The code is too long.", f"At most {MAX_CODE} letters.")
         return code
 
     def _day(self, row: SheetRow) -> date | None:
@@ -214,21 +216,21 @@ class _Run:
                 return datetime.strptime(cell.split("T")[0].split(" ")[0], pattern).date()  # noqa: DTZ007 - a day has no zone
             except ValueError:
                 continue
-        self._tell(row, name, "This is no date in the chosen order.", "Choose another order.")
+        self._report(row, name, "This is no date in the chosen order.", "Choose another order.")
         return None
 
-    def _find_doubled(self) -> None:
+    def _find_duplicates(self) -> None:
         first: dict[tuple[str, str], int] = {}
         for form in self._out.forms:
             key = (form.participant_code, form.condition)
             if key in first and form.participant_code:
-                said = f" in {form.condition!r}" if form.condition else ""
+                in_condition = f" in {form.condition!r}" if form.condition else ""
                 self._out.problems.append(
                     CellProblem(
                         line=form.line,
                         column=self._mapping.participant,
                         value=form.participant_code[:_SHOWN],
-                        message=f"Answered{said} before, in line {first[key]}.",
+                        message=f"Answered{in_condition} before, in line {first[key]}.",
                         remedy="Name the column that tells them apart as the condition.",
                     )
                 )
@@ -237,7 +239,7 @@ class _Run:
     def _cell(self, row: SheetRow, name: str) -> str:
         return row.cells[self._at[name]].strip()
 
-    def _tell(self, row: SheetRow, column: str, message: str, remedy: str) -> None:
+    def _report(self, row: SheetRow, column: str, message: str, remedy: str) -> None:
         self._out.problems.append(
             CellProblem(
                 line=row.line,

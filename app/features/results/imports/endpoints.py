@@ -23,7 +23,7 @@ from app.features.results.imports.schemas import (
     LookView,
     UndoRequest,
 )
-from app.features.results.imports.service import erase_imported, take_in, undo
+from app.features.results.imports.service import erase_imported, import_answers, undo
 from app.features.results.imports.stored import (
     as_csv,
     forms_of,
@@ -57,7 +57,7 @@ def post_import(
     """Import a file: all of its forms, or none."""
     study = study_by_key(db, key)
     now = context.clock.utc_now()
-    return import_view(db, take_in(db, study, request, actor=caller.actor, now=now))
+    return import_view(db, import_answers(db, study, request, actor=caller.actor, now=now))
 
 
 @router.get("")
@@ -138,7 +138,7 @@ def post_erase_imported(
 ) -> ErasedImported:
     """Erase one participant's answers from all imports of a study."""
     with _erasing(context) as db:
-        gone = erase_imported(
+        erased_forms = erase_imported(
             db,
             study_by_key(db, key),
             request.participant_code,
@@ -146,7 +146,7 @@ def post_erase_imported(
             actor=caller.actor,
             now=context.clock.utc_now(),
         )
-    return ErasedImported(forms=gone)
+    return ErasedImported(forms=erased_forms)
 
 
 @contextmanager

@@ -20,8 +20,8 @@ from app.features.results.imports.schemas import (
 )
 from app.features.results.imports.service import applied_to, known_instrument
 from app.features.results.imports.sheet import Sheet, read_sheet
-from app.features.results.imports.stored import import_view, imports_of, standing
-from app.features.results.imports.warnings import looks_turned, reversed_items, shift_of
+from app.features.results.imports.stored import active_import, import_view, imports_of
+from app.features.results.imports.warnings import reversal_notes, reversed_items, shift_of
 from app.models import Study
 from app.protocol import sha256_of
 from app.science.instruments import Instrument
@@ -39,7 +39,7 @@ def look(db: Session, study: Study, request: LookRequest) -> LookView:
     remembered = _remembered(db, study, key, sheet)
     protocol = protocol_of(newest_version(db, study))
     proposal = remembered or propose(sheet, instrument, protocol)
-    same = standing(db, study, key, sha256_of(request.text))
+    existing = active_import(db, study, key, sha256_of(request.text))
     return LookView(
         separator=sheet.separator,
         header_rows=sheet.header_rows,
@@ -51,7 +51,7 @@ def look(db: Session, study: Study, request: LookRequest) -> LookView:
         remembered=remembered is not None,
         words=_answers_in_words(sheet, proposal, instrument),
         condition_words=_condition_words(sheet, proposal),
-        same_file=None if same is None else import_view(db, same),
+        same_file=None if existing is None else import_view(db, existing),
     )
 
 
@@ -75,7 +75,7 @@ def check(db: Session, study: Study, text: str, mapping: Mapping) -> CheckView:
         unknown_words=list(applied.unknown_words)[:_SHOWN_WORDS],
         shift=_shift(instrument, mapping, applied),
         reversed_items=[key for key in turning if key in items],
-        notes=[*_not_mapped(instrument, items), *looks_turned(turning, applied.forms)],
+        notes=[*_not_mapped(instrument, items), *reversal_notes(turning, applied.forms)],
         first_forms=[_preview(form) for form in applied.forms[:_SHOWN_ROWS]],
     )
 
@@ -86,8 +86,8 @@ def _remembered(db: Session, study: Study, key: str, sheet: Sheet) -> Mapping | 
         mapping = Mapping.model_validate(row.mapping)
         names = {mapping.participant, mapping.condition, mapping.date} - {None}
         names |= {column for one in mapping.sets for column in one.items.values()}
-        same_heads = mapping.header_rows == sheet.header_rows
-        if row.instrument == key and names <= set(sheet.header) and same_heads:
+        same_header_rows = mapping.header_rows == sheet.header_rows
+        if row.instrument == key and names <= set(sheet.header) and same_header_rows:
             return mapping
     return None
 

@@ -77,16 +77,16 @@ def _tests(cells: Cells) -> dict[str, object]:
         )
         for one in pairwise(cells.values, levels)
     ]
-    told: dict[str, object] = {"pairs": pairs, "left_out": list(complete.left_out)}
+    fields: dict[str, object] = {"pairs": pairs, "left_out": list(complete.left_out)}
     if len(levels) > _FEWEST:
-        whole = friedman(complete.values)
-        p = "p < .001" if whole.p < 0.001 else f"p = {whole.p:.3f}".replace("0.", ".", 1)
-        told["test"] = (
-            f"Friedman, {whole.method}: χ²({whole.df}) = {whole.statistic:.2f}, {p}, "
-            f"W = {whole.kendall_w:.3f}".replace("W = 0.", "W = .")
-            + f", n = {whole.n}"
+        omnibus = friedman(complete.values)
+        p = "p < .001" if omnibus.p < 0.001 else f"p = {omnibus.p:.3f}".replace("0.", ".", 1)
+        fields["test"] = (
+            f"Friedman, {omnibus.method}: χ²({omnibus.df}) = {omnibus.statistic:.2f}, {p}, "
+            f"W = {omnibus.kendall_w:.3f}".replace("W = 0.", "W = .")
+            + f", n = {omnibus.n}"
         )
-    return told
+    return fields
 
 
 def _mean(condition: str, values: Sequence[float]) -> ConditionMean:

@@ -50,11 +50,11 @@ class Mapping(_Body):
     header_rows: Annotated[int, Field(ge=1, le=5)] = 1
 
     @model_validator(mode="after")
-    def _one_way_to_a_condition(self) -> Self:
-        told = [one.condition for one in self.sets]
-        if self.condition is not None and any(told):
+    def _require_one_source_of_conditions(self) -> Self:
+        conditions = [one.condition for one in self.sets]
+        if self.condition is not None and any(conditions):
             raise ValueError("give a column of conditions, or a condition to each set of columns")
-        if len(self.sets) > 1 and (None in told or len(set(told)) < len(told)):
+        if len(self.sets) > 1 and (None in conditions or len(set(conditions)) < len(conditions)):
             raise ValueError("several sets of columns need a condition each, all different")
         if self.multiply == 0.0:
             raise ValueError("multiply cannot be 0")

@@ -13,7 +13,7 @@ from app.features.people.audit import record
 from app.features.results.imports.applying import Applied, Form, apply_mapping
 from app.features.results.imports.schemas import ImportRequest, Mapping
 from app.features.results.imports.sheet import read_sheet
-from app.features.results.imports.stored import standing
+from app.features.results.imports.stored import active_import
 from app.models import AnswerImport, ImportedForm, Study, new_id
 from app.protocol import sha256_of
 from app.science.instruments import Instrument
@@ -53,7 +53,7 @@ def known_instrument(instruments: dict[str, Instrument], key: str) -> Instrument
     return instruments[key]
 
 
-def take_in(
+def import_answers(
     db: Session, study: Study, request: ImportRequest, *, actor: str, now: datetime
 ) -> AnswerImport:
     """Store every form of a file, or none.
@@ -65,7 +65,7 @@ def take_in(
     content_hash = sha256_of(request.text)
     # If the same file is imported twice concurrently, the second waits here and is then rejected.
     db.execute(select(Study.id).where(Study.id == study.id).with_for_update(key_share=True))
-    _refuse_second(db, study, mapping.instrument, content_hash)
+    _reject_duplicate(db, study, mapping.instrument, content_hash)
     if applied.problems or not applied.forms:
         raise InvalidInput(
             f"{len(applied.problems)} cells cannot be taken in; nothing was stored"
@@ -105,7 +105,7 @@ def undo(db: Session, row: AnswerImport, *, reason: str, actor: str, now: dateti
     """Delete the forms of an import; raise Conflict if it was undone before."""
     if row.undone_at is not None:
         raise Conflict("this import was undone before", value=row.id, remedy="Nothing is left.")
-    gone = _count(db, delete(ImportedForm).where(ImportedForm.import_id == row.id))
+    deleted = _count(db, delete(ImportedForm).where(ImportedForm.import_id == row.id))
     row.undone_at, row.undone_by, row.undone_reason = now, actor, reason
     db.flush()
     record(
@@ -113,7 +113,7 @@ def undo(db: Session, row: AnswerImport, *, reason: str, actor: str, now: dateti
         actor=actor,
         action="answer.import_undone",
         subject=f"import:{row.id}",
-        details={"forms": gone},
+        details={"forms": deleted},
         now=now,
     )
 
@@ -124,14 +124,14 @@ def forget_participant(db: Session, study_id: str, code: str) -> int:
     return _count(db, delete(ImportedForm).where(own))
 
 
-def _refuse_second(db: Session, study: Study, instrument: str, content_hash: str) -> None:
-    same = standing(db, study, instrument, content_hash)
-    if same is not None:
+def _reject_duplicate(db: Session, study: Study, instrument: str, content_hash: str) -> None:
+    existing = active_import(db, study, instrument, content_hash)
+    if existing is not None:
         raise Conflict(
             "this file was imported before, as answers to the same instrument",
-            value=same.file_name,
+            value=existing.file_name,
             remedy="Open that import. Undo it first if it was wrong.",
-            details=[{"import_id": same.id, "imported_at": same.imported_at.isoformat()}],
+            details=[{"import_id": existing.id, "imported_at": existing.imported_at.isoformat()}],
         )
 
 
@@ -169,11 +169,11 @@ def erase_imported(
             valid=code,
             remedy="Type the code as it stands in the list, to be sure whom you mean.",
         )
-    gone = forget_participant(db, study.id, code)
-    if not gone:
+    deleted = forget_participant(db, study.id, code)
+    if not deleted:
         raise NotFound("no imported answers have this code", value=code)
-    details = {"forms": gone}
+    details = {"forms": deleted}
     subject = f"study:{study.key}"
     action = "answer.imported_erased"
     record(db, actor=actor, action=action, subject=subject, details=details, now=now)
-    return gone
+    return deleted

@@ -14,9 +14,9 @@ from app.errors import InvalidInput
 
 SEPARATORS = (",", ";", "\t")
 MAX_ROWS, MAX_COLUMNS, MAX_CELL = 20_000, 1000, 5000
-LOOKED_AT = 10_000
+INSPECTED_CHARACTERS = 10_000
 _CONTROL = re.compile("[\x00-\x08\x0e-\x1f]")
-_NO_TABLES = {
+_OTHER_KINDS = {
     "\x89PNG": "a picture",
     "\u2030PNG": "a picture",
     "\xff\xd8": "a picture",
@@ -71,11 +71,11 @@ def read_sheet(text: str, header_rows: int | None = None) -> Sheet:
     rows = _rows(text, separator)
     if not rows:
         raise InvalidInput("the file is empty", remedy="Save the table as CSV UTF-8 with a header.")
-    heads = header_rows or _header_rows(rows)
+    header_count = header_rows or _header_rows(rows)
     header = [cell.strip() for cell in rows[0].cells]
-    _check_shape(rows, header, heads)
-    labels = [cell.strip() for cell in rows[1].cells] if heads > 1 else [""] * len(header)
-    return Sheet(separator, heads, header, labels, rows[heads:])
+    _check_shape(rows, header, header_count)
+    labels = [cell.strip() for cell in rows[1].cells] if header_count > 1 else [""] * len(header)
+    return Sheet(separator, header_count, header, labels, rows[header_count:])
 
 
 def _separator(text: str) -> str:
@@ -85,8 +85,8 @@ def _separator(text: str) -> str:
 
 def _require_table(text: str) -> None:
     """Raise InvalidInput if the file is not text: a picture, a PDF or an Excel workbook."""
-    kind = next((kind for begins, kind in _NO_TABLES.items() if text.startswith(begins)), None)
-    if kind is None and _CONTROL.search(text[:LOOKED_AT]) is None:
+    kind = next((kind for begins, kind in _OTHER_KINDS.items() if text.startswith(begins)), None)
+    if kind is None and _CONTROL.search(text[:INSPECTED_CHARACTERS]) is None:
         return
     raise InvalidInput(
         f"this is {kind or 'no text file'}, not a table",
@@ -128,19 +128,19 @@ def _header_rows(rows: list[SheetRow]) -> int:
     return 1
 
 
-def _check_shape(rows: list[SheetRow], header: list[str], heads: int) -> None:
+def _check_shape(rows: list[SheetRow], header: list[str], header_count: int) -> None:
     if len(header) > MAX_COLUMNS:
         raise InvalidInput("the file has too many columns", valid=f"at most {MAX_COLUMNS}")
-    doubled = [name for name, count in Counter(header).items() if count > 1 or not name]
-    if doubled:
+    duplicates = [name for name, count in Counter(header).items() if count > 1 or not name]
+    if duplicates:
         raise InvalidInput(
-            f"the column name {doubled[0]!r} is there more than once"
-            if doubled[0]
+            f"the column name {duplicates[0]!r} is there more than once"
+            if duplicates[0]
             else "a column has no name",
-            value=doubled[0],
+            value=duplicates[0],
             remedy="Give every column a name of its own in the first row.",
         )
-    for row in rows[heads:]:
+    for row in rows[header_count:]:
         if len(row.cells) != len(header):
             raise InvalidInput(
                 f"line {row.line} has {len(row.cells)} cells, but the header has {len(header)}",
@@ -154,5 +154,5 @@ def _check_shape(rows: list[SheetRow], header: list[str], heads: int) -> None:
                 value=row.line,
                 valid=f"text of at most {MAX_CELL} characters",
             )
-    if len(rows) <= heads:
+    if len(rows) <= header_count:
         raise InvalidInput("the file has a header but no rows", valid="at least one row of answers")

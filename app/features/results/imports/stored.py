@@ -47,7 +47,7 @@ def instrument_of_import(db: Session, row: AnswerImport) -> Instrument:
     return instrument_of(kept_row(db, InstrumentVersion, row.instrument_version_id))
 
 
-def standing(db: Session, study: Study, key: str, content_hash: str) -> AnswerImport | None:
+def active_import(db: Session, study: Study, key: str, content_hash: str) -> AnswerImport | None:
     """Return the import of a file with the same content that was not undone."""
     return db.scalar(
         select(AnswerImport).where(
@@ -90,11 +90,11 @@ def as_csv(
     own = ["study_key", "origin", "import_id", "line", "participant_code", "condition"]
     writer.writerow([*own, "in_study", "answered_on", "instrument", *items, *scores])
     for form in forms:
-        told = [study.key, "imported", row.id, form.line, form.participant_code, form.condition]
-        told += [str(form.in_study).lower(), form.answered_on, row.instrument]
-        told += [form.answers.get(key) for key in items]
-        told += [form.scores.get(key) for key in scores]
-        writer.writerow([_cell(value) for value in told])
+        cells = [study.key, "imported", row.id, form.line, form.participant_code, form.condition]
+        cells += [str(form.in_study).lower(), form.answered_on, row.instrument]
+        cells += [form.answers.get(key) for key in items]
+        cells += [form.scores.get(key) for key in scores]
+        writer.writerow([_cell(value) for value in cells])
     return out.getvalue()
 
 
@@ -115,7 +115,7 @@ def import_files(db: Session, study: Study) -> Iterator[tuple[str, bytes]]:
             yield f"{row.instrument}_{row.id}.csv", text.encode()
 
 
-def told_of(db: Session, study_id: str, code: str) -> list[dict[str, object]]:
+def imported_answers_of(db: Session, study_id: str, code: str) -> list[dict[str, object]]:
     """Return one participant's imported answers, for the participant's own copy."""
     query = (
         select(ImportedForm, AnswerImport)

@@ -68,7 +68,7 @@ def reversed_items(instrument: Instrument) -> dict[str, tuple[str, list[str]]]:
     return found
 
 
-def looks_turned(turning: Map[str, tuple[str, list[str]]], forms: Sequence[Form]) -> list[str]:
+def reversal_notes(turning: Map[str, tuple[str, list[str]]], forms: Sequence[Form]) -> list[str]:
     """Return notes on items that correlate positively with items that they should oppose."""
     notes = []
     for item, (score, up) in turning.items():

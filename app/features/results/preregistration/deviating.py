@@ -26,7 +26,7 @@ def deviations_of(
     n_corrected: int,
 ) -> list[DeviationView]:
     """Return the deviations, followed by the notes."""
-    told = [
+    deviations = [
         *_versions(declared, versions, sessions),
         *_numbers(declared, sessions, len(found.people)),
         *_by_hand(declared, sessions),
@@ -34,13 +34,13 @@ def deviations_of(
         *_values(found, n_corrected),
         *_notes(declared),
     ]
-    return sorted(told, key=lambda one: one.is_note)
+    return sorted(deviations, key=lambda one: one.is_note)
 
 
 def _versions(
     declared: Declared, versions: Sequence[StudyVersion], sessions: pd.DataFrame
 ) -> list[DeviationView]:
-    told: list[DeviationView] = []
+    deviations: list[DeviationView] = []
     by_number = {version.number: version for version in versions}
     # Without sessions, indexing by an empty list would select columns.
     elsewhere = pd.Series(
@@ -52,19 +52,19 @@ def _versions(
         dtype=bool,
     )
     other = sessions[elsewhere]
-    begun = other[other["started_at_utc"].notna()]
-    if not begun.empty:
-        numbers = ", ".join(str(n) for n in sorted(set(begun["study_version"])))
-        told.append(
+    started = other[other["started_at_utc"].notna()]
+    if not started.empty:
+        numbers = ", ".join(str(n) for n in sorted(set(started["study_version"])))
+        deviations.append(
             _deviation(
                 "declared_late",
-                f"{_count(len(begun), 'session')} ran on version {numbers}, which did not declare "
-                "this: it was declared, or changed, after data were collected.",
+                f"{_count(len(started), 'session')} ran on version {numbers}, which did not "
+                "declare this: it was declared, or changed, after data were collected.",
             )
         )
     starts = sessions["started_at_utc"].dropna()
     if starts.empty:
-        return told
+        return deviations
     first: datetime = starts.min().to_pydatetime()
     for before, after in pairwise(versions):
         if after.created_at <= first:
@@ -75,32 +75,34 @@ def _versions(
         said = "the protocol"
         if any(one.path[:1] == ("preregistration",) for one in places):
             code, said = "declaration_changed", "the protocol and the declaration itself"
-        told.append(
+        deviations.append(
             _deviation(
                 code,
                 f"Version {after.number} changed {said} after the first session "
                 f"({_count(len(places), 'place')}; Versions shows each).",
             )
         )
-    return told
+    return deviations
 
 
 def _numbers(declared: Declared, sessions: pd.DataFrame, n: int) -> list[DeviationView]:
-    told = []
+    deviations = []
     planned = declared.preregistration.planned_n
     still = int(sessions["status"].isin(["planned", "active"]).sum())
     if still:
-        told.append(
+        deviations.append(
             _note("still_open", f"{_count(still, 'session')} not over yet: not in the test.")
         )
     if n < planned:
         said = f"{n} of {planned} declared participants are in the test."
-        told.append(_deviation("n_short", f"{said} A test before the last one is an interim look."))
+        deviations.append(
+            _deviation("n_short", f"{said} A test before the last one is an interim look.")
+        )
     if n > planned:
-        told.append(
+        deviations.append(
             _deviation("n_over", f"{n} participants are in the test; {planned} were declared.")
         )
-    return told
+    return deviations
 
 
 def _by_hand(declared: Declared, sessions: pd.DataFrame) -> list[DeviationView]:
@@ -130,9 +132,9 @@ def _unjudged(excluded: Excluded) -> list[DeviationView]:
 
 
 def _values(found: Values, n_corrected: int) -> list[DeviationView]:
-    told = []
+    deviations = []
     if found.lacking:
-        told.append(
+        deviations.append(
             _deviation(
                 "missing_values",
                 f"{_names(list(found.lacking))} left out for a missing value in a condition, not "
@@ -142,24 +144,24 @@ def _values(found: Values, n_corrected: int) -> list[DeviationView]:
     if n_corrected:
         where = "corrections.csv of the export has each with its reason."
         said = f"{_count(n_corrected, 'answer')} corrected after it was given; {where}"
-        told.append(_note("corrected", said))
-    return told
+        deviations.append(_note("corrected", said))
+    return deviations
 
 
 def _notes(declared: Declared) -> list[DeviationView]:
-    told = []
+    deviations = []
     if not declared.preregistration.registration:
-        told.append(
+        deviations.append(
             _note(
                 "not_registered",
                 "No registration is named: this declaration is dated and hashed by this server "
                 "only. A registry (OSF, AsPredicted) makes the date independent of the lab.",
             )
         )
-    told.append(
+    deviations.append(
         _note("exploratory", "Every other test, the Statistics page included, is exploratory.")
     )
-    return told
+    return deviations
 
 
 def _names(codes: list[str]) -> str:

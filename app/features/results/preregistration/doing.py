@@ -9,7 +9,7 @@ from app.features.design.studies import newest_version, protocol_of, versions_of
 from app.features.results.analysis.tables import Kind, corrections_table
 from app.features.results.preregistration.declared import Declared, declared_in
 from app.features.results.preregistration.deviating import deviations_of
-from app.features.results.preregistration.excluding import BEGUN, Tables, exclude, read_tables
+from app.features.results.preregistration.excluding import OVER, Tables, exclude, read_tables
 from app.features.results.preregistration.schemas import PreregistrationView, PrimaryResult
 from app.features.results.preregistration.testing import Values, make_test, values_of
 from app.models import Study, StudyVersion
@@ -31,13 +31,13 @@ def done(
     completed = tables.sessions[
         (tables.sessions["status"] == "completed") & tables.sessions["valid"]
     ]
-    kept = set(completed["session_id"]) - excluded.session_ids
-    found = values_of(db, tables, protocol, kind, kept)
+    included_ids = set(completed["session_id"]) - excluded.session_ids
+    found = values_of(db, tables, protocol, kind, included_ids)
     result, why = _result(declared, found)
     return view.model_copy(
         update={
             "declaration": declared.view(_frozen_at(versions, declared)),
-            "sessions": int(tables.sessions["status"].isin(BEGUN).sum()),
+            "sessions": int(tables.sessions["status"].isin(OVER).sum()),
             "excluded": excluded.found,
             "included": len(found.people),
             "result": result,

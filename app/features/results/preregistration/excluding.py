@@ -24,7 +24,7 @@ from app.protocol import COUNTED_KINDS, ExclusionRule
 
 FEWEST_ALIKE = 5
 """Fewest ratings of a form for which identical ratings count as straight-lining."""
-BEGUN = ("completed", "aborted", "withdrawn")
+OVER = ("completed", "aborted", "withdrawn")
 
 
 @dataclass
@@ -72,7 +72,7 @@ def read_tables(db: Session, study_key: str, kind: Kind) -> Tables:
 def exclude(tables: Tables, rules: tuple[ExclusionRule, ...]) -> Excluded:
     """Apply the study's `valid_when` and then every rule to each session that is over."""
     out = Excluded()
-    over = tables.sessions[tables.sessions["status"].isin(BEGUN)]
+    over = tables.sessions[tables.sessions["status"].isin(OVER)]
     rows = over[["session_id", "participant_code", "status", "valid", "reasons_not_valid"]]
     for session_id, code, status, valid, why in rows.itertuples(index=False, name=None):
         if status == "completed" and not valid:
@@ -82,15 +82,17 @@ def exclude(tables: Tables, rules: tuple[ExclusionRule, ...]) -> Excluded:
             continue
         for rule in rules:
             if rule.rule == "complete_session":
-                told = None if status == "completed" else f"the session was {status}"
+                found_reason = None if status == "completed" else f"the session was {status}"
             elif status != "completed":
                 continue
             else:
-                told = _JUDGES[rule.rule](tables, session_id, rule.limit or 0.0)
-            if told == NOT_JUDGED:
+                found_reason = _JUDGES[rule.rule](tables, session_id, rule.limit or 0.0)
+            if found_reason == NOT_JUDGED:
                 out.not_judged.setdefault(rule.rule, []).append(code)
-            elif told is not None:
-                out.found.append(ExclusionView(participant_code=code, rule=rule.rule, reason=told))
+            elif found_reason is not None:
+                out.found.append(
+                    ExclusionView(participant_code=code, rule=rule.rule, reason=found_reason)
+                )
                 out.session_ids.add(session_id)
     return out
 

@@ -55,9 +55,14 @@ def as_markdown(view: PreregistrationView) -> str:
         compared = "is at most" if view.result.holds else "exceeds"
         lines += [f"- {view.result.method} p {compared} α.", "", *_table(view)]
     lines += ["", "## Deviations", ""]
-    found = [f"- {told.text}" for told in view.deviations if not told.is_note]
+    found = [f"- {deviation.text}" for deviation in view.deviations if not deviation.is_note]
     lines += found or ["- None."]
-    lines += ["", "## Notes", "", *[f"- {told.text}" for told in view.deviations if told.is_note]]
+    lines += [
+        "",
+        "## Notes",
+        "",
+        *[f"- {deviation.text}" for deviation in view.deviations if deviation.is_note],
+    ]
     return "\n".join(lines) + "\n"
 
 

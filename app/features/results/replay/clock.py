@@ -58,7 +58,7 @@ class Wall(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Told:
+class ClockReport:
     """A change of the phase's clock that a run reported, at a time of that run's clock."""
 
     epoch: int
@@ -131,7 +131,7 @@ _SAME_S = 1e-6
 
 
 def stretches(
-    told: Sequence[Told], offsets_s: Mapping[int, float], active_s: float
+    reports: Sequence[ClockReport], offsets_s: Mapping[int, float], active_s: float
 ) -> tuple[Stretch, ...]:
     """Return the spans of active time from the reported starts and stops of the clock.
 
@@ -140,19 +140,19 @@ def stretches(
     the last span ends at the phase's own count `active_s`.
     """
     found: list[Stretch] = []
-    begun: tuple[float, float] | None = None
+    running_from: tuple[float, float] | None = None
 
     def close(end_active_s: float) -> None:
-        if begun is not None:
-            begin_s, begin_active_s = begun
+        if running_from is not None:
+            begin_s, begin_active_s = running_from
             end_active_s = max(end_active_s, begin_active_s)
             end_s = begin_s + end_active_s - begin_active_s
             found.append(Stretch(begin_s, end_s, begin_active_s, end_active_s))
 
-    for one in told:
+    for one in reports:
         close(one.active_s)
         begins = one.what in BEGINNINGS
-        begun = (one.client_s + offsets_s[one.epoch], one.active_s) if begins else None
+        running_from = (one.client_s + offsets_s[one.epoch], one.active_s) if begins else None
     close(active_s)
     return tuple(found)
 

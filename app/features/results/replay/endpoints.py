@@ -38,11 +38,11 @@ def get_movement(
 ) -> Response:
     """Return the positions of the joints of participant and avatar over time."""
     with context.database.reading() as db:
-        asked = replayable(db, caller, session_id, phase_id)
-        tag = movement_tag(db, asked)
+        phase_view = replayable(db, caller, session_id, phase_id)
+        tag = movement_tag(db, phase_view)
     # The cache must revalidate, because permissions change with the session's state.
     headers = {"etag": tag, "cache-control": "private, no-cache"}
     if if_none_match is not None and tag in if_none_match:
         return Response(status_code=304, headers=headers)
-    body = context.part(ReplayDesk).movement(session_id, phase_id, full=asked.full)
+    body = context.part(ReplayDesk).movement(session_id, phase_id, full=phase_view.full)
     return Response(body, media_type=BYTES, headers=headers)

@@ -17,38 +17,38 @@ class RunErrors:
     """One run's avatar frames at the grid's moments, and the target frames with the same seq."""
 
     sampling: Sampling
-    _at: list[Indices] = field(default_factory=list)
+    _moments: list[Indices] = field(default_factory=list)
     _seq: list[Indices] = field(default_factory=list)
     _actual: list[FloatArray] = field(default_factory=list)
-    _asked: dict[int, tuple[float, FloatArray]] = field(default_factory=dict)
+    _targets: dict[int, tuple[float, FloatArray]] = field(default_factory=dict)
 
     def actual(self, piece: Frames) -> None:
         """Add a piece of the avatar's frames."""
         at, frames = self.sampling.take(piece)
         if not len(at):
             return
-        self._at.append(at)
+        self._moments.append(at)
         self._seq.append(frames.seq)
         self._actual.append(frames.rotations)
 
     def target(self, piece: Frames) -> None:
         """Add a piece of the participant's frames, after all of the avatar's frames."""
-        rows = np.flatnonzero(np.isin(piece.seq, self._wanted))
+        rows = np.flatnonzero(np.isin(piece.seq, self._seqs))
         if not len(rows):
             return
         times_s, rotations = piece.times_s[rows], piece.rotations[rows]
         for row, seq in enumerate(piece.seq[rows]):
-            self._asked[int(seq)] = (float(times_s[row]), rotations[row])
+            self._targets[int(seq)] = (float(times_s[row]), rotations[row])
 
     def fill(self, errors_rad: NDArray[np.float32], hinges: HingeReference | None) -> None:
         """Write the angles (21) of each moment that has both frames."""
-        if not self._at:
+        if not self._moments:
             return
-        at, seqs = np.concatenate(self._at), self._wanted
-        paired = np.flatnonzero([int(seq) in self._asked for seq in seqs])
+        at, seqs = np.concatenate(self._moments), self._seqs
+        paired = np.flatnonzero([int(seq) in self._targets for seq in seqs])
         if not len(paired):
             return
-        partners = [self._asked[int(seqs[row])] for row in paired]
+        partners = [self._targets[int(seqs[row])] for row in paired]
         times_s = np.array([time_s for time_s, _ in partners])
         rotations = np.stack([rotation for _, rotation in partners])
         reference = (
@@ -61,7 +61,7 @@ class RunErrors:
         errors_rad[at[paired]] = np.where(counts, found.values_rad[..., 0], np.nan)
 
     @property
-    def _wanted(self) -> Indices:
+    def _seqs(self) -> Indices:
         return np.concatenate(self._seq) if self._seq else np.empty(0, np.int64)
 
 

@@ -95,11 +95,11 @@ def frames_stored(db: Session, phase: Phase) -> int:
     return total
 
 
-def movement_tag(db: Session, asked: Replayable) -> str:
+def movement_tag(db: Session, phase_view: Replayable) -> str:
     """Return an entity tag, with its quotes, that changes whenever the movement may."""
-    phase = asked.phase
-    told = (
+    phase = phase_view.phase
+    state = (
         *(phase.session_id, phase.phase_id, phase.status, phase.active_s, frames_stored(db, phase)),
-        *(stature_of(db, asked.session), asked.view, __version__),
+        *(stature_of(db, phase_view.session), phase_view.view, __version__),
     )
-    return f'"{hashlib.sha256(repr(told).encode()).hexdigest()[:32]}"'
+    return f'"{hashlib.sha256(repr(state).encode()).hexdigest()[:32]}"'

@@ -31,17 +31,17 @@ from app.features.results.replay.service import (
     frames_stored,
     stature_of,
 )
-from app.features.results.replay.times import phase_clock, told_of
+from app.features.results.replay.times import clock_reports_of, phase_clock
 from app.models import Completion, Contact, Phase, Submission
 from app.protocol import TIMED_KINDS
 
 
-def replay_of(db: Session, asked: Replayable) -> Replay:
+def replay_of(db: Session, phase_view: Replayable) -> Replay:
     """Return everything of a replay except the movement."""
-    session, phase = asked.session, asked.phase
+    session, phase = phase_view.session, phase_view.phase
     clock = phase_clock(db, session, phase)
     stature_m = stature_of(db, session)
-    administrations = _administrations(db, asked)
+    administrations = _administrations(db, phase_view)
     scores = [one for one in stored_scores(db, session) if one.administration in administrations]
     return Replay(
         session_id=session.id,
@@ -51,8 +51,8 @@ def replay_of(db: Session, asked: Replayable) -> Replay:
         kind=phase.kind,
         limb=phase.limb,
         status=phase.status,
-        view=asked.view,
-        latency_ms=phase.latency_ms if asked.full else None,
+        view=phase_view.view,
+        latency_ms=phase.latency_ms if phase_view.full else None,
         duration_s=clock.duration_s,
         active_s=phase.active_s,
         time_scale=session.time_scale,
@@ -61,11 +61,11 @@ def replay_of(db: Session, asked: Replayable) -> Replay:
         has_movement=frames_stored(db, phase) > 0,
         runs=[ClientRun(**vars(run)) for run in clock.runs],
         active=[ActiveStretch(**vars(one)) for one in clock.active],
-        contacts=_contacts(db, phase, clock) if asked.full else [],
-        completions=_completions(db, phase, clock) if asked.full else [],
+        contacts=_contacts(db, phase, clock) if phase_view.full else [],
+        completions=_completions(db, phase, clock) if phase_view.full else [],
         moments=sorted(_moments(db, phase, clock), key=lambda one: one.t_s),
         notes=list(_notes(db, phase, clock)),
-        surfaces=_surfaces(db, asked) if asked.full else [],
+        surfaces=_surfaces(db, phase_view) if phase_view.full else [],
         administrations=administrations,
         forms=scores,
     )
@@ -113,23 +113,25 @@ def _completions(db: Session, phase: Phase, clock: PhaseClock) -> list[ReplayCom
 
 def _moments(db: Session, phase: Phase, clock: PhaseClock) -> Iterator[Moment]:
     """Yield the changes of the phase's clock as the headset reported or the server assumed them."""
-    for one in told_of(db, phase):
+    for one in clock_reports_of(db, phase):
         t_s = one.client_s + clock.offsets_s[one.epoch]
         cause = one.cause if one.what == "paused" else None
         yield Moment(what=one.what, t_s=t_s, active_s=one.active_s, cause=cause)
     for row in events_of(db, phase.session_id):
-        told = json.loads(row.payload)
-        if told.get("phase_id") != phase.phase_id:
+        payload = json.loads(row.payload)
+        if payload.get("phase_id") != phase.phase_id:
             continue
-        if row.type == "phase_paused" and told.get("client_t_s") is None:
-            t_s = clock.of_active(told["active_s"], later=False)
-            yield Moment(what="paused", t_s=t_s, active_s=told["active_s"], cause=told.get("cause"))
+        if row.type == "phase_paused" and payload.get("client_t_s") is None:
+            t_s = clock.of_active(payload["active_s"], later=False)
+            yield Moment(
+                what="paused", t_s=t_s, active_s=payload["active_s"], cause=payload.get("cause")
+            )
         elif row.type == "phase_voided":
             yield Moment(
                 what="voided",
                 t_s=clock.duration_s,
                 active_s=phase.active_s,
-                cause=told.get("cause"),
+                cause=payload.get("cause"),
             )
 
 
@@ -154,11 +156,11 @@ def _notes(db: Session, phase: Phase, clock: PhaseClock) -> Iterator[ReplayNote]
         )
 
 
-def _surfaces(db: Session, asked: Replayable) -> list[ReplaySurface]:
-    limb = asked.phase.limb
+def _surfaces(db: Session, phase_view: Replayable) -> list[ReplaySurface]:
+    limb = phase_view.phase.limb
     if limb is None:
         return []
-    tasks = protocol_of_session(db, asked.session).tasks
+    tasks = protocol_of_session(db, phase_view.session).tasks
     layout = tasks.layout(limb)
     return [
         ReplaySurface(
@@ -172,15 +174,15 @@ def _surfaces(db: Session, asked: Replayable) -> list[ReplaySurface]:
     ]
 
 
-def _administrations(db: Session, asked: Replayable) -> list[str]:
+def _administrations(db: Session, phase_view: Replayable) -> list[str]:
     """Return the forms of this attempt between this phase and the next phase of the procedure."""
-    phase, plan = asked.phase, plan_of(db, asked.session)
+    phase, plan = phase_view.phase, plan_of(db, phase_view.session)
     following = []
     for step in plan[phase.step_index + 1 :]:
         if step.kind in TIMED_KINDS:
             break
         following.append(step.index)
-    again = db.scalar(
+    repeated_at = db.scalar(
         select(Phase.prepared_at)
         .where(
             Phase.session_id == phase.session_id,
@@ -195,8 +197,8 @@ def _administrations(db: Session, asked: Replayable) -> list[str]:
         Submission.step_index.in_(following),
         Submission.submitted_at >= phase.prepared_at,
     )
-    if again is not None:
-        filled = filled.where(Submission.submitted_at < again)
+    if repeated_at is not None:
+        filled = filled.where(Submission.submitted_at < repeated_at)
     # If a form was filled in twice, the later one counts.
     newest = dict(db.execute(filled.order_by(Submission.submitted_at)).all())
     return [newest[index] for index in following if index in newest]

@@ -8,7 +8,14 @@ import numpy as np
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
-from app.features.results.replay.clock import PhaseClock, Run, Told, Wall, later_by, stretches
+from app.features.results.replay.clock import (
+    ClockReport,
+    PhaseClock,
+    Run,
+    Wall,
+    later_by,
+    stretches,
+)
 from app.models import ClientReport, Contact, Phase, StudySession, TelemetryBatch, TelemetryChunk
 from app.wire import MalformedBatchError, decode_batch
 
@@ -25,12 +32,12 @@ class _Span(NamedTuple):
 
 def phase_clock(db: Session, session: StudySession, phase: Phase) -> PhaseClock:
     """Return the clock of a phase; without any record, its duration is 0."""
-    told, heard = _told(db, phase)
-    spans = _spans(db, phase, told)
+    reports, heard = _clock_reports(db, phase)
+    spans = _spans(db, phase, reports)
     if not spans:
         return PhaseClock({}, (), (), session.time_scale)
-    first = next((one.epoch for one in told if one.what == "started"), min(spans))
-    zero_s = _zero(phase, told, spans[first])
+    first = next((one.epoch for one in reports if one.what == "started"), min(spans))
+    zero_s = _zero(phase, reports, spans[first])
     # Exclude what was recorded while the phase was being prepared.
     spans[first] = _Span(zero_s, max(spans[first].last_s, zero_s))
     walls = _walls(db, session, phase, spans, heard)
@@ -42,14 +49,14 @@ def phase_clock(db: Session, session: StudySession, phase: Phase) -> PhaseClock:
         end_s = begin_s + spans[epoch].last_s - spans[epoch].first_s
         runs.append(Run(epoch, begin_s, end_s, *walls[epoch]))
     # Without any report, the clock is assumed to have run all the time.
-    said = told or [Told(first, "started", zero_s, 0.0, "")]
-    active = stretches(said, offsets_s, phase.active_s)
+    assumed = reports or [ClockReport(first, "started", zero_s, 0.0, "")]
+    active = stretches(assumed, offsets_s, phase.active_s)
     return PhaseClock(offsets_s, tuple(runs), active, session.time_scale)
 
 
-def told_of(db: Session, phase: Phase) -> list[Told]:
+def clock_reports_of(db: Session, phase: Phase) -> list[ClockReport]:
     """Return the headset's reports on the phase's clock in order, including rejected ones."""
-    return _told(db, phase)[0]
+    return _clock_reports(db, phase)[0]
 
 
 def _begin(runs: Sequence[Run], first: Wall, own: Wall, time_scale: float) -> float:
@@ -61,13 +68,17 @@ def _begin(runs: Sequence[Run], first: Wall, own: Wall, time_scale: float) -> fl
     return (own.utc - first.utc).total_seconds() * time_scale
 
 
-def _zero(phase: Phase, told: Sequence[Told], span: _Span) -> float:
+def _zero(phase: Phase, reports: Sequence[ClockReport], span: _Span) -> float:
     """Return when the phase's clock first ran, on the clock of that run."""
-    begun = next((one.client_s for one in told if one.what == "started"), phase.client_started_s)
-    return span.first_s if begun is None else begun
+    started_s = next(
+        (one.client_s for one in reports if one.what == "started"), phase.client_started_s
+    )
+    return span.first_s if started_s is None else started_s
 
 
-def _told(db: Session, phase: Phase) -> tuple[list[Told], dict[int, tuple[float, datetime]]]:
+def _clock_reports(
+    db: Session, phase: Phase
+) -> tuple[list[ClockReport], dict[int, tuple[float, datetime]]]:
     """Return the headset's reports, and when the server received the first of each run.
 
     The second is, by epoch, (client's time, UTC).
@@ -77,17 +88,17 @@ def _told(db: Session, phase: Phase) -> tuple[list[Told], dict[int, tuple[float,
         .where(ClientReport.session_id == phase.session_id, ClientReport.type == "phase")
         .order_by(ClientReport.epoch, ClientReport.seq)
     )
-    told: list[Told] = []
+    reports: list[ClockReport] = []
     heard: dict[int, tuple[float, datetime]] = {}
     for epoch, payload, received_at in rows:
         if payload["phase_id"] == phase.phase_id:
             one = (payload["what"], payload["t_s"], payload["active_s"], payload["cause"])
-            told.append(Told(epoch, *one))
+            reports.append(ClockReport(epoch, *one))
             heard.setdefault(epoch, (payload["t_s"], received_at))
-    return told, heard
+    return reports, heard
 
 
-def _spans(db: Session, phase: Phase, told: Sequence[Told]) -> dict[int, _Span]:
+def _spans(db: Session, phase: Phase, reports: Sequence[ClockReport]) -> dict[int, _Span]:
     """Return the spans by epoch, from movement, reports and contacts, whichever reach further."""
     found: dict[int, list[float]] = {}
     chunks = select(
@@ -104,7 +115,7 @@ def _spans(db: Session, phase: Phase, told: Sequence[Told]) -> dict[int, _Span]:
     )
     for row in db.scalars(batches):
         found.setdefault(row.epoch, []).extend(_batch_times(row))
-    for one in told:
+    for one in reports:
         found.setdefault(one.epoch, []).append(one.client_s)
     spans = {}
     for epoch, times_s in found.items():

@@ -20,7 +20,7 @@ from app.clock import Clock
 from app.database import open_database
 from app.errors import Conflict, NotDurable
 from app.features.care.opening.inspection import UNNAMED, UNREADABLE, damage_of, is_open_elsewhere
-from app.features.care.opening.service import Damaged, begun_if_missing, prepare_database
+from app.features.care.opening.service import Damaged, created_if_missing, prepare_database
 from app.schema_revisions import migrate_file
 from app.settings import Settings
 from tests.faults.bench import PostgresBench
@@ -199,12 +199,12 @@ def test_a_log_without_its_database_is_kept_from_the_new_one(tmp_path: Path) -> 
 def test_a_database_that_was_begun_for_a_block_goes_if_it_fails(tmp_path: Path) -> None:
     """One that was there before stays."""
     settings = Settings(data_dir=tmp_path)
-    with pytest.raises(NotADirectoryError), begun_if_missing(settings, CLOCK):
+    with pytest.raises(NotADirectoryError), created_if_missing(settings, CLOCK):
         # It is there: what fails is that it is no folder.
         list((tmp_path / "reembody.sqlite").iterdir())
     assert list(tmp_path.iterdir()) == []
     prepare_database(settings, CLOCK)
-    with pytest.raises(RuntimeError), begun_if_missing(settings, CLOCK):
+    with pytest.raises(RuntimeError), created_if_missing(settings, CLOCK):
         raise RuntimeError
     assert (tmp_path / "reembody.sqlite").is_file()
 

@@ -34,7 +34,7 @@ def test_a_log_left_by_a_crash_is_in_order(tmp_path: Path, page_size: int) -> No
     file = killed(tmp_path / "some.sqlite", page_size=page_size)
     report = inspect_log(log(file))
     assert report == LogReport(
-        header_fits=True, usable=taken_by_sqlite(file, tmp_path / "copy"), commits_behind=0
+        header_valid=True, usable=taken_by_sqlite(file, tmp_path / "copy"), commits_after_invalid=0
     )
     assert report.usable == (log(file).stat().st_size - HEADER) // (FRAME_HEADER + page_size)
     assert not report.damaged
@@ -108,7 +108,7 @@ def test_what_an_earlier_log_left_behind_is_no_damage(tmp_path: Path) -> None:
             connection.close()
             report = inspect_log_of_copy(file, tmp_path / "copy")
     assert 0 < report.usable < 5
-    assert report.commits_behind == 0
+    assert report.commits_after_invalid == 0
 
 
 def inspect_log_of_copy(file: Path, folder: Path) -> LogReport:

@@ -222,7 +222,7 @@ def test_rows_that_do_not_count_are_drawn_only_when_asked_for(database: Database
         for rows, chosen in (("valid", NO_FILTER), ("all", FigureFilter(rows="all")))
     }
     assert [figures[rows]["completions"].n for rows in ("valid", "all")] == [1, 2]
-    assert "do not count are drawn too" in figures["all"]["completions"].caption
+    assert "Invalid rows are included, too" in figures["all"]["completions"].caption
 
 
 @pytest.mark.one_engine

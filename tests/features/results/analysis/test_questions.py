@@ -94,7 +94,7 @@ def test_what_does_not_change_goes_neither_way(database: Database) -> None:
     """Completed tasks are the same everywhere: no direction is told, and p is 1."""
     found = _found(database, 4)
     told = _result(found, "completions", "trend_hand")
-    assert "By ranks the measure goes neither way with latency." in told.sentence
+    assert "By ranks the measure neither rises nor falls with latency." in told.sentence
     line = _measure(found, "completions").glance[0]
     assert (line.differ, line.first, line.trend, line.way) == (None, None, "p = 1.000", None)
 

@@ -13,7 +13,7 @@ from fastapi.testclient import TestClient
 from sqlalchemy import select
 
 from app.features.results.exports.desk import ExportDesk
-from app.features.results.exports.jobs import KEPT
+from app.features.results.exports.jobs import KEEP_FOR
 from app.features.results.exports.writing.service import study_archive
 from app.models import CopyMade
 from app.wire import StreamName
@@ -131,7 +131,7 @@ def test_one_session_alone_for_whoever_asked(small_site: Lab) -> None:
     # It goes two hours after somebody last asked for it.
     job = small_site.context.part(ExportDesk).find(_account(client), done["id"])
     assert job.fetched_at is not None
-    job.fetched_at -= KEPT
+    job.fetched_at -= KEEP_FOR
     assert ok(client.get("/api/exports")) == []
     assert _folder(small_site) == []
 

@@ -4,14 +4,14 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from app.features.results.replay.clock import PhaseClock, Run, Told, Wall, stretches
+from app.features.results.replay.clock import ClockReport, PhaseClock, Run, Wall, stretches
 
 NOON = datetime(2026, 3, 2, 12, 0, tzinfo=UTC)
 
 
-def told(*said: tuple[int, str, float, float]) -> list[Told]:
+def told(*said: tuple[int, str, float, float]) -> list[ClockReport]:
     """Reports as (run, what, client's time, active time)."""
-    return [Told(*one, cause="operator") for one in said]
+    return [ClockReport(*one, cause="operator") for one in said]
 
 
 def clock(*said: tuple[int, str, float, float], offsets_s: dict[int, float]) -> PhaseClock:

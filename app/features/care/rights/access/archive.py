@@ -14,7 +14,7 @@ from app.features.care.rights.access.summary import visits_of
 from app.features.record.sessions import content_body, contents_of
 from app.features.results.exports import safe_name
 from app.features.results.exports.writing import Member, person_archive
-from app.features.results.imports import told_of
+from app.features.results.imports import imported_answers_of
 from app.models import Participant, StudySession
 
 PAGE, WORDS, IMPORTED = "your-data.html", "words.json", "imported.json"
@@ -42,7 +42,7 @@ def _members(db: Session, participant: Participant, now: datetime) -> Iterator[M
     page = page_of(participant.code, visits_of(db, participant), now)
     yield Member(PAGE, iter([page.encode()]))
     yield Member(WORDS, iter([_words(db, participant).encode()]))
-    imported = told_of(db, participant.study_id, participant.code)
+    imported = imported_answers_of(db, participant.study_id, participant.code)
     if imported and participant.kind == "people":
         # Answers that were imported from another tool, with the same code.
         text = json.dumps(imported, ensure_ascii=False, indent=2) + "\n"

@@ -124,11 +124,11 @@ def _form(instrument: Instrument, form: StoredAnswers) -> list[str]:
     rows = []
     for key, value in form.answers.items():
         item = instrument.by_key[key]
-        asked = (stem if item.type == "likert" else "") + in_language(item.text, language)
+        question = (stem if item.type == "likert" else "") + in_language(item.text, language)
         shown = escape(answer_text(instrument, item, value, language, words))
         own = [one for one in form.corrections if one.item == key]
         notes = "".join(_correction(instrument, one, language, words) for one in own)
-        rows.append(f"<dt>{escape(asked)}</dt><dd>{shown}{notes}</dd>")
+        rows.append(f"<dt>{escape(question)}</dt><dd>{shown}{notes}</dd>")
     heading = f"{in_language(instrument.title, language)}, {_minute(form.submitted_at)}"
     return [
         f"<h4>{escape(heading)}</h4>",
@@ -140,8 +140,8 @@ def _form(instrument: Instrument, form: StoredAnswers) -> list[str]:
 def _correction(instrument: Instrument, one: CorrectionView, language: str, words: Words) -> str:
     item = instrument.by_key[one.item]
     previous = answer_text(instrument, item, one.previous, language, words)
-    said = words["was"].format(date=_day(one.at), previous=previous, reason=one.reason)
-    return f"<small>{escape(said)}</small>"
+    text = words["was"].format(date=_day(one.at), previous=previous, reason=one.reason)
+    return f"<small>{escape(text)}</small>"
 
 
 def _scores(instrument: Instrument, form: StoredAnswers, words: Words) -> list[str]:
@@ -150,11 +150,11 @@ def _scores(instrument: Instrument, form: StoredAnswers, words: Words) -> list[s
     pairs = []
     for score in instrument.scores:
         value = form.scores.get(score.key)
-        told = words["no_score"] if value is None else f"{value:g}"
+        shown_score = words["no_score"] if value is None else f"{value:g}"
         if value is not None and score.minimum is not None and score.maximum is not None:
             limits = {"minimum": f"{score.minimum:g}", "maximum": f"{score.maximum:g}"}
-            told += f" ({words['range'].format(**limits)})"
-        pairs.append((in_language(score.label, form.language), told))
+            shown_score += f" ({words['range'].format(**limits)})"
+        pairs.append((in_language(score.label, form.language), shown_score))
     return [f"<h5>{escape(words['scores'])}</h5>", _pairs(pairs)]
 
 

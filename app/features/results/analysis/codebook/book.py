@@ -108,8 +108,8 @@ def _without_rules(column: Column) -> bool:
 
 
 def _plain(column: Column) -> Column:
-    told = column.without_rules
-    return column if told is None else replace(column, meaning=told)
+    general_meaning = column.without_rules
+    return column if general_meaning is None else replace(column, meaning=general_meaning)
 
 
 def codebook_frame(*, rules: bool = True) -> pd.DataFrame:

@@ -23,14 +23,14 @@ from app.protocol import COUNTED_KINDS
 
 KEY, TITLE = "achieved_latency", "Achieved against ordered latency"
 WHAT = (
-    "Each point is a phase: the lag at which the avatar's joints follow the participant's best, "
-    "from the recorded frames, with its 95 % confidence interval. On the dashed line achieved and "
-    "ordered agree. Crosses are off by more than 10 ms and more than a frame. Points stand a "
-    "little apart to be seen. A physics avatar adds a lag of its own."
+    "Each point is a phase: the lag at which the avatar's joints match the participant's best, "
+    "from the recorded frames, with its 95 % confidence interval. On the dashed line, achieved and "
+    "set latency agree. Crosses deviate by more than 10 ms and more than a frame. Points are "
+    "shifted sideways to be visible. A physics avatar adds a lag of its own."
 )
 LIMIT_MS = 10.0
 _MOST_INTERVALS = 300
-_LOOKS = {False: ("as ordered", BLUE, "circle"), True: ("off", VERMILLION, "x")}
+_STYLES = {False: ("as ordered", BLUE, "circle"), True: ("off", VERMILLION, "x")}
 _COLUMNS = (
     *("participant_code", "session_id", "phase_id", "limb", "latency_ms", "achieved_latency_ms"),
     *("achieved_latency_low_ms", "achieved_latency_high_ms", "latency_off", "latency_reason"),
@@ -69,10 +69,10 @@ def _figure(measured: pd.DataFrame, off: pd.Series, latencies: list[float]) -> g
         line = _line(ends, [limit, limit], "10 ms off", "dot", legend=place == 0)
         figure.add_trace(line, row=1, col=2)
     for column, less in ((1, False), (2, True)):
-        for flag, look in _LOOKS.items():
+        for flag, style in _STYLES.items():
             own = measured[off == flag]
             if len(own):
-                points = _points(own, look, spread, less=less)
+                points = _points(own, style, spread, less=less)
                 figure.add_trace(points.update(showlegend=not less), row=1, col=column)
     latency_axis(figure, latencies)
     figure.update_xaxes(title_text="ordered latency (ms)")
@@ -97,9 +97,9 @@ def _line(
 
 
 def _points(
-    own: pd.DataFrame, look: tuple[str, str, str], spread: float, *, less: bool
+    own: pd.DataFrame, style: tuple[str, str, str], spread: float, *, less: bool
 ) -> go.Scatter:
-    name, colour, symbol = look
+    name, colour, symbol = style
     # Spread points sideways in the order of the rows, so that the same data give the same picture.
     place = own.groupby("latency_ms").cumcount() / own.groupby("latency_ms")[
         "latency_ms"

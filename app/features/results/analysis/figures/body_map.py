@@ -11,14 +11,18 @@ from app.features.results.analysis.figures.drawing import (
     participants,
     too_few,
 )
-from app.features.results.analysis.figures.joint_errors import joint_rows, task_angles, what_of
+from app.features.results.analysis.figures.joint_errors import (
+    error_definition,
+    joint_rows,
+    task_angles,
+)
 from app.features.results.analysis.figures.theme import new_figure
 from app.science.skeleton import JOINT_NAMES, PARENTS, build_skeleton
 
 KEY, TITLE = "joint_error_body", "Joint error on the body by added latency"
 HOW = (
     "The body is seen from the front, so its left is on the right. Colour and size of each joint "
-    "say how large its error is, a mean over participants; the scale is the same for all latencies."
+    "show its mean error over participants; the scale is the same for all latencies."
 )
 _STATURE_M = 1.75
 _SMALLEST_PX, _LARGEST_PX = 7.0, 24.0
@@ -43,7 +47,7 @@ def joint_error_body_drawing(errors: pd.DataFrame) -> Drawing:
         figure.add_trace(_bones(), row=1, col=column)
         figure.add_trace(_joints(own, largest, latency), row=1, col=column)
     _room(figure, len(latencies), largest)
-    caption = f"{HOW} {what_of(rows)} {count_note(n)}"
+    caption = f"{HOW} {error_definition(rows)} {count_note(n)}"
     return drawn(KEY, TITLE, caption, n, figure, means).of_group("movement", wide=True)
 
 

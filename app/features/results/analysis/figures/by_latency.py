@@ -21,11 +21,11 @@ from app.features.results.analysis.figures.theme import (
 
 LEVEL = 0.95
 LIMBS = ("hand", "foot")
-_LOOKS = {"hand": (BLUE, "circle", "solid"), "foot": (VERMILLION, "square", "dash")}
+_STYLES = {"hand": (BLUE, "circle", "solid"), "foot": (VERMILLION, "square", "dash")}
 MEANS = (
     "Thin lines are participants; the thick line is their mean with its 95 % confidence interval "
-    "(t distribution). The shape beside it is the distribution of participants, from 5 on; n "
-    "stands below each latency."
+    "(t distribution). The shape beside it is the distribution of 5 or more participants; n "
+    "is below each latency."
 )
 FEWEST_FOR_A_SHAPE = 5
 MANY = 60
@@ -177,7 +177,7 @@ def _shapes(own: pd.DataFrame, limb: str, places: Sequence[float], unit: str) ->
                 width=2 * SHAPE_SHARE * gap,
                 points=False,
                 spanmode="hard",
-                line={"color": _LOOKS[limb][0], "width": 1},
+                line={"color": _STYLES[limb][0], "width": 1},
                 fillcolor=CALM,
                 showlegend=False,
                 hovertemplate=f"%{{y:.3g}} {unit}<extra>distribution</extra>",
@@ -214,7 +214,7 @@ def _people(own: pd.DataFrame, unit: str, across: Across, legend: bool) -> go.Sc
 
 
 def _means(own: pd.DataFrame, limb: str, unit: str, across: Across) -> go.Scatter:
-    colour, symbol, dash = _LOOKS[limb]
+    colour, symbol, dash = _STYLES[limb]
     means = cells(own, "x")
     return go.Scatter(
         x=list(means),

@@ -25,8 +25,8 @@ KEY, TITLE = "completions", "Completed tasks by added latency"
 LEARNING_KEY, LEARNING_TITLE = "learning", "Completed tasks over the blocks of a session"
 BLOCK = Across("block", "block (1 = first)", "")
 _ORDERS = (
-    "Every order of latencies is in it where the study is balanced, so that a rise over blocks is "
-    "practice and a fall fatigue; with unbalanced orders latency is mixed in."
+    "In a balanced study every order of latencies is included, so a rise over blocks is "
+    "practice and a fall is fatigue; with unbalanced orders, blocks are confounded with latency."
 )
 _UNIT = "tasks"
 

@@ -21,7 +21,7 @@ KEY, TITLE = "contacts_map", "Contact time by side of the box and body part"
 WHAT = (
     "Mean active seconds per phase over participants in which a body part touched a side, summed "
     "over boxes; a phase without a contact counts as 0. Parts that touch together both count, so "
-    "rows must not be summed into the time a side was red. The number stands in each cell."
+    "rows must not be summed to the time a side was red. Each cell shows its value."
 )
 _ROW_PX, _FOOT_PX, _LEAST_PX = 26, 210, 360
 _APART = "\u001f"

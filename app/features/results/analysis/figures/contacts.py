@@ -24,8 +24,8 @@ Contact = tuple[str, float, float]
 KEY, TITLE = "contacts", "Time at the sides of the boxes by added latency"
 WHAT = (
     "Left: how long sides were red, the union over the body parts that touched a side, summed over "
-    "boxes. Right: contact time of each body part, which overlaps with that of others and is never "
-    "summed into the red time. Mean active seconds per phase over participants; a phase without a "
+    "boxes. Right: contact time of each body part, which overlaps with others and must not be "
+    "summed to the red time. Mean active seconds per phase over participants; a phase without a "
     "contact counts as 0."
 )
 

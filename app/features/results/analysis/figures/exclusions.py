@@ -9,12 +9,12 @@ from app.protocol import COUNTED_KINDS
 
 KEY, TITLE = "exclusions", "What counts and what is left out"
 WHAT = (
-    "All that is stored of the sessions shown. A phase or form counts if it was finished, not "
-    "redone since, not skipped, and its session neither aborted nor withdrawn nor completed "
-    "without what the study's rules ask for. A score is missing where one of its items has no "
+    "Everything stored of the sessions shown. A phase or form counts if it was finished, not "
+    "repeated later, not skipped, and its session neither aborted nor withdrawn nor completed "
+    "without what the study's rules require. A score is missing if one of its items has no "
     "answer."
 )
-_LOOKS = {True: ("counts", BLUE, ""), False: ("left out", ORANGE, "/")}
+_STYLES = {True: ("counts", BLUE, ""), False: ("left out", ORANGE, "/")}
 LEFT_OUT = ("aborted", "withdrawn", "completed, not valid")
 _ROW_PX = 34
 
@@ -41,7 +41,7 @@ def _figure(rows: pd.DataFrame) -> go.Figure:
     )
     for row, kind in enumerate(kinds, start=1):
         own = rows[rows["what"] == kind]
-        for counts, (name, colour, pattern) in _LOOKS.items():
+        for counts, (name, colour, pattern) in _STYLES.items():
             shown = own[own["counts"] == counts]
             bar = go.Bar(
                 orientation="h",

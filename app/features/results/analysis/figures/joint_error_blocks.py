@@ -12,13 +12,17 @@ from app.features.results.analysis.figures.drawing import (
     participants,
     too_few,
 )
-from app.features.results.analysis.figures.joint_errors import INTERVAL, task_angles, what_of
+from app.features.results.analysis.figures.joint_errors import (
+    INTERVAL,
+    error_definition,
+    task_angles,
+)
 from app.features.results.analysis.figures.theme import COLOURS, latency_line
 
 KEY, TITLE = "joint_error_blocks", "Joint error over the blocks of a session"
 HOW = (
     "Each value is a participant's mean over joints and the active time of one phase. Where "
-    "everybody has a latency in one block only, a line joins different participants."
+    "each participant has a latency in only one block, a line joins different participants."
 )
 _APART = 0.05
 _NAMES = ("limb", "latency_ms", "block", "mean_deg", "ci95_low_deg", "ci95_high_deg", "n")
@@ -33,7 +37,7 @@ def joint_error_blocks_drawing(errors: pd.DataFrame) -> Drawing:
     keys = ["limb", "latency_ms", "block", "participant_code"]
     values = rows.astype({"block": "float64"}).groupby(keys)["mean_deg"].mean()
     data = _means(values.rename("value").reset_index())
-    caption = f"{HOW} {what_of(rows)} {INTERVAL} {count_note(n)}"
+    caption = f"{HOW} {error_definition(rows)} {INTERVAL} {count_note(n)}"
     return drawn(KEY, TITLE, caption, n, _figure(data), data).of_group("movement")
 
 

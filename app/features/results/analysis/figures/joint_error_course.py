@@ -22,15 +22,15 @@ from app.protocol import COUNTED_KINDS
 
 KEY, TITLE = "joint_error_course", "Joint error over the active time of a phase"
 HOW = (
-    "Whether people learn a latency, or tire of it, while a phase goes on. Joint error is the "
-    "angle between the participant's pose at the moment and the body they saw; it also grows with "
-    "how fast they move. Each value is a participant's mean over joints and frames in a step of "
-    "active time, which stands in pauses and on walks back. The hips carry no latency and are left "
+    "Shows whether participants adapt to a latency or tire during a phase. Joint error is the "
+    "angle between the participant's current pose and the body they saw; it also grows with "
+    "their speed. Each value is a participant's mean over joints and frames in a step of "
+    "active time, which stops in pauses and on walks back. The hips carry no latency and are left "
     "out."
 )
 BANDS = (
     "Lines are means over participants, bands their 95 % confidence intervals (t distribution), "
-    "for each step by itself."
+    "computed for each step."
 )
 _KEYS = ["limb", "latency_ms", "begin_active_s", "end_active_s"]
 _NAMES = (*_KEYS, "mean_deg", "ci95_low_deg", "ci95_high_deg", "n")
@@ -55,7 +55,7 @@ def joint_error_course_drawing(courses: pd.DataFrame) -> Drawing:
 
 def _steps_note(data: pd.DataFrame) -> str:
     longest_s = float((data["end_active_s"] - data["begin_active_s"]).max())
-    return f"A step is {longest_s:g} s long, and its point stands in its middle."
+    return f"A step is {longest_s:g} s long, and its point is in its middle."
 
 
 def _means(values: pd.DataFrame) -> pd.DataFrame:

@@ -45,14 +45,15 @@ JOINTS_BY_PART: tuple[str, ...] = tuple(
     joint for joints in BODY_PARTS.values() for joint in joints if joint in ERROR_JOINTS
 )
 WHAT = (
-    "Joint error is the angle between the participant's pose at the moment and the body they saw, "
+    "Joint error is the angle between the participant's current pose and the body they saw, "
     "averaged over the active time of hand and foot phases. The hips carry no latency and are left "
     "out."
 )
 HINGES = (
-    "A physics avatar is compared with what its hinges are asked for, before their limits; joints "
+    "A physics avatar is compared with its hinges' target angles, before their limits; joints "
     "without a hinge are left out."
 )
+SHIFTED = "Points are shifted sideways to be visible."
 INTERVAL = "Points are means over participants with 95 % confidence intervals (t distribution)."
 _COLOURS = {"head": BLUE, "spine": GREEN, "arm": VERMILLION, "leg": ORANGE}
 
@@ -74,7 +75,7 @@ def joint_error_drawing(errors: pd.DataFrame) -> Drawing:
             figure.add_trace(_trace(by_part[part], part, place, step * (place - 2.5)))
     latency_axis(figure, latencies)
     figure.update_yaxes(title_text="mean joint error (deg)", rangemode="tozero")
-    caption = f"{what_of(rows)} {INTERVAL} {count_note(n)} Points stand a little apart to be seen."
+    caption = f"{error_definition(rows)} {INTERVAL} {count_note(n)} {SHIFTED}"
     return drawn(key, title, caption, n, figure, _part_rows(by_part))
 
 
@@ -95,7 +96,7 @@ def joint_error_map_drawing(errors: pd.DataFrame) -> Drawing:
     figure.update_xaxes(title_text="joint", tickangle=-40)
     figure.update_yaxes(title_text="added latency (ms)", type="category", autorange="reversed")
     figure.update_layout(height=200 + 44 * len(table.columns))
-    caption = f"{what_of(rows)} {_clipped_note(shares)}{count_note(n)}"
+    caption = f"{error_definition(rows)} {_clipped_note(shares)}{count_note(n)}"
     return drawn(key, title, caption, n, figure, joint_rows(rows))
 
 
@@ -141,7 +142,7 @@ def _part_rows(by_part: dict[str, pd.DataFrame]) -> pd.DataFrame:
     return pd.DataFrame(found, columns=list(names))
 
 
-def what_of(rows: pd.DataFrame) -> str:
+def error_definition(rows: pd.DataFrame) -> str:
     """Return the definition of joint error that applies to the avatars of these rows."""
     return f"{WHAT} {HINGES}" if rows["clipped_share"].notna().any() else WHAT
 
@@ -167,11 +168,11 @@ def _clipped_note(shares: pd.DataFrame) -> str:
     by_joint = shares.mean(axis=1).dropna()
     if by_joint.empty:
         return ""
-    most = str(by_joint.idxmax())
+    most_clipped = str(by_joint.idxmax())
     return (
-        "On average a joint was asked for more than its limits allow (clipped) in "
-        f"{100.0 * by_joint.mean():.1f} % of the samples, {most} most often "
-        f"({100.0 * by_joint[most]:.1f} %). "
+        "On average the target of a joint exceeded its limits (clipped) in "
+        f"{100.0 * by_joint.mean():.1f} % of the samples, {most_clipped} most often "
+        f"({100.0 * by_joint[most_clipped]:.1f} %). "
     )
 
 

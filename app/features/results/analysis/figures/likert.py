@@ -26,7 +26,7 @@ from app.science.instruments import Instrument, Item
 WHAT = (
     "Share of answers in each category, before any recoding, at each added latency. Bars are "
     "placed so that the middle of the scale is at 0 %: disagreement to the left (hatched), "
-    "agreement to the right. Redone and superseded forms are left out unless chosen."
+    "agreement to the right. Repeated and superseded forms are left out unless chosen."
 )
 # Brewer's PuOr, lightest in the middle; it can be read with any kind of colour vision.
 _DISAGREE = ("#b35806", "#e08214", "#fdb863", "#fee0b6")
@@ -53,12 +53,12 @@ def likert_drawings(
     answers: pd.DataFrame, instruments: Mapping[tuple[str, int], Instrument]
 ) -> Iterator[Drawing]:
     """Yield one drawing per questionnaire that is answered after phases, from valid rows."""
-    asked = answers[answers["item_type"].eq("likert")].dropna(subset=["limb", "value_number"])
-    if asked.empty:
+    rated = answers[answers["item_type"].eq("likert")].dropna(subset=["limb", "value_number"])
+    if rated.empty:
         yield too_few(
             "likert", "Answers item by item", WHAT, 0, "answered a questionnaire after a phase"
         ).of_group("answers", wide=True)
-    for key, own in asked.groupby("instrument"):
+    for key, own in rated.groupby("instrument"):
         # The wording may differ between versions; that of the newest is shown.
         newest = instruments[str(key), int(own["instrument_version"].max())]
         for first, drawing in enumerate(_of_instrument(own, newest)):
@@ -69,13 +69,13 @@ def _of_instrument(own: pd.DataFrame, instrument: Instrument) -> Iterator[Drawin
     key, title = f"likert_{instrument.key}", f"Answers: {_english(instrument.title)}"
     items = [item for item in instrument.items if item.type == "likert"]
     scale = instrument.scale or next((item.scale for item in items if item.scale), None)
-    asked = [item for item in items if instrument.scale_of(item) == scale]
+    rated = [item for item in items if instrument.scale_of(item) == scale]
     if scale is None or scale.maximum - scale.minimum + 1 > MOST_CATEGORIES:
         return
     categories = _categories(scale.minimum, scale.maximum, [_english(one) for one in scale.labels])
     n = participants(own)
-    shares = _shares(own[own["item"].isin([item.key for item in asked])])
-    figure = _figure(shares, asked, categories)
+    shares = _shares(own[own["item"].isin([item.key for item in rated])])
+    figure = _figure(shares, rated, categories)
     stem = f"Each statement follows “{_english(instrument.stem)}”" if instrument.stem else ""
     caption = f"{stem} {WHAT} {count_note(n)} {limb_note(own)}"
     yield drawn(key, title, caption, n, figure, shares)

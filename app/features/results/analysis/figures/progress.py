@@ -67,7 +67,7 @@ def progress_drawing(
     if (status == NOT_VALID).any():
         caption = caption.replace("completed sessions only", "completed sessions that are valid")
     if blinded:
-        caption += " The study is blinded, so orders are not told apart."
+        caption += " The study is blinded, so orders are not shown separately."
     table = own.rename("order").to_frame().assign(status=status)
     keys = ["order", "status"]
     rows = table.groupby(keys).size().rename("sessions").reset_index().sort_values(keys)
@@ -115,7 +115,7 @@ def progress_time_drawing(sessions: pd.DataFrame, planned: int) -> Drawing:
     )
     figure.update_xaxes(title_text="day (UTC)", type="category" if len(x) <= FEW else "date")
     figure.update_yaxes(title_text="sessions (count)", rangemode="tozero")
-    caption = f"Completed sessions together, of {planned} that the design plans. n = {n}."
+    caption = f"Cumulative number of completed sessions, of {planned} in the design. n = {n}."
     return drawn(TIME_KEY, TIME_TITLE, caption, n, figure, rows)
 
 

@@ -22,13 +22,13 @@ from app.features.results.analysis.figures.theme import (
 
 KEY, TITLE = "quality", "Quality of the recorded movement"
 WHAT = (
-    "One point a phase and stream (target: what tracking asked for; actual: the body that was "
-    "seen). The box holds the middle half, its line is the median. A gap is a stretch of more than "
+    "One point per phase and stream (target: the tracked pose; actual: the body that was "
+    "seen). The box contains the middle half, its line is the median. A gap is a time of more than "
     "2.5 usual frame intervals and 40 ms without a frame."
 )
 ALARMS_KEY, ALARMS_TITLE = "alarms", "Alarms during sessions"
-ALARMS_WHAT = "How often each alarm was raised, over all sessions that are shown."
-_LOOKS = {"target": (BLUE, "circle"), "actual": (VERMILLION, "square")}
+ALARMS_WHAT = "Number of times each alarm was raised, over all sessions shown."
+_STYLES = {"target": (BLUE, "circle"), "actual": (VERMILLION, "square")}
 _SEVERITIES = {
     "critical": (VERMILLION, PATTERNS[2]),
     "warning": (ORANGE, PATTERNS[1]),
@@ -49,7 +49,7 @@ def quality_drawing(quality: pd.DataFrame) -> Drawing:
     panels = (("frame_rate_hz", "frame rate (Hz)"), ("gap_percent", "time in gaps (%)"))
     figure = new_figure(titles=("Frame rate", "Gaps"), horizontal_spacing=0.14)
     for column, (name, axis) in enumerate(panels, start=1):
-        for stream, (colour, symbol) in _LOOKS.items():
+        for stream, (colour, symbol) in _STYLES.items():
             own = rows[rows["stream"] == stream].dropna(subset=[name])
             figure.add_trace(_box(own, name, stream, (colour, symbol)), row=1, col=column)
         figure.update_yaxes(title_text=axis, rangemode="tozero", row=1, col=column)
@@ -58,7 +58,7 @@ def quality_drawing(quality: pd.DataFrame) -> Drawing:
     broken = int(rows[["jumps", "non_unit", "non_finite", "backwards"]].sum().sum())
     caption = (
         f"{WHAT} {len(rows)} streams of phases; {int(rows['gaps'].sum())} gaps, {broken} frames "
-        f"that jump, run backwards or hold no valid rotation. {count_note(n)}"
+        f"that jump, go back in time or have no valid rotation. {count_note(n)}"
     )
     names = ["participant_code", "session_id", "phase_id", "limb", "latency_ms", "stream"]
     figures = ["frame_rate_hz", "gap_percent", "gaps", "gap_s", "longest_gap_s", "jumps"]
@@ -66,8 +66,8 @@ def quality_drawing(quality: pd.DataFrame) -> Drawing:
     return drawn(KEY, TITLE, caption, n, figure, data).of_group("quality")
 
 
-def _box(own: pd.DataFrame, name: str, stream: str, look: tuple[str, str]) -> go.Box:
-    colour, symbol = look
+def _box(own: pd.DataFrame, name: str, stream: str, style: tuple[str, str]) -> go.Box:
+    colour, symbol = style
     return go.Box(
         x=[stream] * len(own),
         y=own[name].astype("float64").tolist(),

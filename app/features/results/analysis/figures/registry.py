@@ -35,28 +35,28 @@ from app.protocol import StudyProtocol
 class Rows:
     """The data that pass a filter, and the valid rows of their tables, selected on first use."""
 
-    def __init__(self, left: Material, *, invalid: bool) -> None:
-        self.left = left
+    def __init__(self, filtered: Material, *, invalid: bool) -> None:
+        self.filtered = filtered
         self.invalid = invalid
 
     @cached_property
     def phases(self) -> pd.DataFrame:
         """Return the valid rows of the table of phases."""
-        return self.counting(self.left.phases)
+        return self.counting(self.filtered.phases)
 
     @cached_property
     def errors(self) -> pd.DataFrame:
         """Return the valid rows of the table of joint errors."""
-        return self.counting(self.left.errors)
+        return self.counting(self.filtered.errors)
 
     @cached_property
     def contacts(self) -> pd.DataFrame:
         """Return the valid rows of the table of contacts."""
-        return self.counting(self.left.contacts)
+        return self.counting(self.filtered.contacts)
 
     def counting(self, table: pd.DataFrame) -> pd.DataFrame:
         """Return the valid rows of a table."""
-        return self.left.counting(table, invalid=self.invalid)
+        return self.filtered.counting(table, invalid=self.invalid)
 
 
 @dataclass(frozen=True)
@@ -93,10 +93,12 @@ def orders_of(protocol: StudyProtocol) -> list[str]:
 
 
 FIGURES: tuple[Figure, ...] = (
-    Figure("embodiment", lambda rows: embodiment_drawings(rows.counting(rows.left.scores))),
+    Figure("embodiment", lambda rows: embodiment_drawings(rows.counting(rows.filtered.scores))),
     Figure(
         "answers",
-        lambda rows: likert_drawings(rows.counting(rows.left.answers), rows.left.instruments),
+        lambda rows: likert_drawings(
+            rows.counting(rows.filtered.answers), rows.filtered.instruments
+        ),
     ),
     Figure.one("tasks", lambda rows: completions_drawing(rows.phases)),
     Figure.one("tasks", lambda rows: learning_drawing(rows.phases)),
@@ -107,25 +109,29 @@ FIGURES: tuple[Figure, ...] = (
     Figure.one("movement", lambda rows: achieved_drawing(rows.phases)),
     Figure.one("movement", lambda rows: joint_error_blocks_drawing(rows.errors)),
     Figure.one(
-        "movement", lambda rows: joint_error_course_drawing(rows.counting(rows.left.courses))
+        "movement", lambda rows: joint_error_course_drawing(rows.counting(rows.filtered.courses))
     ),
     Figure.one("movement", lambda rows: joint_error_map_drawing(rows.errors), wide=True),
-    Figure.one("quality", lambda rows: quality_drawing(rows.counting(rows.left.quality))),
+    Figure.one("quality", lambda rows: quality_drawing(rows.counting(rows.filtered.quality))),
     Figure.one(
         "quality",
-        lambda rows: exclusions_drawing(rows.left.sessions, rows.left.phases, rows.left.scores),
+        lambda rows: exclusions_drawing(
+            rows.filtered.sessions, rows.filtered.phases, rows.filtered.scores
+        ),
     ),
-    Figure.one("quality", lambda rows: alarms_drawing(rows.left.alarms, len(rows.left.sessions))),
+    Figure.one(
+        "quality", lambda rows: alarms_drawing(rows.filtered.alarms, len(rows.filtered.sessions))
+    ),
     Figure.one(
         "progress",
         lambda rows: progress_time_drawing(
-            rows.left.sessions, len(planned_slots(rows.left.protocol))
+            rows.filtered.sessions, len(planned_slots(rows.filtered.protocol))
         ),
     ),
     Figure.one(
         "progress",
         lambda rows: progress_drawing(
-            rows.left.sessions, orders_of(rows.left.protocol), blinded=rows.left.blinded
+            rows.filtered.sessions, orders_of(rows.filtered.protocol), blinded=rows.filtered.blinded
         ),
     ),
 )

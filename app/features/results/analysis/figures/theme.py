@@ -18,7 +18,7 @@ CALM = "rgba(128, 128, 128, 0.18)"
 SYMBOLS = ("circle", "square", "diamond", "triangle-up", "x", "star")
 PATTERNS = ("", "/", "x", "-", ".", "+")
 DASHES = ("solid", "dash", "dot", "dashdot", "longdash", "longdashdot")
-KEPT_FIGURES = 64
+CACHED_FIGURES = 64
 _CLEAR = "rgba(0, 0, 0, 0)"
 _LINES = "rgba(128, 128, 128, 0.3)"
 
@@ -42,7 +42,7 @@ def new_figure(*, rows: int = 1, titles: tuple[str, ...] = ("",), **options: obj
     return copy.deepcopy(_empty_figure(rows, titles, **options))
 
 
-@lru_cache(maxsize=KEPT_FIGURES)
+@lru_cache(maxsize=CACHED_FIGURES)
 def _empty_figure(rows: int, titles: tuple[str, ...], **options: object) -> go.Figure:
     figure = make_subplots(
         rows=rows,

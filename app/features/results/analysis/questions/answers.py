@@ -23,18 +23,18 @@ from app.features.results.analysis.questions.relations import (
     subjective_objective,
 )
 from app.features.results.analysis.questions.reliability import reliability
-from app.features.results.analysis.questions.words import Said
+from app.features.results.analysis.questions.words import TestReport
 from app.features.results.analysis.schemas import GlanceView, MeasureView, StatisticsResults
 
 USUAL_ALPHA = 0.05
 FEWEST = 2
 DECLARED = (
-    "The study's declared test stands under Preregistration, with whom its rules leave out. "
-    "What is here was not declared, and is exploratory."
+    "The study's preregistered test is on the page Preregistration, with its exclusions. "
+    "The tests on this page were not preregistered and are exploratory."
 )
-OPEN = "Tests use completed sessions that are valid; what is still open may change and is left out."
-SIMULATED = "These are simulated data: they test the analysis, and say nothing about people."
-TEST = "These are sessions for trying things out; their results mean nothing."
+OPEN = "Tests use valid completed sessions; open sessions may still change and are left out."
+SIMULATED = "These are simulated data: they test the analysis and say nothing about people."
+TEST = "These are test sessions; their results mean nothing."
 
 
 def answers_of(material: Material) -> StatisticsResults:
@@ -85,7 +85,7 @@ def _measures(material: Material, alpha: float) -> Iterator[MeasureView]:
     yield from _explored(material, found, out)
 
 
-def _results(measure: Measure, alpha: float) -> Iterator[Said]:
+def _results(measure: Measure, alpha: float) -> Iterator[TestReport]:
     yield descriptive(measure)
     for limb in measure.limbs:
         yield from limb_results(measure, limb, alpha)
@@ -94,7 +94,7 @@ def _results(measure: Measure, alpha: float) -> Iterator[Said]:
     yield from carry_over_result(measure)
 
 
-def _glance(measure: Measure, results: Sequence[Said]) -> list[GlanceView]:
+def _glance(measure: Measure, results: Sequence[TestReport]) -> list[GlanceView]:
     brief = {one.key: one.brief for one in results if one.brief is not None}
     text = {key: one.text for key, one in brief.items()}
     return [
@@ -115,9 +115,9 @@ def _explored(
     if not found:
         return
     sections = (
-        ("contact_shares", "Contact by part of the body", contact_share_results(material)),
+        ("contact_shares", "Contact by body part", contact_share_results(material)),
         ("reliability", "Consistency of the questionnaires", reliability(material)),
-        ("relations", "Subjective against objective", subjective_objective(found)),
+        ("relations", "Subjective and objective measures", subjective_objective(found)),
         ("demographics", "Scores by demographics", demographics(material, found)),
     )
     n = max(int(one.values["participant_code"].nunique()) for one in found)

@@ -3,11 +3,16 @@
 import numpy as np
 
 from app.features.results.analysis.questions.measures import Measure
-from app.features.results.analysis.questions.words import Said, interval_words, measured, number
+from app.features.results.analysis.questions.words import (
+    TestReport,
+    error_rate_warning,
+    interval_words,
+    number,
+)
 from app.science.statistics import FloatArray, share_of_maximum
 
 
-def descriptive(measure: Measure) -> Said:
+def descriptive(measure: Measure) -> TestReport:
     """Return the mean, standard deviation and median of every cell of the design."""
     rows = []
     for limb in measure.limbs:
@@ -17,7 +22,7 @@ def descriptive(measure: Measure) -> Said:
     cells = [f"{row[0]} {row[1]} ms M = {row[3]}, SD = {row[5]}" for row in rows]
     shares = () if measure.maximum is None else ("mean share of maximum",)
     unit = measure.unit
-    return Said(
+    return TestReport(
         key="means",
         title="Means",
         sentence=f"Every cell of the design, in {unit}. {_maximum_words(measure)}",
@@ -30,7 +35,7 @@ def descriptive(measure: Measure) -> Said:
         method=(
             "Each value is a participant’s mean over the phases of the cell. Intervals by the "
             "bias-corrected accelerated bootstrap of participants, 1,999 draws from a stored seed. "
-            f"{measured('bca_mean')}"
+            f"{error_rate_warning('bca_mean')}"
         ),
         source="Efron 1987, J. Am. Stat. Assoc. 82:171.",
     )
@@ -57,6 +62,6 @@ def _maximum_words(measure: Measure) -> str:
     if measure.maximum is None:
         return ""
     return (
-        f"Shares are of the largest possible score, {measure.maximum:g}; 0 % is the middle of the "
-        "scale."
+        f"Shares are of the largest possible score, {measure.maximum:g}; 0 % is the middle "
+        "of the scale."
     )

@@ -14,11 +14,11 @@ import numpy as np
 from app.features.results.analysis.questions.measures import Measure
 from app.features.results.analysis.questions.words import (
     Brief,
-    Said,
+    TestReport,
     against,
     bounded,
+    error_rate_warning,
     mean_words,
-    measured,
     number,
     p_cell,
     p_words,
@@ -47,7 +47,7 @@ REPORTED = frozenset({"friedman", "page_trend", "against_reference", "rm_anova"}
 
 
 @dataclass(frozen=True, eq=False)
-class Asked:
+class LimbData:
     """The data of one measure for one limb, with the alpha to test at.
 
     `table`: (n, L) participants x latencies, NaN where there is no value.
@@ -78,9 +78,9 @@ def apa_of(one: Comparison) -> str:
     )
 
 
-def listwise(asked: Asked) -> str:
+def listwise(data: LimbData) -> str:
     """Return a sentence on how many participants lack a latency, or nothing if none does."""
-    left = len(asked.table) - len(asked.complete)
+    left = len(data.table) - len(data.complete)
     return f"{left} participants without every latency are left out." if left else ""
 
 
@@ -113,60 +113,60 @@ def friedman_floor(found: Friedman, alpha: float) -> str:
     )
 
 
-def trend(asked: Asked) -> Said:
+def trend(data: LimbData) -> TestReport:
     """Report Page's trend test, one-sided where a direction was predicted, else doubled.
 
     Raises StatisticsError if the test cannot be computed.
     """
-    predicted, levels = asked.measure.predicted, asked.measure.levels
+    predicted, levels = data.measure.predicted, data.measure.levels
     if predicted is None:
-        return _open(asked, page_trend(asked.complete))
-    return _predicted(asked, directional(asked.table, levels, predicted, alpha=asked.alpha))
+        return _two_sided_trend(data, page_trend(data.complete))
+    return _predicted_trend(data, directional(data.table, levels, predicted, alpha=data.alpha))
 
 
-def _open(asked: Asked, found: PageTrend) -> Said:
-    p, way = min(1.0, 2.0 * min(found.p, found.p_falling)), _way(found)
+def _two_sided_trend(data: LimbData, found: PageTrend) -> TestReport:
+    p, way = min(1.0, 2.0 * min(found.p, found.p_falling)), _direction(found)
     cells = (number(found.statistic, 1), p_cell(found.p), p_cell(found.p_falling), p_cell(p))
-    return Said(
-        key=f"trend_{asked.limb}",
-        title=f"{asked.limb.capitalize()}: Is there a trend along latency?",
+    return TestReport(
+        key=f"trend_{data.limb}",
+        title=f"{data.limb.capitalize()}: Is there a trend along latency?",
         sentence=(
-            f"No direction was predicted, so Page’s test is doubled: {against(p, asked.alpha)}. "
-            f"By ranks the measure {way or 'goes neither way'} with latency."
+            f"No direction was predicted, so Page’s test is doubled: {against(p, data.alpha)}. "
+            f"By ranks the measure {way or 'neither rises nor falls'} with latency."
         ),
         apa=(
-            f"{asked.name}: Page’s L = {number(found.statistic, 1)}, N = {found.n}, two-sided "
+            f"{data.name}: Page’s L = {number(found.statistic, 1)}, N = {found.n}, two-sided "
             f"{p_words(p)} ({found.method})"
         ),
         columns=("L", "p (rises)", "p (falls)", "p (two-sided)", "n"),
         rows=[(*cells, str(found.n))],
-        method=f"Page’s trend test, {found.method}, doubled one-sided p. {listwise(asked)}",
+        method=f"Page’s trend test, {found.method}, doubled one-sided p. {listwise(data)}",
         source=PAGE.source,
-        warnings=(measured("page"),),
+        warnings=(error_rate_warning("page"),),
         exploratory=True,
         brief=Brief(p_words(p), way),
     )
 
 
-def _way(found: PageTrend) -> Direction | None:
+def _direction(found: PageTrend) -> Direction | None:
     if found.p == found.p_falling:
         return None
     return "rises" if found.p < found.p_falling else "falls"
 
 
-def _predicted(asked: Asked, found: DirectionalHypothesis) -> Said:
+def _predicted_trend(data: LimbData, found: DirectionalHypothesis) -> TestReport:
     support = "supported" if found.supported else "not supported"
     parts = [apa_of(one) for one in found.against_first.comparisons]
-    return Said(
-        key=f"trend_{asked.limb}",
-        title=f"{asked.limb.capitalize()}: It was predicted that it {found.predicted} with latency",
+    return TestReport(
+        key=f"trend_{data.limb}",
+        title=f"{data.limb.capitalize()}: It was predicted that it {found.predicted} with latency",
         sentence=(
-            f"The prediction is {support}: one-sided {against(found.p, asked.alpha)} (Page’s "
+            f"The prediction is {support}: one-sided {against(found.p, data.alpha)} (Page’s "
             f"test, n = {found.trend.n}). The other direction would be no support, whatever its "
             "size."
         ),
         apa=(
-            f"{asked.name}, predicted to {found.predicted[:-1]}: Page’s L = "
+            f"{data.name}, predicted to {found.predicted[:-1]}: Page’s L = "
             f"{number(found.trend.statistic, 1)}, N = {found.trend.n}, one-sided "
             f"{p_words(found.p)}; {'; '.join(parts)}"
         ),
@@ -184,21 +184,21 @@ def _predicted(asked: Asked, found: DirectionalHypothesis) -> Said:
         ],
         method=(
             "Page’s trend test, one-sided, exact given the ties, then one-sided signed-rank tests "
-            f"against {asked.measure.levels[0]} ms with Holm’s rule. {listwise(asked)}"
+            f"against {data.measure.levels[0]} ms with Holm’s rule. {listwise(data)}"
         ),
         source=f"{PAGE.source} {WILCOXON.source} Direction: Waltemate et al. 2016.",
-        warnings=(signed_floor(found.against_first), measured("page_given_ties")),
-        brief=Brief(p_words(found.p), _way(found.trend)),
+        warnings=(signed_floor(found.against_first), error_rate_warning("page_given_ties")),
+        brief=Brief(p_words(found.p), _direction(found.trend)),
     )
 
 
-def limb_results(measure: Measure, limb: str, alpha: float) -> Iterator[Said]:
+def limb_results(measure: Measure, limb: str, alpha: float) -> Iterator[TestReport]:
     """Yield Friedman's test, planned comparisons, the trend and every further registered test.
 
     A test that cannot be computed is reported with the reason.
     """
-    asked = Asked(measure, limb, measure.table(limb).to_numpy(dtype=np.float64), alpha)
-    reports: list[tuple[Callable[[Asked], Said], str, str]] = [
+    data = LimbData(measure, limb, measure.table(limb).to_numpy(dtype=np.float64), alpha)
+    reports: list[tuple[Callable[[LimbData], TestReport], str, str]] = [
         (_friedman, "friedman", FRIEDMAN.question),
         (_planned, "planned", f"Each latency against {measure.levels[0]} ms"),
         (trend, "trend", PAGE.question),
@@ -206,10 +206,10 @@ def limb_results(measure: Measure, limb: str, alpha: float) -> Iterator[Said]:
     ]
     for report, key, title in reports:
         try:
-            yield report(asked)
+            yield report(data)
         except StatisticsError as error:
             heading = f"{limb.capitalize()}: {title}"
-            yield Said(
+            yield TestReport(
                 f"{key}_{limb}", heading, f"This cannot be tested. {error}", "", (), (), "", ""
             )
 
@@ -219,98 +219,98 @@ def further_tests() -> list[StatisticalTest]:
     return [one for one in TESTS if one.key not in REPORTED]
 
 
-def _further(test: StatisticalTest, asked: Asked) -> Said:
+def _further(test: StatisticalTest, data: LimbData) -> TestReport:
     """Report a test that has no report of its own; it is exploratory."""
-    sample = Sample(asked.complete, asked.measure.levels, test.directions[0], alpha=asked.alpha)
+    sample = Sample(data.complete, data.measure.levels, test.directions[0], alpha=data.alpha)
     found = test.load()(sample)
-    return Said(
-        key=f"{test.key}_{asked.limb}",
-        title=f"{asked.limb.capitalize()}: {test.question}",
-        sentence=f"With {found.n} participants {against(found.p, asked.alpha)} ({test.phrase}).",
-        apa=f"{asked.name}, {test.phrase}: {found.sentence}",
+    return TestReport(
+        key=f"{test.key}_{data.limb}",
+        title=f"{data.limb.capitalize()}: {test.question}",
+        sentence=f"With {found.n} participants {against(found.p, data.alpha)} ({test.phrase}).",
+        apa=f"{data.name}, {test.phrase}: {found.sentence}",
         columns=found.columns,
         rows=found.rows,
-        method=f"{found.method} {listwise(asked)}",
+        method=f"{found.method} {listwise(data)}",
         source=test.source,
         exploratory=True,
         brief=Brief(p_words(found.p)),
     )
 
 
-def _friedman(asked: Asked) -> Said:
-    found = friedman(asked.complete)
-    differ = "differ" if found.p <= asked.alpha else "are not told apart"
-    levels = asked.measure.levels
+def _friedman(data: LimbData) -> TestReport:
+    found = friedman(data.complete)
+    differ = "differ" if found.p <= data.alpha else "are not shown to differ"
+    levels = data.measure.levels
     apa = (
-        f"{asked.name}: Friedman χ²({found.df}, N = {found.n}) = {number(found.statistic)}, "
+        f"{data.name}: Friedman χ²({found.df}, N = {found.n}) = {number(found.statistic)}, "
         f"{p_words(found.p)} ({found.method}), Kendall’s W = {bounded(found.kendall_w, 2)}"
     )
-    return Said(
-        key=f"friedman_{asked.limb}",
-        title=f"{asked.limb.capitalize()}: Do the latencies differ?",
+    return TestReport(
+        key=f"friedman_{data.limb}",
+        title=f"{data.limb.capitalize()}: Do the latencies differ?",
         sentence=(
-            f"With {found.n} participants the latencies {differ}: {against(found.p, asked.alpha)}; "
+            f"With {found.n} participants the latencies {differ}: {against(found.p, data.alpha)}; "
             f"Kendall’s W = {bounded(found.kendall_w, 2)} (0: participants disagree, 1: all order "
             "the latencies alike)."
         ),
         apa=apa,
         columns=("latency (ms)", "mean rank"),
         rows=[(at, number(rank)) for at, rank in zip(levels, found.mean_ranks, strict=True)],
-        method=f"Friedman’s test with ties, {found.method} p. {listwise(asked)} {found.note}",
+        method=f"Friedman’s test with ties, {found.method} p. {listwise(data)} {found.note}",
         source=FRIEDMAN.source,
         warnings=(
-            friedman_floor(found, asked.alpha),
-            measured(f"friedman_{found.method}"),
+            friedman_floor(found, data.alpha),
+            error_rate_warning(f"friedman_{found.method}"),
         ),
         brief=Brief(f"{p_words(found.p)}, W = {bounded(found.kendall_w, 2)}"),
     )
 
 
-def _planned(asked: Asked) -> Said:
-    levels = asked.measure.levels
-    found = against_reference(asked.table, levels, levels[0], alpha=asked.alpha)
+def _planned(data: LimbData) -> TestReport:
+    levels = data.measure.levels
+    found = against_reference(data.table, levels, levels[0], alpha=data.alpha)
     first = found.first_that_differs
-    told = (
+    first_difference = (
         f"The first latency that differs from {levels[0]} ms is {first} ms,"
         if first
         else f"No latency differs from {levels[0]} ms"
     )
     parts, floor = [apa_of(one) for one in found.comparisons], signed_floor(found)
-    return Said(
-        key=f"planned_{asked.limb}",
-        title=f"{asked.limb.capitalize()}: Each latency against {levels[0]} ms",
+    return TestReport(
+        key=f"planned_{data.limb}",
+        title=f"{data.limb.capitalize()}: Each latency against {levels[0]} ms",
         sentence=(
-            f"{told} at α = {bounded(asked.alpha, 2)} over all {len(found.comparisons)} "
+            f"{first_difference} at α = {bounded(data.alpha, 2)} over all {len(found.comparisons)} "
             "comparisons. "
             + ("It is no threshold: latencies between those tested are unknown." if first else "")
         ),
-        apa=f"{asked.name}: {'; '.join(parts)}",
+        apa=f"{data.name}: {'; '.join(parts)}",
         columns=(
             "latency (ms)",
             "n",
-            f"Δ median ({asked.measure.unit})",
+            f"Δ median ({data.measure.unit})",
             "Δ mean [95 % BCa CI]",
             "W",
             "p",
             "p (Holm)",
             "rank-biserial",
         ),
-        rows=[_row(asked, one) for one in found.comparisons],
+        rows=[_row(data, one) for one in found.comparisons],
         method=(
             "Wilcoxon’s signed-rank tests, two-sided, exact given the ties, differences of zero "
             f"left out; Holm’s rule over {len(found.comparisons)} comparisons; pairs with a "
             "missing value are left out of their comparison. Positive: larger than at "
-            f"{levels[0]} ms. {measured('bca_mean')}"
+            f"{levels[0]} ms. {error_rate_warning('bca_mean')}"
         ),
         source=WILCOXON.source,
-        warnings=(floor, measured("wilcoxon_holm")),
+        warnings=(floor, error_rate_warning("wilcoxon_holm")),
         brief=None if floor else Brief(f"{first} ms" if first else ""),
     )
 
 
-def _row(asked: Asked, one: Comparison) -> tuple[str, ...]:
-    levels = asked.measure.levels
-    column = asked.table[:, levels.index(one.a)] - asked.table[:, levels.index(one.b)]
+def _row(data: LimbData, one: Comparison) -> tuple[str, ...]:
+    levels = data.measure.levels
+    column = data.table[:, levels.index(one.a)] - data.table[:, levels.index(one.b)]
     differences = column[np.isfinite(column)]
     return (
         one.a,

@@ -77,13 +77,17 @@ class Measure:
 
     def missing(self) -> list[str]:
         """Return sentences that say which participants lack which cells."""
-        told: dict[str, list[str]] = {}
+        missing_cells: dict[str, list[str]] = {}
         for limb in self.limbs:
             for code, row in self.table(limb).iterrows():
                 lacking = [f"{at:g} ms" for at, value in row.items() if pd.isna(value)]
                 if lacking:
-                    told.setdefault(str(code), []).append(f"{limb} at {', '.join(lacking)}")
-        lines = [f"{code} has no value for {'; '.join(cells)}" for code, cells in told.items()]
+                    missing_cells.setdefault(str(code), []).append(
+                        f"{limb} at {', '.join(lacking)}"
+                    )
+        lines = [
+            f"{code} has no value for {'; '.join(cells)}" for code, cells in missing_cells.items()
+        ]
         return shortened(lines)
 
 
@@ -93,24 +97,24 @@ def measures_of(material: Material) -> Iterator[Measure]:
     yield from _scores(tested)
     tasks = tested.counting(tested.phases)
     tasks = tasks[tasks["phase_kind"].isin(COUNTED_KINDS)].astype({"completions": "float64"})
-    yield from _one(
+    yield from _measure(
         "contact_time",
         ("Contact time", "s"),
         "Active seconds per phase in which sides of boxes were red: the union over body parts.",
         tasks.rename(columns={"side_red_s": "value"}),
     )
-    yield from _one(
+    yield from _measure(
         "completions",
         ("Completed tasks", "tasks"),
         "Completed tasks per phase.",
         tasks.rename(columns={"completions": "value"}),
     )
     errors = task_angles(tested.counting(tested.errors))
-    yield from _one(
+    yield from _measure(
         "joint_error",
         ("Joint error", "deg"),
         "Angle between the participant's pose and the body they saw, a mean over joints and the "
-        "active time of a phase. It says what latency does to the body, not to the person.",
+        "active time of a phase. It shows the effect of latency on the body, not on the person.",
         errors.rename(columns={"mean_deg": "value"}),
     )
 
@@ -155,7 +159,7 @@ def _scores(tested: Material) -> Iterator[Measure]:
             title = score.label.get("en") or score.key
             about = f"Score of the questionnaire “{_title(newest)}”."
             limits = (score.minimum, score.maximum)
-            yield from _one(
+            yield from _measure(
                 f"{key}_{score.key}",
                 (title, "points"),
                 f"{about} {_range_words(limits)}".strip(),
@@ -187,9 +191,9 @@ def _symmetric(limits: tuple[float | None, float | None]) -> float | None:
     return high if low is not None and high is not None and low == -high else None
 
 
-def _one(
+def _measure(
     key: str,
-    called: tuple[str, str],
+    title_and_unit: tuple[str, str],
     about: str,
     rows: pd.DataFrame,
     *,
@@ -203,8 +207,8 @@ def _one(
     places = ["participant_code", "limb", "latency_ms", "block"]
     yield Measure(
         key=key,
-        title=called[0],
-        unit=called[1],
+        title=title_and_unit[0],
+        unit=title_and_unit[1],
         about=about,
         values=per_participant(known, "value"),
         places=known.groupby(places)["value"].mean().reset_index(),

@@ -6,11 +6,11 @@ import numpy as np
 
 from app.features.results.analysis.questions.measures import Measure
 from app.features.results.analysis.questions.words import (
-    Said,
+    TestReport,
     against,
     bounded,
     df_words,
-    measured,
+    error_rate_warning,
     number,
     p_cell,
     p_words,
@@ -38,12 +38,12 @@ _FEWEST_LIMBS = 2
 MOST_FOR_MODELS = 200
 _UNTESTABLE = (StatisticsError, np.linalg.LinAlgError)
 _TOO_MANY = (
-    f"Not computed: with more than {MOST_FOR_MODELS} participants the fit takes minutes. Export "
+    f"Not computed: with more than {MOST_FOR_MODELS} participants, fitting takes minutes. Export "
     "the data and fit the model there."
 )
 
 
-def model_results(measure: Measure, alpha: float) -> Iterator[Said]:
+def model_results(measure: Measure, alpha: float) -> Iterator[TestReport]:
     """Yield an analysis of variance and a mixed model of latency x limb."""
     if len(measure.limbs) < _FEWEST_LIMBS:
         return
@@ -54,15 +54,17 @@ def model_results(measure: Measure, alpha: float) -> Iterator[Said]:
         try:
             yield test(measure, alpha, key, title)
         except _UNTESTABLE as error:
-            yield Said(key, title, f"This cannot be tested. {_why(error)}", "", (), (), "", "")
+            yield TestReport(
+                key, title, f"This cannot be tested. {_why(error)}", "", (), (), "", ""
+            )
 
 
-def carry_over_result(measure: Measure) -> Iterator[Said]:
+def carry_over_result(measure: Measure) -> Iterator[TestReport]:
     """Yield a diagnostic of order, period and carry-over effects; it is not a hypothesis test."""
     places, key = measure.places, "carry_over"
     title = "Order, period and carry-over (diagnostic)"
     if places["participant_code"].nunique() > MOST_FOR_MODELS:
-        yield Said(key, title, _TOO_MANY, "", (), (), "", CARRY_SOURCE, exploratory=True)
+        yield TestReport(key, title, _TOO_MANY, "", (), (), "", CARRY_SOURCE, exploratory=True)
         return
     limbs = [factor("limb", places["limb"].tolist())] if len(measure.limbs) > 1 else []
     try:
@@ -74,14 +76,14 @@ def carry_over_result(measure: Measure) -> Iterator[Said]:
             further=limbs,
         )
     except _UNTESTABLE as error:
-        yield Said(key, title, f"This cannot be tested. {_why(error)}", "", (), (), "", "")
+        yield TestReport(key, title, f"This cannot be tested. {_why(error)}", "", (), (), "", "")
         return
     tests: Sequence[TermTest] = [
         one
         for one in (found.condition, found.period, found.carry_over, found.sequence)
         if one is not None
     ]
-    yield Said(
+    yield TestReport(
         key=key,
         title=title,
         sentence=" ".join(one.text for one in found.conclusions),
@@ -93,7 +95,10 @@ def carry_over_result(measure: Measure) -> Iterator[Said]:
             f"intercepts; {found.left_out} observations without a known block before left out."
         ),
         source=CARRY_SOURCE,
-        warnings=[measured("carry_over"), "" if found.converged else "The fit did not converge."],
+        warnings=[
+            error_rate_warning("carry_over"),
+            "" if found.converged else "The fit did not converge.",
+        ],
         exploratory=True,
     )
 
@@ -105,15 +110,17 @@ def _why(error: Exception) -> str:
     return "Participants, latencies and limbs explain the measure fully; nothing is left to chance."
 
 
-def _anova(measure: Measure, alpha: float, key: str, title: str) -> Said:
+def _anova(measure: Measure, alpha: float, key: str, title: str) -> TestReport:
     cells = measure.cells()
     found = rm_anova(cells, ("latency", "limb"))
     parts = [_effect_words(one) for one in found.effects]
-    told = [f"{one.name.replace(':', ' × ')}: {against(one.p_gg, alpha)}" for one in found.effects]
-    return Said(
+    comparisons = [
+        f"{one.name.replace(':', ' × ')}: {against(one.p_gg, alpha)}" for one in found.effects
+    ]
+    return TestReport(
         key=key,
         title=title,
-        sentence=f"With {found.n} complete participants, {'; '.join(told)}.",
+        sentence=f"With {found.n} complete participants, {'; '.join(comparisons)}.",
         apa=f"{measure.title}: {'; '.join(parts)}",
         columns=("effect", "F", "df", "ε (GG)", "p (GG)", "generalised η²", "partial η²"),
         rows=[
@@ -134,7 +141,7 @@ def _anova(measure: Measure, alpha: float, key: str, title: str) -> Said:
             "time where one limb always came first."
         ),
         source=statistical_test("rm_anova").source,
-        warnings=(measured("rm_anova_gg"), measured("rm_anova_gg_interaction")),
+        warnings=(error_rate_warning("rm_anova_gg"), error_rate_warning("rm_anova_gg_interaction")),
     )
 
 
@@ -146,10 +153,10 @@ def _effect_words(one: Effect) -> str:
     )
 
 
-def _mixed(measure: Measure, alpha: float, key: str, title: str) -> Said:
+def _mixed(measure: Measure, alpha: float, key: str, title: str) -> TestReport:
     places = measure.places
     if places["participant_code"].nunique() > MOST_FOR_MODELS:
-        return Said(key, title, _TOO_MANY, "", (), (), "", MIXED_SOURCE)
+        return TestReport(key, title, _TOO_MANY, "", (), (), "", MIXED_SOURCE)
     latency = factor("latency", places["latency_ms"].tolist())
     limb, period = (
         factor(a, places[b].tolist()) for a, b in (("limb", "limb"), ("period", "block"))
@@ -158,29 +165,33 @@ def _mixed(measure: Measure, alpha: float, key: str, title: str) -> Said:
     values = places["value"].to_numpy(dtype=np.float64)
     model = fit_mixed_model(values, places["participant_code"].tolist(), design)
     tests = term_tests(model)
-    told = [f"{_term(one)}: {against(one.p, alpha)}" for one in tests]
+    comparisons = [f"{_term(one)}: {against(one.p, alpha)}" for one in tests]
     parts = [
         f"{_term(one)} F({one.df_term}, {df_words(one.df_error)}) = {number(one.f)}, "
         f"{p_words(one.p)}"
         for one in tests
     ]
-    return Said(
+    return TestReport(
         key=key,
         title=title,
         sentence=(
             f"With {model.participants} participants and {model.observations} phases, "
-            f"{'; '.join(told)}."
+            f"{'; '.join(comparisons)}."
         ),
         apa=f"{measure.title}, linear mixed model: {'; '.join(parts)}",
         columns=("term", "F", "df", "p"),
         rows=[_term_row(one) for one in tests],
         method=(
             "Linear mixed model (REML), random intercept of participants, F tests with "
-            "Satterthwaite’s degrees of freedom. Uses every phase that there is; nobody is left "
+            "Satterthwaite’s degrees of freedom. Uses every existing phase; nobody is left "
             "out for a missing cell."
         ),
         source=MIXED_SOURCE,
-        warnings=[*model.messages, measured("mixed_model"), measured("mixed_model_interaction")],
+        warnings=[
+            *model.messages,
+            error_rate_warning("mixed_model"),
+            error_rate_warning("mixed_model_interaction"),
+        ],
     )
 
 

@@ -8,7 +8,7 @@ import pandas as pd
 from app.features.results.analysis.figures.contacts import part_side_times
 from app.features.results.analysis.material import Material
 from app.features.results.analysis.questions.measures import Measure, completed
-from app.features.results.analysis.questions.words import Said, bounded, p_cell
+from app.features.results.analysis.questions.words import TestReport, bounded, p_cell
 from app.protocol import COUNTED_KINDS
 from app.science.statistics import (
     Spearman,
@@ -43,7 +43,7 @@ def group_of(part: str) -> str:
     return next((group for word, group in _GROUPS.items() if part.endswith(word)), _ORDER[-1])
 
 
-def contact_share_results(material: Material) -> Iterator[Said]:
+def contact_share_results(material: Material) -> Iterator[TestReport]:
     """Yield, for each limb, the share of contact time by group of body parts at each latency."""
     tested = completed(material)
     phases, contacts = tested.counting(tested.phases), tested.counting(tested.contacts)
@@ -58,7 +58,7 @@ def contact_share_results(material: Material) -> Iterator[Said]:
         for latency, cell in own.groupby("latency_ms"):
             rows += _share_rows(f"{latency:g}", cell, times)
         if rows:
-            yield _shares_said(str(limb), rows)
+            yield _shares_report(str(limb), rows)
 
 
 def _share_rows(latency: str, cell: pd.DataFrame, times: pd.DataFrame) -> list[tuple[str, ...]]:
@@ -82,8 +82,8 @@ def _share_rows(latency: str, cell: pd.DataFrame, times: pd.DataFrame) -> list[t
     ]
 
 
-def _shares_said(limb: str, rows: Sequence[tuple[str, ...]]) -> Said:
-    return Said(
+def _shares_report(limb: str, rows: Sequence[tuple[str, ...]]) -> TestReport:
+    return TestReport(
         key=f"contact_shares_{limb}",
         title=f"{limb.capitalize()}: Which part of the body was in contact?",
         sentence=(
@@ -101,28 +101,28 @@ def _shares_said(limb: str, rows: Sequence[tuple[str, ...]]) -> Said:
     )
 
 
-def subjective_objective(measures: Sequence[Measure]) -> Iterator[Said]:
+def subjective_objective(measures: Sequence[Measure]) -> Iterator[TestReport]:
     """Yield correlations of every score with contact time, completions and joint error.
 
     They are computed at each latency.
     """
     scores = [one for one in measures if not one.continuous]
     others = [one for one in measures if one.key in OBJECTIVE]
-    known = [
+    correlations = [
         (score.title, other.title, latency, found)
         for score in scores
         for other in others
         for latency in score.latencies_ms
         if (found := _pair(score, other, latency)) is not None
     ]
-    if not known:
+    if not correlations:
         return
-    rows = _correlation_rows(known)
-    yield Said(
+    rows = _correlation_rows(correlations)
+    yield TestReport(
         key="subjective_objective",
-        title="What people say against what was measured",
+        title="Questionnaire scores and measured behaviour",
         sentence=(
-            f"{len(rows)} rank correlations, adjusted together. Among so many some look striking "
+            f"{len(rows)} rank correlations, adjusted together. Among so many, some look striking "
             "by chance: a reason for a new study, not a result of this one."
         ),
         apa="",
@@ -131,7 +131,7 @@ def subjective_objective(measures: Sequence[Measure]) -> Iterator[Said]:
         ),
         rows=rows,
         method=(
-            "One pair of values a participant: both measures averaged over the limbs at one "
+            "One pair of values per participant: both measures averaged over the limbs at one "
             "latency. Correlations over repeated measures would count people several times."
         ),
         source="Spearman 1904; Bonett and Wright 2000, Psychometrika 65:23.",
@@ -140,10 +140,10 @@ def subjective_objective(measures: Sequence[Measure]) -> Iterator[Said]:
 
 
 def _correlation_rows(
-    known: Sequence[tuple[str, str, float, Spearman]],
+    correlations: Sequence[tuple[str, str, float, Spearman]],
 ) -> list[tuple[str, ...]]:
     """Return a table row per correlation, with p adjusted over all of them together."""
-    adjusted = holm([found.p for _, _, _, found in known])
+    adjusted = holm([found.p for _, _, _, found in correlations])
     return [
         (
             score,
@@ -155,7 +155,7 @@ def _correlation_rows(
             p_cell(one.p),
             p_cell(p),
         )
-        for (score, other, latency, one), p in zip(known, adjusted, strict=True)
+        for (score, other, latency, one), p in zip(correlations, adjusted, strict=True)
     ]
 
 
@@ -171,7 +171,7 @@ def _pair(score: Measure, other: Measure, latency: float) -> Spearman | None:
         return None
 
 
-def demographics(material: Material, measures: Sequence[Measure]) -> Iterator[Said]:
+def demographics(material: Material, measures: Sequence[Measure]) -> Iterator[TestReport]:
     """Yield the relation of each score, averaged over all cells, to answers outside the blocks."""
     tested = completed(material)
     answers = tested.counting(tested.answers)
@@ -193,14 +193,14 @@ def demographics(material: Material, measures: Sequence[Measure]) -> Iterator[Sa
             )
             for one in found
         ]
-        yield Said(
+        yield TestReport(
             key=f"demographics_{score.key}",
             title=f"{score.title} by demographics",
             sentence=f"{len(rows)} variables, adjusted together; n is small for each.",
             apa="",
             columns=("variable", "effect size", "n", "value", "p", "p (Holm)"),
             rows=rows,
-            method="Means over all latencies and limbs. Explored, never a hypothesis.",
+            method="Means over all latencies and limbs. Exploratory, not a hypothesis test.",
             source="Spearman 1904; Kruskal and Wallis 1952, J. Am. Stat. Assoc. 47:583.",
             exploratory=True,
         )

@@ -7,17 +7,17 @@ import pandas as pd
 
 from app.features.results.analysis.material import Material
 from app.features.results.analysis.questions.measures import LIMBS, completed
-from app.features.results.analysis.questions.words import Said, bounded
+from app.features.results.analysis.questions.words import TestReport, bounded
 from app.science.instruments import Instrument
 from app.science.statistics import ConstantData, StatisticsError, cronbach_alpha
 
 
-def reliability(material: Material) -> Iterator[Said]:
+def reliability(material: Material) -> Iterator[TestReport]:
     """Yield Cronbach's alpha of the scored items of each questionnaire, by cell of the design."""
     tested = completed(material)
     answers = tested.counting(tested.answers)
-    asked = answers[answers["item_type"].eq("likert")].dropna(subset=["limb"])
-    for key, own in asked.groupby("instrument"):
+    ratings = answers[answers["item_type"].eq("likert")].dropna(subset=["limb"])
+    for key, own in ratings.groupby("instrument"):
         newest = tested.instruments[str(key), int(own["instrument_version"].max())]
         rows = [
             row
@@ -26,7 +26,7 @@ def reliability(material: Material) -> Iterator[Said]:
             for row in _alpha_row(newest, limb, f"{latency:g}", cell)
         ]
         if rows:
-            yield _alpha_said(newest, rows)
+            yield _alpha_report(newest, rows)
 
 
 def _alpha_row(
@@ -49,22 +49,22 @@ def _alpha_row(
         yield limb, latency, str(found.n), bounded(found.alpha, 2), ends
 
 
-def _turned(answers: pd.Series, instrument: Instrument, turn: bool, key: str) -> np.ndarray:  # noqa: FBT001 - of the item
+def _turned(answers: pd.Series, instrument: Instrument, reverse: bool, key: str) -> np.ndarray:  # noqa: FBT001 - of the item
     values = answers.to_numpy(dtype=np.float64)
     scale = instrument.scale_of(instrument.by_key[key])
-    return scale.minimum + scale.maximum - values if turn and scale is not None else values
+    return scale.minimum + scale.maximum - values if reverse and scale is not None else values
 
 
-def _alpha_said(instrument: Instrument, rows: Sequence[tuple[str, ...]]) -> Said:
+def _alpha_report(instrument: Instrument, rows: Sequence[tuple[str, ...]]) -> TestReport:
     title: Mapping[str, str] = instrument.title
     reversed_items = [item.key for item in instrument.items if item.reverse_keyed]
-    turned = f"after turning {', '.join(reversed_items)} round" if reversed_items else ""
-    return Said(
+    turned = f"after reversing {', '.join(reversed_items)}" if reversed_items else ""
+    return TestReport(
         key=f"alpha_{instrument.key}",
         title=f"{title.get('en') or instrument.key}: consistency of its scored items",
         sentence=(
             f"Cronbach’s alpha of {len(instrument.scored_items)} items {turned}. With few "
-            "participants the intervals are wide; alpha says nothing of validity."
+            "participants the intervals are wide; alpha says nothing about validity."
         ),
         apa="",
         columns=("task", "latency (ms)", "n", "α", "95 % CI"),

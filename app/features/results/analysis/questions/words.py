@@ -41,7 +41,7 @@ class Brief:
 
 
 @dataclass(frozen=True)
-class Said:
+class TestReport:
     """The report of one test; see `ResultView`.
 
     `brief`: None if the test could not be computed.
@@ -112,7 +112,7 @@ def against(p: float, alpha: float) -> str:
     return f"{p_words(p)} {'is at most' if p <= alpha else 'exceeds'} α = {bounded(alpha, 2)}"
 
 
-def measured(test: str) -> str:
+def error_rate_warning(test: str) -> str:
     """Return a warning if a test's error rate in simulated studies was too high, else nothing."""
     rates = _rates()
     row = None if rates is None else rates.of(test)
@@ -120,7 +120,7 @@ def measured(test: str) -> str:
         return ""
     share = f"{100.0 * row.rate:.1f} %"
     if row.warning == "covers_too_seldom":
-        return f"Intervals of this kind held the truth in {share} of simulated studies, not 95 %."
+        return f"These intervals included the true value in {share} of simulated studies, not 95 %."
     return f"This test rejected in {share} of simulated studies without an effect, not in 5 %."
 
 

@@ -62,12 +62,12 @@ class RunClock:
         clock. NaT and NaN where there is no probe.
         """
         server_s, uncertainty_s = self.mapping.to_server(client_s / self.time_scale)
-        known = np.isfinite(uncertainty_s)
+        mapped = np.isfinite(uncertainty_s)
         utc = np.full(len(client_s), np.datetime64("NaT"), dtype="datetime64[us]")
         zero = (self.base_utc - _EPOCH_UTC) // timedelta(microseconds=1)
-        since = np.round((server_s[known] + self.anchor_s) * 1e6).astype(np.int64)
-        utc[known] = (zero + since).astype("datetime64[us]")
-        return utc, np.where(known, 1000.0 * uncertainty_s, np.nan)
+        since = np.round((server_s[mapped] + self.anchor_s) * 1e6).astype(np.int64)
+        utc[mapped] = (zero + since).astype("datetime64[us]")
+        return utc, np.where(mapped, 1000.0 * uncertainty_s, np.nan)
 
 
 def run_clocks(db: Session, session_id: str) -> dict[int, RunClock]:
@@ -111,21 +111,21 @@ def add_utc(db: Session, frame: pd.DataFrame, seconds: str, name: str) -> None:
 
 def _fitted(answered: Sequence[Reading], scale: float) -> Iterator[RunClock]:
     base_ns, base_utc = answered[0].server_received_ns or 0, answered[0].server_utc
-    before: RunClock | None = None
+    previous: RunClock | None = None
     last: Reading | None = None
     for epoch, group in groupby(answered, key=lambda reading: reading.epoch):
         own = _in_order(list(group))
         mapping = fit_clock(_probes(own, base_ns, base_utc, scale))
         if not mapping.segments:
             continue
-        if before is None or last is None or _started_again(last, own[0]):
+        if previous is None or last is None or _restarted(last, own[0]):
             anchor_s = mapping.wall_s
         else:
             # The shift that undid jumps of the server's clock in that run also applies to this one.
-            anchor_s = before.anchor_s + before.mapping.segments[-1].server_shift_s
-        before = RunClock(epoch, mapping, base_ns / NS_PER_S, base_utc, anchor_s, scale)
+            anchor_s = previous.anchor_s + previous.mapping.segments[-1].server_shift_s
+        previous = RunClock(epoch, mapping, base_ns / NS_PER_S, base_utc, anchor_s, scale)
         last = own[-1]
-        yield before
+        yield previous
 
 
 def _in_order(readings: list[Reading]) -> list[Reading]:
@@ -141,7 +141,7 @@ def _in_order(readings: list[Reading]) -> list[Reading]:
     return sorted(readings, key=lambda reading: (reading.server_utc, reading.client_sent_s))
 
 
-def _started_again(last: Reading, first: Reading) -> bool:
+def _restarted(last: Reading, first: Reading) -> bool:
     """Return whether the server's machine was restarted between two readings.
 
     If it was, its monotonic clock is behind, or so little ahead that it began after the first

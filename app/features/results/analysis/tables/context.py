@@ -28,12 +28,12 @@ _shared: ContextVar[Contexts | None] = ContextVar("shared_contexts", default=Non
 
 
 @contextmanager
-def shared_contexts(kept: Contexts) -> Iterator[None]:
+def shared_contexts(cache: Contexts) -> Iterator[None]:
     """Read each context table only once inside this context manager, and store it in `kept`.
 
     Only for tables of one database whose data do not change while `kept` is used.
     """
-    token = _shared.set(kept)
+    token = _shared.set(cache)
     try:
         yield
     finally:
@@ -45,13 +45,13 @@ def _once(context: Context) -> Context:
 
     @wraps(context)
     def read_once(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
-        kept = _shared.get()
-        if kept is None:
+        cache = _shared.get()
+        if cache is None:
             return context(db, study_key, kind)
         name = (context.__name__, study_key, kind)
-        if name not in kept:
-            kept[name] = context(db, study_key, kind)
-        return kept[name].copy(deep=False)
+        if name not in cache:
+            cache[name] = context(db, study_key, kind)
+        return cache[name].copy(deep=False)
 
     return read_once
 
@@ -100,8 +100,8 @@ def _cast(values: "pd.Series[Any]", kind: ColumnType) -> "pd.Series[Any]":
         case "boolean":
             if not values.isna().any():
                 return values.astype("bool")
-            told = [None if pd.isna(value) else bool(value) for value in values]
-            return pd.Series(pd.array(told, dtype="boolean"))
+            truths = [None if pd.isna(value) else bool(value) for value in values]
+            return pd.Series(pd.array(truths, dtype="boolean"))
         case "text":
             return values.astype("object").where(values.notna(), None)
 

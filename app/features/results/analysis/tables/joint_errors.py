@@ -36,7 +36,9 @@ def joint_errors_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
     return _errors(db, study_key, kind, true())
 
 
-def _errors(db: Session, study_key: str, kind: Kind, wanted: ColumnElement[bool]) -> pd.DataFrame:
+def _errors(
+    db: Session, study_key: str, kind: Kind, condition: ColumnElement[bool]
+) -> pd.DataFrame:
     query = (
         select(
             JointErrorRow.session_id,
@@ -53,7 +55,7 @@ def _errors(db: Session, study_key: str, kind: Kind, wanted: ColumnElement[bool]
             JointErrorRow.excluded,
         )
         .join(StudySession, StudySession.id == JointErrorRow.session_id)
-        .where(of_kind(study_by_key(db, study_key), kind), wanted)
+        .where(of_kind(study_by_key(db, study_key), kind), condition)
     )
     names = ("reference", "joint", "axis", *(f"{name}_rad" for name in _FIGURES))
     errors = read(db, query, (*_KEYS, *names, "clipped_share", "samples", "excluded"))
@@ -88,7 +90,9 @@ def joint_error_course_table(db: Session, study_key: str, kind: Kind) -> pd.Data
     return _courses(db, study_key, kind, true())
 
 
-def _courses(db: Session, study_key: str, kind: Kind, wanted: ColumnElement[bool]) -> pd.DataFrame:
+def _courses(
+    db: Session, study_key: str, kind: Kind, condition: ColumnElement[bool]
+) -> pd.DataFrame:
     query = (
         select(
             JointErrorCourseRow.session_id,
@@ -99,7 +103,7 @@ def _courses(db: Session, study_key: str, kind: Kind, wanted: ColumnElement[bool
             JointErrorCourseRow.samples,
         )
         .join(StudySession, StudySession.id == JointErrorCourseRow.session_id)
-        .where(of_kind(study_by_key(db, study_key), kind), wanted)
+        .where(of_kind(study_by_key(db, study_key), kind), condition)
     )
     courses = read(db, query, (*_KEYS, "reference", *_LISTS))
     courses["place"] = courses["reference"].map(_PLACES)

@@ -42,7 +42,7 @@ def answers_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
     )
     names = ("submission_id", "item", "shown_position", "value_number", "value_text")
     frame = _forms(db, study, kind).merge(read(db, query, names), on="submission_id")
-    _put_corrections(frame, newest_corrections(db, _submissions(study, kind)))
+    _apply_corrections(frame, newest_corrections(db, _submissions(study, kind)))
     instruments = _instruments(db)
     items = [
         instruments[row].by_key[item]
@@ -50,11 +50,11 @@ def answers_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
     ]
     frame["item_type"] = [item.type for item in items]
     frame["shown_position"] = frame["shown_position"] + 1
-    _put_times(frame)
+    _add_times(frame)
     return finished(frame, "answers")
 
 
-def _put_times(frame: pd.DataFrame) -> None:
+def _add_times(frame: pd.DataFrame) -> None:
     """Add the columns of response times and changes, numeric even where nothing is known."""
     timed = list(zip(frame["timings"], frame["item"], strict=True))
     traced = [
@@ -70,7 +70,7 @@ def _put_times(frame: pd.DataFrame) -> None:
         frame[name] = values
 
 
-def _put_corrections(
+def _apply_corrections(
     frame: pd.DataFrame, corrected: Mapping[tuple[str, str], AnswerCorrection]
 ) -> None:
     """Replace answers as first given by their latest corrections."""
@@ -103,13 +103,13 @@ def scores_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
     frame = _forms(db, study, kind).merge(
         read(db, query, ("submission_id", "score", "value")), on="submission_id"
     )
-    known = {
+    score_ranges = {
         (row, score.key): (place, score.minimum, score.maximum)
         for row, instrument in _instruments(db).items()
         for place, score in enumerate(instrument.scores)
     }
     of_row = [
-        known.get(key, (len(known), None, None))
+        score_ranges.get(key, (len(score_ranges), None, None))
         for key in zip(frame["instrument_version_id"], frame["score"], strict=True)
     ]
     frame["place"] = [place for place, _, _ in of_row]

@@ -4,7 +4,7 @@ An export shows one moment of the database, and its memory does not grow with th
 """
 
 from app.features.results.exports.writing.contents import Member
-from app.features.results.exports.writing.making import made
+from app.features.results.exports.writing.making import make_export
 from app.features.results.exports.writing.service import (
     Exported,
     export_study,
@@ -17,7 +17,7 @@ __all__ = [
     "Exported",
     "Member",
     "export_study",
-    "made",
+    "make_export",
     "person_archive",
     "study_archive",
     "usual_kind",

@@ -43,12 +43,12 @@ def without_conditions(table: str, frame: pd.DataFrame, hidden: Collection[str])
         return frame
     if table in LEFT_OUT:
         return frame[~rows]
-    told = frame.copy()
-    for name in EMPTIED & set(told.columns):
-        told[name] = told[name].mask(rows)
-    if "payload" in told.columns:
-        told.loc[rows, "payload"] = told.loc[rows, "payload"].map(_payload)
-    return told
+    masked = frame.copy()
+    for name in EMPTIED & set(masked.columns):
+        masked[name] = masked[name].mask(rows)
+    if "payload" in masked.columns:
+        masked.loc[rows, "payload"] = masked.loc[rows, "payload"].map(_payload)
+    return masked
 
 
 def _payload(text: str) -> str:

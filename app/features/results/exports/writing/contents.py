@@ -142,8 +142,8 @@ class Contents:
     def _receipt(self, session_id: str) -> Iterator[bytes]:
         """Yield the receipt of a session as JSON, computed in the transaction of this export."""
         receipt = receipt_of(self.db, session_id)
-        told = receipt.without_latencies() if session_id in self.hidden else receipt
-        yield json.dumps(told.as_json(), indent=2).encode() + b"\n"
+        shown = receipt.without_latencies() if session_id in self.hidden else receipt
+        yield json.dumps(shown.as_json(), indent=2).encode() + b"\n"
 
     def _member(self, path: str, pieces: Iterator[bytes]) -> Member:
         return Member(path, self._counted(path, pieces))

@@ -19,12 +19,16 @@ def silent(path: str) -> None:
     """Ignore the progress (the default callback)."""
 
 
-Beside = Callable[[Path], AbstractContextManager[Path]]
+FolderFactory = Callable[[Path], AbstractContextManager[Path]]
 """A context manager that creates a temporary folder beside a path."""
 
 
 def write_folder(
-    members: Iterable[Member], to: Path, *, beside: Beside, progress: Progress = silent
+    members: Iterable[Member],
+    to: Path,
+    *,
+    temporary_folder: FolderFactory,
+    progress: Progress = silent,
 ) -> None:
     """Write `members` to the folder `to`, and call `progress` with each path before it is written.
 
@@ -34,7 +38,7 @@ def write_folder(
     to = to.absolute()
     check_target(to)
     to.parent.mkdir(parents=True, exist_ok=True)
-    with beside(to) as workplace:
+    with temporary_folder(to) as workplace:
         fresh = workplace / "new"
         for folder in FOLDERS:
             (fresh / folder).mkdir(parents=True)

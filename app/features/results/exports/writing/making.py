@@ -19,13 +19,13 @@ from app.database import Database, make_engine
 from app.errors import ReembodyError
 from app.features.design.studies import study_by_key
 from app.features.results.analysis.tables import of_kind
-from app.features.results.exports.orders import Made, Meter, NotMade, Order, Progress
+from app.features.results.exports.orders import ExportFailure, ExportResult, Meter, Order, Progress
 from app.features.results.exports.writing.archive import zip_pieces
 from app.features.results.exports.writing.contents import Contents, Member
 from app.models import StudySession, TelemetryStream
 from app.wire import StreamName
 
-LOOK_EVERY_BYTES = 32 * 1024**2
+CHECK_EVERY_BYTES = 32 * 1024**2
 """The disk's free space is checked each time this many bytes were written."""
 
 
@@ -33,22 +33,22 @@ class _DiskNearlyFullError(Exception):
     """The disk has only as much space left as is reserved for running sessions."""
 
 
-def made(order: Order) -> Made | NotMade:
+def make_export(order: Order) -> ExportResult | ExportFailure:
     """Write the file, or return why it could not be made; the caller removes an unfinished file."""
     try:
-        return _made(order)
+        return _write_export(order)
     except _DiskNearlyFullError:
         return _no_room(order)
     except ReembodyError as error:
-        return NotMade(error.message, error.remedy)
+        return ExportFailure(error.message, error.remedy)
     except (OSError, SQLAlchemyError) as error:
-        return NotMade(
+        return ExportFailure(
             f"the export could not be written: {type(error).__name__}: {str(error)[:200]}",
             "Make it again; if that fails too, look at the server's disk and database.",
         )
 
 
-def _made(order: Order) -> Made:
+def _write_export(order: Order) -> ExportResult:
     database = Database(make_engine(order.url, pooled=False))
     progress, digest = Progress(), hashlib.sha256()
     try:
@@ -61,15 +61,15 @@ def _made(order: Order) -> Made:
                 file.write(piece)
                 digest.update(piece)
                 before, progress.bytes = progress.bytes, progress.bytes + len(piece)
-                if progress.bytes // LOOK_EVERY_BYTES > before // LOOK_EVERY_BYTES:
+                if progress.bytes // CHECK_EVERY_BYTES > before // CHECK_EVERY_BYTES:
                     _require_room(order)
-                Meter(order.meter).tell(progress)
+                Meter(order.meter).write(progress)
             file.flush()
             os.fsync(file.fileno())
     finally:
         database.close()
     order.to.with_suffix(".part").rename(order.to)
-    return Made(progress.bytes, digest.hexdigest(), contents.sessions, contents.revealed)
+    return ExportResult(progress.bytes, digest.hexdigest(), contents.sessions, contents.revealed)
 
 
 def watched(members: Iterable[Member], progress: Progress) -> Iterator[Member]:
@@ -97,20 +97,22 @@ def _expect(db: Session, order: Order, progress: Progress) -> None:
     The rows of a session's run are those of its longer stream.
     """
     study = study_by_key(db, order.study_key)
-    which = select(StudySession.id).where(of_kind(study, order.kind))
+    session_ids = select(StudySession.id).where(of_kind(study, order.kind))
     if order.session_id is not None:
-        which = which.where(StudySession.id == order.session_id)
+        session_ids = session_ids.where(StudySession.id == order.session_id)
     stream = TelemetryStream
     longest = (
         select(func.max(stream.frames_stored).label("rows"))
-        .where(stream.session_id.in_(which))
+        .where(stream.session_id.in_(session_ids))
         .where(stream.stream.in_([StreamName.TARGET, StreamName.ACTUAL]))
         .group_by(stream.session_id, stream.epoch)
         .subquery()
     )
-    progress.sessions_total = db.scalar(select(func.count()).select_from(which.subquery())) or 0
+    progress.sessions_total = (
+        db.scalar(select(func.count()).select_from(session_ids.subquery())) or 0
+    )
     progress.rows_total = int(db.scalar(select(func.sum(longest.c.rows))) or 0)
-    Meter(order.meter).tell(progress)
+    Meter(order.meter).write(progress)
     _require_room(order)
 
 
@@ -119,9 +121,9 @@ def _require_room(order: Order) -> None:
         raise _DiskNearlyFullError
 
 
-def _no_room(order: Order) -> NotMade:
+def _no_room(order: Order) -> ExportFailure:
     keep_gb = order.keep_free_bytes / 1e9
-    return NotMade(
+    return ExportFailure(
         f"the disk has less than {keep_gb:.1f} GB left, which are kept for running sessions",
         "Free space on the server's disk (the page Storage shows what takes it), or export to"
         " another disk on the server: ./run export --to FOLDER.",

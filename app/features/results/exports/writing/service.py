@@ -54,8 +54,8 @@ def export_study(
     if it cannot be written; in each case nothing has changed.
     """
     contents = Contents(db, study_key, kind, now)
-    beside = partial(made_beside, "export", now=now, notes=notes, study_key=study_key)
-    write_folder(contents.members(), to, beside=beside, progress=progress)
+    temporary_folder = partial(made_beside, "export", now=now, notes=notes, study_key=study_key)
+    write_folder(contents.members(), to, temporary_folder=temporary_folder, progress=progress)
     return Exported(
         to,
         kind,
