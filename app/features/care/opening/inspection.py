@@ -93,7 +93,8 @@ def damage_of(file: Path, *, every_row: bool = False) -> str | None:
         if not report.header_valid:
             return "the beginning of its log is damaged"
         if report.damaged:
-            return f"its log is damaged: {report.commits_after_invalid} stored transactions cannot be read"
+            lost = report.commits_after_invalid
+            return f"its log is damaged: {lost} stored transactions cannot be read"
         missing = frames_noted(log, index_of(file)) - report.usable
         if missing > 0:
             return f"its log is damaged: {missing} stored pages at its end cannot be read"

@@ -34,7 +34,7 @@ Words = NDArray[np.uint32]
 class LogReport:
     """A log's state; `usable`: frames of complete transactions before the first invalid one.
 
-    `commits_behind`: transactions of this log that ended after the first invalid frame.
+    `commits_after_invalid`: transactions of this log that ended after the first invalid frame.
     """
 
     header_valid: bool
