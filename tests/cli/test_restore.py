@@ -158,7 +158,7 @@ def test_a_list_that_is_none_is_refused(earlier: Earlier, data: Path, line: str)
     """Before anything is touched: an erasure that is left out brings somebody back."""
     text = earlier.erasures.read_text() + line + "\n"
     earlier.erasures.write_text(text, errors="surrogateescape")
-    assert "are no erasures" in RESTORE.refusal(earlier.backup, "--erasures", earlier.erasures)
+    assert "are not erasures" in RESTORE.refusal(earlier.backup, "--erasures", earlier.erasures)
     assert not data.exists()
 
 

@@ -136,7 +136,7 @@ def test_a_damaged_backup_helps_nobody_and_harms_nobody(tmp_path: Path) -> None:
     refusal(server)
     said = reembody(server, "restore", backup)
     assert said.code == UNUSABLE
-    assert "not a whole backup" in said.err
+    assert "not a complete Reembody backup" in said.err
     assert not file_of(server).exists()
 
 

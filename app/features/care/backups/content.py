@@ -60,9 +60,9 @@ def wrong_tables(
         missing = sorted(set(columns) - set(found[shape.name]))
         wrong += [f"there is no column {shape.name}.{column}" for column in missing]
         more = sorted(set(found[shape.name]) - set(columns)) if exactly else []
-        wrong += [f"the column {shape.name}.{column} is not of this program" for column in more]
+        wrong += [f"the column {shape.name}.{column} is unknown to this program" for column in more]
     others = sorted(set(found) - {shape.name for shape in ours}) if exactly else []
-    return wrong + [f"the table {name} is not of this program" for name in others]
+    return wrong + [f"the table {name} is unknown to this program" for name in others]
 
 
 def wrong_rows(driver: sqlite3.Connection, shapes: Iterable[TableShape]) -> Iterator[str]:
@@ -81,7 +81,7 @@ def wrong_rows(driver: sqlite3.Connection, shapes: Iterable[TableShape]) -> Iter
             for one, values in zip(shape.columns, zip(*portion, strict=True), strict=True):
                 if one.name not in wrong and not _fit(one.kind, values):
                     wrong.add(one.name)
-                    yield f"{shape.name}.{one.name} holds something else than {_NAMES[one.kind]}"
+                    yield f"{shape.name}.{one.name} has values other than {_NAMES[one.kind]}"
 
 
 _NAMES = {

@@ -193,7 +193,7 @@ def _refused(row: object, key: object, column: str, value: object, why: str) -> 
     return InvalidInput(
         f"in the backup, {table} {key} has the {column} {shown}, {why}; nothing was changed",
         value=shown,
-        remedy="Take another copy of this backup, or another backup.",
+        remedy="Use another copy of this backup, or another backup.",
     )
 
 

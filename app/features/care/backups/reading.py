@@ -109,10 +109,10 @@ UNREADABLE = (
 
 def _refused(path: Path, why: str) -> InvalidInput:
     return InvalidInput(
-        f"{path} is not a whole backup of ours: {why}. Nothing was changed",
+        f"{path} is not a complete Reembody backup: {why}. Nothing was changed",
         value=str(path),
         valid="a file that `./run backup` wrote",
-        remedy="Take another copy of this backup, or another backup.",
+        remedy="Use another copy of this backup, or another backup.",
     )
 
 

@@ -28,7 +28,7 @@ def hold_still(target: Connection, shapes: Sequence[TableShape]) -> None:
         target.execute(text(f"LOCK TABLE {names} IN EXCLUSIVE MODE"))
     except DBAPIError as error:
         raise NotDurable(
-            f"somebody is writing and did not stop for {LOCK_TIMEOUT}; nothing was changed",
+            f"another process is writing and did not stop for {LOCK_TIMEOUT}; nothing was changed",
             remedy="Try again, or stop the server first.",
         ) from error
 
@@ -55,7 +55,7 @@ def replace_rows(target: Connection, backup: Backup, progress: Progress = silent
             progress(shape.name, len(rows))
         if digest_of(target, shape) != backup.tables[shape.name]:
             raise InvalidInput(
-                f"{shape.name} did not come out as it is in {backup.path}; nothing was changed",
+                f"{shape.name} does not match {backup.path}; nothing was changed",
                 value=shape.name,
-                remedy="Keep the backup, and try another copy of it.",
+                remedy="Keep the backup, and use another copy of it.",
             )

@@ -272,7 +272,7 @@ def _refuse_if_active(db: Session) -> None:
         f"{len(active)} session(s) are active: {names}; nothing was changed",
         value=len(active),
         valid=0,
-        remedy="Finish or abort them first: a connected headset has already forgotten what was "
+        remedy="Finish or abort them first: a connected headset has already discarded what was "
         "stored. If they cannot be finished any more, say --even-though-active.",
         details=[
             {"session_id": session_id, "participant_code": code, "started_at": str(started_at)}

@@ -68,14 +68,14 @@ def check_place(to: Path) -> None:
         raise NotFound(
             f"there is no folder {to.absolute().parent}; nothing was written",
             value=str(to),
-            remedy="Make the folder, or plug in the disk that it is on.",
+            remedy="Create the folder, or connect the disk that it is on.",
         )
 
 
 def _require_known(revision: str | None) -> str:
     if revision is None:
         raise NotFound(
-            "there is no database of ours here",
+            "there is no Reembody database here",
             remedy="Set REEMBODY_DATA_DIR or REEMBODY_DATABASE_URL as for the server.",
         )
     if revision not in known_revisions():

@@ -84,7 +84,11 @@ def refuse_unconfirmed_new_database(settings: Settings, *, new_database: bool) -
         return
     traces = traces_of_a_database(settings)
     if traces:
-        where = "the database server holds none of ours" if file is None else f"there is no {file}"
+        where = (
+            "the database server has no Reembody database"
+            if file is None
+            else f"there is no {file}"
+        )
         raise Conflict(
             f"{where}, but {home_of(settings)} holds what belongs to a database: "
             f"{', '.join(traces)}. No new one was begun",

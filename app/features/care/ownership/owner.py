@@ -98,7 +98,7 @@ class Owned(Conflict):
         super().__init__(
             f"{what} is in use by {who}; nothing was changed",
             value=None if owner is None else owner.pid,
-            remedy="Stop that one first, or work with other data: set REEMBODY_DATA_DIR and, for "
+            remedy="Stop it first, or use other data: set REEMBODY_DATA_DIR and, for "
             "PostgreSQL, REEMBODY_DATABASE_URL.",
         )
         self.owner = owner

@@ -162,7 +162,7 @@ def _require_prepared(settings: Settings, owned: Owned) -> None:
             "with it",
             value=found,
             valid=newest_revision(),
-            remedy="Try again in a moment; if it stays, that is another version of Reembody.",
+            remedy="Try again in a moment; if this remains, it is another version of Reembody.",
         ) from owned
 
 
@@ -201,7 +201,7 @@ class OwnerWatch(Part):
             lost = self._own.hold()
         except Owned as error:
             self._background.failed(OWNER, error)
-            log.critical("%s; this server ends, so that only one works with them", error.message)
+            log.critical("%s; this server stops, so that only one uses them", error.message)
             self._taken_over()
             self._stop.set()
         except ReembodyError as error:

@@ -42,7 +42,7 @@ def correct(
             "a correction needs a reason",
             value=reason,
             valid="1 to 2000 characters",
-            remedy="Write in a few words how you know; it becomes part of the record.",
+            remedy="Write in a few words why it is wrong; this becomes part of the record.",
         )
     now = context.clock.utc_now()
     row = correct_answer(

@@ -71,16 +71,16 @@ def require_erasable(db: Session, participant: Participant, confirm: str) -> Non
     """Raise Conflict, InvalidInput or NotNow if `erase` would."""
     if erasure_of(db, participant.id) is not None:
         raise Conflict(
-            "the data of this participant were erased before",
+            "the data of this participant were already erased",
             value=participant.code,
             remedy="There is nothing left to erase; the list shows what was done.",
         )
     if confirm != participant.code:
         raise InvalidInput(
-            "the code that was typed is not this participant's",
+            "the typed code is not this participant's",
             value=confirm,
             valid=participant.code,
-            remedy="Type the code as it stands in the list, to be sure whom you mean.",
+            remedy="Type the code as shown in the list, to confirm the participant.",
         )
     active = db.scalars(
         select(StudySession.id).where(

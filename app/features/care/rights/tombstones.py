@@ -61,7 +61,7 @@ class TombstoneFile:
             found, unreadable = _parsed(self.path.read_bytes())
         if unreadable:
             log.warning(
-                "%d line(s) of %s are no erasures, and were left out", unreadable, self.path
+                "%d line(s) of %s are not erasures, and were left out", unreadable, self.path
             )
         return found
 
@@ -106,10 +106,10 @@ def read_list(path: Path) -> tuple[Tombstone, ...]:
         found, unreadable = _parsed(path.read_bytes())
     if unreadable:
         raise InvalidInput(
-            f"{unreadable} line(s) of {path} are no erasures; nothing was changed",
+            f"{unreadable} line(s) of {path} are not erasures; nothing was changed",
             value=str(path),
             valid=f"the file {NAME} of a data folder",
-            remedy="Take another copy of it, or mend the line by hand: each is one erasure.",
+            remedy="Use another copy of it, or correct the line by hand: each line is one erasure.",
         )
     return tuple(found)
 

@@ -80,7 +80,7 @@ def post_score(request: TryRequest, db: Reading, _: SignedIn) -> TryResult:
     """Score answers without storing them, and return every step."""
     if (request.yaml is None) == (request.key is None):
         raise InvalidInput(
-            "either a file or a key says which instrument is meant",
+            "either a file or a key must name the instrument",
             valid="yaml or key, one of the two",
             remedy="Send the file's text as yaml, or the key of a stored instrument.",
         )

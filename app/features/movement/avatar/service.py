@@ -84,7 +84,7 @@ def add_avatar_version(
             "somebody else has changed this avatar meanwhile",
             value=wish.based_on,
             valid=newest.number,
-            remedy="Look at it as it is now, then decide. Nothing was saved.",
+            remedy="Check the current version, then decide. Nothing was saved.",
         )
     number = newest.number + 1
     row = _append(db, key, number, content, wish.origin, wish.note, actor, now, report=report)
@@ -184,7 +184,7 @@ def checked(db: Session, file: AvatarFile) -> LoadedAvatar:
     except AvatarSettingsError as error:
         raise InvalidConfig(
             "the avatar's configuration contradicts itself",
-            remedy="Mend what is named below; nothing was saved.",
+            remedy="Correct what is named below; nothing was saved.",
             details=[
                 {
                     "path": f"configuration.{one.path}",

@@ -158,7 +158,7 @@ def model_of(db: Session, key: str, number: int | None, stature_m: float) -> Ava
         raise Conflict(
             f"this avatar cannot be built: {error}",
             value=key,
-            remedy="Save a version of the configuration in which this is mended.",
+            remedy="Save a version of the configuration in which this is corrected.",
         ) from None
 
 

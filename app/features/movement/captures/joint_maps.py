@@ -75,7 +75,7 @@ def current_map(db: Session, capture: CaptureRow) -> CurrentMap:
         raise Conflict(
             f"the capture has no skeleton: {summary.no_skeleton}",
             value=capture.id,
-            remedy="Take a capture that has one, or record markers that show the whole body.",
+            remedy="Use a capture that has one, or record markers that show the whole body.",
         )
     rig = _rig(summary.skeleton)
     newest = (
@@ -147,7 +147,7 @@ def save_map(
             "the joint map does not fit the skeleton",
             value=wish.joint_map,
             valid={"body_joints": JOINT_NAMES, "joints": current.rig.names},
-            remedy="Mend the joints named below; nothing was saved.",
+            remedy="Correct the joints named below; nothing was saved.",
             details=[{"path": joint, "message": told} for joint, told in error.problems],
         ) from None
     _append(db, context, caller, capture, current, wish, action="capture.mapped")

@@ -62,6 +62,6 @@ class Workbench(WorkingLine):
         return InvalidInput(
             f"{place}{error.reason}",
             value=error.file_name or None,
-            remedy="Mend or export the file again; docs/captures.md lists what can be read.",
+            remedy="Correct or export the file again; docs/captures.md lists what can be read.",
             details=[at] if error.file_name else [],
         )

@@ -33,7 +33,7 @@ from app.platform.workers import Worker
 
 log = logging.getLogger(__name__)
 QUEUE = "walking-fits"
-BROKE = "the process that fitted it ended: resume it, and if that fails too, look at the log"
+BROKE = "the process that fitted it ended: resume it, and if that fails, too, see the server's log"
 
 
 def new_worker() -> Worker:

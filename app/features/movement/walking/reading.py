@@ -42,7 +42,7 @@ def content_of(store: Store, content_hash: str) -> bytes:
     finally:
         engine.dispose()
     if not data:
-        raise Cannot("the file is no longer stored", "Bring the walks in again.")
+        raise Cannot("the file is no longer stored", "Upload the walks again.")
     return data
 
 
@@ -51,7 +51,7 @@ def scene_of(text: str) -> Scene:
     try:
         return load_scene(text)
     except ConfigError as error:
-        raise Cannot(f"the scene cannot be read: {error}", "Mend the scene's file.") from None
+        raise Cannot(f"the scene cannot be read: {error}", "Correct the scene's file.") from None
 
 
 def planned_walks(store: Store, source: WalkSource, scene: str | None) -> list[PlannedWalk]:
@@ -83,9 +83,9 @@ def tracks_of(data: bytes, source: TrackSource) -> list[Track]:
         return tracks
     except CaptureError as error:
         at = f"line {error.line}: " if error.line else ""
-        raise Cannot(f"{source.name}, {at}{error.reason}", "Mend the table.") from None
+        raise Cannot(f"{source.name}, {at}{error.reason}", "Correct the table.") from None
     except WalkingError as error:
-        raise Cannot(f"{source.name}: {error}", "Mend the table.") from None
+        raise Cannot(f"{source.name}: {error}", "Correct the table.") from None
 
 
 def walks_in(tracks: Sequence[Track]) -> list[Walk]:
@@ -93,7 +93,7 @@ def walks_in(tracks: Sequence[Track]) -> list[Walk]:
     walks = [walk for track in tracks for walk in walks_of(track)]
     if not walks:
         raise Cannot(
-            f"nobody walks in {len(tracks)} track(s)",
+            f"there are no walks in {len(tracks)} track(s)",
             "A walk leads 0.25 m or farther from where it begins, faster than 0.1 m/s: check the"
             " unit of x and y, and the rate.",
         )

@@ -94,7 +94,9 @@ def remove_scene(db: Session, context: AppContext, caller: Caller, key: str) -> 
     """Delete a scene; models keep what they need of it. Raises NotFound, Conflict."""
     if key in _shipped():
         raise Conflict(
-            "this scene comes with the product and stays", value=key, remedy="Delete your own."
+            "this scene comes with the product and cannot be deleted",
+            value=key,
+            remedy="You can delete the lab's own scenes.",
         )
     row = _row(db, key)
     db.delete(row)

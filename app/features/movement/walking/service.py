@@ -76,7 +76,7 @@ def order_model(db: Session, context: AppContext, caller: Caller, wish: NewModel
     scene = None if wish.scene is None else scene_view(db, wish.scene)
     if scene is not None and walks.origin["kind"] == "population":
         raise Conflict(
-            "made-up walkers are planned in the scene that they were made for",
+            "synthetic walkers are planned in the scene that they were made for",
             value=scene.key,
             remedy="Leave the scene out, or make another set of walks in it.",
         )
@@ -112,7 +112,7 @@ def order_of(db: Session, model_id: str) -> FitOrder:
     if row.scene is not None:
         if scene_view(db, row.scene["key"]).content_hash != row.scene["content_hash"]:
             raise Conflict(
-                "the scene is another one now than when the fit was ordered",
+                "the scene has changed since the fit was ordered",
                 value=row.scene["key"],
                 remedy="Order a new model.",
             )
@@ -171,7 +171,7 @@ def _in_state(db: Session, model_id: str, *states: State) -> WalkingModelRow:
             f"the model is {row.state}",
             value=row.state,
             valid=list(states),
-            remedy="Look at it again: somebody else was faster, or it has ended.",
+            remedy="Reload the page: somebody else has changed its state, or it has ended.",
         )
     return row
 

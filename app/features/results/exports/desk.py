@@ -30,7 +30,7 @@ MAX_OPEN = 5
 """How many exports an account may have queued or in progress."""
 ENDED = ExportFailure(
     "the process that made the export ended",
-    "Make it again; if that fails too, look at the server's log and memory.",
+    "Make it again; if that fails, too, check the server's log and memory.",
 )
 
 
@@ -126,7 +126,7 @@ class ExportDesk(Part):
             raise NotFound(
                 "there is no such export",
                 value=export_id,
-                remedy="It was removed, or the server was started again since. Make it again.",
+                remedy="It was removed, or the server was restarted. Start the export again.",
             )
         return job
 

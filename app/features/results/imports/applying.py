@@ -200,7 +200,10 @@ class _Run:
             self._report(row, name, "The participant is missing.", "Fill it in, or remove the row.")
         elif "@" in code:
             self._report(
-                row, name, "An e-mail address is no pseudonym.", "Replace addresses by codes first."
+                row,
+                name,
+                "An e-mail address is not a pseudonym.",
+                "Replace addresses by codes first.",
             )
         elif len(code) > MAX_CODE:
             self._report(row, name, "The code is too long.", f"At most {MAX_CODE} letters.")
@@ -216,7 +219,7 @@ class _Run:
                 return datetime.strptime(cell.split("T")[0].split(" ")[0], pattern).date()  # noqa: DTZ007 - a day has no zone
             except ValueError:
                 continue
-        self._report(row, name, "This is no date in the chosen order.", "Choose another order.")
+        self._report(row, name, "This is not a date in the chosen order.", "Choose another order.")
         return None
 
     def _find_duplicates(self) -> None:
@@ -231,7 +234,7 @@ class _Run:
                         column=self._mapping.participant,
                         value=form.participant_code[:_SHOWN],
                         message=f"Answered{in_condition} before, in line {first[key]}.",
-                        remedy="Name the column that tells them apart as the condition.",
+                        remedy="Choose the column that distinguishes them as the condition.",
                     )
                 )
             first.setdefault(key, form.line)

@@ -51,7 +51,9 @@ def _score(key: str, title: str, rows: Sequence[ImportedForm]) -> ScoreResult:
         pairs=[],
     )
     if len(conditions) < _FEWEST:
-        return out.model_copy(update={"why_not": "There is one condition: nothing to compare."})
+        return out.model_copy(
+            update={"why_not": "There is only one condition, so there is nothing to compare."}
+        )
     try:
         cells = cells_of(
             [row.participant_code for row in rows],

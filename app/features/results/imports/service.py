@@ -68,10 +68,10 @@ def import_answers(
     _reject_duplicate(db, study, mapping.instrument, content_hash)
     if applied.problems or not applied.forms:
         raise InvalidInput(
-            f"{len(applied.problems)} cells cannot be taken in; nothing was stored"
+            f"{len(applied.problems)} cells cannot be imported; nothing was stored"
             if applied.problems
             else "the file holds no answers; nothing was stored",
-            remedy="Look through the list, correct the file or what its columns mean, try again.",
+            remedy="Correct the file or the meaning of its columns, then try again.",
             details=[one.model_dump() for one in applied.problems[:_SHOWN_PROBLEMS]],
         )
     row = AnswerImport(
@@ -104,7 +104,9 @@ def import_answers(
 def undo(db: Session, row: AnswerImport, *, reason: str, actor: str, now: datetime) -> None:
     """Delete the forms of an import; raise Conflict if it was undone before."""
     if row.undone_at is not None:
-        raise Conflict("this import was undone before", value=row.id, remedy="Nothing is left.")
+        raise Conflict(
+            "this import was already undone", value=row.id, remedy="There is nothing left to undo."
+        )
     deleted = _count(db, delete(ImportedForm).where(ImportedForm.import_id == row.id))
     row.undone_at, row.undone_by, row.undone_reason = now, actor, reason
     db.flush()
@@ -164,10 +166,10 @@ def erase_imported(
     """
     if confirm != code:
         raise InvalidInput(
-            "the code that was typed is not this participant's",
+            "the typed code is not this participant's",
             value=confirm,
             valid=code,
-            remedy="Type the code as it stands in the list, to be sure whom you mean.",
+            remedy="Type the code as shown in the list, to confirm the participant.",
         )
     deleted = forget_participant(db, study.id, code)
     if not deleted:

@@ -89,7 +89,7 @@ def _require_table(text: str) -> None:
     if kind is None and _CONTROL.search(text[:INSPECTED_CHARACTERS]) is None:
         return
     raise InvalidInput(
-        f"this is {kind or 'no text file'}, not a table",
+        f"this is {kind}, not a table" if kind else "this is not a text file",
         valid="a table as CSV or TSV, with the names of its columns in the first row",
         remedy="Open it in the program it came from and save it as CSV UTF-8.",
     )
@@ -150,7 +150,7 @@ def _check_shape(rows: list[SheetRow], header: list[str], header_count: int) -> 
             )
         if any(len(cell) > MAX_CELL or "\0" in cell for cell in row.cells):
             raise InvalidInput(
-                f"line {row.line} has a cell that is too long or no text",
+                f"line {row.line} has a cell that is too long or not text",
                 value=row.line,
                 valid=f"text of at most {MAX_CELL} characters",
             )

@@ -85,7 +85,7 @@ def reversal_notes(turning: Map[str, tuple[str, list[str]]], forms: Sequence[For
             r = float(np.corrcoef(own, others)[0, 1])
             if r > _AGAINST:
                 notes.append(
-                    f"{item} enters {score} turned round, but goes along with its other items "
-                    f"(r = {r:.2f}). Was it turned in the file already? Then mark it as turned."
+                    f"{item} is reversed in {score}, but correlates with its other items "
+                    f"(r = {r:.2f}). If the file has already reversed it, mark it as reversed."
                 )
     return notes

@@ -20,7 +20,7 @@ RULES = {
     "minimum_share_of_frames": "a task phase with less than {limit:.0%} of its time in frames",
     "maximum_latency_error_ms": "a task phase whose latency is off by more than {limit:g} ms",
     "minimum_active_time_s": "a task phase shorter than {limit:g} s of active time",
-    "maximum_straight_lined_forms": "more than {limit:g} forms with ratings all alike",
+    "maximum_straight_lined_forms": "more than {limit:g} forms with identical ratings",
 }
 
 

@@ -96,7 +96,9 @@ def _numbers(declared: Declared, sessions: pd.DataFrame, n: int) -> list[Deviati
     if n < planned:
         said = f"{n} of {planned} declared participants are in the test."
         deviations.append(
-            _deviation("n_short", f"{said} A test before the last one is an interim look.")
+            _deviation(
+                "n_short", f"{said} A test before the last participant is an interim analysis."
+            )
         )
     if n > planned:
         deviations.append(

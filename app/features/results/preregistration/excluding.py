@@ -144,7 +144,7 @@ def _straight(tables: Tables, session_id: str, limit: float) -> str | None:
         values = form["value_number"].astype("float64")
         honest = float(values.iloc[0]) == 0.0 and (str(key), int(str(version))) in tables.one_sided
         alike += len(values) >= FEWEST_ALIKE and values.nunique() == 1 and not honest
-    return None if alike <= limit else f"{alike} forms with ratings all alike, declared {limit:g}"
+    return None if alike <= limit else f"{alike} forms with identical ratings, declared {limit:g}"
 
 
 _JUDGES: dict[str, Judge] = {

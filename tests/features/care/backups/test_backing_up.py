@@ -158,7 +158,7 @@ def test_room_that_will_not_do_is_left_alone(
 def test_a_database_without_tables_is_told_apart(tmp_path: Path) -> None:
     """An empty backup of the wrong place would be worse than none."""
     wrong = open_database(f"sqlite:///{tmp_path / 'wrong.sqlite'}")
-    with pytest.raises(NotFound, match="no database of ours"):
+    with pytest.raises(NotFound, match="no Reembody database"):
         make(wrong, tmp_path / "all.reembody")
     wrong.close()
 

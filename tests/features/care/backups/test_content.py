@@ -48,7 +48,7 @@ def forged(path: Path, *statements: str) -> Path:
 @pytest.mark.parametrize(
     ("statement", "said"),
     [
-        ("CREATE TABLE more (x INTEGER PRIMARY KEY)", "the table more is not of this program"),
+        ("CREATE TABLE more (x INTEGER PRIMARY KEY)", "the table more is unknown to this program"),
         ("ALTER TABLE accounts ADD COLUMN more TEXT", "column accounts.more is not of this"),
         (
             """ALTER TABLE accounts ADD COLUMN "id"", ""role" TEXT""",
@@ -60,8 +60,8 @@ def forged(path: Path, *statements: str) -> Path:
             "CREATE TRIGGER after DELETE ON scores BEGIN DELETE FROM answers; END",
             "there is a trigger after",
         ),
-        ("UPDATE accounts SET created_at = 'once'", "accounts.created_at holds something else"),
-        ("UPDATE accounts SET role = x'00ff'", "accounts.role holds something else"),
+        ("UPDATE accounts SET created_at = 'once'", "accounts.created_at has values other"),
+        ("UPDATE accounts SET role = x'00ff'", "accounts.role has values other"),
         ("UPDATE study_versions SET instruments = '{'", "study_versions.instruments holds"),
         ("UPDATE sessions SET study_id = 'nobody'", "refer to nothing"),
     ],

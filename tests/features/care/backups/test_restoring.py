@@ -86,7 +86,7 @@ def test_rows_that_do_not_come_out_alike_are_refused(
         write_rows(connection, shape, rows[1:] if shape.name == "scores" else rows)
 
     monkeypatch.setattr("app.features.care.backups.restoring.write_rows", forgetful)
-    with pytest.raises(InvalidInput, match="scores did not come out"):
+    with pytest.raises(InvalidInput, match="scores does not match"):
         put_back(database, tmp_path / "all.reembody", replace=True)
     assert contents(database.engine) == before
 

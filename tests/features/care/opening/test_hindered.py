@@ -176,7 +176,7 @@ def test_the_same_on_postgresql(tmp_path: Path) -> None:
     (tmp_path / "erasures.jsonl").touch()
     with PostgresBench(running_cluster()).empty() as url:
         settings = Settings(data_dir=tmp_path, database_url=url)
-        with pytest.raises(Conflict, match="holds none of ours"):
+        with pytest.raises(Conflict, match="has no Reembody database"):
             prepare_database(settings, CLOCK)
         prepare_database(settings, CLOCK, new_database=True)
 

@@ -122,7 +122,7 @@ def test_tracks_of_people_are_fitted(walking_lab: Lab) -> None:
     [
         (table(bad_line=9), "line 9"),
         (b"id,time_s,x_m,y_m\nA,0,0,0\n", "at least two"),
-        (b"id,time_s,x_m,y_m\nA,0,0,0\nA,1,0,0\n", "nobody walks"),
+        (b"id,time_s,x_m,y_m\nA,0,0,0\nA,1,0,0\n", "there are no walks"),
         (b"id,time_s,y_m\nA,0,0\n", "no column x"),
     ],
 )

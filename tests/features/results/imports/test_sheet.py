@@ -13,7 +13,7 @@ from app.features.results.imports.sheet import read_sheet
         ("\xff\xd8\xff\xe0JFIF", "a picture"),
         ("%PDF-1.7\n%....", "a PDF"),
         ("PK\x03\x04\x14abc", "a workbook"),
-        ("code,q1\nP-1,\x024\n", "no text file"),
+        ("code,q1\nP-1,\x024\n", "not a text file"),
     ],
 )
 def test_another_kind_of_file_is_named(text: str, named: str) -> None:

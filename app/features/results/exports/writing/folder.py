@@ -58,12 +58,12 @@ def check_target(to: Path) -> None:
         return
     readme = to / README
     if not (readme.is_file() and readme.read_text(encoding="utf-8").startswith(MARK + "\n")):
-        raise _refused(to, "is not an export of ours")
+        raise _refused(to, "is not a Reembody export")
     for path in sorted(to.rglob("*")):
         inside = path.relative_to(to)
         ours = str(inside) in TOP_LEVEL or _is_in_folder(inside)
         if not ours or path.is_symlink():
-            raise _refused(to, f"also holds {inside}, which no export wrote")
+            raise _refused(to, f"also holds {inside}, which is not part of an export")
 
 
 def _is_in_folder(inside: Path) -> bool:

@@ -44,7 +44,7 @@ def make_export(order: Order) -> ExportResult | ExportFailure:
     except (OSError, SQLAlchemyError) as error:
         return ExportFailure(
             f"the export could not be written: {type(error).__name__}: {str(error)[:200]}",
-            "Make it again; if that fails too, look at the server's disk and database.",
+            "Make it again; if that fails, too, check the server's disk and database.",
         )
 
 
