@@ -119,8 +119,7 @@ class DelayBuffer:
         return delayed
 
     def _forget(self, before_s: float) -> None:
-        # One sample at or before the oldest possible query must stay, as the start of the
-        # interpolation.
+        # One sample at or before the oldest possible query must stay, to interpolate from.
         while len(self._samples) > 2 and self._samples[1][0] <= before_s:
             self._samples.popleft()
 

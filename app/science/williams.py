@@ -20,6 +20,5 @@ def williams(n: int) -> tuple[Row, ...]:
     rows = [tuple((one + shift) % n for one in first) for shift in range(n)]
     if n % 2 == 0 or n == 1:
         return tuple(rows)
-    # For an odd n these rows contain half of the ordered pairs; reversed, they contain the other
-    # half.
+    # For an odd n these rows contain half of the ordered pairs; reversed, the other half.
     return (*rows, *(row[::-1] for row in rows))

@@ -16,7 +16,7 @@ _NUMBERS = (int, float, np.integer, np.floating)
 
 @dataclass(frozen=True)
 class AnswerProblem:
-    """Why one answer is rejected."""
+    """The reason why one answer is rejected, with the valid answers and a remedy."""
 
     item: str
     message: str

@@ -36,7 +36,7 @@ _KEY_REMEDY = "Use lower-case letters, digits and _, beginning with a letter, at
 class Instrument:
     """A questionnaire. Every instance is consistent, and its formulas can be parsed.
 
-    `stem`: the words before each likert item. `shuffle`: ask the items in random order, but those
+    `stem`: the words before each Likert item. `shuffle`: ask the items in random order, but those
     in `last` at the end, as listed. Raises InstrumentDefinitionError with every inconsistency.
     """
 
@@ -65,7 +65,7 @@ class Instrument:
         return {item.key: item for item in self.items}
 
     def scale_of(self, item: Item) -> Scale | None:
-        """Return the scale on which a likert item is answered; None for other items."""
+        """Return the scale on which a Likert item is answered; None for other items."""
         return (item.scale or self.scale) if item.type == "likert" else None
 
     @cached_property

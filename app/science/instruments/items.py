@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from typing import ClassVar, Literal
 
 Text = Mapping[str, str]
-"""Language code -> wording. Every declared language is present."""
+"""A text by language code. Every declared language is present."""
 
 ItemType = Literal["likert", "integer", "number", "text", "boolean", "choice"]
 Answer = float | int | str | bool | None
-"""What can be answered; None for an item that was left out."""
+"""A value that can be answered; None for an item that was not answered."""
 
 # Used by pydantic to load instrument files: unknown fields and implicit conversions are errors.
 STRICT: dict[str, object] = {"extra": "forbid", "strict": True, "allow_inf_nan": False}
@@ -30,7 +30,7 @@ class Choice:
 
 @dataclass(frozen=True)
 class Scale:
-    """The scale of likert items: whole numbers, with labels from lowest to highest.
+    """The scale of Likert items: whole numbers, with labels from lowest to highest.
 
     `step`: the difference between neighbouring numbers. `labels`: one for each step, or two for
     both ends, or none.
@@ -53,7 +53,7 @@ class Scale:
 class Item:
     """One question or statement of an instrument.
 
-    `minimum`, `maximum`: limits of integer and number items, in `unit`. `scale`: of a likert item,
+    `minimum`, `maximum`: limits of integer and number items, in `unit`. `scale`: of a Likert item,
     in place of the instrument's. `max_length`: characters of a text answer. `reverse_keyed`:
     agreement speaks against what the item's scale measures (used for reliability, never by the
     formulas). `note`: where the item comes from.
@@ -96,7 +96,7 @@ class Score:
 
 @dataclass(frozen=True)
 class Provenance:
-    """Where a text or an instrument comes from, and how far that was verified."""
+    """The origin of a text or an instrument, and how far it was verified."""
 
     __pydantic_config__: ClassVar[dict[str, object]] = STRICT
 

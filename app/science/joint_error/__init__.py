@@ -1,4 +1,4 @@
-"""How far an avatar's joints are from the rotations that they should have.
+"""Measure how far an avatar's joints are from the rotations that they should have.
 
 `joint_errors` computes the error as defined, `joint_error_summary` its statistics over a phase,
 `recorded_errors` the errors of two recorded streams, against the present pose and against the

@@ -1,4 +1,4 @@
-"""How the joint error develops during a phase: its mean in bins of active time.
+"""Compute the course of the joint error over a phase: its mean in bins of active time.
 
 People adapt to a delay, or tire of it, and a mean over the whole phase shows neither. The value of
 a bin is the mean over all samples in it, a sample being one joint in one frame: so the mean of the
@@ -18,8 +18,8 @@ import numpy.typing as npt
 from app.science.rotations import FloatArray
 
 COURSE_BIN_S = 5.0
-"""Active time in a bin, s: some 450 frames, so that single movements even out, and still twelve
-bins in a phase of a minute."""
+"""Active time of a bin, s: about 450 frames, which average out single movements, and still twelve
+bins in a phase of one minute."""
 # The phase's own duration may exceed a whole number of bins by a rounding error.
 _ROUNDING_S = 1e-6
 

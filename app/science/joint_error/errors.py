@@ -1,4 +1,4 @@
-"""How far a body is from where it should be, joint by joint.
+"""Compute joint errors: how far each joint of a body is from where it should be.
 
 For the target's and the actual local rotation of a joint (both parent_from_joint) the error is the
 rotation that leads from the target to the actual one, seen in the parent's frame:
@@ -12,8 +12,8 @@ have no delay and no parent, and are left out.
 A sample counts only if both quaternions are finite and of unit length within 0.001; others are
 flagged and counted, not repaired. This is the joint error of Karas (2020), sections 3 and 7.
 
-The target is never clamped: a rotation that the limits of an avatar's hinges prevent is part of
-the error. The share of samples in which a limit did so is given as well (`Clipping`), which
+The target is never clamped: a rotation that the limits of an avatar's hinges prevent is part of the
+error. The share of samples in which a limit did so is given as well (`Clipping`), which
 distinguishes a joint that could not follow from one that followed badly.
 """
 
@@ -60,7 +60,7 @@ class JointErrors:
 
 @dataclass(frozen=True, eq=False)
 class Clipping:
-    """Where the limits of an avatar's hinges reduced the target rotation, for N frames.
+    """Marks where the limits of an avatar's hinges reduced the target rotation, for N frames.
 
     A hinge belongs to the axis along which it lies in the T-pose. Only the first hinge of a joint
     stays on the parent's axis in every pose; the others turn with it.
@@ -78,7 +78,7 @@ class Clipping:
 
     @property
     def by_axis(self) -> _Bools:
-        """Where each axis is clipped: (N, 21, 4), in the order of ERROR_AXES.
+        """Whether each axis is clipped: (N, 21, 4), in the order of ERROR_AXES.
 
         The angle counts as clipped where one of its axes is.
         """
@@ -87,7 +87,7 @@ class Clipping:
 
     @property
     def driven(self) -> _Bools:
-        """Which joints and axes can be clipped: (21, 4), in the order of ERROR_AXES."""
+        """Whether each joint and axis can be clipped: (21, 4), in the order of ERROR_AXES."""
         return np.concatenate((self.turns.any(axis=1, keepdims=True), self.turns), axis=1)
 
 

@@ -55,14 +55,14 @@ class ReferenceMotion:
 
 @dataclass(frozen=True, eq=False)
 class Recorded:
-    """Both streams, as recorded in one run of the headset's program; times in s on one clock.
+    """One run of a recording, with the participant's and the avatar's frames on one clock.
 
     Attributes:
-        times_s: (N,) of the participant's frames; any values are allowed.
+        times_s: (N,) of the participant's frames, s; any values are allowed.
         reference: of the same N frames.
-        partners: (M,) for each frame of the avatar, the index of the participant's frame it
-            answers.
-        actual_times_s: (M,) of the avatar's frames; only those that count.
+        partners: (M,) for each frame of the avatar, the index of the corresponding frame of the
+            participant.
+        actual_times_s: (M,) of the avatar's frames, s; only those that count.
         actual: (M, 22, 4) the avatar's local rotations.
     """
 
@@ -153,7 +153,7 @@ def _nearest(times_s: FloatArray, query_s: FloatArray) -> Indices:
 
 
 def _rising(times_s: FloatArray) -> npt.NDArray[np.bool_]:
-    """Return which samples have a finite time later than all previous ones."""
+    """Return a mask of the samples whose time is finite and later than all previous ones."""
     usable = np.where(np.isfinite(times_s), times_s, -np.inf)
     before = np.concatenate(([-np.inf], np.maximum.accumulate(usable)[:-1]))
     return np.asarray(usable > before)

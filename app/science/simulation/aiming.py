@@ -41,7 +41,7 @@ class Aim:
         rng: np.random.Generator,
         misses: int = 0,
     ) -> SmoothPath:
-        """Plan a path from `here`, out by `way_out`, to in front of the goal, and in.
+        """Plan a path that leaves by `way_out`, goes to the front of the goal, and enters it.
 
         After each miss the person aims more carefully and reaches further in.
         """
@@ -93,8 +93,7 @@ class Aim:
         share = rng.uniform(_LEAST_OVERSHOOT, _MOST_OVERSHOOT)
         too_far = v_scale(legs[longest], share)
         stops = [*points, end]
-        # The points after the longest leg shift as well, as the person has not noticed the error
-        # yet.
+        # The later points shift as well, because the person has not noticed the error yet.
         carried = [v_add(p, too_far) if i > longest else p for i, p in enumerate(stops)]
         path = path_through(carried, start_s, lasts_s)
         back = v_scale(too_far, -1.0)

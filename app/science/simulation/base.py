@@ -9,8 +9,7 @@ from app.science.simulation.goal import SimulationError
 from app.science.skeleton import JOINT_COUNT, JOINT_INDEX, Movement, mean_rotations
 
 # The share of the base movement, around its mean, that remains during a task. A walk must not
-# stride
-# in front of the boxes, but the body must not freeze either; the steps place the legs.
+# stride in front of the boxes, but the body must not freeze either; the steps place the legs.
 _TASK_GAIN = {"Hips": 0.25, "Neck": 0.6, "Head": 0.6}
 _TASK_GAIN_ELSE = 0.35
 _LEG_JOINTS = range(JOINT_INDEX["LeftUpperLeg"], JOINT_COUNT)
@@ -27,8 +26,7 @@ class BaseMovement:
         self._rate_hz, self._frames, self._offset_s = movement.rate_hz, q.shape[0], offset_s
         mean = mean_rotations(q)
         q = q * np.where(np.einsum("ji,ji->j", q[0], mean) < 0.0, -1.0, 1.0)[:, np.newaxis]
-        # Appending the first frame, in the last one's hemisphere, lets the seam be blended like any
-        # pair.
+        # The first frame is appended, in the last one's hemisphere, to interpolate over the seam.
         seam = q[0] * np.where(np.einsum("ji,ji->j", q[0], q[-1]) < 0.0, -1.0, 1.0)[:, np.newaxis]
         self._rotations = np.concatenate((q, seam[np.newaxis]))
         self._roots = np.concatenate((root, root[:1]))

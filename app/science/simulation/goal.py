@@ -1,4 +1,4 @@
-"""The next thing that the task requires of the simulated participant."""
+"""The goals that a task sets for the simulated participant."""
 
 import math
 from dataclasses import dataclass

@@ -69,7 +69,7 @@ class Hand:
         aim: Aim,
         rng: np.random.Generator,
     ) -> None:
-        """Advance by one frame.
+        """Advance the hand by one frame.
 
         `tip_now_m` is the present position of the finger tip, needed if the arm was hanging.
         """

@@ -177,8 +177,7 @@ class SimulatedParticipant:
         posture, stance, placement = self._posture, self._stance, self._placement
         aim = Aim(self.traits, self.latency_s, self.traits.foot_tempo, 0.0)
         stance.follow(time_s, aim, self._rng)
-        # The avatar's hips follow without delay but its arm late: wait until its arm is out as
-        # well.
+        # The avatar's hips follow without delay but its arm late: wait until its arm is out.
         if self._plan and time_s >= self._plan[0].out_s + self.latency_s:
             placement.start(self._plan[1])
             self._plan = None

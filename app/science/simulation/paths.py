@@ -42,7 +42,7 @@ class SmoothPath:
 
     @property
     def end_s(self) -> float:
-        """When the last movement ends."""
+        """The time at which the last movement ends."""
         return max(start + duration for start, duration, _ in self.moves)
 
     def waiting_to_enter(self, leg: int, until_s: float) -> "SmoothPath":
@@ -52,7 +52,7 @@ class SmoothPath:
         return SmoothPath(self.start_m, self.moves[:leg] + later)
 
     def at(self, time_s: float) -> Vector:
-        """Return the point at a time; constant before the start and after the end."""
+        """Return the point of the path at a time; constant before the start and after the end."""
         x, y, z = self.start_m
         for start, duration, (dx, dy, dz) in self.moves:
             share = minimum_jerk((time_s - start) / duration)
@@ -84,9 +84,9 @@ def path_through(points: list[Vector], start_s: float, duration_s: float) -> Smo
 
 
 MOST_TURN_RAD_PER_S = radians(1500.0)
-"""Elbows and wrists of people who hurry reach 1300 deg/s."""
+"""Fastest turn of a joint: elbows and wrists of people who hurry reach 1300 deg/s."""
 MOST_SINK_M_PER_S = 2.5
-"""Hips that sink freely for a third of a second fall 3 m/s."""
+"""Fastest sinking of the hips: after a third of a second of free fall they reach 3 m/s."""
 
 
 def limit_turn_rate(

@@ -1,4 +1,4 @@
-"""Where the body stands and how it leans, so that the limbs reach their goals.
+"""Plan where the body stands and how it leans, so that the limbs reach their goals.
 
 The place is planned once per goal and corrected while reaching.
 """
@@ -120,7 +120,7 @@ class Placement:
         self._goal_lean_m = (0.0, 0.0)
 
     def follow(self, stance: Stance, step_s: float, *, reaching: bool) -> tuple[float, float]:
-        """Advance by one frame and return the hips' (x, z).
+        """Advance the hips by one frame and return their (x, z).
 
         They are over the feet, or where a reach requires them.
         """
@@ -143,7 +143,7 @@ class Placement:
         return self._x.follow(goal_m[0], step_s), self._z.follow(goal_m[1], step_s)
 
     def lean(self, step_s: float) -> tuple[float, float]:
-        """Advance by one frame and return how far the shoulders lean, (x, z) in metres."""
+        """Advance the lean by one frame and return how far the shoulders lean, (x, z) in metres."""
         x, z = self._goal_lean_m
         return self._lean_x.follow(x, step_s), self._lean_z.follow(z, step_s)
 

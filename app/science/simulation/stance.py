@@ -28,8 +28,7 @@ class Stance:
     def __init__(self, skeleton: Skeleton, centre_m: tuple[float, float]) -> None:
         stature = skeleton.stature_m
         self._half_width_m = 0.055 * stature
-        # The ankle is a quarter of the foot's length (.152 H) from the heel, so the middle is ahead
-        # of it.
+        # The ankle is a quarter of the foot's length (.152 H) from the heel: the middle is ahead.
         self._sole_ahead_m = 0.038 * stature
         self._stride_m = 0.72 * skeleton.leg_length_m
         self.goal: Goal | None = None
@@ -88,7 +87,7 @@ class Stance:
             self._queue = plan_to_stand(self._feet(), places, self._stride_m)
 
     def follow(self, time_s: float, aim: Aim, rng: np.random.Generator) -> None:
-        """Advance by one frame."""
+        """Advance the feet by one frame."""
         if self._swing is not None:
             foot, path = self._swing
             self.soles[foot] = path.at(time_s)

@@ -19,7 +19,7 @@ Step = tuple[int, Vector]
 
 
 def distance_on_floor(a: Vector, b: Vector) -> float:
-    """Return the horizontal distance in metres."""
+    """Return the horizontal distance between two points, in metres."""
     return hypot(a[0] - b[0], a[2] - b[2])
 
 

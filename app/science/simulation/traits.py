@@ -1,4 +1,4 @@
-"""How one simulated person moves: traits drawn once, from published data if available.
+"""The movement traits of one simulated person, drawn once, from published data if available.
 
 | quantity | value | source |
 |---|---|---|

@@ -1,18 +1,18 @@
-"""Statistics of studies with few subjects and repeated measures: arrays in, frozen results out.
+"""Statistics for studies with few subjects and repeated measures, on arrays.
 
     cells_of                            a tidy table as cells; the rules for missing values
-    friedman, pairwise, page_trend      ranks of one within-subject factor, exact where possible
+    friedman, pairwise, page_trend      ranks of one within-subjects factor, exact where possible
     signed_rank, holm
     rm_anova, split_plot_anova          analysis of variance, sphericity, effect sizes
     aligned_ranks_*, aligned_contrasts  the aligned rank transform, labelled as contested
     cronbach_alpha, mcdonald_omega      reliability of scales
     bootstrap_interval, mean_interval, within_subject_intervals, spearman
     rm_anova_power, subjects_needed     planning
-    against_reference, directional      what a study declares beforehand
+    against_reference, directional      tests that a study declares beforehand
     share_of_maximum, contact_shares, explore
 
-Every result says how many subjects it is of and what was left out. Mixed models have a face of
-their own, `statistics.mixed`.
+Every result gives the number of subjects in it and of those left out. Mixed models are in
+`statistics.mixed`, which has exports of its own.
 """
 
 from app.science.statistics.aligned_contrasts import aligned_contrasts

@@ -1,12 +1,12 @@
-"""Contrasts between levels on aligned ranks (ART-C), adjusted by Holm's rule.
+"""Contrasts between levels on aligned ranks (ART-C), adjusted by Holm's method.
 
 The ranks that test an effect must not be used for pairs of levels of combined factors. ART-C joins
 the factors of the contrast into one, aligns for that joint factor, ranks, and compares its levels
 by t tests with the residual of the model `ranks ~ factors + (1 | subject)`, pooled over all cells:
 (n - 1) (cells - 1) degrees of freedom. For one factor this alignment is that of ART itself; for all
-factors together it leaves the values as they are. Elkin, Kay, Higgins and Wobbrock 2021, UIST,
-754-768. Balanced within-subject designs only; the pooled error assumes that all cells vary and
-correlate alike. Contested, as the transform itself is.
+factors together it leaves the values unchanged. Elkin, Kay, Higgins and Wobbrock 2021, UIST,
+754-768. Balanced within-subjects designs only; the pooled error assumes equal variances and equal
+correlations of all cells. Contested, like the transform itself.
 """
 
 from collections.abc import Sequence
@@ -26,7 +26,7 @@ from app.science.statistics.rm_anova import checked_cells
 
 @dataclass(frozen=True)
 class AlignedContrast:
-    """Level `a` less level `b` of the contrasted factors, in mean aligned rank.
+    """The difference of level `a` minus level `b` of the contrasted factors, in mean aligned rank.
 
     Attributes:
         a, b: one level of each contrasted factor.
@@ -46,7 +46,7 @@ class AlignedContrast:
 
 @dataclass(frozen=True)
 class AlignedContrasts:
-    """All pairs of levels; `caution` is to be shown with every number."""
+    """The contrasts of all pairs of levels; `caution` must be shown with every number."""
 
     contrasts: tuple[AlignedContrast, ...]
     n: int
@@ -59,11 +59,12 @@ def aligned_contrasts(
     """Compare all pairs of levels of the factors on `axes`.
 
     Args:
-        values: complete, (n, a) or (n, a, b), all factors within subject.
+        values: complete, (n, a) or (n, a, b), all factors within subjects.
         levels: of each factor, in the order of the axes after the first.
         axes: which of these axes are contrasted together: (1,), (2,) or (1, 2).
 
-    Raises ConstantData without residual, StatisticsError for axes or levels that are not there.
+    Raises ConstantData if there is no residual, StatisticsError for axes or levels that do not
+    exist.
     """
     cells = checked_cells(values)
     chosen = _checked_axes(cells, levels, axes)
@@ -93,7 +94,7 @@ def aligned_contrasts(
 
 
 def _residual(rows: FloatArray) -> float:
-    """Sum of squares that neither cells nor subjects explain, of (n, cells)."""
+    """Return the sum of squares that neither cells nor subjects explain, for (n, cells) values."""
     about = rows - rows.mean(axis=0) - rows.mean(axis=1, keepdims=True) + rows.mean()
     return float(np.square(about).sum())
 

@@ -1,15 +1,15 @@
 """The aligned rank transform: an analysis of variance on ranks, one effect at a time.
 
-For each effect, every other effect is taken out of the values first ("aligned"): the residual from
+For each effect, every other effect is first removed from the values ("aligned"): the residual from
 the cell means plus the estimate of this one effect. The aligned values are ranked over the whole
-table, and an analysis of variance of those ranks is made, of which only the line of that effect is
-read. Wobbrock, Findlater, Gergle and Higgins 2011, CHI, 143-146; ARTool for R is the reference.
+table, and an analysis of variance of those ranks is computed, of which only this effect is used.
+Wobbrock, Findlater, Gergle and Higgins 2011, CHI, 143-146; ARTool for R is the reference.
 
 **Contested.** With skewed or ordinal values, unequal variances, or other effects present, it
-rejects true null hypotheses more often than promised: Luepsen 2017 and 2018; Tsandilas and Casiez,
-The illusory promise of the aligned rank transform, Journal of Visualization and Interaction. Every
-result here carries that as `caution`. It is here because reviewers ask for it; it is never the
-primary analysis.
+rejects true null hypotheses more often than the nominal level: Luepsen 2017 and 2018; Tsandilas and
+Casiez, The illusory promise of the aligned rank transform, Journal of Visualization and
+Interaction. Every result here includes that as `caution`. It is offered because reviewers ask for
+it; it is never the primary analysis.
 """
 
 from collections.abc import Hashable, Sequence
@@ -38,7 +38,7 @@ class AlignedRanks:
     Attributes:
         effects: main effects first; each from its own ranks.
         n: subjects.
-        caution: what is said against the method; to be shown with every number.
+        caution: the objection to the method; to be shown with every number.
     """
 
     effects: tuple[Effect, ...]
@@ -49,11 +49,10 @@ class AlignedRanks:
 def aligned_ranks_within(
     values: npt.ArrayLike, factors: Sequence[str] = ("A", "B", "C")
 ) -> AlignedRanks:
-    """Test complete values of (n, a) or (n, a, b), all factors within subject.
+    """Test complete values of (n, a) or (n, a, b), all factors within subjects.
 
-    Each effect has its own error (its interaction with subjects), as ARTool has with
-    `Error(subject / (A * B))`; with one factor `(1 | subject)` gives the same. Raises as
-    `rm_anova`.
+    Each effect has its own error (its interaction with subjects), as in ARTool with `Error(subject
+    / (A * B))`; with one factor `(1 | subject)` gives the same. Raises as `rm_anova`.
     """
     cells = checked_cells(values)
     axes = range(1, cells.ndim)
@@ -75,8 +74,8 @@ def aligned_ranks_split_plot(
 ) -> AlignedRanks:
     """Test complete values (n subjects, k levels) of subjects in groups.
 
-    Groups count alike in the estimates that are aligned by. Returns between, within, interaction.
-    Raises as `split_plot_anova`.
+    The alignment weights all groups equally. Returns between, within, interaction. Raises as
+    `split_plot_anova`.
     """
     blocks = complete_blocks(values)
     member = group_numbers(groups, blocks.shape[0])
@@ -91,30 +90,30 @@ def aligned_ranks_split_plot(
 
 
 def aligned_for(cells: FloatArray, joint: tuple[int, ...]) -> FloatArray:
-    """Ranks aligned for the joint factor of the axes named (ART-C), all factors within subject.
+    """Return ranks aligned for the joint factor of the given axes (ART-C), all within subjects.
 
-    What is left in is all that these factors do together: their main effects and interactions.
+    The joint effect of these factors remains: their main effects and interactions.
     """
     means = np.broadcast_to(cells.mean(axis=0), cells.shape)
     others = tuple(axis for axis in range(cells.ndim) if axis not in joint)
-    kept = means.mean(axis=others, keepdims=True) - means.mean()
-    return _ranked(cells - means + kept, cells)
+    joint_effect = means.mean(axis=others, keepdims=True) - means.mean()
+    return _ranked(cells - means + joint_effect, cells)
 
 
 def _estimate(means: FloatArray, chosen: tuple[int, ...]) -> FloatArray:
-    """The estimated effect of the chosen axes in each cell, by inclusion and exclusion."""
+    """Estimate the effect of the chosen axes in each cell, by inclusion and exclusion."""
     axes = set(range(means.ndim))
     total = np.zeros_like(means)
     for size in range(len(chosen) + 1):
-        for kept in combinations(chosen, size):
-            others = tuple(axes - set(kept))
+        for subset in combinations(chosen, size):
+            others = tuple(axes - set(subset))
             sign = -1.0 if (len(chosen) - size) % 2 else 1.0
             total = total + sign * means.mean(axis=others, keepdims=True)
     return total
 
 
 def _ranked(aligned: FloatArray, values: FloatArray) -> FloatArray:
-    """Ranks over the whole table; what differs by rounding only is equal."""
+    """Rank over the whole table; values that differ only by rounding are tied."""
     scale = float(np.abs(values - values.mean()).max())
     even = np.round(aligned / scale, _DIGITS) if scale > 0.0 else aligned
     return midranks(even.ravel()).reshape(aligned.shape)

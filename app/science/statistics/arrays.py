@@ -1,4 +1,4 @@
-"""Arrays that every analysis takes: blocks of one row a subject, one column a level."""
+"""Checks and ranks of the arrays that analyses take: one row per subject, one column per level."""
 
 import numpy as np
 import numpy.typing as npt
@@ -38,14 +38,14 @@ def complete_blocks(values: npt.ArrayLike, *, least: int = 2) -> FloatArray:
 def complete_rows(values: npt.ArrayLike) -> tuple[FloatArray, int]:
     """Return the rows without a missing value, and how many were left out (listwise)."""
     rows = np.asarray(values, dtype=np.float64)
-    kept = ~np.isnan(rows.reshape(rows.shape[0], -1)).any(axis=1)
-    return rows[kept], int(rows.shape[0] - kept.sum())
+    complete = ~np.isnan(rows.reshape(rows.shape[0], -1)).any(axis=1)
+    return rows[complete], int(rows.shape[0] - complete.sum())
 
 
 def comparable(differences: FloatArray, scale: float) -> FloatArray:
     """Round to 11 digits of `scale`, so that equal differences are equal.
 
-    0.3 - 0.2 and 0.2 - 0.1 differ in the last binary digit; ranks must not.
+    0.3 - 0.2 and 0.2 - 0.1 differ in the last binary digit, but must have the same rank.
     """
     if not scale > 0.0:
         return differences

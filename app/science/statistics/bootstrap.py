@@ -1,12 +1,13 @@
 """Bootstrap confidence intervals, corrected for bias and skew (BCa).
 
-Subjects are drawn with replacement, the statistic is computed of each draw, and the interval is
-taken from those values at percentiles that are shifted by the statistic's bias and by how its
-spread changes with its value (acceleration, from leaving out one subject at a time). Efron 1987,
-J. Am. Stat. Assoc. 82:171-185; computed by scipy.stats.bootstrap.
+Subjects are drawn with replacement, the statistic is computed for each draw, and the ends of the
+interval are percentiles of these values, shifted by the statistic's bias and by how its spread
+changes with its value (acceleration, from leaving out one subject at a time). Efron 1987, J. Am.
+Stat. Assoc. 82:171-185; computed by scipy.stats.bootstrap.
 
-With a dozen subjects they are too narrow: of the mean, at n = 12, a 95 % interval held the truth in
-90 % of normal and 89 % of skewed (gamma) samples. `mean_intervals` has Student's t beside it.
+With a dozen subjects the intervals are too narrow: for the mean, at n = 12, a 95 % interval covered
+the true value in 90 % of normal and 89 % of skewed (gamma) samples. `mean_intervals` uses Student's
+t instead.
 """
 
 import math
@@ -30,12 +31,12 @@ class Interval:
     """A confidence interval, in the unit of the statistic.
 
     Attributes:
-        estimate: the statistic of the data as they are.
+        estimate: the statistic of the data as observed.
         low, high: the ends.
         confidence: 0 to 1.
-        method: "BCa", or "percentile" where BCa is not defined (no subject changes the statistic
-            in a way that tells the acceleration).
-        resamples: how many draws.
+        method: "BCa", or "percentile" where BCa is not defined (the acceleration cannot be computed
+            from leaving out subjects).
+        resamples: number of draws.
         n: subjects.
     """
 
@@ -56,12 +57,12 @@ def bootstrap_interval(
     confidence: float = 0.95,
     resamples: int = 4999,
 ) -> Interval:
-    """Return the interval of a statistic of subjects.
+    """Return the confidence interval of a statistic of subjects.
 
     Args:
-        data: (n, ...), one entry a subject, complete.
+        data: (n, ...), one entry per subject, complete.
         statistic: of many draws at once: takes (draws, n, ...), returns (draws,).
-        rng: seeded by the caller, so that the interval can be computed again.
+        rng: seeded by the caller, so that the interval is reproducible.
 
     Raises TooFewData for fewer than 2 subjects, StatisticsError for a confidence outside 0..1 or a
     statistic that is not finite.
@@ -95,7 +96,7 @@ def _ends(
         return values.reshape(drawn.shape[:-1])
 
     with warnings.catch_warnings():
-        # A degenerate distribution is answered below, by percentiles.
+        # A degenerate distribution is handled below, by percentiles.
         warnings.simplefilter("ignore")
         found = stats.bootstrap(
             (np.arange(rows.shape[0]),),
@@ -117,12 +118,12 @@ def _ends(
 
 
 def mean_of(draws: FloatArray) -> FloatArray:
-    """The mean over subjects, as a statistic for `bootstrap_interval`."""
+    """Return the mean over subjects, as a statistic for `bootstrap_interval`."""
     found: FloatArray = draws.mean(axis=1)
     return found
 
 
 def median_of(draws: FloatArray) -> FloatArray:
-    """The median over subjects, as a statistic for `bootstrap_interval`."""
+    """Return the median over subjects, as a statistic for `bootstrap_interval`."""
     found: FloatArray = np.median(draws, axis=1)
     return found

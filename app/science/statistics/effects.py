@@ -1,8 +1,8 @@
-"""One line of an analysis of variance, and the contrasts that it is made of.
+"""One effect of an analysis of variance, and the contrasts from which it is computed.
 
-Every effect is asked of each subject by contrasts: d orthonormal columns that say how the levels
-differ. A subject's d contrast scores have a mean (the effect) and a scatter about it (the error),
-so that one formula serves every number of factors.
+Every effect is computed from contrast scores of each subject: d orthonormal columns describe how
+the levels differ. A subject's d scores have a mean (the effect) and a scatter about it (the error),
+so that one formula serves any number of factors.
 """
 
 import math
@@ -14,8 +14,8 @@ from scipy.special import chdtrc, fdtrc
 from app.science.statistics.arrays import FloatArray
 from app.science.statistics.errors import ConstantData
 
-_NOTHING = 1e-12
-"""Share of the total sum of squares below which an error is rounding."""
+_ROUNDING = 1e-12
+"""Share of the total sum of squares below which an error is taken as rounding."""
 
 
 @dataclass(frozen=True)
@@ -24,15 +24,16 @@ class Effect:
 
     Attributes:
         name: factors joined by ":".
-        f, df, df_error, p: the F test as if sphericity held.
+        f, df, df_error, p: the F test under the assumption of sphericity.
         epsilon: Greenhouse and Geisser's estimate, 1/d to 1; 1 with one degree of freedom, and for
             effects between subjects.
         p_gg: p with both degrees of freedom multiplied by epsilon. The one to report.
-        partial_eta_squared: SS / (SS + SS of its own error): compares only with the same design.
-        generalised_eta_squared: SS / (SS + all SS of subjects and errors): compares between designs
-            (Olejnik and Algina 2003; Bakeman 2005).
+        partial_eta_squared: SS / (SS + SS of its own error): comparable only within the same
+            design.
+        generalised_eta_squared: SS / (SS + all SS of subjects and errors): comparable between
+            designs (Olejnik and Algina 2003; Bakeman 2005).
         mauchly_w, mauchly_p: test of sphericity; NaN with fewer than two degrees of freedom or too
-            few subjects. A small p says that it does not hold, a large one little.
+            few subjects. A small p means that sphericity does not hold, a large one means little.
     """
 
     name: str
@@ -64,7 +65,7 @@ class Part:
 
 
 def contrasts(levels: int) -> FloatArray:
-    """Orthonormal contrasts of (levels, levels - 1): Helmert's, each column of length 1."""
+    """Return orthonormal contrasts of (levels, levels - 1): Helmert's, each column of length 1."""
     columns = np.zeros((levels, levels - 1))
     for place in range(1, levels):
         columns[:place, place - 1] = 1.0
@@ -73,12 +74,12 @@ def contrasts(levels: int) -> FloatArray:
     return columns / lengths
 
 
-def finished(part: Part, ss_spread: float) -> Effect:
-    """Test a part; `ss_spread` is all SS of subjects and errors in the design.
+def tested_effect(part: Part, ss_spread: float) -> Effect:
+    """Test an effect; `ss_spread` is the sum of all SS of subjects and errors in the design.
 
     Raises ConstantData if there is no error to test against.
     """
-    if part.ss_error <= _NOTHING * (part.ss + ss_spread):
+    if part.ss_error <= _ROUNDING * (part.ss + ss_spread):
         raise ConstantData(
             f"{part.name}: every subject differs between the levels by the same amount, so there is"
             " no error to test against."
@@ -107,10 +108,10 @@ def finished(part: Part, ss_spread: float) -> Effect:
 
 
 def greenhouse_geisser(covariance: FloatArray) -> float:
-    """Epsilon of the (d, d) covariance of orthonormal contrasts: tr(S)^2 / (d tr(S^2)).
+    """Return epsilon of the (d, d) covariance of orthonormal contrasts: tr(S)^2 / (d tr(S^2)).
 
-    1 where all contrasts vary alike and independently (sphericity), 1/d at the worst.
-    Greenhouse and Geisser 1959, Psychometrika 24:95-112.
+    1 if all contrasts vary equally and independently (sphericity), 1/d at worst. Greenhouse and
+    Geisser 1959, Psychometrika 24:95-112.
     """
     d = covariance.shape[0]
     if d == 1:
@@ -120,13 +121,13 @@ def greenhouse_geisser(covariance: FloatArray) -> float:
 
 
 def mauchly(covariance: FloatArray, freedom: int) -> tuple[float, float]:
-    """Mauchly's W = det(S) / (tr(S) / d)^d and its p, with Box's second-order approximation.
+    """Return Mauchly's W = det(S) / (tr(S) / d)^d and its p, by Box's second-order approximation.
 
     Args:
         covariance: (d, d) of orthonormal contrasts, on `freedom` degrees of freedom.
-        freedom: subjects less groups; below d there is no W, and both are NaN.
+        freedom: subjects minus groups; below d, W is undefined and both results are NaN.
 
-    R and pingouin put the number of levels, not of contrasts, into the last term of p.
+    R and pingouin use the number of levels, not of contrasts, in the last term of p.
 
     Mauchly 1940, Ann. Math. Stat. 11:204-209; Anderson 2003, section 10.7.
     """

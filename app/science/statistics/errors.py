@@ -1,18 +1,18 @@
-"""What can be wrong with data before any test is made of them.
+"""Errors of data that cannot be analysed.
 
-StatisticsError        the data cannot be analysed so; the message says what is needed instead
-├── UnusableTable      a row of a table cannot be used: names its line, column and value
-├── TooFewData         subjects, levels or values are missing for this analysis
+StatisticsError        the data cannot be analysed this way; the message says what is needed
+├── UnusableTable      a row of a table is invalid: names its line, column and value
+├── TooFewData         there are too few subjects, levels or values for this analysis
 └── ConstantData       nothing varies, so that there is nothing to test
 """
 
 
 class StatisticsError(ValueError):
-    """The data cannot be analysed so; says what was found and what is needed."""
+    """The data cannot be analysed this way; the message says what was found and what is needed."""
 
 
 class UnusableTable(StatisticsError):
-    """A row of a table cannot be used; says in which line and column, and what stands there."""
+    """A row of a table is invalid; the message names line, column and value."""
 
 
 class TooFewData(StatisticsError):
@@ -20,4 +20,4 @@ class TooFewData(StatisticsError):
 
 
 class ConstantData(StatisticsError):
-    """Nothing varies, or nothing is left that chance could explain."""
+    """Nothing varies, or no random variation is left to test against."""

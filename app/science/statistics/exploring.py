@@ -1,7 +1,7 @@
-"""Scores against demographics: explored, never tested.
+"""Associations of scores with demographics: exploratory, never confirmatory.
 
-A dozen people have a dozen ages, and among many tables one looks striking by chance. So each
-result is labelled exploratory, and p is adjusted by Holm's rule over everything that was looked at.
+A dozen people have a dozen ages, and among many tables one looks striking by chance. So each result
+is labelled exploratory, and p is adjusted by Holm's method over everything that was explored.
 Numbers are correlated by ranks (Spearman), categories are compared by ranks (Kruskal and Wallis
 1952; the effect size epsilon squared = H / (n - 1), 0 to 1).
 """
@@ -24,15 +24,16 @@ LABEL = "exploratory"
 
 @dataclass(frozen=True)
 class Explored:
-    """One demographic variable against the scores.
+    """The association of one demographic variable with the scores.
 
     Attributes:
         variable: its name.
         kind: "number" or "category".
         effect: Spearman's rho, or epsilon squared.
-        p, p_holm: two-sided; adjusted for all that was explored together. NaN without enough.
-        n: subjects with both; n_left_out: the others.
-        why_not: what was too little; empty if nothing was.
+        p, p_holm: two-sided; adjusted for all that was explored together. NaN if there are too few
+            data.
+        n: subjects with both values; n_left_out: the others.
+        why_not: why it could not be computed; empty if it could.
         label: to be shown with every number.
     """
 
@@ -61,15 +62,15 @@ def explore(
     numbers: Mapping[str, npt.ArrayLike] | None = None,
     categories: Mapping[str, Sequence[str | None]] | None = None,
 ) -> tuple[Explored, ...]:
-    """Look at the scores of n subjects by each variable; numbers first.
+    """Explore the association of the scores of n subjects with each variable; numbers first.
 
     Args:
         scores: (n,), NaN where missing.
         numbers: (n,) each, NaN where missing.
         categories: n words each, None or "" where missing.
 
-    Raises StatisticsError for columns of another length. What cannot be computed is in the result
-    with its reason.
+    Raises StatisticsError for columns of another length. A variable that cannot be computed is in
+    the result with its reason.
     """
     values = np.asarray(scores, dtype=np.float64)
     found: dict[str, _Found] = {}
@@ -96,14 +97,15 @@ def _number(scores: npt.NDArray[np.float64], column: npt.NDArray[np.float64], na
 
 def _category(scores: npt.NDArray[np.float64], words: Sequence[str | None], name: str) -> _Found:
     _check(scores, len(words), name)
-    kept = ~np.isnan(scores) & np.array([bool(word) for word in words], dtype=np.bool_)
-    values = scores[kept]
+    complete = ~np.isnan(scores) & np.array([bool(word) for word in words], dtype=np.bool_)
+    values = scores[complete]
     names, group = np.unique(
-        [word or "" for word, keep in zip(words, kept, strict=True) if keep], return_inverse=True
+        [word or "" for word, use in zip(words, complete, strict=True) if use],
+        return_inverse=True,
     )
     n = values.size
     if n < 3 or names.size < 2 or names.size == n or np.ptp(values) <= 0.0:
-        why = f"{n} subjects in {names.size} categories tell nothing"
+        why = f"{n} subjects in {names.size} categories cannot be compared"
         return _Found("category", np.nan, np.nan, n, why)
     ranks = midranks(values)
     sizes = np.bincount(group)

@@ -1,4 +1,4 @@
-"""Friedman's test: do the levels of one within-subject factor differ, by ranks?
+"""Friedman's test: do the levels of one within-subjects factor differ, by ranks?
 
 Each subject's k values are ranked among themselves (equal values share the mean rank). Without an
 effect each column's ranks average (k + 1) / 2. With R_j the rank sum of level j over n subjects,
@@ -6,14 +6,14 @@ effect each column's ranks average (k + 1) / 2. With R_j the rank sum of level j
     Q = (k - 1) sum_j (R_j - n (k + 1) / 2)^2 / sum_ij (r_ij - (k + 1) / 2)^2,
 
 which is Friedman's statistic with the usual correction for ties. Kendall's W = Q / (n (k - 1)) runs
-from 0 (no agreement between subjects) to 1 (all order the levels alike); the same correction is in
-it. Only order within a subject counts: any monotone transform of the values leaves all of it as
-it is.
+from 0 (no agreement between subjects) to 1 (all order the levels in the same way); it includes the
+same correction. Only the order within a subject counts: the result is invariant under monotone
+transforms of the values.
 
 Assumes that subjects are independent of each other and, without an effect, that every order of a
 subject's values is equally likely. The exact p is the share of all arrangements, with these ties,
-whose Q is as large; the asymptotic one takes Q as chi-square with k - 1 degrees of freedom, which
-at a dozen subjects is off in either direction.
+whose Q is as large; the asymptotic one treats Q as chi-square with k - 1 degrees of freedom, which
+at a dozen subjects is inaccurate in either direction.
 
 Friedman 1937, J. Am. Stat. Assoc. 32:675-701; Kendall and Babington Smith 1939, Ann. Math. Stat.
 10:275-287.
@@ -36,13 +36,13 @@ Method = Literal["exact", "asymptotic"]
 
 @dataclass(frozen=True)
 class Friedman:
-    """Friedman's test of n subjects at k levels; no units: ranks have none.
+    """The result of Friedman's test of n subjects at k levels; ranks have no unit.
 
     Attributes:
         statistic: Q, corrected for ties.
         df: k - 1.
         p: by `method`.
-        p_asymptotic: of the chi-square distribution, always beside it.
+        p_asymptotic: of the chi-square distribution, always given in addition.
         kendall_w: effect size, 0 to 1, corrected for ties.
         method: "exact" (permutation distribution with these ties) or "asymptotic".
         note: why it is not exact; empty if it is.
@@ -62,15 +62,18 @@ class Friedman:
 
 
 def friedman(blocks: npt.ArrayLike, *, exact_up_to: int = EXACT_UP_TO) -> Friedman:
-    """Test complete blocks (n subjects, k levels); missing values are left out listwise before.
+    """Run Friedman's test on complete blocks (n subjects, k levels).
+
+    Subjects with missing values must be left out beforehand (listwise).
 
     Args:
-        blocks: one row a subject, one column a level; any unit.
-        exact_up_to: the most subjects for which p is exact. The distribution is enumerated for up
-            to 4 levels at 15 subjects, and for 5 at 12 (fewer with ties); beyond, p is asymptotic
-            and `note` says so.
+        blocks: one row per subject, one column per level; any unit.
+        exact_up_to: the largest number of subjects for which p is exact. The distribution is
+            enumerated for up to 4 levels at 15 subjects, and for 5 at 12 (fewer with ties); beyond,
+            p is asymptotic and `note` says so.
 
-    Raises ConstantData if no subject tells any two levels apart, TooFewData, StatisticsError.
+    Raises ConstantData if every subject has equal values at all levels, TooFewData,
+    StatisticsError.
     """
     values = complete_blocks(blocks)
     n, k = values.shape

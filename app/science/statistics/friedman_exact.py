@@ -1,10 +1,10 @@
-"""The exact null distribution behind Friedman's test, ties included.
+"""The exact null distribution of Friedman's test, with ties.
 
-Without an effect every arrangement of a subject's ranks over the levels is equally likely, whatever
-ties there are. So the distribution of the column sums is a convolution over subjects. Because all
-arrangements are equally likely, a state and its permutations stay equally likely too: states are
-kept sorted, which leaves about one in k! of them. Ranks are doubled, so that all sums are whole
-numbers and nothing is decided by rounding.
+Without an effect every arrangement of a subject's ranks over the levels is equally likely, whether
+or not there are ties. So the distribution of the column sums is a convolution over subjects.
+Because all arrangements are equally likely, a state and its permutations stay equally likely too:
+states are kept sorted, which leaves about one in k! of them. Ranks are doubled, so that all sums
+are whole numbers and rounding errors cannot affect comparisons.
 """
 
 from functools import lru_cache
@@ -16,17 +16,17 @@ import numpy.typing as npt
 from app.science.statistics.arrays import FloatArray, IntArray
 
 _MOST_ROWS = 4_000_000
-"""Rows of one step; with 5 levels and no ties this is reached at 13 subjects."""
+"""Largest number of rows in a step; 5 levels without ties reach it at 13 subjects."""
 _MOST_LEVELS = 8
-"""Beyond, the arrangements of one subject alone are too many to hold."""
+"""With more levels, even the arrangements of one subject need too much memory."""
 Pattern = tuple[int, ...]
 _States = npt.NDArray[np.int16]
 
 
 def exact_tail(ranks: FloatArray) -> float | None:
-    """P of a Friedman statistic at least as large as that of these (n, k) midranks, or None.
+    """Return P of a Friedman statistic at least as large as that of these (n, k) midranks.
 
-    None where the distribution is too large to be enumerated.
+    None if the distribution is too large to be enumerated.
     """
     if ranks.shape[1] > _MOST_LEVELS:
         return None
@@ -44,7 +44,7 @@ def exact_tail(ranks: FloatArray) -> float | None:
 
 
 def _spread(sums: IntArray) -> IntArray:
-    """k times the summed squares of (m, k) column sums about their mean: grows with Q."""
+    """Return k times the sum of squares of (m, k) column sums about their mean: grows with Q."""
     k = sums.shape[1]
     spread: IntArray = k * (sums * sums).sum(axis=1) - sums.sum(axis=1) ** 2
     return spread
@@ -52,8 +52,8 @@ def _spread(sums: IntArray) -> IntArray:
 
 @lru_cache(maxsize=512)
 def _distribution(patterns: tuple[Pattern, ...]) -> tuple[IntArray, FloatArray] | None:
-    """The spreads that can occur, ascending, and the chance of each or more."""
-    # The first subject's arrangement is fixed: only arrangements relative to it matter.
+    """Return the possible spreads, ascending, and the probability of each or a larger one."""
+    # The first subject's arrangement can be fixed, because only arrangements relative to it matter.
     states: _States = np.array(patterns[:1], dtype=np.int16)
     chances = np.ones(1)
     for pattern in patterns[1:]:
@@ -68,12 +68,12 @@ def _distribution(patterns: tuple[Pattern, ...]) -> tuple[IntArray, FloatArray] 
 
 @lru_cache(maxsize=256)
 def _arrangements(pattern: Pattern) -> _States:
-    """The different orders of a pattern, each as likely as another."""
+    """Return the distinct orders of a pattern, which are all equally likely."""
     return np.array(sorted(set(permutations(pattern))), dtype=np.int16)
 
 
 def _step(states: _States, chances: FloatArray, moves: _States) -> tuple[_States, FloatArray]:
-    """Add one subject in every arrangement, and join states that are permutations of another."""
+    """Add one subject in every arrangement, merging states that are permutations of each other."""
     k = states.shape[1]
     sums = (states[:, np.newaxis] + moves).reshape(-1, k)
     sums.sort(axis=1)

@@ -1,4 +1,4 @@
-"""The order of a factor's levels: by number where all are numbers, else as people would sort.
+"""The order of a factor's levels: numeric if all are numbers, otherwise natural sort order.
 
 Trends and "the first level that differs" depend on the order, and it must not depend on the order
 of rows in a file. "0", "125" and "350" are ordered as numbers; "2 ms" comes before "10 ms".
@@ -14,10 +14,10 @@ _DIGITS = re.compile(r"(\d+)")
 
 
 def ordered_levels(found: Iterable[str]) -> tuple[str, ...]:
-    """Return the different levels in order.
+    """Return the distinct levels in order.
 
-    Where all are numbers, different spellings of one number ("0" and "0.0") are one level, by its
-    shortest spelling.
+    If all are numbers, different spellings of one number ("0" and "0.0") are one level, which has
+    its shortest spelling.
     """
     different = sorted(set(found))
     numbers = [as_number(level) for level in different]
@@ -25,14 +25,14 @@ def ordered_levels(found: Iterable[str]) -> tuple[str, ...]:
         spelled: dict[float, str] = {}
         for number, level in zip(numbers, different, strict=True):
             if number is not None:
-                known = spelled.get(number, level)
-                spelled[number] = min(known, level, key=lambda one: (len(one), one))
+                shortest = spelled.get(number, level)
+                spelled[number] = min(shortest, level, key=lambda text: (len(text), text))
         return tuple(spelled[number] for number in sorted(spelled))
     return tuple(sorted(different, key=_natural))
 
 
 def level_places(levels: Sequence[str]) -> dict[object, int]:
-    """Return the place of each level, by its spelling and, of a number, by its value too."""
+    """Return the place of each level by its spelling and, for numbers, by its value too."""
     places: dict[object, int] = {level: place for place, level in enumerate(levels)}
     numbers = [as_number(level) for level in levels]
     if not any(number is None for number in numbers):
@@ -41,7 +41,7 @@ def level_places(levels: Sequence[str]) -> dict[object, int]:
 
 
 def place_of(levels: Sequence[str], level: str) -> int:
-    """Return the place of one level; raises StatisticsError with those there are."""
+    """Return the place of one level; raises StatisticsError, listing the levels, if unknown."""
     places = level_places(levels)
     place = places.get(level, places.get(as_number(level)))
     if place is None:
@@ -50,7 +50,7 @@ def place_of(levels: Sequence[str], level: str) -> int:
 
 
 def as_number(text: str) -> float | None:
-    """The finite number that a text is, or None."""
+    """Parse a text as a finite number; None if it is not one."""
     try:
         number = float(text)
     except ValueError:

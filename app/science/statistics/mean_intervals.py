@@ -1,13 +1,13 @@
 """Confidence intervals of means by Student's t, between and within subjects.
 
-Of one condition: mean +- t s / sqrt(n). It assumes values about normal, and then covers exactly; at
-a dozen subjects that is more than the bootstrap can promise.
+For one condition: mean +- t s / sqrt(n). This assumes approximately normal values and then has
+exact coverage, which the bootstrap does not have at a dozen subjects.
 
-To be drawn beside each other, conditions of the same subjects need another interval: what makes
-subjects differ as a whole has no part in their comparison, yet widens each condition's interval.
-So each subject's own mean is taken out and the grand mean put back; the variance that is then too
-small by (k - 1) / k is corrected. Cousineau 2005, Tutor. Quant. Methods Psychol. 1:42-45; Morey
-2008, ibid. 4:61-64.
+To draw the conditions of the same subjects next to each other, another interval is needed: overall
+differences between subjects do not matter for comparing conditions, yet widen each condition's
+interval. So each subject's own mean is subtracted and the grand mean added; the variance that is
+then too small by (k - 1) / k is corrected. Cousineau 2005, Tutor. Quant. Methods Psychol. 1:42-45;
+Morey 2008, ibid. 4:61-64.
 """
 
 import math
@@ -24,14 +24,14 @@ from app.science.statistics.errors import StatisticsError, TooFewData
 
 @dataclass(frozen=True)
 class MeanInterval:
-    """A mean and its interval, in the unit of the measure.
+    """A mean and its confidence interval, in the unit of the measure.
 
     Attributes:
         mean, low, high: the interval is symmetric.
-        sd: over subjects; "within", of what is left without their means, corrected.
+        sd: over subjects; for "within", of the values without the subjects' means, corrected.
         confidence: 0 to 1.
         n: subjects.
-        kind: "between" for one condition by itself; "within" for comparing conditions by eye.
+        kind: "between" for a single condition; "within" for comparing conditions by eye.
     """
 
     mean: float
@@ -44,7 +44,9 @@ class MeanInterval:
 
 
 def mean_interval(values: npt.ArrayLike, *, confidence: float = 0.95) -> MeanInterval:
-    """Return the interval of (n,) values, one a subject; NaN is left out, and n says how many stay.
+    """Return the confidence interval of the mean of (n,) values, one per subject.
+
+    NaN values are left out; the result's n counts the rest.
 
     Raises TooFewData for fewer than 2 values, StatisticsError for a confidence outside 0..1.
     """
@@ -60,7 +62,8 @@ def within_subject_intervals(
 ) -> tuple[MeanInterval, ...]:
     """Return an interval for each column of complete blocks (n subjects, k conditions).
 
-    Raises TooFewData, StatisticsError as `mean_interval`, or for missing values.
+    Raises TooFewData and StatisticsError as `mean_interval`, and StatisticsError for missing
+    values.
     """
     values = complete_blocks(blocks)
     k = values.shape[1]

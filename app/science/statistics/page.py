@@ -4,10 +4,10 @@ With R_j the rank sum of level j (ranked within each of n subjects, ties share t
 the levels in the predicted order, L = sum_j j R_j. It is a one-sided test of an order stated
 beforehand: mean 1 <= mean 2 <= ... <= mean k, with at least one true inequality.
 
-`p` follows the published tables, as scipy does: P(L' >= floor(L)) over all orders without ties;
-with ties that is usually too large. `p_given_ties` is of the permutation distribution of these very
-ranks, which is exact with and without ties. Without ties the two are equal. `p_asymptotic` is of a
-normal distribution with mean n k (k + 1)^2 / 4 and variance n k^2 (k + 1) (k^2 - 1) / 144.
+`p` follows the published tables, as in scipy: P(L' >= floor(L)) over all orders without ties; with
+ties that is usually too large. `p_given_ties` is from the permutation distribution of the observed
+ranks, which is exact with and without ties. Without ties the two are equal. `p_asymptotic` is from
+a normal distribution with mean n k (k + 1)^2 / 4 and variance n k^2 (k + 1) (k^2 - 1) / 144.
 
 Page 1963, J. Am. Stat. Assoc. 58:216-230; van de Wiel and Di Bucchianico 2001, J. Stat. Plan.
 Inference 92:1-13.
@@ -30,14 +30,14 @@ _EXACT_SUBJECTS = 50
 
 @dataclass(frozen=True)
 class PageTrend:
-    """Page's test of n subjects at k levels, for the rise and for the fall.
+    """The result of Page's test of n subjects at k levels, for a rise and for a fall.
 
     Attributes:
-        statistic: L of the levels in the order given.
+        statistic: L of the levels in the given order.
         p: one-sided, that they rise; by `method`.
         p_falling: one-sided, that they fall: the same test with the order reversed.
-        p_given_ties: as `p`, exact for the ties that there are; NaN where asymptotic.
-        p_asymptotic: as `p`, of the normal distribution.
+        p_given_ties: like `p`, exact for the observed ties; NaN where asymptotic.
+        p_asymptotic: like `p`, of the normal distribution.
         method: "exact" up to 7 levels and 50 subjects, else "asymptotic".
     """
 
@@ -52,9 +52,9 @@ class PageTrend:
 
 
 def page_trend(blocks: npt.ArrayLike) -> PageTrend:
-    """Test complete blocks (n subjects, k levels in the predicted order).
+    """Run Page's test on complete blocks (n subjects, k levels in the predicted order).
 
-    Raises TooFewData, StatisticsError. All values equal give p = 1, or the middle if asymptotic.
+    Raises TooFewData, StatisticsError. If all values are equal, p is 1, or 0.5 if asymptotic.
     """
     values = complete_blocks(blocks)
     n, k = values.shape
@@ -69,7 +69,7 @@ def page_trend(blocks: npt.ArrayLike) -> PageTrend:
     return PageTrend(
         statistic=statistic,
         p=_without_ties(n, k, statistic) if exact else asymptotic,
-        # Reversing the order takes L to n k (k + 1)^2 / 2 - L.
+        # Reversing the order changes L to n k (k + 1)^2 / 2 - L.
         p_falling=_without_ties(n, k, highest - statistic) if exact else 1.0 - asymptotic,
         p_given_ties=_with_ties(ranks, statistic) if exact else math.nan,
         p_asymptotic=asymptotic,
@@ -87,7 +87,7 @@ def _without_ties(n: int, k: int, statistic: float) -> float:
 
 @lru_cache(maxsize=64)
 def _tie_free_tails(n: int, k: int) -> tuple[int, FloatArray]:
-    """The smallest L, and P(L or more) from there on."""
+    """Return the smallest L, and P(L or more) for it and each larger value."""
     least, row = _row_distribution(tuple(range(2, 2 * k + 2, 2)))
     tails = _tails([row] * n)
     # Doubled values of whole numbers are even.
@@ -103,7 +103,7 @@ def _with_ties(ranks: FloatArray, statistic: float) -> float:
 
 @lru_cache(maxsize=1024)
 def _row_distribution(doubled: tuple[int, ...]) -> tuple[int, FloatArray]:
-    """One subject's part of 2 L: the smallest value, and the chance of each from there on."""
+    """Return the distribution of one subject's part of 2 L: smallest value and probabilities."""
     orders = np.array(list(permutations(doubled)))
     parts = orders @ np.arange(1, len(doubled) + 1)
     least = int(parts.min())

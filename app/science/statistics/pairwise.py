@@ -1,13 +1,13 @@
-"""Every pair of levels against each other, adjusted by Holm's rule.
+"""Comparisons of every pair of levels, adjusted by Holm's method.
 
-This follows Friedman's test: exact signed-rank tests of all k (k - 1) / 2 pairs. A subject of whom
-one level is missing still counts in the pairs of the others (pairwise), and each comparison says
-how many were left out of it.
+They follow Friedman's test: exact signed-rank tests of all k (k - 1) / 2 pairs. A subject with a
+missing level still counts in the pairs of the others (pairwise), and each comparison gives the
+number left out of it.
 
 Holm's step-down adjustment (`holm`): sort m p values; the smallest is multiplied by m, the next by
-m - 1, and so on; none may be smaller than the one before it, and none exceeds 1. Rejecting where
-the adjusted p is at most alpha keeps the chance of any false rejection at alpha, whatever the tests
-have to do with each other. Holm 1979, Scandinavian Journal of Statistics 6:65-70.
+m - 1, and so on; none may be smaller than the previous one, and none exceeds 1. Rejecting if the
+adjusted p is at most alpha keeps the probability of any false rejection at alpha, whatever the
+dependence between the tests. Holm 1979, Scandinavian Journal of Statistics 6:65-70.
 """
 
 import math
@@ -23,31 +23,31 @@ from app.science.statistics.signed_rank import Alternative, SignedRank, ZeroRule
 
 
 def holm(p_values: Sequence[float]) -> tuple[float, ...]:
-    """Return the adjusted p values, in the order given.
+    """Return the p values adjusted by Holm's method, in the given order.
 
-    NaN (a test that could not be made) stays NaN and does not count among the m.
+    NaN (a test that could not be computed) stays NaN and does not count among the m.
 
     Raises StatisticsError for a p outside 0..1.
     """
     wrong = [p for p in p_values if not math.isnan(p) and not 0.0 <= p <= 1.0]
     if wrong:
-        raise StatisticsError(f"{wrong[0]} is no p value; they lie between 0 and 1.")
+        raise StatisticsError(f"{wrong[0]} is not a p value; give values between 0 and 1.")
     adjusted = [math.nan] * len(p_values)
-    made = sorted((p, place) for place, p in enumerate(p_values) if not math.isnan(p))
+    computed = sorted((p, place) for place, p in enumerate(p_values) if not math.isnan(p))
     highest = 0.0
-    for step, (p, place) in enumerate(made):
-        highest = max(highest, min(1.0, p * (len(made) - step)))
+    for step, (p, place) in enumerate(computed):
+        highest = max(highest, min(1.0, p * (len(computed) - step)))
         adjusted[place] = highest
     return tuple(adjusted)
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """Level `a` against level `b`.
+    """The comparison of level `a` with level `b`.
 
     Attributes:
-        a, b: the levels; positive effects say that a is larger.
-        test: the signed-rank test of a - b, with n and what was left out.
+        a, b: the levels; positive effects mean that a is larger.
+        test: the signed-rank test of a - b, with n and the number left out.
         p_holm: its p, adjusted for all comparisons made together.
         median_difference: of a - b over the pairs, in the unit of the measure.
     """
@@ -81,7 +81,7 @@ def compare_pairs(
     alternative: Alternative = "two-sided",
     zeros: ZeroRule = "wilcoxon",
 ) -> tuple[Comparison, ...]:
-    """Compare the pairs of columns named, and adjust for exactly these. Raises as `pairwise`."""
+    """Compare the given pairs of columns, adjusting for exactly these. Raises as `pairwise`."""
     table = np.asarray(values, dtype=np.float64)
     if table.ndim != 2 or table.shape[1] != len(levels):
         raise StatisticsError(

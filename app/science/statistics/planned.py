@@ -1,9 +1,9 @@
 """The comparisons that a study declares beforehand.
 
-Latency studies ask three things of each measure. Does it differ from 0 ms at each latency, and
-which is the first that does (`against_reference`)? Does it fall, or rise, as was predicted
-(`directional`)? Both adjust by Holm's rule over exactly the comparisons named here, so comparisons
-that nobody declared cost nothing, and none may be added afterwards.
+Latency studies ask several questions of each measure. Does it differ from 0 ms at each latency, and
+which is the first that does (`against_reference`)? Does it fall, or rise, as predicted
+(`directional`)? Both adjust by Holm's method over exactly the declared comparisons: undeclared ones
+cost no power, and none may be added afterwards.
 """
 
 from collections.abc import Sequence
@@ -25,17 +25,17 @@ Direction = Literal["rises", "falls"]
 
 @dataclass(frozen=True)
 class AgainstReference:
-    """Every other level against the reference.
+    """The comparisons of every other level with the reference.
 
     Attributes:
         reference: the level compared with.
         comparisons: in the order of levels; `a` is the level, `b` the reference, so that a positive
-            effect says that the measure is larger than at the reference.
+            effect means that the measure is larger than at the reference.
         first_that_differs: the first level, in order, whose adjusted p is at most alpha; None if
-            none is. It is no threshold: levels between are untested, and a later one may not
-            differ.
+            there is none. It is not a threshold: levels in between are untested, and a later one
+            may not differ.
         alpha: of the whole family.
-        alternative: "less" says that a level is below the reference.
+        alternative: "less" means that a level is below the reference.
     """
 
     reference: str
@@ -47,12 +47,12 @@ class AgainstReference:
 
 @dataclass(frozen=True)
 class DirectionalHypothesis:
-    """A predicted direction over ordered levels, tested one-sided.
+    """The test of a predicted direction over ordered levels, one-sided.
 
     Attributes:
         predicted: "rises" or "falls" along the levels as ordered.
         p: Page's test in that direction, exact with ties where possible.
-        supported: p at most alpha. Whatever the data do, the other direction is no support.
+        supported: whether p is at most alpha. An effect in the other direction is never support.
         trend: Page's test with both directions.
         against_first: one-sided comparisons with the first level.
         n_left_out: subjects without all levels (listwise, for the trend).
@@ -80,7 +80,7 @@ def against_reference(
         values: (n, k), NaN where missing (pairwise), columns in the order of `levels`.
         reference: one of the levels; "0" and "0.0" name the same number.
 
-    Raises StatisticsError for a reference that is no level, TooFewData without pairs.
+    Raises StatisticsError for an unknown reference, TooFewData if a level has no pairs.
     """
     place = place_of(levels, reference)
     pairs = [(other, place) for other in range(len(levels)) if other != place]
@@ -96,12 +96,12 @@ def directional(
     *,
     alpha: float = 0.05,
 ) -> DirectionalHypothesis:
-    """Test that a measure falls (or rises) along ordered levels; see the result.
+    """Test whether a measure falls (or rises) along ordered levels, as predicted.
 
     Args:
         values: (n, k), NaN where missing, columns in the order of `levels`.
 
-    Raises StatisticsError for another word than rises or falls, TooFewData.
+    Raises StatisticsError for a direction other than rises or falls, TooFewData.
     """
     if predicted not in ("rises", "falls"):
         raise StatisticsError(f"Direction {predicted!r}; valid: rises, falls.")

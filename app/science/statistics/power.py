@@ -1,10 +1,10 @@
-"""How likely is an effect of a given size to be found, and how many subjects does it take?
+"""The power of a planned study, and the number of subjects it needs for an effect of given size.
 
-For one within-subject factor of m levels, with f^2 = eta^2 / (1 - eta^2) of the partial eta squared
-expected, correlation r between levels and sphericity epsilon, the F test's noncentrality is
+For one within-subjects factor of m levels, with f^2 = eta^2 / (1 - eta^2) of the partial eta
+squared expected, correlation r between levels and sphericity epsilon, the F test's noncentrality is
 n m f^2 epsilon / (1 - r), with (m - 1) epsilon and (n - 1)(m - 1) epsilon degrees of freedom. This
-is the default of G*Power 3 and pingouin's. An eta squared *observed* in a study has r in it already
-(G*Power's options "as in SPSS" and "as in Cohen"), and must not be put in with r > 0.
+is the default of G*Power 3 and pingouin's. An eta squared *observed* in a study already includes r
+(G*Power's options "as in SPSS" and "as in Cohen"), and must not be used with r > 0.
 
 Faul, Erdfelder, Lang and Buchner 2007, Behavior Research Methods 39:175-191.
 """
@@ -20,7 +20,7 @@ _MOST_SUBJECTS = 100_000
 
 @dataclass(frozen=True)
 class Expected:
-    """The effect that is expected, and the test that is planned.
+    """The expected effect and the planned test.
 
     Attributes:
         partial_eta_squared: between 0 and 1; .01, .06 and .14 are called small, medium, large.
@@ -37,7 +37,7 @@ class Expected:
     alpha: float = 0.05
 
     def __post_init__(self) -> None:
-        """Refuse what cannot be expected."""
+        """Raise StatisticsError for values out of range."""
         checks = (
             ("partial eta squared", self.partial_eta_squared, 0.0 < self.partial_eta_squared < 1.0),
             ("levels", self.levels, self.levels >= 2),
@@ -53,7 +53,10 @@ class Expected:
 
 
 def rm_anova_power(n: int, expected: Expected) -> float:
-    """Return the chance that n subjects show the effect; raises StatisticsError for n below 2."""
+    """Return the probability that the test of n subjects is significant, given the effect.
+
+    Raises StatisticsError for n below 2.
+    """
     if n < 2:
         raise StatisticsError(f"{n} subjects; at least 2 are needed.")
     eta, m = expected.partial_eta_squared, expected.levels

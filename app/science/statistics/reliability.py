@@ -1,23 +1,23 @@
-"""How far the items of a scale go together: Cronbach's alpha and McDonald's omega.
+"""Internal consistency of the items of a scale: Cronbach's alpha and McDonald's omega.
 
 alpha = k / (k - 1) (1 - sum_i var_i / var of the sum), of k items. It equals the reliability of the
 sum if all items measure the same with the same loading (essentially tau-equivalent) and their
-errors are independent; otherwise it is a lower bound. Items that are worded the other way round
-must be reversed before. The interval is Feldt's: (1 - alpha) / (1 - estimate) is F-distributed with
-n - 1 and (n - 1)(k - 1) degrees of freedom.
+errors are independent; otherwise it is a lower bound. Reverse-worded items must be reversed
+beforehand. The interval is Feldt's: (1 - alpha) / (1 - estimate) is F-distributed with n - 1 and (n
+- 1)(k - 1) degrees of freedom.
 
 Cronbach 1951, Psychometrika 16:297-334; Feldt, Woodruff and Salih 1987, Appl. Psych. Meas. 11:93.
 
 Omega is the reliability of a sum whose items load differently on one factor. One factor is fitted
 to the covariances of the items: s_ij = l_i l_j for i != j, with loadings l by least squares over
-the off-diagonal entries (the estimator called minres or ULS). What is left of an item's variance is
-its error, e_i = s_ii - l_i^2. Then
+the off-diagonal entries (the estimator called minres or ULS). The rest of an item's variance is its
+error, e_i = s_ii - l_i^2. Then
 
     omega = (sum l)^2 / ((sum l)^2 + sum e),
 
 which is omega total of a one-factor model; equal loadings give Cronbach's alpha. No distribution is
-assumed. Its interval is a BCa bootstrap over subjects. It takes many more subjects than a dozen to
-be of use; the interval says so.
+assumed. Its interval is a BCa bootstrap over subjects. Omega needs many more subjects than a dozen
+to be of use, as the width of the interval shows.
 
 McDonald 1999, Test Theory; Harman and Jones 1966, Psychometrika 31:351-368.
 """
@@ -35,10 +35,10 @@ from app.science.statistics.errors import ConstantData, StatisticsError, TooFewD
 
 @dataclass(frozen=True)
 class Cronbach:
-    """Alpha of k items answered by n subjects; without unit.
+    """Cronbach's alpha of k items answered by n subjects; without unit.
 
     Attributes:
-        alpha: at most 1; negative where items work against each other.
+        alpha: at most 1; negative if items correlate negatively.
         low, high: ends of Feldt's interval.
         confidence: 0 to 1.
         without_item: alpha of the others, for each item; empty for two items.
@@ -55,12 +55,14 @@ class Cronbach:
 
 
 def cronbach_alpha(answers: npt.ArrayLike, *, confidence: float = 0.95) -> Cronbach:
-    """Return alpha of (n subjects, k items), reversed items turned round already; NaN is missing.
+    """Return Cronbach's alpha of (n subjects, k items); NaN is missing.
 
-    Raises TooFewData for fewer than 2 items or complete subjects, ConstantData if the sum never
-    varies.
+    Reverse-worded items must be reversed beforehand.
+
+    Raises TooFewData for fewer than 2 items or complete subjects, ConstantData if the sum is
+    constant.
     """
-    rows, left_out = answered(answers)
+    rows, left_out = complete_answers(answers)
     if not 0.0 < confidence < 1.0:
         raise StatisticsError(f"Confidence {confidence}; give a share between 0 and 1.")
     n, k = rows.shape
@@ -75,13 +77,13 @@ def cronbach_alpha(answers: npt.ArrayLike, *, confidence: float = 0.95) -> Cronb
         low=1.0 - (1.0 - alpha) * float(fdtri(df, df_error, 1.0 - tail)),
         high=1.0 - (1.0 - alpha) * float(fdtri(df, df_error, tail)),
         confidence=confidence,
-        without_item=tuple(_alpha(covariance[np.ix_(kept, kept)]) for kept in others),
+        without_item=tuple(_alpha(covariance[np.ix_(items, items)]) for items in others),
         n=n,
         n_left_out=left_out,
     )
 
 
-def answered(answers: npt.ArrayLike) -> tuple[FloatArray, int]:
+def complete_answers(answers: npt.ArrayLike) -> tuple[FloatArray, int]:
     """Return complete answers (n, k) and how many subjects are left out; raises TooFewData."""
     table = np.asarray(answers, dtype=np.float64)
     if table.ndim != 2 or table.shape[1] < 2:
@@ -107,16 +109,16 @@ _ROUNDS = 60
 
 @dataclass(frozen=True)
 class Omega:
-    """Omega of k items answered by n subjects.
+    """McDonald's omega of k items answered by n subjects.
 
     Attributes:
         omega: 0 to 1.
         interval: BCa over subjects.
         loadings: of each item, in the unit of the answers.
-        heywood: an item's loading explains more than its variance (the model does not fit, or there
-            are too few subjects); its error counts as zero.
+        heywood: whether an item's loading explains more than its variance (the model does not fit,
+            or there are too few subjects); its error counts as zero.
         n: subjects with all items; n_left_out: the others (listwise).
-        estimator: how loadings were found.
+        estimator: how loadings were estimated.
     """
 
     omega: float
@@ -135,12 +137,14 @@ def mcdonald_omega(
     confidence: float = 0.95,
     resamples: int = 1999,
 ) -> Omega:
-    """Return omega of (n subjects, k items), reversed items turned round already; NaN is missing.
+    """Return McDonald's omega of (n subjects, k items); NaN is missing.
 
-    Raises TooFewData for fewer than 3 items (two cannot tell their loadings apart) or 3 complete
-    subjects, ConstantData if an item never varies.
+    Reverse-worded items must be reversed beforehand.
+
+    Raises TooFewData for fewer than 3 items (the loadings of two cannot be identified) or 3
+    complete subjects, ConstantData if an item is constant.
     """
-    rows, left_out = answered(answers)
+    rows, left_out = complete_answers(answers)
     n, k = rows.shape
     if k < 3 or n < 3:
         raise TooFewData(f"{n} subjects and {k} items are too few; 3 of each are needed.")
@@ -163,7 +167,7 @@ def mcdonald_omega(
 
 
 def _covariances(draws: FloatArray) -> FloatArray:
-    """(draws, k, k) of (draws, n, k)."""
+    """Return the covariances of the items (draws, k, k) of draws (draws, n, k)."""
     about = draws - draws.mean(axis=1, keepdims=True)
     products: FloatArray = np.matmul(about.transpose(0, 2, 1), about)
     products /= draws.shape[1] - 1
@@ -182,7 +186,10 @@ def _omega(draws: FloatArray) -> FloatArray:
 
 
 def _loadings(covariances: FloatArray) -> FloatArray:
-    """(draws, k): each loading in turn is the least-squares fit to its row, given the others."""
+    """Estimate the loadings (draws, k).
+
+    Each loading in turn is the least-squares fit to its row, given the others.
+    """
     off = covariances.copy()
     items = np.arange(off.shape[1])
     off[:, items, items] = 0.0

@@ -1,10 +1,10 @@
-"""Analysis of variance with repeated measures: one or more factors, all within subject.
+"""Analysis of variance with repeated measures: one or more factors, all within subjects.
 
 Each effect is tested against its own interaction with subjects. Assumes interval values, subjects
-independent of each other, contrast scores about normal, and for p (not for p_gg) sphericity: all
-differences between levels vary alike. Greenhouse and Geisser's epsilon corrects for a violation;
-report p_gg. For an interaction epsilon is taken from its own contrasts (the Kronecker product of
-those of its factors), as in jamovi, SPSS and pingouin.
+independent of each other, approximately normal contrast scores, and for p (not for p_gg)
+sphericity: all differences between levels have equal variance. Greenhouse and Geisser's epsilon
+corrects for a violation; report p_gg. For an interaction epsilon is computed from its own contrasts
+(the Kronecker product of those of its factors), as in jamovi, SPSS and pingouin.
 
 Winer, Brown and Michels 1991, Statistical Principles in Experimental Design, chapters 4 and 7.
 """
@@ -18,27 +18,28 @@ import numpy as np
 import numpy.typing as npt
 
 from app.science.statistics.arrays import FloatArray
-from app.science.statistics.effects import Effect, Part, contrasts, finished
+from app.science.statistics.effects import Effect, Part, contrasts, tested_effect
 from app.science.statistics.errors import StatisticsError, TooFewData
 
 
 @dataclass(frozen=True)
 class RmAnova:
-    """Effects in the order main effects, then interactions; n subjects, all complete."""
+    """The effects of an analysis: main effects, then interactions; n subjects, all complete."""
 
     effects: tuple[Effect, ...]
     n: int
 
 
 def rm_anova(values: npt.ArrayLike, factors: Sequence[str] = ("A", "B", "C")) -> RmAnova:
-    """Test complete values of shape (n, a) or (n, a, b): subjects first, then one axis a factor.
+    """Test complete values of shape (n, a) or (n, a, b): subjects first, then one axis per factor.
 
     Args:
-        values: in the unit of the measure; subjects with a missing value are left out before.
-        factors: names of the axes after the first; more names than axes are left unused.
+        values: in the unit of the measure; subjects with a missing value must be left out
+            beforehand.
+        factors: names of the axes after the first; surplus names are ignored.
 
-    Raises ConstantData if an effect has no error (every subject differs alike), TooFewData for
-    fewer than 2 subjects or levels, StatisticsError for missing values.
+    Raises ConstantData if an effect has no error (all subjects differ equally between levels),
+    TooFewData for fewer than 2 subjects or levels, StatisticsError for missing values.
     """
     cells = checked_cells(values)
     names = tuple(factors)[: cells.ndim - 1]
@@ -54,11 +55,14 @@ def rm_anova(values: npt.ArrayLike, factors: Sequence[str] = ("A", "B", "C")) ->
         for chosen in combinations(range(len(shape)), size)
     ]
     spread += sum(part.ss_error for part in parts)
-    return RmAnova(tuple(finished(part, spread) for part in parts), n)
+    return RmAnova(tuple(tested_effect(part, spread) for part in parts), n)
 
 
 def checked_cells(values: npt.ArrayLike) -> FloatArray:
-    """Return (n, a, ...) values, all finite, at least 2 of everything; raises as `rm_anova`."""
+    """Return (n, a, ...) values after checking that all are finite and no axis is shorter than 2.
+
+    Raises as `rm_anova`.
+    """
     cells = np.asarray(values, dtype=np.float64)
     if cells.ndim < 2:
         raise StatisticsError(f"Shape {cells.shape}: give subjects first, then an axis a factor.")
@@ -75,7 +79,7 @@ def checked_cells(values: npt.ArrayLike) -> FloatArray:
 
 
 def effect_columns(shape: tuple[int, ...], chosen: tuple[int, ...]) -> FloatArray:
-    """Orthonormal contrasts of the effect of the chosen axes, of (cells, d)."""
+    """Return orthonormal contrasts (cells, d) of the effect of the chosen axes."""
     columns = [
         contrasts(size) if place in chosen else np.full((size, 1), size**-0.5)
         for place, size in enumerate(shape)

@@ -1,8 +1,8 @@
-"""Scores and contact times as shares.
+"""Scores and contact times as shares of a whole.
 
-A component of embodiment has a range of its own (ownership -15 to 15, agency -12 to 12, location -9
-to 9): as a share of its maximum components can stand side by side. Contact time is told by finger,
-hand and arm: what share of the time in contact each had.
+Each component of embodiment has its own range (ownership -15 to 15, agency -12 to 12, location -9
+to 9): as shares of their maxima components can be compared. Contact times are divided among finger,
+hand and arm: the share that each has of the time in contact.
 """
 
 from collections.abc import Mapping
@@ -18,7 +18,7 @@ from app.science.statistics.errors import StatisticsError
 def share_of_maximum(scores: npt.ArrayLike, maximum: float) -> FloatArray:
     """Return scores as shares of the largest possible score, -1 to 1; NaN stays NaN.
 
-    0 is the middle of the scale, so a share is no percentage of answers.
+    0 is the middle of the scale, so a share is not a percentage of answers.
 
     Raises StatisticsError for a maximum that is not positive, or a score beyond it.
     """
@@ -35,14 +35,14 @@ def share_of_maximum(scores: npt.ArrayLike, maximum: float) -> FloatArray:
 
 @dataclass(frozen=True)
 class ContactShares:
-    """How the contact time of each subject divides among groups of body parts.
+    """The division of each subject's contact time among groups of body parts.
 
     Attributes:
-        groups: names, in the order given.
+        groups: names, in the given order.
         shares: (n, groups), each row adds up to 1; NaN for subjects without any contact.
-        total_s: (n,) the summed time of all parts. Parts can touch at once, so this is no duration
-            of contact: that is the union of the intervals, and is not computed here.
-        n_without_contact: subjects without any.
+        total_s: (n,) the summed time of all parts. Parts can touch simultaneously, so this is not
+            the duration of contact, which would be the union of the intervals.
+        n_without_contact: subjects without any contact.
     """
 
     groups: tuple[str, ...]
@@ -57,17 +57,17 @@ def contact_shares(
     """Divide the contact times of body parts among their groups (finger, hand, arm).
 
     Args:
-        times_s: for each part the contact time of n subjects, s; 0 where it never touched.
+        times_s: for each part the contact time of n subjects, s; 0 if it never touched.
         group_of: the group of each part; groups appear in the order of this table.
 
-    Raises StatisticsError for no part, a part without a group, times that are negative or missing,
-    columns of different length.
+    Raises StatisticsError if there is no part, a part has no group, a time is negative or missing,
+    or the columns differ in length.
     """
     if not times_s:
-        raise StatisticsError("No body part was given; give the times of one at least.")
-    homeless = [part for part in times_s if part not in group_of]
-    if homeless:
-        raise StatisticsError(f"No group was given for {', '.join(homeless)}.")
+        raise StatisticsError("No body part was given; give the times of at least one.")
+    ungrouped = [part for part in times_s if part not in group_of]
+    if ungrouped:
+        raise StatisticsError(f"No group was given for {', '.join(ungrouped)}.")
     columns = {part: np.asarray(times, dtype=np.float64) for part, times in times_s.items()}
     if len({column.shape for column in columns.values()}) != 1:
         raise StatisticsError("The parts have times of different numbers of subjects.")

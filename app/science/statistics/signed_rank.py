@@ -1,21 +1,21 @@
-"""Wilcoxon's signed-rank test: do paired differences lie about zero?
+"""Wilcoxon's signed-rank test: are paired differences centred on zero?
 
-The sizes of the differences x - y are ranked; W+ is the rank sum of the positive ones, W- of the
+The absolute differences |x - y| are ranked; W+ is the rank sum of the positive ones, W- of the
 negative ones. The rule for differences of exactly zero is stated in the result:
 
     "wilcoxon"   they are left out before ranking (Wilcoxon 1945). The default, and that of R, JASP,
                  pingouin and scipy.
     "pratt"      they are ranked with the others, and then left out (Pratt 1959).
 
-Equal sizes share the mean rank. The exact p is conditional on the ranks as they are, ties included:
-without an effect each remaining difference is as likely positive as negative, so that W+ has the
-distribution of a sum of independent terms, 0 or rank, found by convolution. Two-sided p is twice
-the smaller tail, at most 1. The asymptotic p is normal with the variance sum(ranks^2) / 4, which
-holds with ties, without continuity correction.
+Equal sizes share the mean rank. The exact p is conditional on the observed ranks, ties included:
+without an effect each remaining difference is equally likely to be positive or negative, so that W+
+has the distribution of a sum of independent terms, 0 or rank, computed by convolution. Two-sided p
+is twice the smaller tail, at most 1. The asymptotic p is normal with the variance sum(ranks^2) / 4,
+which holds with ties, without continuity correction.
 
 The matched rank-biserial correlation, (W+ - W-) / (W+ + W-), from -1 to 1, is the effect size: the
-share of rank sum in favour of x less that against (Kerby 2014, Comprehensive
-Psychology 3, 11.IT.3.1).
+share of the rank sum in favour of x minus the share against (Kerby 2014, Comprehensive Psychology
+3, 11.IT.3.1).
 
 Assumes that pairs are independent of each other, and differences symmetric about their centre.
 """
@@ -40,20 +40,20 @@ _ZERO_RULES = ("wilcoxon", "pratt")
 
 @dataclass(frozen=True)
 class SignedRank:
-    """Wilcoxon's signed-rank test of x - y; ranks have no unit.
+    """The result of Wilcoxon's signed-rank test of x - y; ranks have no unit.
 
     Attributes:
         w: the smaller of W+ and W-.
         w_plus, w_minus: rank sums of the positive and of the negative differences.
         p: by `method`, for `alternative`.
-        p_asymptotic: of the normal approximation, always beside it.
-        rank_biserial: matched, -1 to 1; positive where x is larger. 0 if all differences are zero.
+        p_asymptotic: of the normal approximation, always given in addition.
+        rank_biserial: matched, -1 to 1; positive if x is larger. 0 if all differences are zero.
         method: "exact" or "asymptotic".
-        alternative: "greater" says that x is larger than y.
+        alternative: "greater" means that x is larger than y.
         zeros: the rule for differences of zero.
         n: pairs with both values.
-        n_zero: those among them without a difference.
-        n_left_out: pairs of which a value was missing (pairwise).
+        n_zero: pairs among these whose values are equal.
+        n_left_out: pairs with a missing value (pairwise).
     """
 
     w: float
@@ -80,10 +80,10 @@ def signed_rank(
 ) -> SignedRank:
     """Test paired values in the same unit; pairs with a NaN are left out and counted.
 
-    Without any difference p is 1: nothing speaks against the null hypothesis.
+    If all differences are zero, p is 1: there is no evidence against the null hypothesis.
 
-    Raises StatisticsError for values that do not pair up or are infinite, an unknown alternative
-    or zero rule; TooFewData without a single pair.
+    Raises StatisticsError for values that do not pair up or are infinite, and for an unknown
+    alternative or zero rule; TooFewData if there is no pair.
     """
     _check_words(alternative, zeros)
     first, second, left_out = _pairs(x, y)
@@ -128,10 +128,10 @@ def _pairs(x: npt.ArrayLike, y: npt.ArrayLike) -> tuple[FloatArray, FloatArray, 
         raise StatisticsError(
             f"Values of shapes {first.shape} and {second.shape} do not pair up; give two of (n,)."
         )
-    kept = ~(np.isnan(first) | np.isnan(second))
-    if not kept.any():
+    paired = ~(np.isnan(first) | np.isnan(second))
+    if not paired.any():
         raise TooFewData(f"None of {first.size} pairs has both values; at least one is needed.")
-    first, second, left_out = first[kept], second[kept], int(kept.size - kept.sum())
+    first, second, left_out = first[paired], second[paired], int(paired.size - paired.sum())
     if not (np.isfinite(first).all() and np.isfinite(second).all()):
         raise StatisticsError("An infinite value was given; only finite values can be ranked.")
     return first, second, left_out
@@ -140,7 +140,7 @@ def _pairs(x: npt.ArrayLike, y: npt.ArrayLike) -> tuple[FloatArray, FloatArray, 
 def _exact_p(ranks: FloatArray, plus: float, alternative: Alternative) -> float:
     doubled = np.sort(np.rint(2.0 * ranks).astype(np.int64))
     tails = _upper_tails(doubled.tobytes())
-    # The distribution is symmetric about half of the total.
+    # The distribution is symmetric about half the total.
     seen, total = round(2.0 * plus), int(doubled.sum())
     if alternative == "greater":
         return float(tails[seen])
@@ -151,13 +151,13 @@ def _exact_p(ranks: FloatArray, plus: float, alternative: Alternative) -> float:
 
 @lru_cache(maxsize=1024)
 def _upper_tails(doubled: bytes) -> FloatArray:
-    """P(2 W+ >= w) for w from 0 to the total, of the doubled ranks given as int64."""
+    """Return P(2 W+ >= w) for w from 0 to the total, given the doubled ranks as bytes of int64."""
     ranks = np.frombuffer(doubled, dtype=np.int64)
     ways = np.zeros(int(ranks.sum()) + 1)
     ways[0] = 1.0
     top = 0
     for rank in ranks.tolist():
-        # The right side is a new array: nothing is added twice. Counts to 2^50 are exact.
+        # The right side is a copy, so nothing is added twice. Counts up to 2^50 are exact.
         ways[rank : top + rank + 1] += ways[: top + 1].copy()
         top += rank
     tails: FloatArray = np.cumsum(ways[::-1])[::-1] / 2.0**ranks.size

@@ -1,12 +1,12 @@
-"""Spearman's rank correlation: does one measure rise where another does?
+"""Spearman's rank correlation: does one measure rise with another?
 
-rho is the correlation of midranks, from -1 to 1. For subjective against objective measures: what
-people say about control against what their joints did. p is of t = rho sqrt((n - 2) / (1 - rho^2))
-with n - 2 degrees of freedom; an approximation that is rough below ten
-pairs. The interval is Fisher's z with the standard error sqrt((1 + rho^2 / 2) / (n - 3)).
+rho is the correlation of midranks, from -1 to 1. It relates subjective to objective measures: the
+control that people report to the movement of their joints. p is from t = rho sqrt((n - 2) / (1 -
+rho^2)) with n - 2 degrees of freedom; the approximation is rough below ten pairs. The interval is
+Fisher's z with the standard error sqrt((1 + rho^2 / 2) / (n - 3)).
 
-One pair of values a subject: repeated measures of one subject are not independent, and must be
-averaged, or correlated within conditions.
+It takes one pair of values per subject: repeated measures of one subject are not independent, and
+must be averaged, or correlated within conditions.
 
 Spearman 1904; Bonett and Wright 2000, Psychometrika 65:23-28.
 """
@@ -26,7 +26,7 @@ _LEAST = 4
 
 @dataclass(frozen=True)
 class Spearman:
-    """Rank correlation of n pairs.
+    """The rank correlation of n pairs.
 
     Attributes:
         rho: -1 to 1.
@@ -46,10 +46,10 @@ class Spearman:
 
 
 def spearman(x: npt.ArrayLike, y: npt.ArrayLike, *, confidence: float = 0.95) -> Spearman:
-    """Correlate (n,) with (n,) by ranks; pairs with a NaN are left out and counted.
+    """Correlate two arrays (n,) by ranks; pairs with a NaN are left out and counted.
 
     Raises StatisticsError for values that do not pair up, TooFewData for fewer than 4 pairs,
-    ConstantData if one side never varies.
+    ConstantData if one side is constant.
     """
     first, second = np.asarray(x, dtype=np.float64), np.asarray(y, dtype=np.float64)
     if first.ndim != 1 or first.shape != second.shape:
@@ -58,17 +58,17 @@ def spearman(x: npt.ArrayLike, y: npt.ArrayLike, *, confidence: float = 0.95) ->
         )
     if not 0.0 < confidence < 1.0:
         raise StatisticsError(f"Confidence {confidence}; give a share between 0 and 1.")
-    kept = ~(np.isnan(first) | np.isnan(second))
-    n = int(kept.sum())
+    paired = ~(np.isnan(first) | np.isnan(second))
+    n = int(paired.sum())
     if n < _LEAST:
         raise TooFewData(f"{n} pairs have both values; at least {_LEAST} are needed.")
-    ranks = midranks(first[kept]) - 0.5 * (n + 1), midranks(second[kept]) - 0.5 * (n + 1)
+    ranks = midranks(first[paired]) - 0.5 * (n + 1), midranks(second[paired]) - 0.5 * (n + 1)
     length = math.sqrt(float(ranks[0] @ ranks[0]) * float(ranks[1] @ ranks[1]))
     if length <= 0.0:
         raise ConstantData(f"One of the two measures is the same in all {n} pairs.")
     rho = max(-1.0, min(1.0, float(ranks[0] @ ranks[1]) / length))
     low, high = _interval(rho, n, confidence)
-    return Spearman(rho, _p(rho, n), low, high, confidence, n, kept.size - n)
+    return Spearman(rho, _p(rho, n), low, high, confidence, n, paired.size - n)
 
 
 def _p(rho: float, n: int) -> float:

@@ -3,8 +3,8 @@
 Each subject belongs to one group and is measured at every level of the within factor. The groups
 are tested against the subjects within groups; the within factor and its interaction with the groups
 against its interaction with subjects within groups, pooled over groups, with Greenhouse and
-Geisser's epsilon of the pooled covariance. Groups may differ in size: every group then counts alike
-in the mean of the within factor (type III).
+Geisser's epsilon of the pooled covariance. Groups may differ in size: every group then has equal
+weight in the mean of the within factor (type III).
 
 Kirk 2013, Experimental Design, chapter 12; Maxwell, Delaney and Kelley 2018, chapter 14.
 """
@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.science.statistics.arrays import FloatArray, complete_blocks
-from app.science.statistics.effects import Effect, Part, contrasts, finished
+from app.science.statistics.effects import Effect, Part, contrasts, tested_effect
 from app.science.statistics.errors import StatisticsError, TooFewData
 
 
@@ -58,7 +58,7 @@ def split_plot_anova(
         ),
     )
     spread = parts[0].ss_error + parts[1].ss_error
-    first, second, third = (finished(part, spread) for part in parts)
+    first, second, third = (tested_effect(part, spread) for part in parts)
     sizes = tuple(np.bincount(member).tolist())
     return SplitPlot(first, second, third, blocks.shape[0], sizes)
 
@@ -67,17 +67,17 @@ def group_numbers(groups: Sequence[Hashable], n: int) -> npt.NDArray[np.intp]:
     """Number the groups 0, 1, ... as they first appear; raises as `split_plot_anova`."""
     if len(groups) != n:
         raise StatisticsError(f"{len(groups)} groups were given for {n} subjects; give one each.")
-    known: dict[Hashable, int] = {}
-    member = np.array([known.setdefault(group, len(known)) for group in groups], dtype=np.intp)
+    numbers: dict[Hashable, int] = {}
+    member = np.array([numbers.setdefault(group, len(numbers)) for group in groups], dtype=np.intp)
     sizes = np.bincount(member)
-    if len(known) < 2 or sizes.min() < 2:
-        told = ", ".join(f"{name} {size}" for name, size in zip(known, sizes, strict=True))
-        raise TooFewData(f"Subjects per group: {told}; two groups of two at least are needed.")
+    if len(numbers) < 2 or sizes.min() < 2:
+        listed = ", ".join(f"{name} {size}" for name, size in zip(numbers, sizes, strict=True))
+        raise TooFewData(f"Subjects per group: {listed}; at least two groups of two are needed.")
     return member
 
 
 def _scatter(scores: FloatArray, member: npt.NDArray[np.intp]) -> tuple[FloatArray, FloatArray]:
-    """Group means (g, d) and the scatter (d, d) about them, pooled."""
+    """Return the group means (g, d) and the pooled scatter (d, d) about them."""
     sizes = np.bincount(member)
     means = np.zeros((sizes.size, scores.shape[1]))
     np.add.at(means, member, scores)
@@ -89,7 +89,7 @@ def _scatter(scores: FloatArray, member: npt.NDArray[np.intp]) -> tuple[FloatArr
 def _between(
     scores: FloatArray, member: npt.NDArray[np.intp], name: str, *, within_subject: bool
 ) -> Part:
-    """Do the groups differ in their scores?"""
+    """Return the effect of the groups on the scores."""
     means, scatter = _scatter(scores, member)
     sizes = np.bincount(member)
     off = means - np.average(means, axis=0, weights=sizes)
@@ -106,7 +106,7 @@ def _between(
 
 
 def _mean(scores: FloatArray, member: npt.NDArray[np.intp], name: str) -> Part:
-    """Is the mean of the scores, each group counting alike, zero?"""
+    """Return the effect that tests whether the scores, groups weighted equally, have mean zero."""
     means, scatter = _scatter(scores, member)
     sizes = np.bincount(member)
     mean = means.mean(axis=0)

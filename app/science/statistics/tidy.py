@@ -1,17 +1,17 @@
-"""A tidy table as cells: one value for every subject and every combination of levels.
+"""Convert a tidy table to cells: one value for every subject and combination of levels.
 
-A tidy table has one row an observation: who (subject), under what (a level of each within-subject
-factor), how much (the measure). Each row belongs to one cell.
+A tidy table has one row per observation: who (subject), under which conditions (a level of each
+within-subjects factor), how much (the measure). Each row belongs to one cell.
 
-The rules for what is missing or doubled, none of it in silence:
+The rules for missing and duplicate values; each is reported in the result:
 
     several rows in one cell    are averaged, and counted (`n_averaged`)
     rows without a value        do not count in that mean, and are counted (`n_empty`)
     a cell without a value      is NaN
-    Friedman, Page, ANOVA, ART  take subjects with every cell only (listwise): `complete` names
+    Friedman, Page, ANOVA, ART  use subjects with every cell only (listwise): `complete` names
                                 those it leaves out
-    signed-rank tests           take each pair of levels of a subject that is there (pairwise), and
-                                count what is left out of each
+    signed-rank tests           use each complete pair of levels of a subject (pairwise), and count
+                                what is left out of each
 
 Nothing is imputed.
 """
@@ -27,13 +27,13 @@ from app.science.statistics.errors import StatisticsError, TooFewData, UnusableT
 from app.science.statistics.levels import as_number, level_places, ordered_levels
 
 MISSING = frozenset({"", "na", "n/a", "nan", "null", "none", "."})
-"""What stands for a missing value, in any case of letters."""
+"""Texts that mean a missing value, in upper or lower case."""
 _AVERAGE_DIGITS = 14
 
 
 @dataclass(frozen=True, eq=False)
 class Complete:
-    """Subjects with every cell.
+    """The values of the subjects that have every cell.
 
     Attributes:
         values: (n, a) or (n, a, b), no NaN.
@@ -52,10 +52,10 @@ class Cells:
 
     Attributes:
         subjects: n names, as they first appear.
-        factors: one name an axis after the first.
+        factors: one name for each axis after the first.
         levels: of each factor, in order (see `levels.py`).
         values: (n, a) or (n, a, b) mean of each cell; NaN where nothing was measured.
-        rows: same shape, how many values each mean is of.
+        rows: same shape, the number of values in each mean.
         n_empty: rows without a value.
     """
 
@@ -68,27 +68,27 @@ class Cells:
 
     @property
     def n_averaged(self) -> int:
-        """Cells that are the mean of several rows."""
+        """The number of cells that are the mean of several rows."""
         return int((self.rows > 1).sum())
 
     @property
     def n_missing(self) -> int:
-        """Cells without a value."""
+        """The number of cells without a value."""
         return int((self.rows == 0).sum())
 
     def complete(self) -> Complete:
-        """Leave out, listwise, every subject with a missing cell; there may be none left."""
-        kept = (self.rows > 0).reshape(len(self.subjects), -1).all(axis=1)
+        """Leave out every subject with a missing cell (listwise); possibly none is left."""
+        complete = (self.rows > 0).reshape(len(self.subjects), -1).all(axis=1)
         names = np.array(self.subjects, dtype=object)
-        return Complete(self.values[kept], tuple(names[kept]), tuple(names[~kept]))
+        return Complete(self.values[complete], tuple(names[complete]), tuple(names[~complete]))
 
     def of_factor(self, axis: int) -> FloatArray:
-        """(n, levels) of the factor on `axis` (from 1), averaged over the other factors.
+        """Return the values by the factor on `axis` (from 1), averaged over the other factors.
 
-        A subject's mean is NaN where one of its cells is missing.
+        The result is (n, levels); a subject's mean is NaN if one of its cells is missing.
         """
         others = tuple(one for one in range(1, self.values.ndim) if one != axis)
-        return _even(self.values.mean(axis=others)) if others else self.values
+        return _rounded(self.values.mean(axis=others)) if others else self.values
 
 
 def cells_of(
@@ -103,50 +103,50 @@ def cells_of(
     """Sort the rows of a tidy table into cells.
 
     Args:
-        subjects: one name a row.
-        within: each within-subject factor's name, with one level a row.
-        measure: one value a row, as number or text; NaN or one of MISSING where missing.
+        subjects: one name per row.
+        within: each within-subjects factor's name, with one level per row.
+        measure: one value per row, as number or text; NaN or one of MISSING where missing.
         measure_name, subject_name: for messages.
-        lines: where each row stands in its file, for messages; else rows count from 1.
+        lines: the line of each row in its file, for messages; by default rows count from 1.
 
     Raises:
-        UnusableTable: a subject or level is empty, a value is no finite number; names line, column
-            and value.
+        UnusableTable: a subject or level is empty, or a value is not a finite number; names line,
+            column and value.
         TooFewData: no row, fewer than two subjects, or a factor with one level.
         StatisticsError: columns of different length, no factor.
     """
     _check_lengths(subjects, within, measure)
     where = list(lines) if lines is not None else list(range(1, len(subjects) + 1))
     names = [_named(text, subject_name, line) for text, line in zip(subjects, where, strict=True)]
-    told = {
+    level_columns = {
         factor: [_named(text, factor, line) for text, line in zip(column, where, strict=True)]
         for factor, column in within.items()
     }
     values = [
         _number(value, measure_name, line) for value, line in zip(measure, where, strict=True)
     ]
-    levels = tuple(ordered_levels(column) for column in told.values())
+    levels = tuple(ordered_levels(column) for column in level_columns.values())
     who = tuple(dict.fromkeys(names))
     _check_numbers(who, tuple(within), levels)
-    sums, rows = _sorted_in(who, names, levels, list(told.values()), values)
+    sums, rows = _sums_by_cell(who, names, levels, list(level_columns.values()), values)
     with np.errstate(invalid="ignore", divide="ignore"):
-        means = _even(sums / rows)
+        means = _rounded(sums / rows)
     empty = sum(math.isnan(value) for value in values)
     return Cells(who, tuple(within), levels, means, rows, empty)
 
 
-def _sorted_in(
+def _sums_by_cell(
     who: tuple[str, ...],
     names: list[str],
     levels: tuple[tuple[str, ...], ...],
-    told: list[list[str]],
+    columns: list[list[str]],
     values: list[float],
 ) -> tuple[FloatArray, IntArray]:
-    """The sum and the number of the values in each cell."""
+    """Return the sum and the number of the values in each cell."""
     shape = (len(who), *(len(one) for one in levels))
     subject_place = {name: place for place, name in enumerate(who)}
     index = [np.array([subject_place[name] for name in names])]
-    for factor_levels, column in zip(levels, told, strict=True):
+    for factor_levels, column in zip(levels, columns, strict=True):
         places = level_places(factor_levels)
         index.append(np.array([places.get(one, places.get(as_number(one), -1)) for one in column]))
     flat = np.ravel_multi_index(tuple(index), shape)
@@ -158,8 +158,8 @@ def _sorted_in(
     return sums.reshape(shape), rows.reshape(shape)
 
 
-def _even(means: FloatArray) -> FloatArray:
-    """Means to 14 digits: 0.1 + 0.2 + 0.3 and 3 x 0.2 must tie."""
+def _rounded(means: FloatArray) -> FloatArray:
+    """Round means to 14 digits, so that 0.1 + 0.2 + 0.3 and 3 x 0.2 are tied."""
     size = np.abs(means)
     digits = np.floor(np.log10(np.where(size > 0.0, size, 1.0)))
     unit = 10.0 ** (_AVERAGE_DIGITS - 1 - digits)
@@ -184,13 +184,13 @@ def _check_numbers(
 ) -> None:
     if len(who) < 2:
         raise TooFewData(
-            f"There is one subject only, {who[0]!r}; two at least are needed to test anything."
+            f"There is only one subject, {who[0]!r}; at least two are needed for any test."
         )
     for factor, found in zip(factors, levels, strict=True):
         if len(found) < 2:
             raise TooFewData(
-                f"Column {factor!r} has one level only, {found[0]!r}; two at least are needed to"
-                " compare."
+                f"Column {factor!r} has only one level, {found[0]!r}; at least two are"
+                " needed for a comparison."
             )
 
 
@@ -198,7 +198,7 @@ def _named(text: str, column: str, line: int) -> str:
     name = text.strip()
     if name.casefold() in MISSING - {"none"}:
         raise UnusableTable(
-            f"Line {line}, column {column!r}: {text!r} names nothing. Give every row one."
+            f"Line {line}, column {column!r}: {text!r} is not a name. Give every row one."
         )
     return name
 
@@ -211,8 +211,8 @@ def _number(value: str | float, column: str, line: int) -> float:
         number = as_number(text)
         if number is None:
             raise UnusableTable(
-                f"Line {line}, column {column!r}: {value!r} is no finite number. Write numbers with"
-                " a point, and leave the cell empty (or NA) where a value is missing."
+                f"Line {line}, column {column!r}: {value!r} is not a finite number. Write numbers"
+                " with a point, and leave the cell empty (or NA) where a value is missing."
             )
         return number
     number = float(value)

@@ -1,4 +1,4 @@
-"""Which body parts touch which surfaces: capsules against axis-aligned blocks.
+"""Detect which body parts touch which surfaces: capsules against axis-aligned blocks.
 
 A body part is a capsule: all points within `radius` of a segment. It touches a block when the exact
 distance between segment and block is at most its radius. World frame, metres.
@@ -59,10 +59,10 @@ def touching(arrays: SurfaceArrays, segments_m: Floats, radii_m: Floats) -> Bool
 def touching_and_near(
     arrays: SurfaceArrays, segments_m: Floats, radii_m: Floats, release_margin_m: float
 ) -> tuple[Bools, Bools]:
-    """Return which parts touch which surfaces in one frame, and which are near enough to go on.
+    """Return the contacts of one frame, and the pairs that are near enough to continue a contact.
 
-    Both results are bool (S, P); near are those whose contact, once begun, would continue.
-    Arguments as in `touching`; `release_margin_m` >= 0. Raises ValueError if the shapes do not fit.
+    Both results are bool (S, P). Arguments as in `touching`; `release_margin_m` >= 0. Raises
+    ValueError if the shapes do not fit.
     """
     n_parts = _check(segments_m, radii_m, release_margin_m, 3)
     is_touching = np.zeros((len(arrays.keys), n_parts), dtype=np.bool_)
@@ -130,8 +130,8 @@ def segment_box_distance_m(start: Floats, end: Floats, low: Floats, high: Floats
     s_low, s_high = np.where(falling, slope, -np.inf).max(1), np.where(rising, slope, np.inf).min(1)
     enclosed = np.isfinite(s_low) & np.isfinite(s_high) & (s_high > s_low)
     share = np.divide(-s_low, s_high - s_low, out=np.zeros_like(s_low), where=enclosed)
-    # If the distance only increases, the minimum is at 0; if it only decreases, at 1: t_low is
-    # both.
+    # If the distance only increases, the minimum is at 0; if it only decreases, at 1. t_low is
+    # the minimum in both cases.
     best = t_low + share * (t_high - t_low)
     nearest = start + best[:, None] * along
     nearest -= np.clip(nearest, low, high)

@@ -1,4 +1,4 @@
-"""Whether a touch advances the task or is a mistake; see `rules` for the rules applied here."""
+"""Judge whether a touch advances the task or is a mistake; `rules` states the rules."""
 
 from collections.abc import Iterable
 from dataclasses import replace
@@ -23,9 +23,9 @@ def stop_clock(state: TaskState, time_s: float) -> TaskState:
 
 
 def judge(
-    state: TaskState, held_before: frozenset[Contact], begins: Iterable[Contact], time_s: float
+    state: TaskState, contacts_before: frozenset[Contact], begins: Iterable[Contact], time_s: float
 ) -> tuple[TaskState, Events]:
-    """Judge the contacts that begin now, surface by surface in the layout's order."""
+    """Judge the contacts that begin now, in layout order; return the new state and the events."""
     events: list[TaskEvent] = []
     by_surface: dict[str, list[str]] = {}
     for contact in sorted(begins):
@@ -35,7 +35,7 @@ def judge(
             continue
         limbs = {
             _limb(contact.part)
-            for contact in held_before
+            for contact in contacts_before
             if contact.surface == surface.key and _counts(state, contact)
         }
         for part in by_surface.get(surface.key, ()):
@@ -58,7 +58,7 @@ def _limb(part: str) -> str:
 
 
 def _judge_touch(state: TaskState, contact: Contact, time_s: float) -> tuple[TaskState, Events]:
-    """Judge one new touch of a panel or the target by a limb that counts."""
+    """Judge a new touch of a panel or the target by a limb that counts."""
     layout = state.rules.layout
     panels = [layout.panel_key(box) for box in state.order]
     goal = panels[state.n_green] if state.n_green < len(panels) else layout.target_key

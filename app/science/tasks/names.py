@@ -43,7 +43,7 @@ class Side(StrEnum):
 
 
 class Direction(StrEnum):
-    """Where the first order starts: depending on the writing hand, or the same for everybody.
+    """The direction of the first order: depending on the writing hand, or the same for everybody.
 
     By hand means: right-handed people go from right to left, left-handed people from left to right
     (Karas 2020, appendix A.1).

@@ -126,17 +126,16 @@ def _check_running(state: TaskState, command: str) -> None:
 
 def _change_contacts(state: TaskState, change: ContactChange) -> tuple[TaskState, Events]:
     _check_change(state, change)
-    begins = [contact for contact in change.begins if contact not in state.held]
-    held = (state.held - frozenset(change.ends)) | frozenset(begins)
-    after = replace(state, held=held, arrived=state.arrived & held)
+    begins = [contact for contact in change.begins if contact not in state.contacts]
+    contacts = (state.contacts - frozenset(change.ends)) | frozenset(begins)
+    after = replace(state, contacts=contacts, arrived=state.arrived & contacts)
     if state.walk_back_since_s is not None:
         return _step_on_start(after, begins, change.time_s)
-    # At the very instant the clock starts or resumes, a contact counts as existing, not as new. So
-    # the
-    # record can be verified from its intervals, which begin at that instant too.
+    # At the very instant the clock starts or resumes, a contact counts as existing, not as new.
+    # So the record can be verified from its intervals, which begin at that instant too.
     if state.clock.running_since_s is None or change.time_s <= state.clock.running_since_s:
         return after, ()
-    return judge(after, state.held, begins, change.time_s)
+    return judge(after, state.contacts, begins, change.time_s)
 
 
 def _check_change(state: TaskState, change: ContactChange) -> None:

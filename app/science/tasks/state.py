@@ -130,7 +130,7 @@ class TaskState:
     """The state of a phase, computed from its inputs by `rules.advance`.
 
     `order`: box numbers in the current order; the first `n_green` of them are green. `completed`:
-    tasks completed. `goal_since_s`: when the current goal became current. `held`: contacts that
+    tasks completed. `goal_since_s`: when the current goal became current. `contacts`: those that
     exist now, whether or not they count. `walk_back_since_s`: None unless walking back. `arrived`:
     counting feet that have stepped on the start square during this walk back and are still on it.
     """
@@ -141,7 +141,7 @@ class TaskState:
     completed: int = 0
     goal_since_s: float = float("-inf")
     clock: ActiveClock = field(default_factory=ActiveClock)
-    held: frozenset[Contact] = frozenset()
+    contacts: frozenset[Contact] = frozenset()
     paused: bool = False
     walk_back_since_s: float | None = None
     arrived: frozenset[Contact] = frozenset()
@@ -163,7 +163,7 @@ class TaskState:
         if not self.active:
             return {}
         red: dict[str, str] = {}
-        for contact in self.held:
+        for contact in self.contacts:
             surface = self.rules.layout.by_key[contact.surface]
             if surface.kind is SurfaceKind.SIDE:
                 red[surface.unit] = min(red.get(surface.unit, contact.part), contact.part)

@@ -74,9 +74,9 @@ class ContactTracker:
         if self._next is not None:  # the rules have accepted the change
             self._touching, self._next = self._next, None
         time_s = state.last_s
-        counts: frozenset[Contact] = state.held if state.active else frozenset()
+        counts: frozenset[Contact] = state.contacts if state.active else frozenset()
         # The touch that stopped the clock counted, so its interval is opened before all are closed.
-        touched = state.held if self._was_active else counts
+        touched = state.contacts if self._was_active else counts
         for contact in touched - self._open.keys():
             self._open[contact] = time_s, state.clock.active_s(time_s)
         self._was_active = state.active

@@ -1,4 +1,4 @@
-"""What to display of a task's state: the goal, the colours and the numbers."""
+"""Determine what to display of a task's state: the goal, the colours and the numbers."""
 
 from enum import StrEnum
 

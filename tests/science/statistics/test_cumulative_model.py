@@ -152,7 +152,9 @@ def test_names_of_categories_do_not_matter(wine: Wine) -> None:
     )
     assert effects(stretched) == pytest.approx(effects(wine.fit(1)), abs=1e-6)
     assert stretched.unused_levels == (2, 4, 6, 8)
-    assert stretched.messages == ("Nobody answered 2, 4, 6, 8; the scale was taken without.",)
+    assert stretched.messages == (
+        "Nobody answered 2, 4, 6, 8; the model leaves these categories out.",
+    )
 
 
 def test_alike_participants_have_no_variance() -> None:
@@ -180,8 +182,8 @@ def test_separated_answers_are_told() -> None:
 @pytest.mark.parametrize(
     ("answers", "people", "scale", "told"),
     [
-        ([1, 1, 1, 1, 1, 1], 3, None, "nothing to explain"),
-        ([1, 2, 3, 1, 2, 8], 3, range(1, 8), "not of the scale"),
+        ([1, 1, 1, 1, 1, 1], 3, None, "no variation to model"),
+        ([1, 2, 3, 1, 2, 8], 3, range(1, 8), "not on the scale"),
         ([1, 2, 3, 1, 2, 3], 2, None, "too few"),
         ([1, 2, 3], 3, None, "do not fit"),
     ],

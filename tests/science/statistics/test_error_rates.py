@@ -96,15 +96,15 @@ def test_a_page_warns_out_of_bounds(rate: float, kind: str, warning: str) -> Non
 
 def test_an_exact_test_that_rejects_too_often_breaks_its_promise() -> None:
     """Three standard errors above 5 %, and no more."""
-    assert row(0.064, exact=True).keeps_its_promise
-    assert not row(0.065, exact=True).keeps_its_promise
+    assert row(0.064, exact=True).is_within_guarantee
+    assert not row(0.065, exact=True).is_within_guarantee
 
 
 def test_exact_tests_keep_their_promise(shipped: ErrorRates) -> None:
     """On the shipped data sets none rejects in more than 5 % and three standard errors."""
     exact = [one for one in shipped.rows if one.exact]
     assert {one.test for one in exact} == {name for name, about in ABOUT.items() if about.exact}
-    assert [one for one in exact if not one.keeps_its_promise] == []
+    assert [one for one in exact if not one.is_within_guarantee] == []
 
 
 def test_every_test_was_tried_on_two_thousand_data_sets(shipped: ErrorRates) -> None:

@@ -170,8 +170,8 @@ def test_contrasts_can_be_against_one_level_within_another_factor() -> None:
 
 
 def test_terms_that_follow_from_each_other_are_refused() -> None:
-    """The message names what cannot be told apart."""
-    with pytest.raises(ModelError, match=r"limb\[b\] cannot be told apart"):
+    """The message names the coefficient that cannot be estimated."""
+    with pytest.raises(ModelError, match=r"limb\[b\] cannot be estimated"):
         build_design([factor("block", [1, 2, 1, 2]), factor("limb", ["a", "b", "a", "b"])])
 
 

@@ -95,12 +95,12 @@ def test_a_level_is_found_by_its_number() -> None:
 @pytest.mark.parametrize(
     ("row", "words"),
     [
-        (("P1", "0", "hand", "often"), r"Line 14, column 'score': 'often' is no finite number"),
+        (("P1", "0", "hand", "often"), r"Line 14, column 'score': 'often' is not a finite number"),
         (("P1", "0", "hand", "inf"), r"Line 14, column 'score': 'inf'"),
         (("P1", "0", "hand", math.inf), r"Line 14, column 'score': inf"),
-        (("P1", "0", "hand", "1_000"), r"'1_000' is no finite number"),
-        ((" ", "0", "hand", "1"), r"Line 14, column 'subject': ' ' names nothing"),
-        (("P1", "NA", "hand", "1"), r"Line 14, column 'latency': 'NA' names nothing"),
+        (("P1", "0", "hand", "1_000"), r"'1_000' is not a finite number"),
+        ((" ", "0", "hand", "1"), r"Line 14, column 'subject': ' ' is not a name"),
+        (("P1", "NA", "hand", "1"), r"Line 14, column 'latency': 'NA' is not a name"),
     ],
 )
 def test_a_row_that_cannot_be_used_is_named(
@@ -115,9 +115,9 @@ def test_tables_with_too_little_are_refused() -> None:
     """No row, one subject, one level, columns of other lengths, no factor."""
     with pytest.raises(TooFewData, match="no row"):
         cells_of([], {"latency": []}, [])
-    with pytest.raises(TooFewData, match="one subject only, 'P1'"):
+    with pytest.raises(TooFewData, match="only one subject, 'P1'"):
         cells_of(["P1", "P1"], {"latency": ["0", "1"]}, [1.0, 2.0])
-    with pytest.raises(TooFewData, match="'latency' has one level only, '0'"):
+    with pytest.raises(TooFewData, match="'latency' has only one level, '0'"):
         cells_of(["P1", "P2"], {"latency": ["0", "0"]}, [1.0, 2.0])
     with pytest.raises(StatisticsError, match=r"\[1, 2\] rows"):
         cells_of(["P1", "P2"], {"latency": ["0"]}, [1.0, 2.0])

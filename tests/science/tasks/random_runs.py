@@ -70,6 +70,6 @@ def _change(run: TaskRun, time_s: float, what: str, place: int, part: int) -> Co
     contact = Contact(f"{limb}/{_PLACES[limb][place]}", _PARTS[limb][part])
     if what == "goal" and goal is not None:
         contact = Contact(goal, _PARTS[limb][0])
-    if contact in run.state.held:
+    if contact in run.state.contacts:
         return ContactChange(time_s, (), (contact,))
     return ContactChange(time_s, (contact,), ())

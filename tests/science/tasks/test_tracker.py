@@ -58,7 +58,7 @@ def test_near_alone_begins_nothing() -> None:
     """The margin holds a contact but never makes one."""
     run = started()
     run.frame(1.0, table(), table(("hand/1/left", "RightHand")))
-    assert run.state.held == frozenset()
+    assert run.state.contacts == frozenset()
 
 
 def test_changes_name_surface_and_part() -> None:

@@ -1,8 +1,8 @@
-"""Mixed models: of a continuous measure, of ordered answers, and of carry-over between periods.
+"""Mixed models: of a continuous measure, of ordinal answers, and of carry-over between periods.
 
 `build_design` turns `factor`s and `covariate`s into columns, `fit_mixed_model` fits by REML and
-`term_tests` tests with Satterthwaite's or Kenward-Roger's degrees of freedom; ordered answers go to
-`cumulative_term_tests`. Apart from `statistics` because these load SciPy's optimisers.
+`term_tests` tests with Satterthwaite's degrees of freedom; ordinal answers are tested by
+`cumulative_term_tests`. This is separate from `statistics` because it loads SciPy's optimisers.
 """
 
 from app.science.statistics.mixed.carry_over import carry_over

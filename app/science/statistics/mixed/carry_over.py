@@ -1,24 +1,24 @@
-"""Order, sequence and carry-over: did it matter when a condition came, and after which?
+"""Diagnose order, sequence and carry-over: did the position or predecessor of a condition matter?
 
-In a Williams design every condition stands equally often at every position and follows every other
+In a Williams design every condition is equally often at every position and follows every other
 equally often. Then differences between positions (practice, fatigue) and a *first-order carry-over*
-(what the condition before leaves behind) can be told from the effect of the condition itself. Both
-are estimated in one linear mixed model of a measure,
+(the after-effect of the previous condition) can be separated from the effect of the condition
+itself. Both are estimated in one linear mixed model of a measure,
 
     y = condition + period + carry-over + ... + participant + error,
 
 carry-over being the deviation that each previous condition causes from the mean of all; the first
-period has none. A second model tests the *sequence*, which order a participant had. It varies
-between participants only, so it has their number of degrees of freedom and finds little; and it
-carries the interaction of condition and period as well.
+period has none. A second model tests the *sequence*, which is the order that a participant had. It
+varies between participants only, so it has their number of degrees of freedom and little power; and
+it includes the interaction of condition and period as well.
 
-These are diagnostics. What they cannot do is license a choice of analysis: a test with a dozen
-participants misses carry-over of the size of the effect itself, and analysing only the first period
-because this test came out significant biases what is reported (Freeman 1989). So the result gives
-how large a carry-over the data leave possible, and says in words what follows. A carry-over that is
-the same after every condition looks like period and cannot be seen. Where participants react to the
-conditions differently, these tests reject too often (table of error rates): what is shown may then
-be reactions.
+These are diagnostics. They cannot justify a choice of analysis: a test with a dozen participants
+misses carry-over as large as the effect itself, and analysing only the first period because this
+test was significant biases the results (Freeman 1989). So the result gives the largest carry-over
+that the data leave possible, and states the conclusions in words. A carry-over that is the same
+after every condition looks like a period effect and cannot be detected. If participants react to
+the conditions differently, these tests reject too often (see the table of error rates): an apparent
+carry-over may then be such differences.
 
 Sources: Williams 1949, Aust J Sci Res A 2, 149; Jones and Kenward 2014, Design and Analysis of
 Cross-Over Trials; Freeman 1989, Stat Med 8, 1421.
@@ -43,7 +43,7 @@ CONDITION, PERIOD, CARRY_OVER, SEQUENCE = "condition", "period", "carry_over", "
 
 @dataclass(frozen=True)
 class CarryOverDifference:
-    """How much more is left behind by condition `a` than by `b`, in units of the measure."""
+    """The carry-over of condition `a` minus that of condition `b`, in units of the measure."""
 
     a: str
     b: str
@@ -52,19 +52,19 @@ class CarryOverDifference:
 
 @dataclass(frozen=True)
 class CarryOver:
-    """Diagnostics of one measure.
+    """Diagnostics of order, sequence and carry-over of one measure.
 
     Attributes:
-        orders: how the conditions were ordered, and how balanced.
-        condition: F test of the condition beside period and carry-over.
+        orders: how the conditions were ordered, and how balanced the orders are.
+        condition: F test of the condition, adjusted for period and carry-over.
         period, carry_over: F tests.
-        sequence: F test between participants; None where the orders do not allow it.
+        sequence: F test between participants; None if the orders do not allow it.
         differences: of carry-over between conditions, with 95 % intervals.
         largest_possible: the largest carry-over difference that the intervals leave possible, in
             units of the measure.
         left_out: observations without a known previous condition, other than the first period.
-        converged: of the fits.
-        conclusions: in order of weight.
+        converged: whether the fit converged.
+        conclusions: the most important first.
     """
 
     orders: Orders
@@ -87,39 +87,48 @@ def carry_over(
     *,
     further: Sequence[Factor] = (),
 ) -> CarryOver:
-    """Diagnose one measure.
+    """Diagnose order, sequence and carry-over of one measure.
 
     Args:
-        values: (N,) finite; several a period are allowed (hand and foot).
+        values: (N,) finite; a period may have several (hand and foot).
         participants: N names.
-        conditions: N conditions; one of them in each period of a participant.
-        periods: N places in the order, from 1.
-        further: other factors of the N observations that the measure depends on, such as the limb.
+        conditions: N conditions; a participant has one in each period.
+        periods: N positions in the order, from 1.
+        further: other factors of the N observations on which the measure depends, such as the limb.
 
-    An observation whose period before is not among the data is left out of the models, and counted.
+    An observation whose previous period is not in the data is left out of the models, and counted.
 
     Raises:
         ModelError: a period has two conditions, there are fewer than two periods, or the orders do
-            not tell condition, period and carry-over apart.
+            not separate condition, period and carry-over.
     """
-    placed = _placed(participants, conditions, periods)
+    placed = _conditions_by_period(participants, conditions, periods)
     previous = [placed.get((who, at - 1)) for who, at in zip(participants, periods, strict=True)]
-    known = np.array(
+    usable = np.array(
         [at == 1 or before is not None for at, before in zip(periods, previous, strict=True)]
     )
-    y = np.asarray(values, dtype=np.float64)[known]
-    names = [who for who, kept in zip(participants, known, strict=True) if kept]
-    condition = _kept(factor(CONDITION, conditions), known)
+    y = np.asarray(values, dtype=np.float64)[usable]
+    names = [who for who, use in zip(participants, usable, strict=True) if use]
+    condition = _selected(factor(CONDITION, conditions), usable)
     before = [str(one) if one is not None else None for one in previous]
     design = build_design(
-        [condition, _kept(factor(PERIOD, periods), known), *(_kept(one, known) for one in further)],
-        [_carried(condition, [one for one, kept in zip(before, known, strict=True) if kept])],
+        [
+            condition,
+            _selected(factor(PERIOD, periods), usable),
+            *(_selected(one, usable) for one in further),
+        ],
+        [
+            _previous_condition(
+                condition,
+                [one for one, use in zip(before, usable, strict=True) if use],
+            )
+        ],
     )
     return _diagnosed(
         fit_mixed_model(y, names, design),
         _sequence(y, names, design, placed),
         describe_orders(placed, condition.levels),
-        int((~known).sum()),
+        int((~usable).sum()),
     )
 
 
@@ -143,10 +152,10 @@ def _diagnosed(
     )
 
 
-def _placed(
+def _conditions_by_period(
     participants: Sequence[Label], conditions: Sequence[Label], periods: Sequence[int]
 ) -> dict[tuple[Label, int], str]:
-    """Which condition each participant had in each period."""
+    """Return the condition of each participant in each period."""
     placed: dict[tuple[Label, int], str] = {}
     for who, condition, at in zip(participants, conditions, periods, strict=True):
         if placed.setdefault((who, at), str(condition)) != str(condition):
@@ -159,12 +168,15 @@ def _placed(
     return placed
 
 
-def _kept(one: Factor, known: np.ndarray) -> Factor:
-    return Factor(one.name, one.levels, one.codes[known])
+def _selected(one: Factor, usable: np.ndarray) -> Factor:
+    return Factor(one.name, one.levels, one.codes[usable])
 
 
-def _carried(condition: Factor, before: Sequence[str | None]) -> Covariate:
-    """Deviations by previous condition: the first level is minus the sum of the others."""
+def _previous_condition(condition: Factor, before: Sequence[str | None]) -> Covariate:
+    """Return the covariate of the previous condition, in deviation coding.
+
+    The first level is minus the sum of the others.
+    """
     columns = np.zeros((len(before), len(condition.levels) - 1))
     for row, level in enumerate(before):
         if level is None:
@@ -192,7 +204,7 @@ def _sequence(
     design: Design,
     placed: dict[tuple[Label, int], str],
 ) -> TermTest | None:
-    """F test of the order had, if there are more participants than orders."""
+    """Return the F test of the participants' orders, if there are more participants than orders."""
     last = max(at for _, at in placed)
     orders = {
         who: "-".join(placed.get((who, at), "?") for at in range(1, last + 1)) for who in names

@@ -1,8 +1,8 @@
-"""How conditions were ordered over participants, and whether that is balanced.
+"""Describe how conditions were ordered over participants, and whether the orders are balanced.
 
-Balance is what counts, not which orders were drawn: every condition equally often at every
-position, and every ordered pair of conditions equally often as neighbours. `app.science.williams`
-makes the smallest sets of orders with both properties.
+Balance counts, not which orders were drawn: every condition equally often at every position, and
+every ordered pair of conditions equally often as neighbours. `app.science.williams` generates the
+smallest sets of orders with both properties.
 """
 
 from collections import Counter
@@ -23,11 +23,11 @@ class Orders:
     Attributes:
         counts: how many participants had each complete order.
         incomplete: participants who lack a period; they are not in the counts below.
-        positions: by condition, how often it stood first, second, ...
+        positions: by condition, how often it was first, second, ...
         neighbours: by (condition, the next one), how often.
         balanced_positions, balanced_neighbours: whether all of these counts are equal.
-        missing: orders of the Williams design that no participant had; empty if there are others
-            than those of the design.
+        missing: orders of the Williams design that no participant had; empty if there are orders
+            outside the design.
     """
 
     counts: tuple[tuple[Order, int], ...]
@@ -40,7 +40,7 @@ class Orders:
 
     @property
     def balanced(self) -> bool:
-        """By position and by neighbour, with nobody incomplete."""
+        """Whether positions and neighbours are balanced and no participant is incomplete."""
         return self.balanced_positions and self.balanced_neighbours and not self.incomplete
 
 
@@ -62,7 +62,7 @@ def describe_orders(placed: Mapping[tuple[Label, int], str], levels: tuple[str, 
     followed = Counter(pair for order in complete for pair in pairwise(order))
     neighbours = {pair: followed[pair] for pair in permutations(levels, 2)}
     design = [tuple(levels[at] for at in row) for row in williams(len(levels))]
-    known = all(order in design for order in complete)
+    drawn_from_design = all(order in design for order in complete)
     return Orders(
         counts=tuple(sorted(Counter(complete).items())),
         incomplete=len(orders) - len(complete),
@@ -70,7 +70,9 @@ def describe_orders(placed: Mapping[tuple[Label, int], str], levels: tuple[str, 
         neighbours=tuple(neighbours.items()),
         balanced_positions=len({count for row in positions.values() for count in row}) == 1,
         balanced_neighbours=len(set(neighbours.values())) == 1 and not _repeats(complete),
-        missing=tuple(order for order in design if order not in complete) if known else (),
+        missing=tuple(order for order in design if order not in complete)
+        if drawn_from_design
+        else (),
     )
 
 

@@ -1,4 +1,4 @@
-"""What follows from tests of carry-over, period and sequence, in words, and what does not."""
+"""State the conclusions that tests of carry-over, period and sequence do and do not allow."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ _ALPHA = 0.05
 
 @dataclass(frozen=True)
 class Conclusion:
-    """One thing that follows, or does not: `code` for machines, `text` for people."""
+    """One conclusion: `code` for programs, `text` for people."""
 
     code: str
     text: str
@@ -19,15 +19,19 @@ class Conclusion:
 def conclude(
     orders: Orders, tests: tuple[TermTest, TermTest, TermTest | None], largest: float
 ) -> tuple[Conclusion, ...]:
-    """Return what follows from the tests of carry-over, period and (where there is one) sequence.
+    """Return the conclusions from the tests of carry-over, period and (if there is one) sequence.
 
     Args:
         orders: of the conditions.
         tests: of carry-over, period and sequence.
         largest: the largest carry-over difference that the intervals leave possible.
     """
-    carried, period, sequence = tests
-    found = [_about_carry_over(carried, largest), _about_period(period), _about_sequence(sequence)]
+    carry_over, period, sequence = tests
+    found = [
+        _about_carry_over(carry_over, largest),
+        _about_period(period),
+        _about_sequence(sequence),
+    ]
     if not orders.balanced:
         found.append(
             Conclusion(
@@ -40,8 +44,8 @@ def conclude(
         Conclusion(
             "limits",
             "A carry-over that is the same after every condition looks like a difference between "
-            "periods and cannot be told from it. No choice of analysis should depend on these "
-            "tests.",
+            "periods and cannot be distinguished from it. No choice of analysis should depend on "
+            "these tests.",
         )
     )
     return tuple(found)
@@ -51,12 +55,12 @@ def _about_carry_over(test: TermTest, largest: float) -> Conclusion:
     if test.p < _ALPHA:
         return Conclusion(
             "carry_over_shown",
-            f"What the condition before left behind made a difference ({_told(test)}). Report the "
-            "effect of the condition beside it, and do not read raw means of conditions alone.",
+            f"The previous condition had an after-effect ({_f_of(test)}). Report the "
+            "effect of the condition adjusted for it, and do not rely on raw means alone.",
         )
     return Conclusion(
         "carry_over_not_shown",
-        f"No carry-over was shown ({_told(test)}). This does not show that there is none: "
+        f"No carry-over was shown ({_f_of(test)}). This does not show that there is none: "
         f"differences of up to {largest:.3g} remain possible.",
     )
 
@@ -65,10 +69,10 @@ def _about_period(test: TermTest) -> Conclusion:
     if test.p < _ALPHA:
         return Conclusion(
             "period_shown",
-            f"The measure changed over the periods ({_told(test)}), by practice, fatigue or time. "
+            f"The measure changed over the periods ({_f_of(test)}), by practice, fatigue or time. "
             "With balanced orders the comparison of conditions is not biased by it.",
         )
-    return Conclusion("period_not_shown", f"No change over the periods was shown ({_told(test)}).")
+    return Conclusion("period_not_shown", f"No change over the periods was shown ({_f_of(test)}).")
 
 
 def _about_sequence(test: TermTest | None) -> Conclusion:
@@ -81,15 +85,15 @@ def _about_sequence(test: TermTest | None) -> Conclusion:
     if test.p < _ALPHA:
         return Conclusion(
             "sequence_shown",
-            f"Participants with different orders differ ({_told(test)}). Whether the order does it "
-            "or who happened to have it, these data cannot tell.",
+            f"Participants with different orders differ ({_f_of(test)}). These data cannot show "
+            "whether the order causes it or the participants who happened to have it.",
         )
     return Conclusion(
         "sequence_not_shown",
-        f"No difference between orders was shown ({_told(test)}); the test is between participants "
-        "and finds large differences only.",
+        f"No difference between orders was shown ({_f_of(test)}); the test is between "
+        "participants and detects large differences only.",
     )
 
 
-def _told(test: TermTest) -> str:
+def _f_of(test: TermTest) -> str:
     return f"F({test.df_term}, {test.df_error:.1f}) = {test.f:.2f}, p = {test.p:.3g}"

@@ -1,18 +1,18 @@
-"""The likelihood of ordinal answers of participants who differ, with its gradient.
+"""The likelihood of ordinal answers with random participant effects, and its gradient.
 
-Participant i's effect is u = sigma v with v ~ N(0, 1); the observation j has the predictor
-t = x_j beta + sigma v. The likelihood of a participant,
+Participant i's effect is u = sigma v with v ~ N(0, 1); the observation j has the predictor t = x_j
+beta + sigma v. The likelihood of a participant,
 
     L_i = integral of exp(g(v)) dv / sqrt(2 pi),    g(v) = sum_j log p_j(v) - v^2 / 2,
 
 has no closed form. Around the mode v0 with H = -g''(v0), Gauss-Hermite quadrature with nodes z_k
-and weights w_k takes it as
+and weights w_k approximates it by
 
     L_i = sum_k w_k exp(z_k^2) exp(g(v0 + z_k sqrt(2 / H))) / sqrt(pi H),
 
-which with one node is Laplace's approximation and with ten exact enough for print. Mode and width
-depend on the parameters; the gradient follows them (dv0 = g_vp / H, and dH by the third
-derivatives), so it is exact for the approximation made.
+which with one node is Laplace's approximation and with ten is accurate enough for publication. Mode
+and width depend on the parameters; the gradient includes this (dv0 = g_vp / H, and dH by the third
+derivatives), so it is exact for the approximation.
 
 Source: Pinheiro and Bates 1995, J Comput Graph Stat 4, 12; Christensen 2019, `ordinal` for R.
 """
@@ -33,13 +33,14 @@ _MODE_TOLERANCE = 1e-11
 
 @dataclass(frozen=True, eq=False)
 class Answers:
-    """Ordinal observations.
+    """Ordinal observations, grouped by participant.
 
     Attributes:
         categories: (N,) from 0 to K - 1, each of them observed.
-        x: (N, p) predictors without an intercept, which the thresholds are.
-        codes: (N,) whose they are, from 0 and never falling: a participant's stand together.
-        count: K, categories.
+        x: (N, p) predictors without an intercept, whose role the thresholds have.
+        codes: (N,) participant of each, from 0 and never decreasing, so that the observations of a
+            participant are contiguous.
+        count: K, the number of categories.
     """
 
     categories: IntArray
@@ -49,17 +50,17 @@ class Answers:
 
     @cached_property
     def participants(self) -> int:
-        """How many."""
+        """The number of participants."""
         return int(self.codes[-1]) + 1
 
     @cached_property
     def starts(self) -> IntArray:
-        """(participants,) where each one's observations begin."""
+        """Index of each participant's first observation, (participants,)."""
         return np.searchsorted(self.codes, np.arange(self.participants)).astype(np.int64)
 
 
 class Parameters(NamedTuple):
-    """(K - 1,) increasing thresholds, (p,) effects, and the participants' sd."""
+    """The parameters: (K - 1,) increasing thresholds, (p,) effects, and the participants' SD."""
 
     thresholds: FloatArray
     beta: FloatArray
@@ -73,8 +74,8 @@ def log_likelihood(
 
     Args:
         answers: the observations.
-        at: where; an sd of 0 is the model without participants.
-        link: of the hidden value.
+        at: the parameters at which to evaluate; an sd of 0 is the model without participants.
+        link: distribution of the latent variable.
         nodes: 1 for Laplace, more for adaptive Gauss-Hermite quadrature.
     """
     edges = np.concatenate(([-np.inf], at.thresholds, [np.inf]))
@@ -85,9 +86,9 @@ def log_likelihood(
     here = slopes(link, upper - spread, lower - spread)
     curve = 1.0 - at.sd**2 * _sum(answers, here.tt)
     width = 1.0 / np.sqrt(curve)
-    mode_by, width_by = _moves(answers, at.sd, mode, width, here)
+    mode_by, width_by = _mode_derivatives(answers, at.sd, mode, width, here)
     z, log_weights = _quadrature(nodes)
-    # Participants by nodes: where the integrand is looked at, and how large it is there.
+    # Participants by nodes: where the integrand is evaluated, and its value there.
     v = mode[:, np.newaxis] + np.sqrt(2.0) * width[:, np.newaxis] * z
     shift = at.sd * v[answers.codes]
     there = slopes(link, upper[:, np.newaxis] - shift, lower[:, np.newaxis] - shift)
@@ -107,7 +108,7 @@ def log_likelihood(
 
 
 def participant_modes(answers: Answers, at: Parameters, link: Link) -> FloatArray:
-    """(participants,) the most likely effect of each, in units of the hidden value."""
+    """Return the most likely effect of each participant, (participants,), on the latent scale."""
     edges = np.concatenate(([-np.inf], at.thresholds, [np.inf]))
     base = answers.x @ at.beta
     upper, lower = edges[answers.categories + 1] - base, edges[answers.categories] - base
@@ -117,9 +118,10 @@ def participant_modes(answers: Answers, at: Parameters, link: Link) -> FloatArra
 def _mode(
     answers: Answers, sd: float, upper: FloatArray, lower: FloatArray, link: Link
 ) -> FloatArray:
-    """The v with the largest g of each participant: Newton's method, bisecting where it leaps.
+    """Return the v that maximises g for each participant, by Newton's method with bisection.
 
-    g'' is -1 or less, so the mode lies no further from v than g' there is large.
+    Bisection replaces steps that leave the bracket. g'' is -1 or less, so the mode is no further
+    from v than the magnitude of g' at v.
     """
     v = np.zeros(answers.participants)
     if sd == 0.0:
@@ -142,14 +144,17 @@ def _mode(
     return v
 
 
-def _moves(
+def _mode_derivatives(
     answers: Answers, sd: float, mode: FloatArray, width: FloatArray, here: Slopes
 ) -> tuple[FloatArray, FloatArray]:
-    """How mode and width of each participant follow each parameter: (parameters, participants)."""
+    """Return the derivatives of each participant's mode and width by each parameter.
+
+    Both are (parameters, participants).
+    """
     mixed = _by_parameters(answers, here.upper_t, here.lower_t, here.tt)
     bent = _by_parameters(answers, here.upper_tt, here.lower_tt, here.ttt)
     t, tt, ttt = (_sum(answers, part) for part in (here.t, here.tt, here.ttt))
-    # The sd turns v into the predictor, so each derivative by v brings one more of it.
+    # The predictor contains sd * v, so each derivative by v adds a factor of sd.
     g_vp = np.vstack([sd * mixed, t + sd * mode * tt])
     g_vvp = np.vstack([sd**2 * bent, 2.0 * sd * tt + sd**2 * mode * ttt])
     mode_by = g_vp * width**2
@@ -158,7 +163,7 @@ def _moves(
 
 
 def _gradient(answers: Answers, shares: FloatArray, there: Slopes, v: FloatArray) -> FloatArray:
-    """Sum over nodes, by their shares, of the derivatives that leave v where it is."""
+    """Sum over nodes, weighted by their shares, the derivatives at fixed v."""
     own = shares[answers.codes]
     upper, lower, t = ((own * part).sum(axis=1) for part in (there.upper, there.lower, there.t))
     parts = _by_parameters(answers, upper, lower, t).sum(axis=1)
@@ -169,10 +174,10 @@ def _gradient(answers: Answers, shares: FloatArray, there: Slopes, v: FloatArray
 def _by_parameters(
     answers: Answers, upper: FloatArray, lower: FloatArray, t: FloatArray
 ) -> FloatArray:
-    """(thresholds and beta, participants): derivatives of observations, summed for each."""
+    """Sum the derivatives of observations by participant: (thresholds and beta, participants)."""
     count, size = answers.count, answers.participants
     place = answers.categories * size + answers.codes
-    # The upper threshold of the last category and the lower one of the first are no parameters.
+    # The upper threshold of the last category and the lower one of the first are not parameters.
     up = np.bincount(place, upper, count * size).reshape(count, size)[:-1]
     down = np.bincount(place, lower, count * size).reshape(count, size)[1:]
     return np.vstack([up + down, _sum(answers, answers.x * t[:, np.newaxis]).T])
@@ -186,6 +191,6 @@ def _sum(answers: Answers, values: FloatArray) -> FloatArray:
 
 @cache
 def _quadrature(nodes: int) -> tuple[FloatArray, FloatArray]:
-    """Nodes and the logarithms of their weights."""
+    """Return the quadrature nodes and the logarithms of their weights."""
     z, weights = hermgauss(nodes)
     return z, np.log(weights)

@@ -1,9 +1,9 @@
-"""The chance of each answer, and how it changes: what a cumulative model's likelihood is made of.
+"""The probability of each answer and its derivatives, for the likelihood of a cumulative model.
 
-An observation with predictor t answers category k where a hidden value falls between two
-thresholds: p = F(upper - t) - F(lower - t), F the logistic or the normal distribution, lower and
-upper minus and plus infinity at the ends of the scale. Both make log p concave in t, so its mode
-over a participant's effect is unique and Newton's method finds it.
+An observation with predictor t is in category k if a latent variable falls between two thresholds:
+p = F(upper - t) - F(lower - t), with F the logistic or the normal distribution, and lower and upper
+minus and plus infinity at the ends of the scale. Both make log p concave in t, so its mode over a
+participant's effect is unique and Newton's method finds it.
 """
 
 from collections.abc import Callable
@@ -27,10 +27,11 @@ class Slopes:
     """log p and its derivatives, each of the shape of the predictor.
 
     Attributes:
-        log_p: of the answer given.
+        log_p: of the given answer.
         t, tt, ttt: derivatives by the predictor.
-        upper, upper_t, upper_tt: derivative by the upper threshold, and that by the predictor.
-        lower, lower_t, lower_tt: the same of the lower threshold.
+        upper, upper_t, upper_tt: derivative by the upper threshold, and its derivatives by the
+            predictor.
+        lower, lower_t, lower_tt: the same for the lower threshold.
     """
 
     log_p: FloatArray
@@ -46,7 +47,10 @@ class Slopes:
 
 
 def log_chance(link: Link, upper: FloatArray, lower: FloatArray) -> tuple[FloatArray, ...]:
-    """log p and its first two derivatives by the predictor, for thresholds less predictor."""
+    """Return log p and its first two derivatives by the predictor.
+
+    Arguments are thresholds minus predictor, which are infinite at the ends of the scale.
+    """
     density = _DENSITIES[link]
     p = _between(link, upper, lower)
     f1, d1, _ = density(upper)
@@ -56,7 +60,10 @@ def log_chance(link: Link, upper: FloatArray, lower: FloatArray) -> tuple[FloatA
 
 
 def slopes(link: Link, upper: FloatArray, lower: FloatArray) -> Slopes:
-    """All derivatives, for thresholds less predictor; infinite at the ends of the scale."""
+    """Return log p and all derivatives, given thresholds minus predictor.
+
+    Thresholds are infinite at the ends of the scale.
+    """
     density = _DENSITIES[link]
     p = _between(link, upper, lower)
     f1, d1, e1 = (part / p for part in density(upper))
@@ -80,7 +87,7 @@ def slopes(link: Link, upper: FloatArray, lower: FloatArray) -> Slopes:
 
 
 def _between(link: Link, upper: FloatArray, lower: FloatArray) -> FloatArray:
-    """F(upper) - F(lower), taken in the tail where neither is close to 1."""
+    """Return F(upper) - F(lower), computed in the tail in which neither is close to 1."""
     cumulative = expit if link == "logit" else ndtr
     mirrored = lower > 0.0
     high = np.where(mirrored, -lower, upper)
@@ -105,4 +112,4 @@ _DENSITIES: dict[Link, Callable[[FloatArray], tuple[FloatArray, FloatArray, Floa
     "logit": _logistic,
     "probit": _normal,
 }
-"""Density and its first two derivatives."""
+"""The density of each link and its first two derivatives."""

@@ -1,22 +1,22 @@
-"""Cumulative link models: ordinal answers without pretending that 1 to 7 are numbers.
+"""Cumulative link models: regression for ordinal answers, which are not treated as numbers.
 
-Behind an answer stands a hidden value; thresholds cut it into the categories of the scale:
+An answer depends on a latent variable, which thresholds divide into the categories of the scale:
 
     P(answer <= k) = F(theta_k - x beta - u),    u ~ N(0, sigma^2) for each participant,
 
 F logistic (`logit`) or normal (`probit`). Thresholds are free but increasing. A positive effect
 moves answers up the scale; with `logit`, exp(beta) is the factor by which the odds of answering
 above any threshold grow. With u it is a mixed model (CLMM), without it the plain one (CLM), which
-takes all answers as independent and is wrong for repeated measures: it is here to compare with.
+treats all answers as independent and is wrong for repeated measures: it is included for comparison.
 
 The likelihood is Laplace's (`nodes` 1) or by adaptive Gauss-Hermite quadrature
 (`cumulative_likelihood`). Standard errors are from the observed information: differences of the
 analytic gradient at the optimum. Tests of single effects are Wald's; prefer likelihood-ratio tests
 (`cumulative_tests`). Both are approximate with a dozen participants.
 
-Categories that nobody chose have no threshold: they are left out, and the result says which. If
+Categories that nobody chose have no threshold: they are left out, and listed in the result. If
 every answer of a condition is at the end of the scale, its effect has no finite estimate; then the
-fit is told as not converged.
+fit is reported as not converged.
 
 Sources: Agresti 2010, Analysis of Ordinal Categorical Data; Christensen 2019, `ordinal` for R.
 """
@@ -42,7 +42,7 @@ _FEWEST_PARTICIPANTS = 3
 
 @dataclass(frozen=True)
 class Threshold:
-    """Where the hidden value passes from one category to the next, `2|3`."""
+    """The threshold of the latent variable between two neighbouring categories, such as `2|3`."""
 
     between: str
     estimate: float
@@ -51,10 +51,10 @@ class Threshold:
 
 @dataclass(frozen=True)
 class CumulativeEffect:
-    """A coefficient, in units of the hidden value (log odds or standard deviations).
+    """A coefficient on the latent scale (log odds or standard deviations).
 
     Attributes:
-        name: for instance `latency[125]`: that level less the reference.
+        name: for instance `latency[125]`: that level minus the reference.
         estimate, se: and its standard error.
         z, p: Wald's two-sided test that it is zero.
         low, high: 95 % confidence interval.
@@ -74,21 +74,21 @@ class CumulativeModel:
     """A fitted cumulative link (mixed) model.
 
     Attributes:
-        link: of the hidden value.
+        link: distribution of the latent variable.
         nodes: of the quadrature; 1 is Laplace's approximation, 0 a model without participants.
         thresholds, effects: estimates.
-        participant_sd: sigma, in units of the hidden value; 0 if estimated as zero or not in it.
+        participant_sd: sigma, on the latent scale; 0 if estimated as zero or not in the model.
         participant_sd_se: its standard error; NaN where sigma is 0.
         log_likelihood: at the optimum.
-        parameters: how many were estimated.
-        observations: how many went in.
-        participants: of how many people; 0 in a model without.
+        parameters: number of estimated parameters.
+        observations: number of observations.
+        participants: number of participants; 0 in a model without.
         levels: the categories that were chosen, in order.
         unused_levels: those of the scale that nobody chose.
-        converged: whether the likelihood is level and peaked where the search ended.
-        messages: what a reader must know of the fit, in sentences; empty if nothing.
+        converged: whether the search ended at a maximum of the likelihood.
+        messages: what a reader must know about the fit, in sentences; empty if nothing.
         gradient: (parameters,) of the log-likelihood where the search ended.
-        design: what the effects are of; None with thresholds only.
+        design: of the effects; None for a model with thresholds only.
         covariance: (p, p) of the effects; NaN without standard errors.
     """
 
@@ -112,12 +112,12 @@ class CumulativeModel:
 
     @property
     def participant_variance(self) -> float:
-        """sigma^2, as `ordinal` prints it."""
+        """sigma^2, the variance between participants, as R's `ordinal` prints it."""
         return self.participant_sd**2
 
     @property
     def aic(self) -> float:
-        """Akaike's criterion."""
+        """Akaike's information criterion."""
         return 2.0 * (self.parameters - self.log_likelihood)
 
 
@@ -130,19 +130,19 @@ def fit_cumulative_model(
     nodes: int = 1,
     scale: Sequence[int] | None = None,
 ) -> CumulativeModel:
-    """Fit the model by maximum likelihood.
+    """Fit a cumulative model by maximum likelihood.
 
     Args:
         answers: N categories as whole numbers, larger is more.
-        participants: N names; None takes all answers as independent (CLM).
-        design: of the same N observations; its intercept is left out, since thresholds are there.
-            None has thresholds only.
+        participants: N names; None treats all answers as independent (CLM).
+        design: of the same N observations; its intercept is dropped in favour of the thresholds.
+            None fits thresholds only.
         link: "logit" or "probit".
-        nodes: 1 for Laplace, up to 50 for adaptive Gauss-Hermite quadrature; 10 are plenty.
-        scale: the categories that could be chosen, to tell which were not.
+        nodes: 1 for Laplace, up to 50 for adaptive Gauss-Hermite quadrature; 10 are enough.
+        scale: the categories that could be chosen, to report those that were not.
 
     Raises:
-        ModelError: lengths differ, an answer is not of the scale, fewer than two categories were
+        ModelError: lengths differ, an answer is not on the scale, fewer than two categories were
             chosen, or there are fewer than three participants.
     """
     given = np.asarray(answers)
@@ -199,11 +199,11 @@ def _levels(given: IntArray, scale: Sequence[int] | None) -> list[int]:
     if given.ndim != 1 or given.dtype.kind not in "iu":
         raise ModelError("Answers must be whole numbers in one row, without missing ones.")
     levels: list[int] = np.unique(given).tolist()
-    strangers = [level for level in levels if scale is not None and level not in scale]
-    if strangers:
-        raise ModelError(f"The answer {strangers[0]} is not of the scale {list(scale or ())}.")
+    invalid = [level for level in levels if scale is not None and level not in scale]
+    if invalid:
+        raise ModelError(f"The answer {invalid[0]} is not on the scale {list(scale or ())}.")
     if len(levels) < len(("low", "high")):
-        raise ModelError(f"All answers are {levels}: there is nothing to explain.")
+        raise ModelError(f"All answers are {levels}: there is no variation to model.")
     return levels
 
 
@@ -216,11 +216,11 @@ def _check(answers: int, rows: int, codes: IntArray, nodes: int) -> None:
     if codes.max() + 1 < _FEWEST_PARTICIPANTS:
         raise ModelError(f"{codes.max() + 1} participants are too few; give three or more.")
     if not 1 <= nodes <= _MOST_NODES:
-        raise ModelError(f"{nodes} nodes of quadrature were asked for; 1 to {_MOST_NODES} can be.")
+        raise ModelError(f"{nodes} quadrature nodes; valid are 1 to {_MOST_NODES}.")
 
 
 def _about(unused: list[int]) -> tuple[str, ...]:
     if not unused:
         return ()
-    told = ", ".join(str(level) for level in unused)
-    return (f"Nobody answered {told}; the scale was taken without.",)
+    listed = ", ".join(str(level) for level in unused)
+    return (f"Nobody answered {listed}; the model leaves these categories out.",)

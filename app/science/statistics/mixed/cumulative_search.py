@@ -1,10 +1,10 @@
-"""Where the likelihood of ordinal answers is largest, and how sharply.
+"""Maximise the likelihood of ordinal answers, and compute standard errors.
 
-Thresholds must stay in order, so the search moves the first one and the logarithms of the gaps
-between them; the rest is free. The participants' sd may cross zero, where the likelihood is
-symmetric. BFGS follows the analytic gradient; Newton steps with the Hessian, made of differences of
-the gradient, end it and give standard errors. If the sd comes out near zero, the model without
-participants is tried too, since zero is the lowest it can be.
+Thresholds must stay in order, so the search varies the first one and the logarithms of the gaps
+between them; the other parameters are unconstrained. The participants' SD may cross zero, where the
+likelihood is symmetric. BFGS uses the analytic gradient; Newton steps with the Hessian, from
+differences of the gradient, complete the search and give standard errors. If the SD is near zero,
+the model without participants is tried too, since zero is the lower bound.
 """
 
 from dataclasses import dataclass, replace
@@ -20,10 +20,10 @@ from app.science.statistics.mixed.cumulative_links import Link
 _NEAR_ZERO_SD = 0.05
 _DECREMENT_LIMIT = 1e-6
 _FAR_EFFECT = 15.0
-"""On the hidden scale; odds of three millions to one are no estimate but a missing one."""
+"""On the latent scale; odds of three million to one mean that no finite estimate exists."""
 _NO_ESTIMATE = (
     "An effect has no finite estimate: the answers of a condition are all at one end of the scale, "
-    "or participants hardly ever change theirs."
+    "or participants hardly ever vary theirs."
 )
 _NEWTON_STEPS = 3
 _STEP = 1e-4
@@ -31,14 +31,14 @@ _STEP = 1e-4
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """Where the search ended.
+    """The result of the search.
 
     Attributes:
         at: estimates.
         errors: standard errors of thresholds, effects and sd; NaN where there is none.
         covariance: of the effects (p, p); NaN where there is none.
-        log_likelihood, gradient: there; the gradient is by thresholds, effects and sd.
-        converged, messages: whether it is an optimum, and what else to know.
+        log_likelihood, gradient: at the estimates; the gradient by thresholds, effects and sd.
+        converged, messages: whether it is an optimum, and what else to report.
     """
 
     at: Parameters
@@ -51,7 +51,7 @@ class Found:
 
 
 def search(answers: Answers, link: Link, nodes: int, *, mixed: bool) -> Found:
-    """Find the maximum; without `mixed` the sd stays zero."""
+    """Find the maximum of the likelihood; without `mixed` the sd stays zero."""
     if not mixed:
         return _finish(answers, link, 1, _climb(answers, link, 1, _start(answers, link)))
     found = _climb(answers, link, nodes, _start(answers, link)._replace(sd=1.0))
@@ -62,12 +62,12 @@ def search(answers: Answers, link: Link, nodes: int, *, mixed: bool) -> Found:
     ended = _finish(answers, link, nodes, found)
     if ended.at.sd > 0.0:
         return ended
-    told = "Participants do not differ: their variance is estimated as zero."
-    return replace(ended, messages=(*ended.messages, told))
+    message = "Participants do not differ: their variance is estimated as zero."
+    return replace(ended, messages=(*ended.messages, message))
 
 
 def _start(answers: Answers, link: Link) -> Parameters:
-    """The thresholds of answers that nothing influences."""
+    """Return the thresholds of a model without effects, as the start of the search."""
     shares = np.cumsum(np.bincount(answers.categories, minlength=answers.count))[:-1]
     quantile = logit if link == "logit" else ndtri
     return Parameters(quantile(shares / len(answers.categories)), np.zeros(answers.x.shape[1]), 0.0)
@@ -78,7 +78,7 @@ def _value(answers: Answers, link: Link, nodes: int, at: Parameters) -> float:
 
 
 def _climb(answers: Answers, link: Link, nodes: int, start: Parameters) -> Parameters:
-    """BFGS over first threshold, log gaps, effects and, unless it is zero at the start, sd."""
+    """Run BFGS over first threshold, log gaps, effects and, unless it starts at zero, sd."""
     inner, size = len(start.thresholds), len(start.thresholds) + len(start.beta)
     mixed = start.sd > 0.0
 
@@ -90,7 +90,7 @@ def _climb(answers: Answers, link: Link, nodes: int, start: Parameters) -> Param
     def objective(free: FloatArray) -> tuple[float, FloatArray]:
         at = unpack(free)
         value, gradient = log_likelihood(answers, at, link, nodes)
-        # The thresholds from one on all move with the gap below it.
+        # Each gap shifts its threshold and all higher ones.
         by_threshold = np.cumsum(gradient[:inner][::-1])[::-1].copy()
         by_threshold[1:] *= np.diff(at.thresholds)
         moved = np.concatenate((by_threshold, gradient[inner : len(free)]))
@@ -112,12 +112,12 @@ def _climb(answers: Answers, link: Link, nodes: int, start: Parameters) -> Param
 
 
 def _finish(answers: Answers, link: Link, nodes: int, at: Parameters) -> Found:
-    """Newton steps, standard errors, and whether this is an optimum."""
+    """Take Newton steps, compute standard errors, and check that this is an optimum."""
     free = len(at.thresholds) + len(at.beta) + (at.sd > 0.0)
     value, gradient = log_likelihood(answers, at, link, nodes)
     information = _information(answers, link, nodes, at, free)
     for _ in range(_NEWTON_STEPS):
-        step = _solved(information, gradient[:free])
+        step = _newton_step(information, gradient[:free])
         nearer = _moved(at, step)
         if np.any(np.diff(nearer.thresholds) <= 0.0) or nearer.sd < 0.0:
             break
@@ -125,7 +125,7 @@ def _finish(answers: Answers, link: Link, nodes: int, at: Parameters) -> Found:
         if higher < value:
             break
         at, value, gradient = nearer, higher, slope
-    step = _solved(information, gradient[:free])
+    step = _newton_step(information, gradient[:free])
     errors = np.full(len(gradient), np.nan)
     covariance = np.full((free, free), np.nan)
     if np.linalg.eigvalsh(information).min() > 0.0:
@@ -140,21 +140,23 @@ def _problems(at: Parameters, errors: FloatArray, decrement: float) -> tuple[str
     if np.abs(at.beta).max(initial=0.0) > _FAR_EFFECT or at.sd > _FAR_EFFECT:
         return (_NO_ESTIMATE,)
     if np.isnan(errors[0]):
-        return ("The likelihood has no peak where the search ended; there are no standard errors.",)
+        return (
+            "The search did not end at a maximum of the likelihood; there are no standard errors.",
+        )
     if decrement > _DECREMENT_LIMIT:
-        return ("The search ended before the likelihood was level.",)
+        return ("The search ended before it reached the maximum of the likelihood.",)
     return ()
 
 
 def _information(answers: Answers, link: Link, nodes: int, at: Parameters, free: int) -> FloatArray:
-    """Minus the Hessian, by central differences of the gradient."""
+    """Return minus the Hessian, by central differences of the gradient."""
     found = np.empty((free, free))
     for index in range(free):
         step = np.zeros(free)
         step[index] = _STEP
-        ahead = log_likelihood(answers, _moved(at, step), link, nodes)[1]
-        behind = log_likelihood(answers, _moved(at, -step), link, nodes)[1]
-        found[index] = (behind - ahead)[:free] / (2.0 * _STEP)
+        forward = log_likelihood(answers, _moved(at, step), link, nodes)[1]
+        backward = log_likelihood(answers, _moved(at, -step), link, nodes)[1]
+        found[index] = (backward - forward)[:free] / (2.0 * _STEP)
     return 0.5 * (found + found.T)
 
 
@@ -164,6 +166,6 @@ def _moved(at: Parameters, step: FloatArray) -> Parameters:
     return Parameters(at.thresholds + step[:inner], at.beta + step[inner:size], sd)
 
 
-def _solved(information: FloatArray, gradient: FloatArray) -> FloatArray:
-    """The Newton step; the shortest one where the information is singular."""
+def _newton_step(information: FloatArray, gradient: FloatArray) -> FloatArray:
+    """Return the Newton step; the shortest one if the information is singular."""
     return np.asarray(np.linalg.lstsq(information, gradient, rcond=None)[0], dtype=np.float64)

@@ -1,17 +1,17 @@
-"""Tests of cumulative models: what is lost without a term, and which levels differ.
+"""Tests of cumulative models: whether a term contributes, and which levels differ.
 
-Twice the difference of the log-likelihoods of a model and of the same without r of its parameters
-is chi-square with r degrees of freedom when the parameters left out are zero and participants are
-many. A main effect is tested without the interactions it is part of (type II), an interaction
-beside the main effects. Both models must be fitted to the same answers in the same way.
+Twice the difference of the log-likelihoods of a model and of the same model without r of its
+parameters is chi-square with r degrees of freedom if these parameters are zero and participants are
+many. A main effect is tested without the interactions that contain it (type II), an interaction
+together with the main effects. Both models must be fitted to the same answers in the same way.
 
-With a dozen participants the test rejects somewhat too often; the table of error rates says how
-often in this design.
+With a dozen participants the test rejects somewhat too often; the table of error rates gives its
+rate in this design.
 
-Levels are compared on the hidden scale, with Holm's correction (`cumulative_contrasts`). A level's
-mean weighs every combination of the other factors' levels alike. With `logit` a difference is a log
-odds ratio, with `probit` it is in standard deviations of the hidden value. Tests are Wald's, by the
-normal distribution: approximate, and without meaning if the model has not converged.
+Levels are compared on the latent scale, with Holm's correction (`cumulative_contrasts`). A level's
+mean weights every combination of the other factors' levels equally. With `logit` a difference is a
+log odds ratio, with `probit` it is in standard deviations of the latent variable. Tests are Wald's,
+by the normal distribution: approximate, and meaningless if the model has not converged.
 """
 
 from collections.abc import Sequence
@@ -34,13 +34,13 @@ from app.science.statistics.pairwise import holm
 
 @dataclass(frozen=True)
 class LikelihoodRatio:
-    """Comparison of two models, one within the other.
+    """The likelihood-ratio test of two nested models.
 
     Attributes:
         statistic: twice the difference of the log-likelihoods.
         df: parameters that the smaller model lacks.
         p: of the chi-square distribution.
-        converged: whether both fits have; otherwise the test means nothing.
+        converged: whether both fits have converged; otherwise the test is meaningless.
         method: how the likelihoods were computed.
     """
 
@@ -53,20 +53,20 @@ class LikelihoodRatio:
 
 @dataclass(frozen=True)
 class CumulativeTermTest:
-    """What one term adds to the model."""
+    """The likelihood-ratio test of one term of a model."""
 
     term: str
     test: LikelihoodRatio
 
 
 def likelihood_ratio(small: CumulativeModel, large: CumulativeModel) -> LikelihoodRatio:
-    """Test whether the larger model is better than chance.
+    """Test whether the larger model fits significantly better.
 
     Raises:
         ModelError: the models differ in more than their terms, or the larger is not larger.
     """
-    alike = ("link", "nodes", "observations", "participants", "levels")
-    different = [name for name in alike if getattr(small, name) != getattr(large, name)]
+    shared = ("link", "nodes", "observations", "participants", "levels")
+    different = [name for name in shared if getattr(small, name) != getattr(large, name)]
     if different:
         raise ModelError(f"The models differ in {', '.join(different)}; only terms may.")
     df = large.parameters - small.parameters
@@ -94,7 +94,7 @@ def cumulative_term_tests(
     """Test terms of a design by likelihood ratio.
 
     Args:
-        answers, participants, link, nodes: as of `fit_cumulative_model`.
+        answers, participants, link, nodes: as for `fit_cumulative_model`.
         design: with all terms.
         terms: which to test; all of them if empty.
 
@@ -116,14 +116,14 @@ def cumulative_term_tests(
 
 
 def method_of(model: CumulativeModel) -> str:
-    """How the likelihood was computed, in words."""
+    """Describe how the likelihood was computed."""
     if model.nodes > 1:
         return f"adaptive Gauss-Hermite quadrature, {model.nodes} nodes"
     return "Laplace approximation" if model.nodes else "no random effect"
 
 
 def without_term(design: Design, term: str) -> Design | None:
-    """The design less one term; None if nothing is left."""
+    """Return the design without one term; None if nothing is left."""
     factors = [one for one in design.factors if one.name != term]
     covariates = [one for one in design.covariates if one.name != term]
     products = [names for names in design.interactions if ":".join(names) != term]
@@ -131,9 +131,9 @@ def without_term(design: Design, term: str) -> Design | None:
 
 
 def _without_products_of(design: Design, term: str) -> Design:
-    """The design less the interactions that contain the term and more."""
-    asked = set(term.split(":"))
-    products = [names for names in design.interactions if not asked < set(names)]
+    """Return the design without the interactions that strictly contain the term."""
+    factors = set(term.split(":"))
+    products = [names for names in design.interactions if not factors < set(names)]
     return build_design(design.factors, design.covariates, products)
 
 
@@ -142,7 +142,7 @@ _LEVEL = 0.95
 
 @dataclass(frozen=True)
 class CumulativeContrast:
-    """`a` less `b`, within a level of another factor if `within` is not empty.
+    """The difference `a` minus `b`, within a level of another factor if `within` is not empty.
 
     `p_holm` is corrected over all contrasts of the same `within`.
     """
@@ -157,13 +157,13 @@ class CumulativeContrast:
 def cumulative_contrasts(
     model: CumulativeModel, factor: str, by: str = "", against: str = ""
 ) -> tuple[CumulativeContrast, ...]:
-    """Compare the levels of a factor.
+    """Compare the levels of a factor on the latent scale.
 
     Args:
         model: fitted, with a design.
         factor: whose levels are compared.
         by: another factor, within each level of which they are compared.
-        against: a level that all others are compared with; all pairs if empty.
+        against: a level with which all others are compared; all pairs if empty.
 
     Raises:
         ModelError: the model has no such factor or level, or no standard errors.
@@ -175,7 +175,7 @@ def cumulative_contrasts(
     pairs = pairs_of(model.design, factor, against)
     found: list[CumulativeContrast] = []
     for within, rows in marginal_weights(model.design, factor, by).items():
-        # The intercept cancels; thresholds stand in its place.
+        # The intercept cancels; the model has thresholds instead.
         values = [_effect(model, f"{a} - {b}", (rows[a] - rows[b])[1:]) for a, b in pairs]
         corrected = holm([value.p for value in values])
         found += [

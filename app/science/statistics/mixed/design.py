@@ -1,11 +1,11 @@
-"""The design matrix: one row an observation, one column a coefficient.
+"""The design matrix of the fixed effects: one row per observation, one column per coefficient.
 
 Factors are coded against their reference level, so the coefficient `latency[125]` is the difference
-of 125 from the reference where every other factor of an interaction is at its own reference. What a
-reader asks is seldom one coefficient: it is a mean or a difference over cells. Those are asked of
-the *grid*, the design's row for every combination of levels, each of equal weight however many
-observations it has (marginal means; Searle, Speed and Milliken 1980). A term is tested by the
-contrasts of its marginal means, which is the test called type III and does not depend on the
+of 125 from the reference where every other factor of an interaction is at its own reference. The
+quantity of interest is seldom one coefficient: it is a mean or a difference over cells. Those are
+computed from the *grid*, the design's row for every combination of levels, each of equal weight
+however many observations it has (marginal means; Searle, Speed and Milliken 1980). A term is tested
+by the contrasts of its marginal means, which is the test called type III and does not depend on the
 coding.
 """
 
@@ -25,7 +25,7 @@ _DEPENDENT = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """A model's fixed part.
+    """The fixed part of a model.
 
     Attributes:
         matrix: (N, p), the first column is the intercept.
@@ -43,17 +43,17 @@ class Design:
 
     @property
     def terms(self) -> tuple[str, ...]:
-        """What can be tested: `latency`, `limb`, `latency:limb`, and each covariate."""
+        """The terms that can be tested: `latency`, `limb`, `latency:limb`, and each covariate."""
         mains = [*(one.name for one in self.factors), *(one.name for one in self.covariates)]
         return (*mains, *(":".join(names) for names in self.interactions))
 
     def factor(self, name: str) -> Factor:
-        """The factor of that name; ModelError lists those there are."""
+        """Return the factor of that name; if unknown, raise ModelError listing the factors."""
         for one in self.factors:
             if one.name == name:
                 return one
-        known = ", ".join(one.name for one in self.factors)
-        raise ModelError(f"There is no factor {name} in the model; there are {known}.")
+        valid = ", ".join(one.name for one in self.factors)
+        raise ModelError(f"There is no factor {name} in the model; there are {valid}.")
 
 
 def build_design(
@@ -69,13 +69,13 @@ def build_design(
         interactions: tuples of factors' names, for instance `(("latency", "limb"),)`.
 
     Raises:
-        ModelError: lengths differ, a name is unknown or used twice, or a coefficient cannot be told
-            from the others because its column follows from theirs.
+        ModelError: lengths differ, a name is unknown or used twice, or a column is a linear
+            combination of the others, so that its coefficient cannot be estimated.
     """
     _check_names(factors, covariates)
     lengths = {len(one.codes) for one in factors} | {len(one.columns) for one in covariates}
     if len(lengths) != 1:
-        raise ModelError(f"Every term needs one value an observation; lengths are {lengths}.")
+        raise ModelError(f"Every term needs one value per observation; lengths are {lengths}.")
     found = Design(
         np.empty((0, 0)), (), tuple(factors), tuple(covariates), tuple(map(tuple, interactions))
     )
@@ -88,12 +88,12 @@ def build_design(
 
 
 def cells(design: Design) -> tuple[tuple[int, ...], ...]:
-    """Every combination of levels, as indices in the order of the factors."""
+    """Return every combination of levels, as indices in the order of the factors."""
     return tuple(product(*(range(len(one.levels)) for one in design.factors)))
 
 
 def grid(design: Design) -> FloatArray:
-    """(cells, p): the design's row of each cell, covariates held where they are to be held."""
+    """Return the design's row of each cell, (cells, p), with covariates held constant."""
     combinations = cells(design)
     codes = np.array(combinations, dtype=np.int64).reshape(len(combinations), -1)
     matrix, _ = _columns(design, list(codes.T), len(combinations))
@@ -102,7 +102,9 @@ def grid(design: Design) -> FloatArray:
 
 
 def term_contrasts(design: Design, term: str) -> FloatArray:
-    """(r, p): rows that are all zero on the coefficients if and only if the term has no effect.
+    """Return contrasts (r, p) of the coefficients that are all zero if the term has no effect.
+
+    They are zero only in that case.
 
     Raises:
         ModelError: there is no such term.
@@ -111,11 +113,11 @@ def term_contrasts(design: Design, term: str) -> FloatArray:
         raise ModelError(f"There is no term {term}; there are {', '.join(design.terms)}.")
     for one in design.covariates:
         if one.name == term:
-            wanted = [_part(one.name, part) for part in one.parts]
-            return np.eye(len(design.names))[[design.names.index(name) for name in wanted]]
-    asked = term.split(":")
+            columns = [_part(one.name, part) for part in one.parts]
+            return np.eye(len(design.names))[[design.names.index(name) for name in columns]]
+    factors = term.split(":")
     weights = [
-        _differences(len(one.levels)) if one.name in asked else _average(len(one.levels))
+        _differences(len(one.levels)) if one.name in factors else _average(len(one.levels))
         for one in design.factors
     ]
     joint: FloatArray = np.ones((1, 1))
@@ -125,14 +127,16 @@ def term_contrasts(design: Design, term: str) -> FloatArray:
 
 
 def marginal_weights(design: Design, factor: str, by: str = "") -> dict[str, dict[str, FloatArray]]:
-    """Weights of marginal means: for each level of `by` (or one empty name), of each of `factor`.
+    """Return the weights of marginal means: by level of `by`, then by level of `factor`.
+
+    Without `by`, its only level is an empty name.
 
     Raises:
         ModelError: there is no such factor.
     """
     names = [one.name for one in design.factors]
     rows, places = grid(design), np.array(cells(design))
-    asked, within = design.factor(factor), {"": np.full(len(rows), True)}
+    compared, within = design.factor(factor), {"": np.full(len(rows), True)}
     if by:
         other = design.factor(by)
         column = places[:, names.index(by)]
@@ -141,14 +145,14 @@ def marginal_weights(design: Design, factor: str, by: str = "") -> dict[str, dic
     return {
         label: {
             level: np.asarray(rows[chosen & (at == code)].mean(axis=0), dtype=np.float64)
-            for code, level in enumerate(asked.levels)
+            for code, level in enumerate(compared.levels)
         }
         for label, chosen in within.items()
     }
 
 
 def pairs_of(design: Design, factor: str, against: str = "") -> list[tuple[str, str]]:
-    """All pairs of the factor's levels, or each of the others with the one given.
+    """Return all pairs of the factor's levels, or each other level paired with `against`.
 
     Raises:
         ModelError: there is no such factor or level.
@@ -170,7 +174,7 @@ def _average(levels: int) -> FloatArray:
 
 
 def _columns(design: Design, codes: list[IntArray], rows: int) -> tuple[FloatArray, list[str]]:
-    """Intercept, main effects and interactions for the given codes of each factor."""
+    """Return intercept, main effects and interactions for the given codes of each factor."""
     named = {one.name: (one, code) for one, code in zip(design.factors, codes, strict=True)}
     columns, names = [np.ones((rows, 1))], [INTERCEPT]
     for term in (*((one.name,) for one in design.factors), *design.interactions):
@@ -196,7 +200,7 @@ def _part(name: str, part: str) -> str:
 def _check_names(factors: Sequence[Factor], covariates: Sequence[Covariate]) -> None:
     names = [*(one.name for one in factors), *(one.name for one in covariates)]
     if not names or len(set(names)) < len(names):
-        raise ModelError(f"A model needs terms with names of their own; given: {names}.")
+        raise ModelError(f"The terms of a model need distinct names; given: {names}.")
 
 
 def _check_independence(matrix: FloatArray, names: list[str]) -> None:
@@ -205,10 +209,10 @@ def _check_independence(matrix: FloatArray, names: list[str]) -> None:
     triangle, order = scipy.linalg.qr(scaled, mode="r", pivoting=True)
     size = np.abs(np.diag(triangle))
     if len(size) < len(names):
-        raise ModelError(f"{len(matrix)} observations cannot tell {len(names)} coefficients apart.")
+        raise ModelError(f"{len(matrix)} observations are too few for {len(names)} coefficients.")
     lost = [names[at] for at, left in zip(order, size, strict=False) if left < _DEPENDENT]
     if lost:
         raise ModelError(
-            f"{', '.join(sorted(lost))} cannot be told apart from the other terms: in these "
-            "observations the one follows from the others. Leave a term out."
+            f"{', '.join(sorted(lost))} cannot be estimated: in these observations their columns "
+            "are linear combinations of the others. Leave a term out."
         )

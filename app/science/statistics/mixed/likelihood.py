@@ -1,18 +1,18 @@
 """The restricted likelihood of a mixed model, with its first and second derivatives.
 
-With V the covariance of all observations, block by block of a participant,
+With V the covariance of all observations, block-diagonal by participant,
 
     -2 l = log|V| + log|X' V^-1 X| + (y - X beta)' V^-1 (y - X beta) + (N - p) log 2 pi,
     beta = C X' V^-1 y,    C = (X' V^-1 X)^-1 = Cov(beta).
 
-V is linear in its parameters phi, the lower triangle of G and sigma^2: V = sum phi_k D_k. With
-P = V^-1 - V^-1 X C X' V^-1
+V is linear in its parameters phi, the lower triangle of G and sigma^2: V = sum phi_k D_k. With P =
+V^-1 - V^-1 X C X' V^-1
 
     d(-2l)/dphi_k          = tr(P D_k) - y' P D_k P y,
     d2(-2l)/dphi_k dphi_l  = -tr(P D_k P D_l) + 2 y' P D_k P D_l P y,
     dC/dphi_k              = C X' V^-1 D_k V^-1 X C.
 
-All of it is made of sums over participants, so the cost grows with their number only.
+All terms are sums over participants, so the cost grows linearly with their number.
 
 Source: Harville 1977, J Am Stat Assoc 72, 320.
 """
@@ -28,9 +28,9 @@ from app.science.statistics.arrays import FloatArray, IntArray
 
 
 class Blocks(NamedTuple):
-    """Observations by participant, P of them with up to n; rows beyond one's own are zero.
+    """Observations of P participants with up to n each, padded with rows of zeros.
 
-    y (P, n), x (P, n, p), z (P, n, r), and own (P, n): whether there is an observation.
+    y (P, n), x (P, n, p), z (P, n, r), and own (P, n): whether the row is an observation.
     """
 
     y: FloatArray
@@ -41,7 +41,7 @@ class Blocks(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """Observations: y (N,), x (N, p), z (N, r) and whose they are, codes (N,)."""
+    """Observations: y (N,), x (N, p), z (N, r) and the participant of each, codes (N,)."""
 
     y: FloatArray
     x: FloatArray
@@ -50,7 +50,7 @@ class Rows:
 
     @cached_property
     def blocks(self) -> Blocks:
-        """The same by participant, so that numpy runs over all of them at once."""
+        """The same observations by participant, so that numpy processes all at the same time."""
         counts = np.bincount(self.codes)
         order = np.argsort(self.codes, kind="stable")
         who = self.codes[order]
@@ -67,7 +67,7 @@ class Rows:
 
 @dataclass(frozen=True, eq=False)
 class Restricted:
-    """The likelihood at given variances; m parameters phi, sigma^2 the last.
+    """The restricted likelihood at given variances; m parameters phi, sigma^2 the last.
 
     Attributes:
         beta: (p,) fixed effects.
@@ -75,7 +75,7 @@ class Restricted:
         criterion: -2 l.
         gradient: (m,) of the criterion.
         hessian: (m, m) of the criterion.
-        slopes: (m, p, p) how `covariance` changes with each parameter.
+        slopes: (m, p, p) derivatives of `covariance` by each parameter.
     """
 
     beta: FloatArray
@@ -87,13 +87,16 @@ class Restricted:
 
     @property
     def decrement(self) -> float:
-        """How much lower the criterion would be at the optimum, by its quadratic approximation."""
+        """The expected decrease of the criterion to its optimum, by a quadratic approximation."""
         step = np.linalg.lstsq(self.hessian, self.gradient, rcond=None)[0]
         return float(self.gradient @ step) / 2.0
 
 
 def restricted_likelihood(rows: Rows, g: FloatArray, variance: float) -> Restricted:
-    """Evaluate at G (r, r) and sigma^2, in squared units of y; r may be zero."""
+    """Evaluate the restricted likelihood at G (r, r) and sigma^2, in squared units of y.
+
+    r may be zero.
+    """
     count, width = rows.x.shape
     y, x, z, own = rows.blocks
     v = z @ g @ z.transpose(0, 2, 1) + variance * np.eye(y.shape[1])
@@ -103,7 +106,7 @@ def restricted_likelihood(rows: Rows, g: FloatArray, variance: float) -> Restric
     covariance = _inverse(normal)
     beta = covariance @ np.tensordot(wx, y, axes=((0, 1), (0, 1)))
     squares, gradient, hessian, slopes = _derivatives(rows.blocks, weights, covariance, beta)
-    # Rows that stand for no observation have sigma^2 alone.
+    # Each padding row contributes a factor of sigma^2 to the determinant.
     log_det = np.linalg.slogdet(v)[1].sum() - (~own).sum() * np.log(variance)
     criterion = log_det + np.linalg.slogdet(normal)[1] + squares
     criterion += (count - width) * np.log(2.0 * np.pi)
@@ -113,7 +116,7 @@ def restricted_likelihood(rows: Rows, g: FloatArray, variance: float) -> Restric
 def _derivatives(
     blocks: Blocks, weights: FloatArray, covariance: FloatArray, beta: FloatArray
 ) -> tuple[float, FloatArray, FloatArray, FloatArray]:
-    """Sum of weighted squares, gradient, Hessian and slopes of the covariance."""
+    """Return weighted sum of squares, gradient, Hessian and derivatives of the covariance."""
     d = _parts(blocks)
     residual = blocks.y - blocks.x @ beta
     weighted = (weights @ residual[:, :, np.newaxis])[:, :, 0]
@@ -125,7 +128,7 @@ def _derivatives(
     a = (wx.transpose(0, 1, 3, 2) @ dwx).sum(axis=0)
     u = (pulled[:, :, np.newaxis] @ wx).sum(axis=0)[:, 0]
     ca = covariance @ a
-    # tr(P D_k P D_l), of which the middle one is tr(C X'W D_k W D_l W X).
+    # tr(P D_k P D_l) has three parts; the middle one is tr(C X'W D_k W D_l W X).
     traces = np.einsum("gkij,glji->kl", wd, wd)
     traces -= 2.0 * np.tensordot(dwx @ covariance, w @ dwx, axes=((0, 2, 3), (0, 2, 3)))
     traces += np.einsum("kij,lji->kl", ca, ca)
@@ -137,7 +140,7 @@ def _derivatives(
 
 
 def _parts(blocks: Blocks) -> FloatArray:
-    """(P, m, n, n): how a participant's V changes with each parameter."""
+    """Return the derivative of each participant's V by each parameter, (P, m, n, n)."""
     z, size = blocks.z, blocks.z.shape[2]
     columns = z.transpose(2, 0, 1)
     parts = []

@@ -4,22 +4,23 @@ For participant i with n_i observations
 
     y_i = X_i beta + Z_i b_i + e_i,    b_i ~ N(0, G),    e_i ~ N(0, sigma^2 I),
 
-Z a column of ones (how high this participant answers) and, where asked for, a slope (how strongly
-this participant reacts). G and sigma^2 are estimated by REML with statsmodels' `MixedLM`, beta by
+Z a column of ones (how high this participant answers) and, if requested, a slope (how strongly this
+participant reacts). G and sigma^2 are estimated by REML with statsmodels' `MixedLM`, beta by
 generalised least squares given them. statsmodels tests beta against the normal distribution, which
-rejects too often with a dozen participants; so degrees of freedom are ours, by Satterthwaite's
-method (`mixed_tests`), as in lmerTest.
+rejects too often with a dozen participants; so degrees of freedom are computed here by
+Satterthwaite's method (`term_tests`), as in lmerTest.
 
-If a variance is estimated as zero, the fit is called singular: that random effect then plays no
-part in the degrees of freedom, and the result says so. Singular is not wrong, but with a slope it
-mostly means that the observations are too few for one. `mixed_search` tells how it is found.
+If a variance is estimated as zero, the fit is called singular: that random effect then does not
+contribute to the degrees of freedom, and the result reports it. Singular is not wrong, but with a
+slope it mostly means that there are too few observations for one. `search` describes how the
+variances are found.
 
-Where participants react differently, a model without their slopes tests the effect of a condition
+If participants react differently, a model without their slopes tests the effect of a condition
 against the wrong error: in the table of error rates it rejects twice as often as it should, with
-the slope it does not. Take the slope unless there are reasons not to.
+the slope it does not. Include the slope unless there are reasons not to.
 
-An observation that is missing must be left out before: a mixed model uses what is there, and is
-right as long as what is missing is missing for reasons that the observed data tell.
+A missing observation must be left out beforehand: a mixed model uses the observed data, and is
+valid if the reasons for missing depend only on observed data (missing at random).
 
 Sources: Laird and Ware 1982, Biometrics 38, 963; Bates et al. 2015, J Stat Softw 67(1).
 """
@@ -40,19 +41,19 @@ _FEWEST_PARTICIPANTS = 3
 
 @dataclass(frozen=True, eq=False)
 class MixedModel:
-    """A fitted linear mixed model; `mixed_tests` asks it questions.
+    """A fitted linear mixed model; `term_tests` has its tests.
 
     Attributes:
         random_names: `intercept` and, if there is one, the slope.
         random_covariance: (k, k) G, in squared units of the measure (per unit of the slope).
         residual_sd: sigma, in units of the measure.
         reml_criterion: -2 times the restricted log-likelihood; depends on the design's coding.
-        observations, participants: how many went in.
-        converged: whether the criterion is level where the search ended.
+        observations, participants: their numbers.
+        converged: whether the search ended at a minimum of the criterion.
         singular: whether a variance is zero or a correlation of random effects is 1.
-        messages: what a reader must know of the fit, in sentences; empty if nothing.
+        messages: what a reader must know about the fit, in sentences; empty if nothing.
         design: the fixed part.
-        restricted: fixed effects, their covariance, and what degrees of freedom are made of.
+        restricted: fixed effects, their covariance, and the derivatives for degrees of freedom.
     """
 
     random_names: tuple[str, ...]
@@ -69,7 +70,7 @@ class MixedModel:
 
     @property
     def intraclass_correlation(self) -> float:
-        """Share of the variance between participants, where a slope's column is zero."""
+        """The share of the variance between participants, at a slope column of zero."""
         between = float(self.random_covariance[0, 0])
         return between / (between + self.residual_sd**2)
 
@@ -80,14 +81,14 @@ def fit_mixed_model(
     design: Design,
     random_slope: Covariate | None = None,
 ) -> MixedModel:
-    """Fit the model by REML.
+    """Fit a linear mixed model by REML.
 
     Args:
         values: (N,) the measure, finite.
         participants: N names.
         design: of the same N observations.
         random_slope: a single column whose effect differs between participants, correlated with
-            their intercepts. It belongs into the design too, or its mean effect is taken as zero.
+            their intercepts. The design should contain it too, or its mean effect is taken as zero.
 
     Raises:
         ModelError: lengths differ, a value is not finite or all are equal, there are fewer than
@@ -128,8 +129,10 @@ def _check(y: FloatArray, codes: IntArray, design: Design) -> None:
     counts = np.bincount(codes)
     if len(counts) < _FEWEST_PARTICIPANTS or counts.max() == 1:
         raise ModelError(
-            f"{len(counts)} participants with at most {counts.max()} observations each do not tell "
-            "participants from chance; give three or more, some with two or more."
+            f"{len(counts)} participants with at most {counts.max()} observations each are "
+            "too few; give three or more, some with two or more."
         )
     if len(y) <= design.matrix.shape[1]:
-        raise ModelError(f"{len(y)} observations are not more than the coefficients.")
+        raise ModelError(
+            f"{len(y)} observations are too few: there must be more than coefficients."
+        )

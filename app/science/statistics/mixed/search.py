@@ -1,11 +1,11 @@
-"""Where the restricted likelihood of a mixed model is highest.
+"""Maximise the restricted likelihood of a mixed model.
 
-statsmodels finds the variances of a model with random intercepts. With slopes it often stops short
-of the optimum, most of all where the best variance is zero or the correlation 1, which a dozen
-participants make common; there its fit with intercepts alone is where the search starts. It goes on
-over the Cholesky factor of G and log sigma, which know no boundary (G = L L' is never negative),
-with the analytic gradient. Where variances are positive, Newton's method ends it, because degrees
-of freedom need more digits than estimates.
+statsmodels estimates the variances of a model with random intercepts. With slopes it often stops
+short of the optimum, most of all if the best variance is zero or the correlation 1, which is common
+with a dozen participants; then its fit with intercepts alone is the start of a search of our own.
+That search varies the Cholesky factor of G and log sigma, which have no boundary (G = L L' is never
+negative), with the analytic gradient. If the variances are positive, Newton's method completes it,
+because degrees of freedom need more precision than estimates.
 """
 
 import warnings
@@ -18,13 +18,15 @@ from app.science.statistics.arrays import FloatArray
 from app.science.statistics.mixed.likelihood import Restricted, Rows, restricted_likelihood
 
 _SINGULAR_SHARE = 1e-5
-"""A variance below this share of the residual one is zero."""
+"""A variance below this share of the residual variance counts as zero."""
 _START_SHARE = 0.1
 _DECREMENT_LIMIT = 1e-4
-"""The criterion may be this much above its lowest: far less than any test can notice."""
+"""How far the criterion may be above its minimum; too little to affect any test."""
 _NEWTON_STEPS = 10
 _ROUNDING = 1e-10
-_NOT_LEVEL = "The search for the variances ended before the likelihood was level."
+_NOT_AT_MAXIMUM = (
+    "The search for the variances ended before it reached the maximum of the likelihood."
+)
 _SINGULAR = (
     "A variance of the random effects is estimated as zero, or they are perfectly correlated: the "
     "observations do not support all of them."
@@ -33,7 +35,7 @@ _SINGULAR = (
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """Where the search ended: G (k, k), sigma^2, and the likelihood there.
+    """The result of the search: G (k, k), sigma^2, and the likelihood there.
 
     `restricted` leaves out random effects without variance.
     """
@@ -47,37 +49,37 @@ class Found:
 
 
 def search(rows: Rows) -> Found:
-    """Find the variances."""
+    """Estimate the variances of a mixed model."""
     g, variance, failure = _by_statsmodels(Rows(rows.y, rows.x, rows.z[:, :1], rows.codes))
     if rows.z.shape[1] > 1:
-        g, variance = _onwards(rows, g, variance)
+        g, variance = _improved(rows, g, variance)
     kept, own, back = _without_zero_variances(rows, g, variance)
     own, variance, found = _refined(kept, own, variance)
-    level = abs(found.decrement) < _DECREMENT_LIMIT
+    at_maximum = abs(found.decrement) < _DECREMENT_LIMIT
     singular = len(own) < len(g)
-    told = (
+    problems = (
         (failure, bool(failure)),
-        (_NOT_LEVEL, not level and not failure),
+        (_NOT_AT_MAXIMUM, not at_maximum and not failure),
         (_SINGULAR, singular),
     )
     return Found(
         g=back @ own @ back.T,
         variance=variance,
         restricted=found,
-        converged=level and not failure,
+        converged=at_maximum and not failure,
         singular=singular,
-        messages=tuple(text for text, true in told if true),
+        messages=tuple(text for text, applies in problems if applies),
     )
 
 
 def _by_statsmodels(rows: Rows) -> tuple[FloatArray, float, str]:
-    """G, sigma^2 and how the search failed, if it did; computed in units of order one."""
-    # statsmodels takes a second to load, which a server that never fits should not pay.
+    """Return G, sigma^2 and the reason if the search failed; computed in units of order one."""
+    # statsmodels takes a second to load, which a server that never fits should not spend.
     from statsmodels.regression.mixed_linear_model import MixedLM
 
     scale, widths = _units(rows)
     with warnings.catch_warnings():
-        # It warns of every zero variance; what matters is looked at afterwards.
+        # It warns of every zero variance; the relevant checks follow afterwards.
         warnings.simplefilter("ignore")
         try:
             model = MixedLM(
@@ -91,12 +93,12 @@ def _by_statsmodels(rows: Rows) -> tuple[FloatArray, float, str]:
     return g, scale**2 * float(fit.scale), ""
 
 
-def _onwards(rows: Rows, g: FloatArray, variance: float) -> tuple[FloatArray, float]:
-    """Quasi-Newton steps from G of intercepts alone, in units of order one."""
+def _improved(rows: Rows, g: FloatArray, variance: float) -> tuple[FloatArray, float]:
+    """Take quasi-Newton steps from the G of intercepts alone, in units of order one."""
     size, (scale, widths) = rows.z.shape[1], _units(rows)
     unit = Rows((rows.y - rows.y.mean()) / scale, rows.x, rows.z / widths, rows.codes)
     at = np.tril_indices(size)
-    # Equal to its transpose in the sum, each element off the diagonal counts twice.
+    # By symmetry, each element off the diagonal occurs twice in the sum.
     halves = np.where(at[0] == at[1], 1.0, 0.5)
 
     def factor_of(free: FloatArray) -> FloatArray:
@@ -125,7 +127,7 @@ def _onwards(rows: Rows, g: FloatArray, variance: float) -> tuple[FloatArray, fl
 
 
 def _units(rows: Rows) -> tuple[float, FloatArray]:
-    """The SD of y and the root mean squares of z's columns."""
+    """Return the SD of y and the root mean squares of z's columns."""
     return float(rows.y.std()), np.sqrt((rows.z**2).mean(axis=0))
 
 
@@ -137,9 +139,10 @@ def _residual_variance(rows: Rows) -> float:
 def _without_zero_variances(
     rows: Rows, g: FloatArray, variance: float
 ) -> tuple[Rows, FloatArray, FloatArray]:
-    """The random effects that have a variance, as independent columns.
+    """Return the random effects that have a variance, as independent columns, and their G.
 
-    Also the matrix (k, r) that leads back from their covariance to that of all.
+    Also return the matrix (k, r) that transforms their covariance back to that of all random
+    effects.
     """
     _, widths = _units(rows)
     sizes, directions = np.linalg.eigh(g * np.outer(widths, widths))
@@ -149,7 +152,7 @@ def _without_zero_variances(
 
 
 def _refined(rows: Rows, g: FloatArray, variance: float) -> tuple[FloatArray, float, Restricted]:
-    """Newton steps from near the optimum: the search stops where digits of df are still open."""
+    """Take Newton steps near the optimum, because degrees of freedom need more precision."""
     found = restricted_likelihood(rows, g, variance)
     at = np.tril_indices(len(g))
     for _ in range(_NEWTON_STEPS):

@@ -1,18 +1,18 @@
-"""What is asked of a fitted mixed model: coefficients, terms, marginal means, contrasts.
+"""Tests and estimates of a fitted mixed model: coefficients, terms, marginal means, contrasts.
 
-Every question is a row L of weights on the fixed effects: L beta has the variance L C L', which is
+Every estimate is a row L of weights on the fixed effects: L beta has the variance L C L', which is
 itself estimated. Satterthwaite's method gives it the degrees of freedom of the chi-square
 distribution with the same mean and variance,
 
     df = 2 (L C L')^2 / (g' A g),   g_k = L dC/dphi_k L',   A = 2 H^-1,
 
 H the Hessian of the REML criterion over the variances phi. Several rows together, the F test of a
-term, are turned into independent ones, each with its df, whose F distributions are matched in the
-mean (Fai and Cornelius 1996). In a balanced design these are the exact degrees of freedom of the
-analysis of variance. With few participants and unbalanced designs the method is approximate.
+term, are transformed to independent ones, each with its df, whose F distributions are matched in
+the mean (Fai and Cornelius 1996). In a balanced design these are the exact degrees of freedom of
+the analysis of variance. With few participants and unbalanced designs the method is approximate.
 
-Confidence intervals are for one question each; Holm's correction is over the contrasts of one call,
-separately within each level of `by`.
+Confidence intervals are for a single estimate each; Holm's correction is over the contrasts of one
+call, separately within each level of `by`.
 
 Sources: Giesbrecht and Burns 1985, Biometrics 41, 477; Kuznetsova, Brockhoff and Christensen 2017,
 J Stat Softw 82(13); Holm 1979, Scand J Stat 6, 65.
@@ -35,7 +35,7 @@ _RANK_SHARE = 1e-9
 
 @dataclass(frozen=True)
 class Estimate:
-    """One number asked of the model, in units of the measure.
+    """One estimate from the model, in units of the measure.
 
     Attributes:
         estimate, se: and its standard error.
@@ -55,7 +55,7 @@ class Estimate:
 
 @dataclass(frozen=True)
 class FixedEffect:
-    """A coefficient by its name, for instance `latency[125]`: that level less the reference."""
+    """A coefficient and its name, for instance `latency[125]`: that level minus the reference."""
 
     name: str
     value: Estimate
@@ -81,7 +81,7 @@ class TermTest:
 
 @dataclass(frozen=True)
 class MarginalMean:
-    """Mean of a level, every combination of the other factors' levels weighing the same."""
+    """The mean of a level, with equal weights for all combinations of the other factors' levels."""
 
     level: str
     within: str
@@ -90,7 +90,7 @@ class MarginalMean:
 
 @dataclass(frozen=True)
 class Contrast:
-    """`a` less `b`, within a level of another factor if `within` is not empty.
+    """The difference `a` minus `b`, within a level of another factor if `within` is not empty.
 
     `p_holm` is corrected over all contrasts of the same `within`.
     """
@@ -103,7 +103,7 @@ class Contrast:
 
 
 def fixed_effects(model: MixedModel) -> tuple[FixedEffect, ...]:
-    """Every coefficient, the intercept first."""
+    """Return every coefficient, the intercept first."""
     rows = np.eye(len(model.design.names))
     names = model.design.names
     return tuple(
@@ -112,26 +112,26 @@ def fixed_effects(model: MixedModel) -> tuple[FixedEffect, ...]:
 
 
 def term_tests(model: MixedModel) -> tuple[TermTest, ...]:
-    """An F test for each term of the design."""
+    """Return an F test for each term of the design."""
     return tuple(term_test(model, term) for term in model.design.terms)
 
 
 def term_test(model: MixedModel, term: str) -> TermTest:
-    """The F test of one term; ModelError lists the terms if it is unknown."""
+    """Return the F test of one term; if unknown, raise ModelError listing the terms."""
     rows = term_contrasts(model.design, term)
     covariance = rows @ model.restricted.covariance @ rows.T
     sizes, directions = np.linalg.eigh(covariance)
     kept = sizes > _RANK_SHARE * sizes.max()
-    asked = directions[:, kept].T @ rows
-    values = asked @ model.restricted.beta
+    rotated = directions[:, kept].T @ rows
+    values = rotated @ model.restricted.beta
     f = float(np.mean(values**2 / sizes[kept]))
-    error = _joined_df([degrees_of_freedom(model, row) for row in asked])
+    error = _joined_df([degrees_of_freedom(model, row) for row in rotated])
     count = int(kept.sum())
     return TermTest(term, f, count, error, float(scipy.stats.f.sf(f, count, error)))
 
 
 def marginal_means(model: MixedModel, factor: str, by: str = "") -> tuple[MarginalMean, ...]:
-    """The marginal mean of each level of `factor`, within each level of `by` if given.
+    """Return the marginal mean of each level of `factor`, within each level of `by` if given.
 
     Raises:
         ModelError: there is no such factor.
@@ -146,13 +146,13 @@ def marginal_means(model: MixedModel, factor: str, by: str = "") -> tuple[Margin
 def contrasts(
     model: MixedModel, factor: str, by: str = "", against: str = ""
 ) -> tuple[Contrast, ...]:
-    """Differences of marginal means, with Holm's correction.
+    """Return differences of marginal means, with Holm's correction.
 
     Args:
         model: fitted.
         factor: whose levels are compared.
         by: another factor, within each level of which they are compared.
-        against: a level that all others are compared with; all pairs if empty.
+        against: a level with which all others are compared; all pairs if empty.
 
     Raises:
         ModelError: there is no such factor or level.
@@ -170,7 +170,7 @@ def contrasts(
 
 
 def estimate(model: MixedModel, row: FloatArray) -> Estimate:
-    """Estimate, test and interval of `row` (p,) times the fixed effects."""
+    """Return estimate, test and interval of `row` (p,) times the fixed effects."""
     value = float(row @ model.restricted.beta)
     se = float(np.sqrt(row @ model.restricted.covariance @ row))
     df = degrees_of_freedom(model, row)
@@ -181,19 +181,19 @@ def estimate(model: MixedModel, row: FloatArray) -> Estimate:
 
 
 def degrees_of_freedom(model: MixedModel, row: FloatArray) -> float:
-    """Satterthwaite's, of `row` (p,) times the fixed effects."""
+    """Return Satterthwaite's degrees of freedom of `row` (p,) times the fixed effects."""
     found = model.restricted
     variance = float(row @ found.covariance @ row)
     slope = np.einsum("p,kpq,q->k", row, found.slopes, row)
     spread = 2.0 * float(slope @ np.linalg.pinv(found.hessian, hermitian=True) @ slope)
     if spread <= 0.0:
-        # Not at an optimum: the widest of what is possible.
+        # Not at an optimum: use the smallest possible df, which gives the widest interval.
         return 1.0
     return 2.0 * variance**2 / spread
 
 
 def _joined_df(each: list[float]) -> float:
-    """Denominator df of the mean of squared t statistics with `each` df."""
+    """Return the denominator df of the mean of squared t statistics with `each` df."""
     if len(each) == 1 or np.ptp(each) < 1e-8 * each[0]:
         return each[0]
     expected = sum(df / (df - 2.0) for df in each if df > 2.0)

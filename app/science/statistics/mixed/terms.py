@@ -1,8 +1,8 @@
-"""What a model is made of: factors, covariates, and the errors of putting them together.
+"""The terms of a model: factors, covariates, and the errors of combining them.
 
 A *factor* names a level for each observation (latency 0, 125 or 350 ms; hand or foot; the block of
 the session; the order of conditions). A *covariate* is one or more numbers for each observation
-that belong to one question (days awake; the condition of the block before, as contrasts).
+that form one term (days awake; the condition of the previous block, as contrasts).
 
 An observation is one row: all arrays given to a model have the same length N and the same order.
 """
@@ -15,22 +15,22 @@ import numpy as np
 from app.science.statistics.arrays import FloatArray, IntArray
 from app.science.statistics.errors import StatisticsError
 
-#: Something that can be a level: shown as text, ordered by itself.
+# : A value that can be a level: displayed as text, sorted in its own type's order.
 Label = str | int | float
 _FEWEST_LEVELS = 2
 
 
 class ModelError(StatisticsError):
-    """A model cannot be put together or estimated from these observations."""
+    """A model cannot be built or estimated from these observations."""
 
 
 @dataclass(frozen=True, eq=False)
 class Factor:
-    """A categorical influence.
+    """A categorical predictor.
 
     Attributes:
-        name: how terms and results call it.
-        levels: the first is the reference that the others are compared with.
+        name: its name in terms and results.
+        levels: the first is the reference with which the others are compared.
         codes: (N,) index into `levels`.
     """
 
@@ -41,13 +41,13 @@ class Factor:
 
 @dataclass(frozen=True, eq=False)
 class Covariate:
-    """A numerical influence of one or more columns, tested as one term.
+    """A numerical predictor of one or more columns, tested as one term.
 
     Attributes:
-        name: how terms and results call it.
+        name: its name in terms and results.
         columns: (N, k) in the covariate's own units.
         parts: k names; one empty name for a single column.
-        held_at: (k,) where marginal means hold it.
+        held_at: (k,) values at which marginal means hold it constant.
     """
 
     name: str
@@ -72,12 +72,14 @@ def factor(name: str, values: Sequence[Label], levels: Sequence[Label] | None = 
     place = {level: at for at, level in enumerate(order)}
     unknown = sorted({str(value) for value in given if value not in place})
     if unknown:
-        raise ModelError(f"{name} has the levels {_told(order)}, but {', '.join(unknown)} is told.")
+        raise ModelError(
+            f"{name} has the levels {_listed(order)}, but the values include {', '.join(unknown)}."
+        )
     used = {place[value] for value in given}
     if len(used) < _FEWEST_LEVELS or len(used) < len(order):
         raise ModelError(
-            f"{name} needs at least two levels and observations of each; of {_told(order)} there "
-            f"are observations of {_told([order[at] for at in sorted(used)])}."
+            f"{name} needs at least two levels and observations of each; of {_listed(order)} there "
+            f"are observations of {_listed([order[at] for at in sorted(used)])}."
         )
     codes = np.array([place[value] for value in given], dtype=np.int64)
     return Factor(name, tuple(str(level) for level in order), codes)
@@ -96,10 +98,10 @@ def covariate(name: str, values: Sequence[float] | FloatArray) -> Covariate:
 
 
 def participant_codes(participants: Sequence[Label]) -> IntArray:
-    """(N,) a number from 0 for each participant."""
+    """Return a number from 0 for the participant of each observation, (N,)."""
     place = {name: at for at, name in enumerate(dict.fromkeys(participants))}
     return np.array([place[name] for name in participants], dtype=np.int64)
 
 
-def _told(levels: Sequence[Label]) -> str:
+def _listed(levels: Sequence[Label]) -> str:
     return ", ".join(str(level) for level in levels) or "none"
