@@ -354,7 +354,7 @@ from app.cli.analyse.output_json import as_json
 from app.cli.analyse.run import AnalyseOrder, carry_out
 from app.features.results.analysis.questions.limb_tests import limb_results
 from app.features.results.analysis.questions.measures import Measure
-from app.features.results.preregistration.declared import primary_words
+from app.features.results.preregistration.declaration import primary_words
 from app.protocol import PrimaryTest
 table = pd.read_csv("table.csv")
 own = pd.DataFrame({"participant_code": table.who, "limb": "hand", "value": table.score,

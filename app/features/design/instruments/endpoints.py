@@ -21,7 +21,7 @@ from app.features.design.instruments.service import (
     uses,
     versions_of_instrument,
 )
-from app.features.design.instruments.trying import try_answers
+from app.features.design.instruments.trial_scoring import try_answers
 from app.features.design.instruments.views import detail_of, preview_of, summary_of
 from app.models import InstrumentVersion
 from app.platform.access import is_theirs

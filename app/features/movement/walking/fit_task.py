@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 
 from app.adapters.walks.model_file import write_model
-from app.features.movement.walking.figures import model_summary
 from app.features.movement.walking.progress import RECORD_BYTES, FitFolder
 from app.features.movement.walking.reading import planned_walks
 from app.features.movement.walking.sources import Cannot, FitOrder, Store
+from app.features.movement.walking.summaries import model_summary
 from app.science.walking.following import SteeringFollower
 from app.science.walking.maps import (
     PAPER,

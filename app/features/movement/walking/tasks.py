@@ -33,8 +33,8 @@ def inspected_tracks(source: TrackSource, path: Path) -> dict[str, Any]:
 
 def inspected_population(source: PopulationSource) -> dict[str, Any]:
     """Return a `WalksSummary` of synthetic walkers; raise Cannot."""
-    from app.features.movement.walking.figures import walks_summary
     from app.features.movement.walking.reading import planned_walks
+    from app.features.movement.walking.summaries import walks_summary
 
     return walks_summary(planned_walks(Store(""), source, None))
 
@@ -78,7 +78,7 @@ def slice_of(store: Store, content_hash: str, question: SliceQuestion) -> dict[s
 
 
 def _tracks_summary(data: bytes, source: TrackSource) -> dict[str, Any]:
-    from app.features.movement.walking.figures import walks_summary
     from app.features.movement.walking.reading import planned, tracks_of, walks_in
+    from app.features.movement.walking.summaries import walks_summary
 
     return walks_summary(planned(walks_in(tracks_of(data, source)), None))

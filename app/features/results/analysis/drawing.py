@@ -193,20 +193,20 @@ class Drawings(Part):
 def draw(url: str, request: DrawingRequest) -> bytes:
     """Return a dashboard or the study's test results as JSON; runs in the worker process."""
     # Loads pandas and plotly, which the server's own process does not need.
-    from app.features.results.analysis import in_process
+    from app.features.results.analysis import worker_tasks
 
     if request.result_kind == "statistics":
-        return in_process.compute(url, request.study_key, request.kind)
-    return in_process.draw(url, request.study_key, request.kind, request.chosen, request.group)
+        return worker_tasks.compute(url, request.study_key, request.kind)
+    return worker_tasks.draw(url, request.study_key, request.kind, request.chosen, request.group)
 
 
 def sheet(
     url: str, study_key: str, kind: DashboardKind, chosen: FigureFilter, figure: str
 ) -> bytes:
     """Return the rows of one figure as CSV; runs in the worker process."""
-    from app.features.results.analysis import in_process
+    from app.features.results.analysis import worker_tasks
 
-    return in_process.sheet(url, study_key, kind, chosen, figure)
+    return worker_tasks.sheet(url, study_key, kind, chosen, figure)
 
 
 def _failed(why: str) -> NotDurable:

@@ -19,8 +19,8 @@ from typing import Self
 from app.clock import Clock
 from app.errors import NotFound, NotNow
 from app.features.results.exports.jobs import KEEP_FOR, Job
-from app.features.results.exports.orders import ExportFailure, ExportResult, Order
 from app.features.results.exports.schemas import ExportTrouble, ExportView
+from app.features.results.exports.worker_messages import ExportFailure, ExportOrder, ExportResult
 from app.platform.background import Background
 from app.platform.context import AppContext, Part
 
@@ -34,7 +34,7 @@ ENDED = ExportFailure(
 )
 
 
-def make_archive(order: Order) -> ExportResult | ExportFailure:
+def make_archive(order: ExportOrder) -> ExportResult | ExportFailure:
     """Write the file, or return why it could not be made; runs in the worker process."""
     # Loads pandas, which the server's own process does not need.
     from app.features.results.exports.writing import make_export
@@ -157,7 +157,7 @@ class ExportDesk(Part):
             job.state = "failed"
 
     def _make(self, job: Job) -> None:
-        order = Order(
+        order = ExportOrder(
             url=self.url,
             study_key=job.study_key,
             kind=job.kind,

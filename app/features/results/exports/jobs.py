@@ -5,8 +5,8 @@ from datetime import datetime, timedelta
 from pathlib import Path
 
 from app.features.results.analysis import Kind
-from app.features.results.exports.orders import Meter
 from app.features.results.exports.schemas import ExportState, ExportTrouble, ExportView
+from app.features.results.exports.worker_messages import Meter
 from app.models import new_id
 from app.platform.workers import Worker
 

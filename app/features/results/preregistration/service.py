@@ -6,7 +6,7 @@ from sqlalchemy.orm import Session
 
 from app.features.design.studies import study_by_key, versions_of
 from app.features.results.analysis import DashboardKind
-from app.features.results.preregistration.declared import declaration_of
+from app.features.results.preregistration.declaration import declaration_of
 from app.features.results.preregistration.schemas import PreregistrationView
 
 
@@ -32,6 +32,6 @@ def preregistration_of(
     if declared is None:
         return view
     # Imported here because it loads pandas and scipy, which would slow down the start.
-    from app.features.results.preregistration.doing import done
+    from app.features.results.preregistration.report import completed_view
 
-    return done(db, study, declared, view)
+    return completed_view(db, study, declared, view)

@@ -4,7 +4,7 @@ An export shows one moment of the database, and its memory does not grow with th
 """
 
 from app.features.results.exports.writing.contents import Member
-from app.features.results.exports.writing.making import make_export
+from app.features.results.exports.writing.export_task import make_export
 from app.features.results.exports.writing.service import (
     Exported,
     export_study,

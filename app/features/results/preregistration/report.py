@@ -7,18 +7,18 @@ from sqlalchemy.orm import Session
 
 from app.features.design.studies import newest_version, protocol_of, versions_of
 from app.features.results.analysis.tables import Kind, corrections_table
-from app.features.results.preregistration.declared import Declared, declared_in
-from app.features.results.preregistration.deviating import deviations_of
-from app.features.results.preregistration.excluding import OVER, Tables, exclude, read_tables
+from app.features.results.preregistration.declaration import Declared, declared_in
+from app.features.results.preregistration.deviations import deviations_of
+from app.features.results.preregistration.exclusions import OVER, Tables, exclude, read_tables
+from app.features.results.preregistration.primary_test import Values, make_test, values_of
 from app.features.results.preregistration.schemas import PreregistrationView, PrimaryResult
-from app.features.results.preregistration.testing import Values, make_test, values_of
 from app.models import Study, StudyVersion
 from app.science.statistics import StatisticsError
 
 FEWEST = 2
 
 
-def done(
+def completed_view(
     db: Session, study: Study, declared: Declared, view: PreregistrationView
 ) -> PreregistrationView:
     """Return the view, completed with the test's participants, result and deviations."""

@@ -15,7 +15,7 @@ _LAYOUT = struct.Struct("<5q")
 
 
 @dataclass(frozen=True)
-class Order:
+class ExportOrder:
     """What to export, and the file to write; `keep_free_bytes` of the disk are left free."""
 
     url: str

@@ -7,7 +7,7 @@ import pandas as pd
 from sqlalchemy.orm import Session
 
 from app.features.results.analysis.tables import Kind, scores_table
-from app.features.results.preregistration.excluding import Tables
+from app.features.results.preregistration.exclusions import Tables
 from app.features.results.preregistration.schemas import PrimaryResult
 from app.protocol import Preregistration, PrimaryTest, StudyProtocol
 from app.science.statistical_tests import Sample, statistical_test

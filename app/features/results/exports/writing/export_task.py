@@ -19,7 +19,13 @@ from app.database import Database, make_engine
 from app.errors import ReembodyError
 from app.features.design.studies import study_by_key
 from app.features.results.analysis.tables import of_kind
-from app.features.results.exports.orders import ExportFailure, ExportResult, Meter, Order, Progress
+from app.features.results.exports.worker_messages import (
+    ExportFailure,
+    ExportOrder,
+    ExportResult,
+    Meter,
+    Progress,
+)
 from app.features.results.exports.writing.archive import zip_pieces
 from app.features.results.exports.writing.contents import Contents, Member
 from app.models import StudySession, TelemetryStream
@@ -33,7 +39,7 @@ class _DiskNearlyFullError(Exception):
     """The disk has only as much space left as is reserved for running sessions."""
 
 
-def make_export(order: Order) -> ExportResult | ExportFailure:
+def make_export(order: ExportOrder) -> ExportResult | ExportFailure:
     """Write the file, or return why it could not be made; the caller removes an unfinished file."""
     try:
         return _write_export(order)
@@ -48,7 +54,7 @@ def make_export(order: Order) -> ExportResult | ExportFailure:
         )
 
 
-def _write_export(order: Order) -> ExportResult:
+def _write_export(order: ExportOrder) -> ExportResult:
     database = Database(make_engine(order.url, pooled=False))
     progress, digest = Progress(), hashlib.sha256()
     try:
@@ -91,7 +97,7 @@ def _counted(pieces: Iterator[bytes], progress: Progress) -> Iterator[bytes]:
     progress.sessions += 1
 
 
-def _expect(db: Session, order: Order, progress: Progress) -> None:
+def _expect(db: Session, order: ExportOrder, progress: Progress) -> None:
     """Set the totals of sessions and rows in `progress`.
 
     The rows of a session's run are those of its longer stream.
@@ -116,12 +122,12 @@ def _expect(db: Session, order: Order, progress: Progress) -> None:
     _require_room(order)
 
 
-def _require_room(order: Order) -> None:
+def _require_room(order: ExportOrder) -> None:
     if shutil.disk_usage(order.to.parent).free < order.keep_free_bytes:
         raise _DiskNearlyFullError
 
 
-def _no_room(order: Order) -> ExportFailure:
+def _no_room(order: ExportOrder) -> ExportFailure:
     keep_gb = order.keep_free_bytes / 1e9
     return ExportFailure(
         f"the disk has less than {keep_gb:.1f} GB left, which are kept for running sessions",

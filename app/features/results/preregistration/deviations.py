@@ -7,10 +7,10 @@ from itertools import pairwise
 
 import pandas as pd
 
-from app.features.results.preregistration.declared import Declared, declared_in
-from app.features.results.preregistration.excluding import Excluded
+from app.features.results.preregistration.declaration import Declared, declared_in
+from app.features.results.preregistration.exclusions import Excluded
+from app.features.results.preregistration.primary_test import Values
 from app.features.results.preregistration.schemas import DeviationCode, DeviationView
-from app.features.results.preregistration.testing import Values
 from app.models import StudyVersion
 from app.protocol import differences
 
