@@ -99,8 +99,8 @@ def _left_out(
 ) -> Evaluation:
     parts = []
     for fold in person_folds(database, rng, FOLDS):
-        out = database.is_of(fold)
-        fit = fitted(database.only(~out), FitOptions(seed=seed))
+        out = database.walked_by(fold)
+        fit = fitted(database.select(~out), FitOptions(seed=seed))
         assert not set(fit.database.subjects) & set(fold)
         left = [entries[at] for at in np.flatnonzero(out)]
         parts.append(evaluate(fit.models, FOLLOWER, left, rng))

@@ -10,10 +10,10 @@ bounds. The lines therefore form a convex polygon in (a, b) whose corners are kn
 largest and the smallest value that any of them takes at a time t is found among the corners. No
 solver is needed.
 
-One line of a band is reported as the offset (`best_line`). The best estimate of either way is half
-the round trip, and it is better the shorter the round trip was, because queueing delays mostly
-affect one way only. The line is therefore a least-squares fit to the probes' offsets, with weights
-that fall with the queueing delay,
+One line of a band is reported as the offset (`best_line`). The best estimate of the delay in either
+direction is half the round trip, and it is better the shorter the round trip was, because queueing
+delays mostly affect one direction only. The line is therefore a least-squares fit to the probes'
+offsets, with weights that fall with the queueing delay,
 
     sigma_i = slack + (round_trip_i - shortest) / 2,
 

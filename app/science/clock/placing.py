@@ -1,4 +1,4 @@
-"""Place stretches on one time line of the server, by deciding which of the clocks jumped.
+"""Place stretches on one timeline of the server, by deciding which of the clocks jumped.
 
 From two clocks alone it cannot be decided which one jumped; from three it can. The server's wall
 clock is read with every probe, and if two of the three clocks agree, the third one jumped. A wall
@@ -19,7 +19,7 @@ Stepped = Literal["", "client", "server"]
 
 @dataclass(frozen=True, eq=False)
 class Placed:
-    """A stretch on the server's time line.
+    """A stretch on the server's timeline.
 
     `shift_s` corrects for jumps of the server's clock, and `doubt_s` (below, above) is the
     uncertainty of that correction. `step_s` is the jump of the offset at the start of the stretch
@@ -34,12 +34,12 @@ class Placed:
     stepped: Stepped = ""
 
     def bounds_at(self, t_s: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the lowest and highest offset on the server's continuous time line, each (k,)."""
+        """Return the lowest and highest offset on the server's continuous timeline, each (k,)."""
         low, high = self.stretch.bounds_at(t_s)
         return low + (self.shift_s - self.doubt_s[0]), high + (self.shift_s + self.doubt_s[1])
 
     def offset_at(self, t_s: FloatArray) -> FloatArray:
-        """Return the best estimate of the offset on the server's continuous time line, (k,)."""
+        """Return the best estimate of the offset on the server's continuous timeline, (k,)."""
         return self.stretch.offset_at(t_s) + self.shift_s
 
     def server_at(self, t_s: float) -> float:
@@ -48,7 +48,7 @@ class Placed:
 
 
 def place(stretches: Sequence[Stretch], step_s: float) -> tuple[Placed, ...]:
-    """Place stretches on one time line of the server, each relative to the previous one.
+    """Place stretches on one timeline of the server, each relative to the previous one.
 
     A jump of the offset is attributed to the client's clock, with two exceptions: the server's
     clock went back; or the server's wall clock is known, and its jump against the monotonic clock

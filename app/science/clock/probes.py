@@ -7,7 +7,7 @@ arrives before it was sent. So with theta(t) = server minus client, t on the cli
     server_sent - client_received <= theta(client_received)
     theta(client_sent) <= server_received - client_sent,
 
-whatever each of the two ways took: the two bounds lie a round trip apart. This is the correctness
+whatever the delay in each direction: the two bounds lie a round trip apart. This is the correctness
 interval of NTP (Mills, RFC 5905, section 11.1; Marzullo 1984), stored as two one-sided bounds at
 their own times because the clocks drift in between.
 """
@@ -116,7 +116,7 @@ class ClockProbes:
 
     @property
     def offset_s(self) -> FloatArray:
-        """Server minus client (n,) if both ways took equally long (RFC 5905, eq. for theta)."""
+        """Server minus client (n,), for equal delays in both directions (RFC 5905, theta)."""
         return 0.5 * (
             (self.server_received_s - self.client_sent_s)
             + (self.server_sent_s - self.client_received_s)

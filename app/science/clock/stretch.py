@@ -1,4 +1,4 @@
-"""A time without a clock jump: windows whose lines are joined to one continuous offset curve."""
+"""A period without a clock jump: windows whose lines are joined to one continuous offset curve."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

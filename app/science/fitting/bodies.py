@@ -41,7 +41,7 @@ _NEEDED = tuple(role for role in _ROLES if role != "head")
 def parts_of_bodies(
     motion: BodyMotion,
 ) -> tuple[Parts, dict[str, Parts], float, tuple[str, ...]]:
-    """Return core and limbs as `fit` needs them, the rate in Hz, and notes.
+    """Return the joints of core and limbs for `fit_skeleton`, the rate in Hz, and notes.
 
     Raises:
         FitError: bodies are missing, for example because only a headset and two controllers are

@@ -78,7 +78,7 @@ def levelled(axes: FloatArray, upright: BoolArray) -> FloatArray:
 
 
 def highest(values: FloatArray, share: float = 0.2) -> BoolArray:
-    """Return which frames have the largest finite values, as a mask of the given share of them."""
+    """Return a mask of the frames with the largest finite values, the given share of all."""
     finite = values[np.isfinite(values)]
     if len(finite) == 0:
         none: BoolArray = np.zeros(len(values), np.bool_)

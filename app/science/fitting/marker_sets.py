@@ -27,7 +27,7 @@ class MarkerSet:
     labels: Mapping[str, tuple[str, ...]]
 
     def found_in(self, names: tuple[str, ...]) -> dict[str, str]:
-        """Return landmark -> marker for the landmarks that these markers include."""
+        """Return the marker of each landmark that is found among these markers."""
         prefix = _common_prefix(names)
         by_label = {normalised_label(name.removeprefix(prefix)): name for name in reversed(names)}
         found: dict[str, str] = {}

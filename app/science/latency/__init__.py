@@ -1,4 +1,4 @@
-"""Achieved latency: the delay that a participant really had, measured from two recorded streams.
+"""Measure the latency that a participant really had, from the two recorded streams.
 
 `latency_of_runs` returns the delay of the avatar, its confidence interval, and the reason where it
 cannot be determined; `is_off` compares it with the set latency.

@@ -69,8 +69,7 @@ def _clearly_worse(differences: FloatArray) -> bool:
 
 
 # Linear interpolation between a client's frames shifts its movement by up to 0.02 ms, and a
-# browser's
-# clock may be no finer than 0.1 ms: the error is not smaller, however well the blocks agree.
+# browser's clock may be no finer than 0.1 ms: the error is not smaller, however well blocks agree.
 _LEAST_HALF_WIDTH_S = 0.00005
 _CONFIDENCE = 0.95
 
@@ -80,7 +79,7 @@ def half_width_s(fit: Fit) -> float:
 
     Infinite if there are too few blocks.
     """
-    from scipy.special import stdtrit  # slow to load, and rarely needed
+    from scipy.special import stdtrit  # slow to import, and rarely needed
 
     total = float(fit.bottom.sum())
     share = fit.bottom / total if total > 0.0 else np.ones(1)

@@ -95,7 +95,7 @@ def _masked_sums(
 
     The result is (3, at least len(b)).
     """
-    from scipy import fft  # slow to load, and rarely needed
+    from scipy import fft  # slow to import, and rarely needed
 
     size = fft.next_fast_len(len(a) + len(b), real=True)
 

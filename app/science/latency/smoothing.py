@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 BoolArray = npt.NDArray[np.bool_]
 _REACH_BANDWIDTHS = 4.0
-# A time without samples that is longer than this many frames is a gap, in which curves are unknown.
+# A period without samples longer than this many frames is a gap, in which curves are unknown.
 _LONGEST_GAP_FRAMES = 4.5
 
 
@@ -136,7 +136,7 @@ def _kernels(
 
     The moments are the weights times the distance in time, and times its square.
     """
-    from scipy.sparse import csr_array  # slow to load, and rarely needed
+    from scipy.sparse import csr_array  # slow to import, and rarely needed
 
     reach_s = _REACH_BANDWIDTHS * bandwidth_s
     first = np.searchsorted(times_s, at_s - reach_s)

@@ -16,7 +16,7 @@ _BLOCK_S = 2.0
 
 @dataclass(frozen=True, eq=False)
 class Stretch:
-    """Up to a minute of a client run.
+    """Up to a minute of a client run, prepared for comparing its two streams.
 
     Attributes:
         target, actual: both streams of the run, on one clock.
@@ -31,7 +31,7 @@ class Stretch:
 
     @property
     def at_s(self) -> FloatArray:
-        """The active grid times."""
+        """The grid times that are in active time."""
         return self.grid_s[self.active]
 
     @property

@@ -56,7 +56,7 @@ class Axes:
 
     @property
     def forward(self) -> Vector:
-        """The direction a body with these axes faces."""
+        """The direction in which a body with these axes faces."""
         right_handed = v_cross(self.left, self.up)
         return v_scale(right_handed, -1.0) if self.left_handed else right_handed
 

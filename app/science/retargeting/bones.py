@@ -38,7 +38,7 @@ class Bone:
 
 
 def joints_of(rig: Rig, joint_map: JointMap) -> dict[str, int]:
-    """Return body joint -> index in the rig, in the skeleton's order.
+    """Return the rig's joint index of each mapped body joint, in the skeleton's order.
 
     Raises:
         JointMapError: the map does not match the rig.

@@ -103,10 +103,10 @@ def lock_feet(
     raise_m[:, 1] = _smooth(shifts[..., 1].mean(axis=0), reach)
     targets = shifts + np.stack([positions[:, leg.foot] for leg in legs.both])
     raised = positions + raise_m[:, np.newaxis]
-    lowered = _lowered(raised, legs, targets, limits.deepest * legs.length_m, reach)
+    lowered = _hip_lowering(raised, legs, targets, limits.deepest * legs.length_m, reach)
     root = motion.root_positions_m + raise_m
     root[:, 1] -= lowered
-    locked, short = _reached(motion, legs, targets, root)
+    locked, short = _reach_targets(motion, legs, targets, root)
     missed = (short > _REACHED_M) & contacts.down.T
     return LockedFeet(
         locked,
@@ -117,14 +117,14 @@ def lock_feet(
     )
 
 
-def _lowered(
+def _hip_lowering(
     positions_m: FloatArray, legs: Legs, targets_m: FloatArray, deepest_m: float, reach: int
 ) -> FloatArray:
     """Return by how much the hips are lowered, (N,), so that both legs reach.
 
     It is smooth and at most `deepest_m`.
     """
-    from scipy.ndimage import maximum_filter1d  # slow to load
+    from scipy.ndimage import maximum_filter1d  # slow to import
 
     need = np.zeros(len(positions_m))
     for leg, target in zip(legs.both, targets_m, strict=True):
@@ -141,14 +141,14 @@ def _lowered(
 
 def _smooth(values: FloatArray, reach: int) -> FloatArray:
     """Apply the mean over nearby frames twice, `reach` frames on either side in total."""
-    from scipy.ndimage import uniform_filter1d  # slow to load
+    from scipy.ndimage import uniform_filter1d  # slow to import
 
     span = 2 * (reach // 2) + 1
     once = uniform_filter1d(values, span, mode="nearest")
     return np.asarray(uniform_filter1d(once, span, mode="nearest"))
 
 
-def _reached(
+def _reach_targets(
     motion: RigMotion, legs: Legs, targets_m: FloatArray, root_m: FloatArray
 ) -> tuple[RigMotion, FloatArray]:
     """Return the movement with the ankles at their targets, and each foot's shortfall, (2, N)."""

@@ -126,23 +126,23 @@ def walk_figures(
     """
     positions, world = motion.world()
     balls, hips = legs.balls_m(positions, world), positions[:, legs.hips]
-    ways = directions(motion, positions, legs)
+    travel = directions(motion, positions, legs)
     lowest = _LOWEST_LIFT * legs.length_m if contacts is None else 0.0
-    found = contacts or contacts_of(balls, legs.length_m, motion.rate_hz)
+    used_contacts = contacts or contacts_of(balls, legs.length_m, motion.rate_hz)
     feet, steps = [], []
     for foot, (leg, ball) in enumerate(zip(legs.both, balls, strict=True)):
         above = ball[:, 1] - ground.height_m(ball[:, 0], ball[:, 2])
-        path = FootPath(leg.side, forward_m(ball, hips, ways), above)
+        path = FootPath(leg.side, forward_m(ball, hips, travel), above)
         feet.append(path)
-        steps += _steps(path, ball[:, 1], found.intervals(foot), motion.rate_hz, lowest)
+        steps += _steps(path, ball[:, 1], used_contacts.intervals(foot), motion.rate_hz, lowest)
     return Walk(
         rate_hz=motion.rate_hz,
         leg_length_m=legs.length_m,
         thigh_share=(legs.left.thigh_share + legs.right.thigh_share) / 2.0,
         feet=(feet[0], feet[1]),
-        contacts=found,
+        contacts=used_contacts,
         steps=tuple(sorted(steps, key=lambda step: (step.lift_s, step.side))),
-        slide_m_s=mean_slide_m_s(balls, found),
+        slide_m_s=mean_slide_m_s(balls, used_contacts),
     )
 
 
@@ -204,10 +204,10 @@ def directions(motion: RigMotion, positions_m: FloatArray, legs: Legs) -> FloatA
     return np.asarray(slow[nearest] / speed[nearest, np.newaxis])
 
 
-def forward_m(points_m: FloatArray, hips_m: FloatArray, ways: FloatArray) -> FloatArray:
+def forward_m(points_m: FloatArray, hips_m: FloatArray, travel: FloatArray) -> FloatArray:
     """Return how far points (N, 3) travel along directions (N, 3), relative to the hips' start."""
-    start = float((points_m[0] - hips_m[0]) @ ways[0])
-    steps = np.sum(np.diff(points_m, axis=0) * (ways[1:] + ways[:-1]) / 2.0, axis=1)
+    start = float((points_m[0] - hips_m[0]) @ travel[0])
+    steps = np.sum(np.diff(points_m, axis=0) * (travel[1:] + travel[:-1]) / 2.0, axis=1)
     return np.asarray(start + np.concatenate(([0.0], np.cumsum(steps))))
 
 

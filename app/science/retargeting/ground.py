@@ -41,8 +41,8 @@ class Flat:
 class Ramp:
     """A ramp: level before its start, a constant slope over `run_m`, then level again.
 
-    With s the distance from `start_m` (x, z) along the horizontal direction `uphill` (x, z), height
-    = rise_m * clip(s / run_m, 0, 1).
+    With s the distance from `start_m` (x, z) along the horizontal direction `uphill` (x, z),
+    height = rise_m * clip(s / run_m, 0, 1).
     """
 
     start_m: tuple[float, float]

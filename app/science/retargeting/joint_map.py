@@ -145,21 +145,21 @@ def _by_name(rig: Rig) -> dict[str, int]:
 
     Of equally specific ones the joint nearest to the root is chosen.
     """
-    read = [side_and_word(name) for name in rig.names]
+    side_words = [side_and_word(name) for name in rig.names]
     found: dict[str, int] = {}
     taken: set[int] = set()
     for part, words in CENTRE_WORDS.items():
-        _assign_first(found, taken, part, [("", word) for word in words], read)
+        _assign_first(found, taken, part, [("", word) for word in words], side_words)
     for side in ("Left", "Right"):
         for part in ("UpperArm", "Shoulder", *(p for p in SIDE_WORDS if "Shoulder" not in p)):
             if f"{side}{part}" in found:
                 continue
             candidates = [(side, word) for word in SIDE_WORDS[part]]
-            if part == "UpperArm" and any(key in read for key in candidates[:-2]):
+            if part == "UpperArm" and any(key in side_words for key in candidates[:-2]):
                 # There is a more specific word for the upper arm, so "shoulder" denotes the collar
                 # bone.
                 candidates = candidates[:-2]
-            _assign_first(found, taken, f"{side}{part}", candidates, read)
+            _assign_first(found, taken, f"{side}{part}", candidates, side_words)
     return found
 
 
@@ -168,11 +168,13 @@ def _assign_first(
     taken: set[int],
     joint: str,
     candidates: list[tuple[str, str]],
-    read: list[tuple[str, str]],
+    side_words: list[tuple[str, str]],
 ) -> None:
     for key in candidates:
         places = [
-            place for place, side_word in enumerate(read) if side_word == key and place not in taken
+            place
+            for place, side_word in enumerate(side_words)
+            if side_word == key and place not in taken
         ]
         if places:
             found[joint] = places[0]

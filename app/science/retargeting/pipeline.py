@@ -108,7 +108,7 @@ def retarget_motion(
     # Locked feet raise the body with the ground; without locking the ground below the hips does.
     moved = retargeter.batch(source, _FLAT if lock else ground, standing_frame=standing_frame)
     if not lock:
-        moved = _eased(retargeter, moved, ground)
+        moved = _smooth_edges(retargeter, moved, ground)
     walks = _walks(source, source_map, moved, avatar_map, ground, lock=lock) if legged else None
     locked = None if walks is None else walks.locked
     return _result(retargeter, moved if locked is None else locked.motion, walks)
@@ -126,7 +126,7 @@ def _result(retargeter: Retargeter, motion: RigMotion, walks: Walks | None) -> R
     )
 
 
-def _eased(retargeter: Retargeter, moved: RigMotion, ground: Ground) -> RigMotion:
+def _smooth_edges(retargeter: Retargeter, moved: RigMotion, ground: Ground) -> RigMotion:
     """Smooth the edges of the ground, so that the body does not jump up or down at a kerb.
 
     The height below the hips is replaced by its mean over nearby frames. The ends are continued by

@@ -44,14 +44,17 @@ def scale_between(
     source: TPose, source_map: JointMap, avatar: TPose, avatar_map: JointMap
 ) -> Scale:
     """Return the ratio of the avatar's size to the source's."""
-    theirs, ours = leg_length_m(source, source_map), leg_length_m(avatar, avatar_map)
-    if theirs is not None and ours is not None:
-        return Scale(ours / theirs, "legs")
+    source_m, avatar_m = leg_length_m(source, source_map), leg_length_m(avatar, avatar_map)
+    if source_m is not None and avatar_m is not None:
+        return Scale(avatar_m / source_m, "legs")
     for end in _TRUNK_ENDS:
         if end in source_map and end in avatar_map:
-            theirs, ours = _trunk_m(source, source_map, end), _trunk_m(avatar, avatar_map, end)
-            if min(theirs, ours) > _SHORTEST_M:
-                return Scale(ours / theirs, "trunk")
+            source_m, avatar_m = (
+                _trunk_m(source, source_map, end),
+                _trunk_m(avatar, avatar_map, end),
+            )
+            if min(source_m, avatar_m) > _SHORTEST_M:
+                return Scale(avatar_m / source_m, "trunk")
     return Scale(1.0, "nothing")
 
 

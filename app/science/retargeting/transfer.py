@@ -79,17 +79,17 @@ class Retargeter:
         self.source, self.avatar = source, avatar
         self.source_t_pose = t_pose(source, source_map, local_axes=source_local_axes)
         self.avatar_t_pose = t_pose(avatar, avatar_map, local_axes=avatar_local_axes)
-        theirs, ours = joints_of(source, source_map), joints_of(avatar, avatar_map)
-        self.carried = tuple(name for name in ours if name in theirs)
+        source_joints, avatar_joints = joints_of(source, source_map), joints_of(avatar, avatar_map)
+        self.carried = tuple(name for name in avatar_joints if name in source_joints)
         scale = scale_between(self.source_t_pose, source_map, self.avatar_t_pose, avatar_map)
         self.scale: float = scale.factor
         self.scaled_by: ScaledBy = scale.scaled_by
         self.moved_by = np.full(avatar.joint_count, -1, dtype=np.int64)
         for name in self.carried:
-            self.moved_by[ours[name]] = theirs[name]
+            self.moved_by[avatar_joints[name]] = source_joints[name]
         self.factors = constant_factors(self.source_t_pose, self.avatar_t_pose, self.moved_by)
         self.foot_points = FootPoints(avatar, avatar_map)
-        self._prepare(theirs["Hips"], ours["Hips"])
+        self._prepare(source_joints["Hips"], avatar_joints["Hips"])
 
     def _prepare(self, source_hips: int, avatar_hips: int) -> None:
         from app.science.retargeting import kernels  # loads the compiler, which takes half a second

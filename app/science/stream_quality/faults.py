@@ -120,7 +120,7 @@ def jumps(
     """
     passed_s = np.fmax(times_s[1:] - times_s[:-1], usual_s)
     cosine = np.einsum("njk,njk->nj", rotations[1:], rotations[:-1])
-    # Beyond half a turn every rotation is within reach.
+    # No two rotations are more than half a turn apart.
     half_turn = np.minimum(0.5 * limits.turn_rad_per_s * passed_s, 0.5 * np.pi)
     turned = np.abs(cosine) < np.cos(half_turn)[:, np.newaxis]
     with np.errstate(over="ignore", invalid="ignore"):  # a position may be any number
@@ -154,7 +154,10 @@ def is_timed(times_s: NDArray[np.float64], limits: QualityLimits) -> NDArray[np.
 def pace(
     times_s: NDArray[np.float64], limits: QualityLimits, usual_s: float | None, before: Memory
 ) -> Pacing:
-    """Judge the times (n,) of a span; if `usual_s` is None, use the span's median interval."""
+    """Determine the pacing of a span from the times (n,) of its frames.
+
+    If `usual_s` is None, the span's median interval is used.
+    """
     interval_s = np.full(len(times_s), np.nan)
     timed = is_timed(times_s, limits)
     first = np.nan if before.time_s is None else before.time_s

@@ -69,10 +69,10 @@ def assess(
 
 
 def summarise(
-    found: Examination, counted: NDArray[np.bool_], limits: QualityLimits = DEFAULT_LIMITS
+    examination: Examination, counted: NDArray[np.bool_], limits: QualityLimits = DEFAULT_LIMITS
 ) -> StreamQuality:
     """Count the faults of an examination, in the frames marked by `counted` (n,)."""
-    pacing = found.pacing
+    pacing = examination.pacing
     between = np.concatenate((counted[:1], counted[:-1]))
     forward = between & (pacing.interval_s > 0.0)
     interval_s = pacing.interval_s[forward]
@@ -84,22 +84,24 @@ def summarise(
         gaps=len(gap_s),
         gap_s=float(gap_s.sum()),
         longest_gap_s=float(gap_s.max(initial=0.0)),
-        jumps=int((found.jumped & between).sum()),
-        frozen_s=_frozen_s(found, between, limits),
-        non_unit=int((found.non_unit & counted).sum()),
-        non_finite=int((found.non_finite & counted).sum()),
+        jumps=int((examination.jumped & between).sum()),
+        frozen_s=_frozen_s(examination, between, limits),
+        non_unit=int((examination.non_unit & counted).sum()),
+        non_finite=int((examination.non_finite & counted).sum()),
         backwards=int((pacing.backwards & between).sum()),
     )
 
 
 def _frozen_s(
-    found: Examination, between: NDArray[np.bool_], limits: QualityLimits
+    examination: Examination, between: NDArray[np.bool_], limits: QualityLimits
 ) -> tuple[float, ...]:
     """Return how long each joint was frozen, in s, the time until it was detected included."""
-    if not found.frozen.any():
+    if not examination.frozen.any():
         return (0.0,) * JOINT_COUNT
-    lasting_s = np.where(between, found.pacing.watched_s, 0.0)[:, np.newaxis] * found.frozen
-    onsets = found.frozen[1:] & ~found.frozen[:-1] & between[1:, np.newaxis]
+    lasting_s = (
+        np.where(between, examination.pacing.watched_s, 0.0)[:, np.newaxis] * examination.frozen
+    )
+    onsets = examination.frozen[1:] & ~examination.frozen[:-1] & between[1:, np.newaxis]
     waited_s = limits.frozen_s * onsets.sum(axis=0)
     return tuple(float(one) for one in lasting_s.sum(axis=0) + waited_s)
 

@@ -29,7 +29,7 @@ def _free(scene: Scene, point: Point) -> bool:
         scene.check_point(point, "A place")
     except SceneError:
         return False
-    return not scene.crowds(point)
+    return not scene.is_near_obstacle(point)
 
 
 def _point(rng: np.random.Generator) -> Point:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.science.walking.planning.grid_planner import check_ends, no_way
+from app.science.walking.planning.grid_planner import check_ends, no_path_error
 from app.science.walking.planning.shortest import passable, shortest_way
 from app.science.walking.records.model import PlannedPath
 from app.science.walking.records.protocols import Point
@@ -30,5 +30,5 @@ class VisibilityPlanner:
         places = np.concatenate([ends, passable(corners, corners, self.scene.bounds_m)])
         way = shortest_way(places, outlines_of(corners))
         if way is None:
-            raise no_way(self.scene, start_m, goal_m)
+            raise no_path_error(self.scene, start_m, goal_m)
         return PlannedPath(way)

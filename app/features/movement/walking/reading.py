@@ -24,7 +24,13 @@ from app.features.movement.walking.sources import (
 from app.protocol import ConfigError
 from app.science.rig import RigError
 from app.science.walking.planning import LazyThetaPlanner
-from app.science.walking.recording import Followed, Walker, planned_walk, track_of_motion, walks_of
+from app.science.walking.recording import (
+    TrackingOptions,
+    Walker,
+    planned_walk,
+    track_of_motion,
+    walks_of,
+)
 from app.science.walking.records import PlannedWalk, Track, Walk, WalkingError
 from app.science.walking.scene import Scene, open_scene
 from app.science.walking.synthetic import POPULATIONS, Sample, laboratory_scenes, synthetic_walks
@@ -140,8 +146,8 @@ def _track_of_capture(store: Store, name: str, capture: CapturedWalk) -> Track:
             reading=reading,
             limits=Limits(bytes=capture.max_bytes),
         )
-        followed = Followed(body=capture.body)
-        return track_of_motion(found.motion, Walker(name, capture.name), followed)
+        options = TrackingOptions(body=capture.body)
+        return track_of_motion(found.motion, Walker(name, capture.name), options)
     except CaptureError as error:
         raise Cannot(f"{capture.name}: {error.reason}") from None
     except (WalkingError, RigError) as error:

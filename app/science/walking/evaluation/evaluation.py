@@ -78,15 +78,15 @@ class Evaluation:
         return self.outcomes[first].mean_crps_s / self.outcomes[second].mean_crps_s
 
     def errors(self, model: str) -> ErrorSummary:
-        """Return |dt| of single draws, as in the paper."""
+        """Summarise the absolute travel-time errors of single draws, as in the paper."""
         return error_summary(self.outcomes[model].single_s, self.truth_s)
 
     def medians(self, model: str) -> ErrorSummary:
-        """Return |dt| of the medians of the predicted distributions."""
+        """Summarise the absolute travel-time errors of the predictions' medians."""
         return error_summary(np.median(self.outcomes[model].draws_s, axis=1), self.truth_s)
 
     def comparisons(self) -> list[Comparison]:
-        """Compare each pair of models by the |dt| of single draws."""
+        """Compare each pair of models by the absolute travel-time errors of single draws."""
         return [
             comparison(
                 pair,

@@ -78,8 +78,8 @@ def people_left_out(
 
     values, medians = database.suitability(reading), []
     for fold in person_folds(database, rng, folds):
-        out = database.is_of(fold)
-        space = space_of(database.only(~out), reading, rng, entries=entries, k=k)
+        out = database.walked_by(fold)
+        space = space_of(database.select(~out), reading, rng, entries=entries, k=k)
         for at in np.flatnonzero(out):
             indices, weights = space.neighbours(space.scaling.z(database.vectors[at]))
             guess = blend_rows(indices, weights, space.values)

@@ -1,9 +1,10 @@
 """Summarise errors of travel times as in the paper, and compare two models by them.
 
-The paper takes one draw and compares |dt|. That penalises realistic variation: where walks differ,
-a draw from their true distribution is off by about sqrt 2 times as much as the distribution's
-median, so a model that ignores variation wins. The models are therefore judged by the score in
-`crps`. SciPy is slow to import, so only the functions that need it import it.
+The paper takes one draw and compares the absolute error of the travel time, |dt|. That penalises
+realistic variation: where walks differ, a draw from their true distribution is off by about sqrt 2
+times as much as the distribution's median, so a model that ignores variation wins. The models are
+therefore judged by the score in `crps`. SciPy is slow to import, so only the functions that need it
+import it.
 """
 
 from collections.abc import Sequence
@@ -87,7 +88,7 @@ class Comparison:
 
 
 def comparison(names: tuple[str, str], first_s: FloatArray, second_s: FloatArray) -> Comparison:
-    """Compare errors, or scores, (N,) of two models walk by walk."""
+    """Compare two models' errors, or scores, (N,) of the same walks by the signed-rank test."""
     from app.science.statistics import signed_rank
 
     test = signed_rank(first_s, second_s)

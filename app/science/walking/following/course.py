@@ -28,11 +28,7 @@ class Way(NamedTuple):
 
 
 class Pace(NamedTuple):
-    """The numbers of one simulation.
-
-    They are the rules, the initial speed, whether the agent brakes, and the largest number of
-    steps.
-    """
+    """The numbers of one simulation: rules, initial speed, braking, largest number of steps."""
 
     dt: float
     lookahead: float

@@ -13,7 +13,7 @@ from app.science.walking.following.course import Pace, Way
 
 
 @compiled
-def _off(x: float, y: float, way: Way, leg: int) -> tuple[float, float]:
+def _project_on_leg(x: float, y: float, way: Way, leg: int) -> tuple[float, float]:
     """Return a position's distance along a leg and its squared distance from the leg."""
     dx, dy = x - way.points[leg, 0], y - way.points[leg, 1]
     along = dx * way.units[leg, 0] + dy * way.units[leg, 1]
@@ -25,9 +25,9 @@ def _off(x: float, y: float, way: Way, leg: int) -> tuple[float, float]:
 @compiled
 def _progress(x: float, y: float, way: Way, leg: int, lookahead: float) -> tuple[int, float]:
     """Return the leg that the agent is on, and how far along it."""
-    along, apart = _off(x, y, way, leg)
+    along, apart = _project_on_leg(x, y, way, leg)
     while leg + 1 < len(way.lengths) and way.lengths[leg] - along <= lookahead:
-        next_along, next_apart = _off(x, y, way, leg + 1)
+        next_along, next_apart = _project_on_leg(x, y, way, leg + 1)
         if next_apart > apart:
             break
         leg, along, apart = leg + 1, next_along, next_apart
@@ -67,7 +67,7 @@ def _turned(hx: float, hy: float, dx: float, dy: float, most: float) -> tuple[fl
 
 
 @compiled
-def _left(x: float, y: float, way: Way, leg: int) -> float:
+def _distance_left(x: float, y: float, way: Way, leg: int) -> float:
     """Return the remaining distance: to the leg's end and from there along the path."""
     dx, dy = way.points[leg + 1, 0] - x, way.points[leg + 1, 1] - y
     left: float = math.sqrt(dx * dx + dy * dy) + (way.before[-1] - way.before[leg + 1])
@@ -75,7 +75,7 @@ def _left(x: float, y: float, way: Way, leg: int) -> float:
 
 
 @compiled
-def _stoppable(left: float, speed: float, rate: float, dt: float) -> float:
+def _braking_speed(left: float, speed: float, rate: float, dt: float) -> float:
     """Return the speed after this step from which braking ends within the remaining distance."""
     room, change = max(left - 0.5 * speed * dt, 0.0), rate * dt
     return math.sqrt(0.25 * change * change + 2.0 * rate * room) - 0.5 * change
@@ -89,22 +89,24 @@ def move(way: Way, vector: FloatArray, pace: Pace, places: FloatArray) -> float:
     hx, hy = way.units[0, 0], way.units[0, 1]
     speed, leg = pace.begin, 0
     samples = len(places)
-    apart = _left(x, y, way, len(way.lengths) - 1)
+    apart = _distance_left(x, y, way, len(way.lengths) - 1)
     places[0, 0], places[0, 1] = x, y
     for step in range(1, pace.steps + 1):
         leg, along = _progress(x, y, way, leg, pace.lookahead)
         ax, ay = _aim(way, leg, way.before[leg] + along + pace.lookahead)
         hx, hy = _turned(hx, hy, ax - x, ay - y, slope * speed)
-        wanted = fastest
+        target_speed = fastest
         if pace.brakes:
-            wanted = min(fastest, _stoppable(_left(x, y, way, leg), speed, vector[1], pace.dt))
+            target_speed = min(
+                fastest, _braking_speed(_distance_left(x, y, way, leg), speed, vector[1], pace.dt)
+            )
         before_speed = speed
-        speed = max(pace.floor, speed + min(max(wanted - speed, -change), change))
+        speed = max(pace.floor, speed + min(max(target_speed - speed, -change), change))
         stride = 0.5 * (before_speed + speed) * pace.dt
         x, y = x + stride * hx, y + stride * hy
         if step < samples:
             places[step, 0], places[step, 1] = x, y
-        before, apart = apart, _left(x, y, way, len(way.lengths) - 1)
+        before, apart = apart, _distance_left(x, y, way, len(way.lengths) - 1)
         if apart <= pace.radius:
             for rest in range(step + 1, samples):
                 places[rest, 0], places[rest, 1] = x, y
@@ -112,8 +114,8 @@ def move(way: Way, vector: FloatArray, pace: Pace, places: FloatArray) -> float:
             return (step - 1 + share) * pace.dt
         if step >= samples:
             # All samples are filled: stop an agent that is too far away to arrive in time.
-            swiftest = max(max(speed, fastest), pace.floor)
-            if apart - pace.radius > (pace.steps - step + 1) * swiftest * pace.dt:
+            fastest_possible = max(max(speed, fastest), pace.floor)
+            if apart - pace.radius > (pace.steps - step + 1) * fastest_possible * pace.dt:
                 return np.nan
     for rest in range(pace.steps + 1, samples):
         places[rest, 0], places[rest, 1] = x, y

@@ -70,7 +70,7 @@ class WalkDatabase:
         """The names of all people who walked, sorted."""
         return tuple(sorted(set(self.subjects)))
 
-    def only(self, chosen: IntArray | npt.NDArray[np.bool_]) -> "WalkDatabase":
+    def select(self, chosen: IntArray | npt.NDArray[np.bool_]) -> "WalkDatabase":
         """Return part of the walks, chosen by indices or a mask."""
         at = np.arange(len(self))[chosen]
         return WalkDatabase(
@@ -87,10 +87,10 @@ class WalkDatabase:
             tuple(self.kinds[i] for i in at),
         )
 
-    def is_of(self, persons: Iterable[str]) -> npt.NDArray[np.bool_]:
+    def walked_by(self, persons: Iterable[str]) -> npt.NDArray[np.bool_]:
         """Return which walks are of one of these people, (N,)."""
-        wanted = set(persons)
-        return np.array([subject in wanted for subject in self.subjects])
+        chosen_subjects = set(persons)
+        return np.array([subject in chosen_subjects for subject in self.subjects])
 
     def suitability(self, options: SuitabilityOptions) -> MapArray:
         """Convert all maps to suitability, (N, K)."""

@@ -39,12 +39,12 @@ class Blends:
     weights: FloatArray
 
     def of_vectors(self, vectors: FloatArray) -> FloatArray:
-        """Blend vectors (N, m) to (B, m)."""
+        """Return the blends' dependency vectors (B, m) from those of the walks (N, m)."""
         blended: FloatArray = np.einsum("bp,bpm->bm", self.weights, vectors[self.parents])
         return blended
 
     def of_maps(self, values: MapArray) -> MapArray:
-        """Blend maps (N, K) to (B, K), clipped to [0, 1]."""
+        """Return the blends' maps (B, K) from those of the walks (N, K), clipped to [0, 1]."""
         blended = np.empty((len(self.parents), values.shape[1]), dtype=MAP_FLOATS)
         for first in range(0, len(self.parents), _AT_ONCE):
             part = slice(first, first + _AT_ONCE)
@@ -63,7 +63,7 @@ class Blends:
 
 
 def drawn_blends(z: FloatArray, count: int, rng: np.random.Generator) -> Blends:
-    """Draw random blends of walks.
+    """Draw random blends of neighbouring walks.
 
     Args:
         z: (N, m) positions of the walks in the space.

@@ -59,7 +59,7 @@ def _tents(values: FloatArray) -> FloatArray:
 
 
 def multilinear(grid: ParameterGrid, values: FloatArray, points: FloatArray) -> FloatArray:
-    """Evaluate a map of node values (K,) at points (P, n) within the grid."""
+    """Interpolate a map of node values (K,) multilinearly at points (P, n) within the grid."""
     from app.science.walking.maps.interpolation_kernels import multilinear_at
 
     axes = axes_of(grid)

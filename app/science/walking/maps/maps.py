@@ -45,9 +45,9 @@ class MapMaker:
     def __post_init__(self) -> None:
         """Raise WalkingError if the grid's parameters differ from the follower's."""
         names = [parameter.name for parameter in self.grid.parameters]
-        wanted = [parameter.name for parameter in self.follower.parameters]
-        if names != wanted:
-            raise WalkingError(f"The follower is steered by {wanted}, the grid is over {names}.")
+        expected = [parameter.name for parameter in self.follower.parameters]
+        if names != expected:
+            raise WalkingError(f"The follower is steered by {expected}, the grid is over {names}.")
 
     def map_of(self, entry: PlannedWalk) -> DeviationMap:
         """Re-simulate one walk with every combination of parameters."""
@@ -85,22 +85,22 @@ def maps_of(
     Yields:
         (index, map) of each entry that was not done.
     """
-    left = sorted(set(range(len(entries))) - set(done))
-    finished = len(entries) - len(left)
+    remaining = sorted(set(range(len(entries))) - set(done))
+    finished = len(entries) - len(remaining)
     workers = threads or os.cpu_count() or 1
-    waiting: deque[tuple[int, Future[DeviationMap]]] = deque()
-    upcoming = iter(left)
+    running: deque[tuple[int, Future[DeviationMap]]] = deque()
+    upcoming = iter(remaining)
     pool = ThreadPoolExecutor(workers, thread_name_prefix="maps")
     try:
         while True:
-            while len(waiting) < AHEAD * workers and (index := next(upcoming, -1)) >= 0:
-                waiting.append((index, pool.submit(maker.map_of, entries[index])))
-            if not waiting or (stop is not None and stop()):
+            while len(running) < AHEAD * workers and (index := next(upcoming, -1)) >= 0:
+                running.append((index, pool.submit(maker.map_of, entries[index])))
+            if not running or (stop is not None and stop()):
                 return
-            index, future = waiting.popleft()
-            made, finished = future.result(), finished + 1
+            index, future = running.popleft()
+            result, finished = future.result(), finished + 1
             if progress is not None:
                 progress(finished, len(entries))
-            yield index, made
+            yield index, result
     finally:
         pool.shutdown(wait=True, cancel_futures=True)

@@ -81,7 +81,7 @@ def nearest(
     indices: IntArray,
     far: FloatArray,
 ) -> None:
-    """Fill `indices` (k,) with the nearest points and `far` (k,) with their distances."""
+    """Search the k nearest points: fill `indices` (k,) and their distances `far` (k,)."""
     stack, bounds = [0] * STACK, [0.0] * STACK
     depth, found, k = 1, 0, len(indices)
     while depth > 0:

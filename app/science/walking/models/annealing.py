@@ -56,13 +56,13 @@ def static_fit(database: WalkDatabase, rng: np.random.Generator, steps: int = ST
     def deviation(vector: FloatArray) -> float:
         return float(basis.at(coefficients, vector[None])[0])
 
-    vector, value = annealed(deviation, grid, rng, steps)
+    vector, value = anneal(deviation, grid, rng, steps)
     if value > node_deviation:
         vector, value = node, node_deviation
     return StaticFit(vector, value, node, node_deviation)
 
 
-def annealed(
+def anneal(
     objective: Callable[[FloatArray], float],
     grid: ParameterGrid,
     rng: np.random.Generator,

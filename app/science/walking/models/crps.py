@@ -3,8 +3,8 @@
     CRPS(F, t) = E|T - t| - E|T - T'| / 2,   T and T' independent from F
 
 The score is proper: the true distribution has the smallest expected score. For a single number
-instead of a distribution it is |dt|, so that all models are on one scale, in seconds. Models are
-chosen by it, and evaluations compare by it.
+instead of a distribution it is the absolute error, so that all models are on one scale, in seconds.
+Models are chosen by it, and evaluations compare by it.
 """
 
 import numpy as np
@@ -13,11 +13,11 @@ from app.science.rotations import FloatArray
 
 
 def crps_s(draws_s: FloatArray, truth_s: float) -> float:
-    """Return the CRPS of draws (S,) for the true value; |dt| for a single draw."""
+    """Return the CRPS of draws (S,) for the true value; the absolute error for a single draw."""
     ordered = np.sort(draws_s)
     count = len(ordered)
     ranks = 2.0 * np.arange(count) - count + 1.0
-    # Sum of all |T - T'| over ordered pairs, by ranks.
+    # The mean of |T - T'| over all pairs of draws, computed by ranks.
     apart = 2.0 * float(ranks @ ordered) / count**2
     return float(np.abs(ordered - truth_s).mean()) - apart / 2.0
 

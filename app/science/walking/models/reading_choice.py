@@ -84,29 +84,31 @@ def ranked_readings(
 ) -> list[ReadingScore]:
     """Score readings, best first; raise WalkingError if all walks are of one person."""
     parts = [
-        (np.flatnonzero(database.is_of(fold)), np.flatnonzero(~database.is_of(fold)))
+        (np.flatnonzero(database.walked_by(fold)), np.flatnonzero(~database.walked_by(fold)))
         for fold in person_folds(database, rng)
     ]
-    origins = [_origins(database, out, kept, rng, entries, k) for out, kept in parts]
+    origins = [
+        _origins(database, left_out, training, rng, entries, k) for left_out, training in parts
+    ]
     uniforms = rng.random((DRAWS, 1 + 2 * len(database.grid.shape)))
     scores = []
     for options in readings:
         values = database.suitability(options)
-        found: list[float] = []
-        for (out, kept), own in zip(parts, origins, strict=True):
-            blended = np.clip(own.astype(np.float32) @ values[kept], 0.0, None)
-            found += [
+        scores_of_walks: list[float] = []
+        for (left_out, training), shares in zip(parts, origins, strict=True):
+            blended = np.clip(shares.astype(np.float32) @ values[training], 0.0, None)
+            scores_of_walks += [
                 _score(database, int(at), row, uniforms)
-                for at, row in zip(out, blended, strict=True)
+                for at, row in zip(left_out, blended, strict=True)
             ]
-        scores.append(ReadingScore(options, float(np.mean(found))))
+        scores.append(ReadingScore(options, float(np.mean(scores_of_walks))))
     return sorted(scores, key=lambda score: score.crps_s)
 
 
 def _origins(
     database: WalkDatabase,
-    out: IntArray,
-    kept: IntArray,
+    left_out: IntArray,
+    training: IntArray,
     rng: np.random.Generator,
     entries: int,
     k: int,
@@ -115,19 +117,19 @@ def _origins(
 
     The result is (walks left out, training walks).
     """
-    scaling = scaling_of(database.names, database.vectors[kept])
+    scaling = scaling_of(database.names, database.vectors[training])
     # The positions of walks do not depend on their maps, so empty maps are sufficient.
-    nothing = np.zeros((len(kept), database.grid.size), dtype=np.float32)
+    empty_maps = np.zeros((len(training), database.grid.size), dtype=np.float32)
     space: BlendingSpace = blending_space(
         database.grid,
         scaling,
-        database.vectors[kept],
-        nothing,
+        database.vectors[training],
+        empty_maps,
         rng=rng,
         entries=entries,
         k=k,
     )
-    return np.stack([space.origins(z) for z in scaling.z(database.vectors[out])])
+    return np.stack([space.origins(z) for z in scaling.z(database.vectors[left_out])])
 
 
 def _score(database: WalkDatabase, at: int, blended: FloatArray, uniforms: FloatArray) -> float:
@@ -144,6 +146,6 @@ def _score(database: WalkDatabase, at: int, blended: FloatArray, uniforms: Float
     tent_draws(cumulative, axes.values, axes.shape, uniforms, vectors)
     arrivals = database.arrivals_s[at].astype(np.float64)
     paces = np.where(np.isfinite(arrivals), 1.0 / arrivals, 0.0)
-    found = multilinear_at(paces, axes.values, axes.shape, vectors)
-    found = found[found > SLOWEST_PACE]
-    return crps_s(1.0 / found, truth_s) if len(found) else truth_s
+    arrived_paces = multilinear_at(paces, axes.values, axes.shape, vectors)
+    arrived_paces = arrived_paces[arrived_paces > SLOWEST_PACE]
+    return crps_s(1.0 / arrived_paces, truth_s) if len(arrived_paces) else truth_s

@@ -72,14 +72,14 @@ class Density:
         width = 1.0 / radial_basis(self.space.grid).epsilon if radial else 0.0
         used = self.coefficients if radial else self.grid_values
         bound = HEADROOM * float(self.grid_values.max())
-        vectors, done, tried = np.empty((count, len(axes.shape))), 0, 0
+        vectors, filled, proposed = np.empty((count, len(axes.shape))), 0, 0
         rows = max(PROPOSALS, min(4 * count, 100_000))
-        while done < count:
-            if tried >= MOST_PROPOSALS:
-                raise WalkingError(f"{tried} proposals were not enough: the map is too narrow.")
+        while filled < count:
+            if proposed >= MOST_PROPOSALS:
+                raise WalkingError(f"{proposed} proposals were not enough: the map is too narrow.")
             uniforms = rng.random((rows, len(axes.shape) + 1))
-            done = reject(used, axes.values, axes.shape, width, bound, uniforms, vectors, done)
-            tried += rows
+            filled = reject(used, axes.values, axes.shape, width, bound, uniforms, vectors, filled)
+            proposed += rows
         return vectors
 
 
@@ -96,7 +96,7 @@ def density_of(
     indices, weights = space.neighbours(z)
     grid_values = blend_rows(indices, weights, space.values)
     if not grid_values.max() > 0.0:
-        raise nothing_suitable()
+        raise no_suitable_error()
     coefficients = np.empty(0)
     if interpolation == "radial":
         coefficients = blend_rows(indices, weights, space.radial_coefficients)
@@ -114,7 +114,7 @@ class MixtureSampler:
         dimensions = len(self.space.grid.shape)
         vector = np.empty(dimensions)
         if not self._draw(z, rng.random(2 + 2 * dimensions), vector):
-            raise nothing_suitable()
+            raise no_suitable_error()
         return vector
 
     @cached_property
@@ -151,7 +151,7 @@ class MixtureSampler:
         return draw
 
 
-def nothing_suitable() -> WalkingError:
+def no_suitable_error() -> WalkingError:
     """Return the error for maps that are all zero."""
     return WalkingError(
         "No neighbour's map has a suitable combination: use a lower threshold or power, or widen"

@@ -20,7 +20,10 @@ def _from_tents(
     first_uniform: int,
     vector: FloatArray,
 ) -> None:
-    """Draw from the product of tents around a node (flat index): two uniforms for each axis."""
+    """Draw a vector from the product of the tents around a node, given by its flat index.
+
+    Two uniforms are used for each axis.
+    """
     n, rest, first = len(shape), node, len(axis_values)
     for axis in range(n - 1, -1, -1):
         at = rest % shape[axis]
@@ -38,7 +41,7 @@ def _from_tents(
 
 
 @compiled
-def _picked(parts: FloatArray, uniform: float) -> int:
+def _pick(parts: FloatArray, uniform: float) -> int:
     """Return a random index with probability proportional to its part; -1 if all are zero."""
     left, chosen = uniform * parts.sum(), -1
     for at in range(len(parts)):
@@ -51,7 +54,7 @@ def _picked(parts: FloatArray, uniform: float) -> int:
 
 
 @compiled
-def _picked_node(row: MapArray, node_weights: FloatArray, left: float) -> int:
+def _pick_node(row: MapArray, node_weights: FloatArray, left: float) -> int:
     """Return the node of a map at which its cumulative mass exceeds `left`."""
     chosen = 0
     for node in range(len(node_weights)):
@@ -92,10 +95,10 @@ def mixture_draw(
     weigh(weights)
     for at in range(k):
         weights[at] *= masses[indices[at]]
-    at = _picked(weights, uniforms[0])
+    at = _pick(weights, uniforms[0])
     if at < 0:
         return False
-    node = _picked_node(values[indices[at]], node_weights, uniforms[1] * masses[indices[at]])
+    node = _pick_node(values[indices[at]], node_weights, uniforms[1] * masses[indices[at]])
     _from_tents(node, axis_values, shape, uniforms, 2, vector)
     return True
 
@@ -132,13 +135,16 @@ def tent_draws(
     uniforms: FloatArray,
     vectors: FloatArray,
 ) -> None:
-    """Fill vectors (S, n) from nodes with cumulative masses (K,), by uniforms (S, 1 + 2n)."""
+    """Draw vectors (S, n) from the tents of nodes with cumulative masses (K,), by inversion.
+
+    Fills `vectors`; uses uniforms (S, 1 + 2n).
+    """
     for at in range(len(vectors)):
-        wanted = uniforms[at, 0] * cumulative[-1]
+        target = uniforms[at, 0] * cumulative[-1]
         low, high = 0, len(cumulative) - 1
         while low < high:
             middle = (low + high) // 2
-            if cumulative[middle] > wanted:
+            if cumulative[middle] > target:
                 high = middle
             else:
                 low = middle + 1

@@ -30,7 +30,7 @@ CELL_M = 0.01
 MOST_NODES = 16_000_000
 """A floor of 40 x 40 m; a search then needs about 800 MB of memory."""
 SAME_M = 1e-6
-BESIDE_M, MOST_PULLS = 0.15, 8
+NEAR_BEND_M, MOST_PULLS = 0.15, 8
 """Distance within which corners may replace a path's bend, and the number of attempts."""
 
 
@@ -98,9 +98,9 @@ class LazyThetaPlanner:
         lattice = _with_ends(floor.lattice, start, goal, ends)
         nodes = kernels.lazy_theta(lattice, start, goal, floor.outlines)
         if start == goal or not len(nodes):
-            raise no_way(self.scene, start_m, goal_m)
+            raise no_path_error(self.scene, start_m, goal_m)
         points = lattice.places.reshape(-1, 2)[nodes]
-        return PlannedPath(_pulled_tight(points, floor))
+        return PlannedPath(_pull_tight(points, floor))
 
     def _node(self, point_m: Point) -> int:
         left, near, _, _ = self.scene.bounds_m
@@ -109,15 +109,15 @@ class LazyThetaPlanner:
         return row * columns + min(columns - 1, round((point_m[0] - left) / self.cell_m))
 
     def _floor_of(self, start_m: Point, goal_m: Point) -> _Floor:
-        if self.scene.crowds(start_m) or self.scene.crowds(goal_m):
-            return self._made(start_m, goal_m)
-        return self._roomy
+        if self.scene.is_near_obstacle(start_m) or self.scene.is_near_obstacle(goal_m):
+            return self._make_floor(start_m, goal_m)
+        return self._usual_floor
 
     @cached_property
-    def _roomy(self) -> _Floor:
-        return self._made()
+    def _usual_floor(self) -> _Floor:
+        return self._make_floor()
 
-    def _made(self, *standing_m: Point) -> _Floor:
+    def _make_floor(self, *standing_m: Point) -> _Floor:
         corners = self.scene.widened_obstacles(*standing_m)
         return _Floor(corners, outlines_of(corners), self.scene, self.cell_m)
 
@@ -147,7 +147,7 @@ def check_ends(scene: Scene, start_m: Point, goal_m: Point) -> None:
         raise SceneError(f"Start and goal are the same place, ({start_m[0]:g}, {start_m[1]:g}) m.")
 
 
-def no_way(scene: Scene, start_m: Point, goal_m: Point) -> SceneError:
+def no_path_error(scene: Scene, start_m: Point, goal_m: Point) -> SceneError:
     """Return the error for a scene in which obstacles block every path between two points."""
     return SceneError(
         f"In scene {scene.name!r} there is no way from ({start_m[0]:.2f}, {start_m[1]:.2f}) to"
@@ -156,7 +156,7 @@ def no_way(scene: Scene, start_m: Point, goal_m: Point) -> SceneError:
     )
 
 
-def _pulled_tight(points_m: FloatArray, floor: _Floor) -> FloatArray:
+def _pull_tight(points_m: FloatArray, floor: _Floor) -> FloatArray:
     """Shorten a path around the corners that it passes, like a string that is pulled tight.
 
     A path on a lattice bends next to the corner that it passes, or short of it in the open. The
@@ -165,8 +165,8 @@ def _pulled_tight(points_m: FloatArray, floor: _Floor) -> FloatArray:
     """
     corners = passable(floor.corners, floor.corners, floor.scene.bounds_m)
     for _ in range(MOST_PULLS):
-        inside = _near_bends(corners, points_m)
-        places = np.concatenate([points_m[:1], points_m[-1:], points_m[1:-1], corners[inside]])
+        near_bends = _near_bends(corners, points_m)
+        places = np.concatenate([points_m[:1], points_m[-1:], points_m[1:-1], corners[near_bends]])
         way = shortest_way(places, floor.outlines)
         if way is None or np.array_equal(way, points_m):
             break
@@ -183,5 +183,5 @@ def _near_bends(corners: FloatArray, points_m: FloatArray) -> BoolArray:
             triangle = triangle[::-1]
         if area_m2(triangle) > FLAT_M2:
             found |= contains(triangle, corners, margin_m=-SAME_M)
-        found |= np.linalg.norm(corners - bend, axis=1) < BESIDE_M
+        found |= np.linalg.norm(corners - bend, axis=1) < NEAR_BEND_M
     return found

@@ -38,8 +38,8 @@ def sees(ax: float, ay: float, bx: float, by: float, outlines: Outlines) -> bool
     left, right = min(ax, bx), max(ax, bx)
     near, far = min(ay, by), max(ay, by)
     for at in range(len(outlines.counts)):
-        beside = left >= outlines.boxes[at, 2] or right <= outlines.boxes[at, 0]
-        if beside or near >= outlines.boxes[at, 3] or far <= outlines.boxes[at, 1]:
+        left_or_right = left >= outlines.boxes[at, 2] or right <= outlines.boxes[at, 0]
+        if left_or_right or near >= outlines.boxes[at, 3] or far <= outlines.boxes[at, 1]:
             continue
         if _overlap(ax, ay, bx, by, outlines.planes[at], outlines.counts[at]) > 0.0:
             return False
@@ -86,7 +86,7 @@ def _distance(ax: float, ay: float, bx: float, by: float) -> float:
 
 
 @compiled
-def _settle(
+def _check_parent(
     row: int,
     column: int,
     lattice: Lattice,
@@ -118,7 +118,7 @@ def _settle(
 
 
 @compiled
-def _reach(
+def _update_neighbours(
     row: int,
     column: int,
     goal: int,
@@ -175,20 +175,20 @@ def lazy_theta(lattice: Lattice, start: int, goal: int, outlines: Outlines) -> I
         row, column = node // columns, node % columns
         if state[row, column] != FREE:
             continue
-        if not _settle(row, column, lattice, far, parent, outlines):
+        if not _check_parent(row, column, lattice, far, parent, outlines):
             continue  # it may still be reached from another neighbour
         state[row, column] = CLOSED
         if node == goal:
-            return _unwound(parent.ravel(), start, goal)
+            return _backtrack(parent.ravel(), start, goal)
         if size + 8 >= len(keys):
             keys = np.concatenate((keys, np.empty_like(keys)))
             items = np.concatenate((items, np.empty_like(items)))
-        size = _reach(row, column, goal, lattice, far, parent, keys, items, size)
+        size = _update_neighbours(row, column, goal, lattice, far, parent, keys, items, size)
     return np.empty(0, np.int64)
 
 
 @compiled
-def _unwound(parent: IntArray, start: int, goal: int) -> IntArray:
+def _backtrack(parent: IntArray, start: int, goal: int) -> IntArray:
     count, node = 1, goal
     while node != start:
         node = parent[node]
@@ -202,7 +202,7 @@ def _unwound(parent: IntArray, start: int, goal: int) -> IntArray:
 
 @compiled
 def mutual_sight(points: FloatArray, outlines: Outlines) -> FloatArray:
-    """Return the distances (P, P) between points that see each other, inf between the others."""
+    """Return the distances (P, P) between mutually visible points, inf between the others."""
     count = len(points)
     lengths = np.full((count, count), np.inf)
     for a in range(count):

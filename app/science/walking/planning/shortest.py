@@ -1,4 +1,4 @@
-"""The shortest path over points among obstacles, by Dijkstra on the visibility graph."""
+"""The shortest path over points among obstacles: Dijkstra's algorithm on the visibility graph."""
 
 import heapq
 
@@ -43,7 +43,7 @@ def shortest_way(points_m: FloatArray, outlines: Outlines) -> FloatArray | None:
     while queue:
         so_far, at = heapq.heappop(queue)
         if at == 1:
-            return _unwound(points_m, parent)
+            return _backtrack(points_m, parent)
         if so_far > far[at]:
             continue
         through = so_far + lengths[at]
@@ -53,7 +53,7 @@ def shortest_way(points_m: FloatArray, outlines: Outlines) -> FloatArray | None:
     return None
 
 
-def _unwound(points_m: FloatArray, parent: IntArray) -> FloatArray:
+def _backtrack(points_m: FloatArray, parent: IntArray) -> FloatArray:
     order, at = [1], 1
     while at != 0:
         at = int(parent[at])

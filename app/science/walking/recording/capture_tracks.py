@@ -21,7 +21,7 @@ PELVIS = (("LASI", "RASI", "LPSI", "RPSI"), ("LFWT", "RFWT", "LBWT", "RBWT"))
 
 
 @dataclass(frozen=True)
-class Followed:
+class TrackingOptions:
     """Which part of a capture is taken as the person's position, where there is a choice.
 
     Attributes:
@@ -41,11 +41,13 @@ class Followed:
     markers: tuple[str, ...] | None = None
 
 
-USUAL = Followed()
+DEFAULT_OPTIONS = TrackingOptions()
 
 
 def track_of_motion(
-    motion: RigMotion | BodyMotion | MarkerMotion, walker: Walker, followed: Followed = USUAL
+    motion: RigMotion | BodyMotion | MarkerMotion,
+    walker: Walker,
+    options: TrackingOptions = DEFAULT_OPTIONS,
 ) -> Track:
     """Make a track of a captured movement.
 
@@ -54,24 +56,24 @@ def track_of_motion(
             not in it, or the person was not seen for too long.
     """
     if isinstance(motion, RigMotion):
-        joint_map = followed.joint_map or propose_joint_map(motion.rig).joint_map
+        joint_map = options.joint_map or propose_joint_map(motion.rig).joint_map
         whole = all(joint in joint_map for joint in NEEDED)
         return track_of_rig(
-            motion, joint_map, walker, followed.point or ("centre of mass" if whole else "hips")
+            motion, joint_map, walker, options.point or ("centre of mass" if whole else "hips")
         )
     if isinstance(motion, BodyMotion):
-        if followed.body is None and len(motion.names) != 1:
+        if options.body is None and len(motion.names) != 1:
             raise WalkingError(
                 f"Several bodies were tracked, {', '.join(motion.names)}: name the one on the belt."
             )
         return track_of_belt(
             motion,
-            followed.body or motion.names[0],
+            options.body or motion.names[0],
             walker,
-            torso_depth_m=followed.torso_depth_m,
-            off_skin_m=followed.off_skin_m,
+            torso_depth_m=options.torso_depth_m,
+            off_skin_m=options.off_skin_m,
         )
-    return track_of_markers(motion, followed.markers or _pelvis(motion), walker)
+    return track_of_markers(motion, options.markers or _pelvis(motion), walker)
 
 
 def _pelvis(motion: MarkerMotion) -> tuple[str, ...]:

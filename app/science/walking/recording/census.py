@@ -43,8 +43,8 @@ def census(lengths_m: Sequence[float], width_m: float = WIDTH_M, cutoff: float =
     """Count lengths in intervals of equal width from 0.
 
     Raises:
-        WalkingError: there are no lengths, a length is not positive, or there would be more than 10
-            000 intervals.
+        WalkingError: there are no lengths, a length is not positive, or there would be more than
+            ten thousand intervals.
     """
     lengths = np.array(lengths_m, dtype=np.float64)
     if not len(lengths) or not (np.isfinite(lengths).all() and (lengths > 0.0).all()):

@@ -1,13 +1,13 @@
 """Cut a long track into walks, at the times when the person stands still.
 
-A person stands where the smoothed speed stays below a threshold for a while. The time between two
-standings is a walk if the person gets far enough; its travel time is from the last slow sample
-before to the first slow sample after. If the track begins or ends during a walk, the walk is marked
-accordingly.
+A person stands still where the smoothed speed stays below a threshold for a while. The movement
+between two such stops is a walk if the person gets far enough; its travel time is from the last
+slow sample before to the first slow sample after. If the track begins or ends during a walk, the
+walk is marked accordingly.
 
 Tracks are smoothed as in the paper. It filters its captures of 120 Hz with `gaussian_filter1d`,
-sigma = 2 samples, to reduce the jerks of single steps. At other rates sigma is the same time, 1/60
-s.
+sigma = 2 samples, to reduce the jerks of single steps. At other rates sigma is the same time (1/60
+s).
 """
 
 from dataclasses import dataclass
@@ -54,11 +54,11 @@ def smoothed(xy_m: FloatArray, rate_hz: float, sigma_s: float = SIGMA_S) -> Floa
 
 @dataclass(frozen=True)
 class SegmentationRules:
-    """When a person stands, and what counts as a walk; printed with every result.
+    """When a person stands still, and what counts as a walk; printed with every result.
 
     Attributes:
         still_m_s: lower speeds count as still.
-        still_s: shortest standing; shorter pauses belong to the walk.
+        still_s: shortest duration of a stop; shorter pauses belong to the walk.
         shortest_m: smallest distance between a walk's start and goal.
         sigma_s: smoothing.
     """
@@ -75,10 +75,10 @@ class SegmentationRules:
                 raise WalkingError(f"{name} is {getattr(self, name)}; it must be 0 or more.")
 
 
-USUAL = SegmentationRules()
+DEFAULT_RULES = SegmentationRules()
 
 
-def walks_of(track: Track, rules: SegmentationRules = USUAL) -> list[Walk]:
+def walks_of(track: Track, rules: SegmentationRules = DEFAULT_RULES) -> list[Walk]:
     """Cut a track into its walks; empty if the person only stands.
 
     Walks whose start and goal are closer than `shortest_m` are left out: steps on the spot, and
@@ -109,7 +109,7 @@ def walks_of(track: Track, rules: SegmentationRules = USUAL) -> list[Walk]:
 def _moving(
     times_s: FloatArray, places: FloatArray, rules: SegmentationRules
 ) -> list[tuple[int, int]]:
-    """Return the first and last sample of each stretch between standings."""
+    """Return the first and last sample of each stretch of movement between stops."""
     step_s = float(times_s[1] - times_s[0])
     speeds = np.linalg.norm(np.gradient(places, step_s, axis=0), axis=1)
     slow = np.asarray(speeds < rules.still_m_s, dtype=np.bool_)

@@ -64,7 +64,7 @@ class ParameterGrid:
 
     @property
     def size(self) -> int:
-        """Number of combinations K."""
+        """Number of combinations of values, K."""
         return int(np.prod(self.shape))
 
     @cached_property

@@ -87,7 +87,7 @@ class PathFollower(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Reference:
-    """A walk sampled at the follower's steps.
+    """A person's walk sampled at the follower's time steps, with which agents are compared.
 
     Attributes:
         xy_m: (N, 2) at 0, dt, 2 dt, ... up to the end of the walk.
@@ -116,7 +116,7 @@ class Metric(Protocol):
 
 
 def reference_of(walk: Walk, dt_s: float) -> Reference:
-    """Sample a walk at the follower's steps."""
+    """Sample a walk at the follower's time steps."""
     count = int(np.floor(walk.duration_s / dt_s + 1e-9)) + 1
     xy_m = walk.at(np.arange(count, dtype=np.float64) * dt_s)
     return Reference(xy_m, dt_s, walk.length_m, walk.duration_s)

@@ -1,7 +1,7 @@
 """The scenes in which the paper's database was captured: a straight line, and around a pole.
 
-Eight straight distances from .5 to 4 m, and turns of 45 to 180 degrees around a pole over 3 and 4
-m. The paper does not draw these scenes to scale. Here start and goal are each half the distance
+Eight straight distances from .5 to 4 m, and turns of 45 to 180 degrees around a pole, over 3 m and
+4 m. The paper does not draw these scenes to scale. Here start and goal are each half the distance
 from the pole, offset to the side so that a person passes it at the clearance; a thin wall from the
 pole to the inside of the turn keeps planners from the short cut that people were told not to take.
 """

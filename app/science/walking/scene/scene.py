@@ -105,8 +105,8 @@ class Scene:
         for path in self.paths:
             for place in (path.start, path.goal):
                 if place not in self.places:
-                    known = ", ".join(self.places) or "none"
-                    raise SceneError(f"Path {path.name!r} names {place!r}; places are {known}.")
+                    existing = ", ".join(self.places) or "none"
+                    raise SceneError(f"Path {path.name!r} names {place!r}; places are {existing}.")
 
     def check_point(self, point_m: Point, what: str) -> None:
         """Raise SceneError if a person cannot stand there; `what` begins the message."""
@@ -128,19 +128,19 @@ class Scene:
 
     def widened_obstacles(self, *standing_m: Point) -> list[FloatArray]:
         """Return the outlines that an agent must not enter, given its start and goal."""
-        if not any(self.crowds(point) for point in standing_m):
-            return self._roomy
+        if not any(self.is_near_obstacle(point) for point in standing_m):
+            return self._widened
         return [
             widened(obstacle.corners_m, self._clearance_of(obstacle, standing_m))
             for obstacle in self.obstacles
         ]
 
-    def crowds(self, point_m: Point) -> bool:
+    def is_near_obstacle(self, point_m: Point) -> bool:
         """Return whether a person standing there is within the clearance of an obstacle."""
-        return any(contains(corners, np.array(point_m)) for corners in self._roomy)
+        return any(contains(corners, np.array(point_m)) for corners in self._widened)
 
     @cached_property
-    def _roomy(self) -> list[FloatArray]:
+    def _widened(self) -> list[FloatArray]:
         return [widened(obstacle.corners_m, self.clearance_m) for obstacle in self.obstacles]
 
     def _clearance_of(self, obstacle: Obstacle, standing_m: tuple[Point, ...]) -> float:

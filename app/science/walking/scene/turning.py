@@ -1,9 +1,9 @@
-"""How much a path turns: the integral of |curvature| along it, per metre.
+"""How much a path turns: the integral of |curvature| along it, in radians per metre.
 
 The paper sums |curvature| over the samples of a capture. At a capture's sampling rate that measures
 jitter: it gives hundreds on straight walks. Here the path is resampled at equal distances of one
 centimetre, smoothed as in the paper, and the changes of its direction are added up, without the
-first and last 5 cm, where the direction is unreliable. Radians per metre.
+first and last 5 cm, where the direction is unreliable.
 """
 
 import numpy as np

@@ -24,7 +24,7 @@ from app.science.walking.scene import (
 )
 from app.science.walking.synthetic.populations import Person, Population, person_of, walk_along
 
-BESIDE_M = 0.02
+PLACE_SD_M = 0.02
 """Standard deviation, along each axis, of a person's start and end from a place."""
 
 
@@ -62,34 +62,36 @@ def synthetic_walks(
     """
     if sample.people < 1 or sample.repetitions < 1 or not any(scene.paths for scene in scenes):
         raise WalkingError("A population needs people, repetitions and a scene with paths.")
-    ways = [_Way(LazyThetaPlanner(scene), at) for scene in scenes for at in range(len(scene.paths))]
+    routes = [
+        _Route(LazyThetaPlanner(scene), at) for scene in scenes for at in range(len(scene.paths))
+    ]
     for number in range(sample.people):
         rng = np.random.default_rng((sample.seed, number))
         person = person_of(population, number, rng)
         person = replace(person, name=f"{sample.prefix}{person.name}")
-        for way in ways:
+        for route in routes:
             for _ in range(sample.repetitions):
-                yield from way.walked(person, rng)
+                yield from route.walks(person, rng)
 
 
 @dataclass(frozen=True, eq=False)
-class _Way:
+class _Route:
     planner: LazyThetaPlanner
     number: int
 
-    def walked(self, person: Person, rng: np.random.Generator) -> Iterator[PlannedWalk]:
+    def walks(self, person: Person, rng: np.random.Generator) -> Iterator[PlannedWalk]:
         scene = self.planner.scene
         path = scene.paths[self.number]
-        start, goal = (self._beside(scene.places[name], rng) for name in (path.start, path.goal))
+        start, goal = (self._near(scene.places[name], rng) for name in (path.start, path.goal))
         track = walk_along(person, self.planner.plan(start, goal), rng)
         for walk in walks_of(track):
-            noted = replace(walk, note=f"{scene.name}: {path.name}")
-            yield planned_walk(noted, self.planner)
+            annotated = replace(walk, note=f"{scene.name}: {path.name}")
+            yield planned_walk(annotated, self.planner)
 
-    def _beside(self, place: Point, rng: np.random.Generator) -> Point:
+    def _near(self, place: Point, rng: np.random.Generator) -> Point:
         """Return a random position near a place, at which a person can stand."""
         for _ in range(50):
-            x, y = np.array(place) + BESIDE_M * rng.standard_normal(2)
+            x, y = np.array(place) + PLACE_SD_M * rng.standard_normal(2)
             try:
                 self.planner.scene.check_point((float(x), float(y)), "A walker")
             except SceneError:

@@ -5,7 +5,7 @@ import pytest
 
 from app.science.walking.following.following import SteeringFollower
 from app.science.walking.maps.suitability import PAPER, TIME_AWARE
-from app.science.walking.models.annealing import annealed, static_fit
+from app.science.walking.models.annealing import anneal, static_fit
 from app.science.walking.models.fitting import FitOptions, fitted, restored
 from app.science.walking.models.prediction import Predictor
 from app.science.walking.models.reading_choice import person_folds, ranked_readings
@@ -27,7 +27,7 @@ def test_annealing_finds_the_lowest_of_several_valleys() -> None:
         near = [float(((vector - middle) ** 2).sum()) for middle in (one, two)]
         return float(min(near[0], near[1] - 0.05))
 
-    vector, value = annealed(valleys, GRID, np.random.default_rng(1))
+    vector, value = anneal(valleys, GRID, np.random.default_rng(1))
     assert value == pytest.approx(-0.05, abs=1e-3)
     assert vector == pytest.approx([1.6, 1.2, 0.3], abs=0.05)
 
@@ -100,7 +100,7 @@ def test_one_person_alone_is_refused() -> None:
     """How people differ cannot be learnt from one."""
     database = made_up_database()
     with pytest.raises(WalkingError, match="one subject, 'person 2'"):
-        fitted(database.only(database.is_of(["person 2"])), QUICK)
+        fitted(database.select(database.walked_by(["person 2"])), QUICK)
 
 
 def test_a_model_restored_is_the_model() -> None:

@@ -10,7 +10,7 @@ from app.adapters.captures.reader import read_capture
 from app.science.rig import BodyMotion, MarkerMotion, Rig, RigMotion
 from app.science.rotations import from_rotation_vector, identity
 from app.science.skeleton import JOINT_INDEX
-from app.science.walking.recording.capture_tracks import Followed, track_of_motion
+from app.science.walking.recording.capture_tracks import TrackingOptions, track_of_motion
 from app.science.walking.recording.centre_of_mass import centre_of_mass
 from app.science.walking.recording.segmentation import walks_of
 from app.science.walking.recording.tracks import Walker, bridged, track_of_belt, track_of_rig
@@ -57,7 +57,7 @@ def test_without_legs_the_hips_are_followed() -> None:
     without = {joint: name for joint, name in SAME.items() if "Leg" not in joint}
     with pytest.raises(WalkingError, match=r"LeftUpperLeg.*hips"):
         centre_of_mass(_standing(), without)
-    track = track_of_motion(_standing(), WALKER, Followed(joint_map=without))
+    track = track_of_motion(_standing(), WALKER, TrackingOptions(joint_map=without))
     hips = own_body(1.75).offsets_m[0]
     assert track.xy_m[0] == pytest.approx([hips[0], -hips[2]])
 

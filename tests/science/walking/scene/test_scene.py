@@ -31,7 +31,7 @@ def test_a_disc_is_never_smaller_than_it_is() -> None:
 def test_who_stands_near_an_obstacle_keeps_that_distance() -> None:
     """A start .1 m off a rack is possible although the clearance is .2 m; others keep theirs."""
     scene = Scene("near", BOUNDS, (TABLE, box("rack", (1.7, 1.7), (0.2, 0.2))))
-    assert scene.crowds((0.0, 0.6))
+    assert scene.is_near_obstacle((0.0, 0.6))
     outlines = scene.widened_obstacles((0.0, 0.6), (0.0, 1.5))
     assert not contains(outlines[0], np.array([0.0, 0.6]))
     assert outlines[1] == pytest.approx(widened(scene.obstacles[1].corners_m, 0.2))
@@ -84,7 +84,7 @@ def test_the_poles_scenes_have_places_for_start_and_goal(turn: float) -> None:
     """Both are free at the clearance, and half the distance from the pole along the way."""
     scene = pole_scene(turn, 3.0)
     for place in scene.places.values():
-        assert not scene.crowds(place)
+        assert not scene.is_near_obstacle(place)
         assert np.hypot(*place) == pytest.approx(np.hypot(1.5, 0.3), abs=1e-9)
 
 
