@@ -142,7 +142,7 @@ def _too_few(names: tuple[str, ...], roles: dict[str, str], missing: list[str]) 
     listed = ", ".join(names[:12]) or "none"
     if len(names) <= 3:
         return (
-            f"{len(names)} tracked bodies ({listed}) are too few for a skeleton: the positions of"
+            f"Too few tracked bodies for a skeleton ({listed}): the positions of"
             " elbows, trunk and legs are unknown. Needed are bodies on hip, collar and both"
             " shoulders, elbows and hands, a marker set of the whole body, or a suit's skeleton."
         )

@@ -196,7 +196,7 @@ def test_any_capture_with_a_body_makes_a_rehearsing_person(shared_data: Path, fi
     ("file", "why"),
     [
         ("c3d/walkingOptiTrack.c3d", "pelvis"),
-        ("optitrack_csv/sample_optitrack_take.csv", "no skeleton"),
+        ("optitrack_csv/sample_optitrack_take.csv", "Too few tracked bodies"),
         ("bvh_toolbox/walk01_pos.csv", "captures that can be read"),
     ],
 )

@@ -176,7 +176,7 @@ def test_the_mannequin_faces_forward_in_unreals_axes() -> None:
 
 def test_axes_must_span_a_frame() -> None:
     """Directions that are not across each other are refused with the values."""
-    with pytest.raises(AxesError, match="right"):
+    with pytest.raises(AxesError, match="perpendicular"):
         Axes(up=(0.0, 1.0, 0.0), left=(0.0, 1.0, 0.0))
 
 
