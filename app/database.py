@@ -363,7 +363,7 @@ def open_database(url: str, observer: WriteObserver | None = None) -> Database:
     return Database(make_engine(url), observer)
 
 
-def kept_row(db: Session, kind: type[Row], key: str) -> Row:
+def referenced_row(db: Session, kind: type[Row], key: str) -> Row:
     """Return the row that another row refers to, of a table whose rows are never deleted.
 
     Raises DamagedValue if it does not exist: foreign keys are enforced, so only damage can cause

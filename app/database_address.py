@@ -69,7 +69,7 @@ def connect_arguments(address: URL) -> dict[str, Any]:
     return {} if address.get_backend_name() == "sqlite" else {"client_encoding": "utf8"}
 
 
-def connected(url: str) -> Connection:
+def open_connection(url: str) -> Connection:
     """Open a separate connection to the PostgreSQL database at `url`, outside any transaction.
 
     It belongs to no pool; close it together with its engine (`disconnect`). Raises InvalidInput or

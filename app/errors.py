@@ -7,7 +7,7 @@ ReembodyError                     a request was refused; has value, valid and re
 ├── NotAllowed            403     signed in, but without the permission
 ├── NotFound              404     does not exist, or must not be visible to this caller
 ├── Conflict              409     the request contradicts what is already recorded
-│   ├── KeptConflict      409     the same, and the refused input is stored in the record
+│   ├── RecordedConflict      409     the same, and the refused input is stored in the record
 │   ├── StaleVersion      409     the session has changed since the caller read it
 │   └── NotNow            409     not possible in the session's current step or status
 ├── Gone                  410     a pairing code was used or has expired
@@ -107,7 +107,7 @@ class Conflict(ReembodyError):
     status = 409
 
 
-class KeptConflict(Conflict):
+class RecordedConflict(Conflict):
     """The request contradicts the record, but what was refused is stored in the record.
 
     The transaction that raises it is committed, so that no participant's answers are lost.

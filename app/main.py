@@ -33,8 +33,8 @@ from app.platform.admission import Admission
 from app.platform.background import Background
 from app.platform.context import AppContext, PartMaker
 from app.platform.folders import database_file, home_of, protect
-from app.platform.half_made import remove_left
 from app.platform.hub import Hub
+from app.platform.incomplete_files import remove_leftovers
 from app.platform.rate_limit import usual_limits
 from app.platform.space_reserve import SpaceReserve
 from app.platform.storage_health import StorageHealth
@@ -151,7 +151,7 @@ def create_app(
 def _prepare(context: AppContext, on_first_password: Callable[[str], None] | None) -> None:
     for place in protect(context.settings):
         log.warning("others may read %s, and its mode cannot be changed", place)
-    for one in remove_left(context.settings, starting=True):
+    for one in remove_leftovers(context.settings, starting=True):
         log.warning("removed %s, a half-made %s of %s", one.path, one.kind, one.since.isoformat())
     backup = bring_up_to_date(context.settings, context.clock)
     if backup is not None:

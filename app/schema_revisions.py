@@ -82,7 +82,7 @@ def _require_whole(file: Path) -> None:
 
 
 @lru_cache(maxsize=1)
-def known_revisions() -> tuple[str, ...]:
+def all_revisions() -> tuple[str, ...]:
     """Return every revision of this program, oldest first."""
     script = ScriptDirectory.from_config(alembic_config("sqlite://"))
     return tuple(step.revision for step in script.walk_revisions())[::-1]
@@ -90,7 +90,7 @@ def known_revisions() -> tuple[str, ...]:
 
 def newest_revision() -> str:
     """Return the revision that this program works with."""
-    return known_revisions()[-1]
+    return all_revisions()[-1]
 
 
 def revision_of(connection: Connection) -> str | None:

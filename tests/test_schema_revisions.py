@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from app.schema_revisions import known_revisions, make_file, migrate_file
+from app.schema_revisions import all_revisions, make_file, migrate_file
 
 
 def contents(file: Path) -> tuple[set[str], list[object]]:
@@ -25,7 +25,7 @@ def contents(file: Path) -> tuple[set[str], list[object]]:
     return lines, [settings, sorted(zip(tables, counts, strict=True))]
 
 
-@pytest.mark.parametrize("revision", [known_revisions()[3], known_revisions()[-1]])
+@pytest.mark.parametrize("revision", [all_revisions()[3], all_revisions()[-1]])
 def test_a_new_file_is_what_the_steps_lead_to(tmp_path: Path, revision: str) -> None:
     """The same tables, indexes and constraints, the same settings, and nothing in it."""
     migrate_file(tmp_path / "steps.sqlite", revision)

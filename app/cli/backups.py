@@ -45,8 +45,8 @@ from app.features.people.audit import COMMAND_LINE, record_copy
 from app.features.record.erasure import clear_erasure_mark, mark_erasure
 from app.platform.context import AppContext
 from app.platform.folders import backups_of, home_of
-from app.platform.half_made import Notes
-from app.platform.trouble import plainly
+from app.platform.incomplete_files import Notes
+from app.platform.trouble import errors_as_not_durable
 from app.schema_revisions import newest_revision
 from app.settings import Settings, read_settings
 
@@ -57,7 +57,7 @@ def back_up_to(to: Path, activity: Activity, *, as_json: bool) -> str:
     `activity` reports the table that is being copied.
     """
     settings = read_settings()
-    with told_plainly():
+    with storage_errors_reported():
         database = existing_database(settings)
         notes = Notes.of(settings)
         try:
@@ -90,9 +90,11 @@ def _put_on_record(database: Database, done: BackedUp) -> None:
         )
 
 
-def told_plainly() -> AbstractContextManager[None]:
+def storage_errors_reported() -> AbstractContextManager[None]:
     """Convert errors of the database or the disk to NotDurable, which has a remedy."""
-    return plainly("nothing was changed, because the database or the disk reported an error")
+    return errors_as_not_durable(
+        "nothing was changed, because the database or the disk reported an error"
+    )
 
 
 def as_text(done: object) -> str:
@@ -129,7 +131,7 @@ def restore_from(
     from the first check until everything is done.
     """
     settings = read_settings()
-    with own_data(settings, "restore"), told_plainly():
+    with own_data(settings, "restore"), storage_errors_reported():
         return _restored(
             path,
             settings,

@@ -65,8 +65,8 @@ def _refused_by_storage(error: Exception) -> ReembodyError | None:
     """Return the explanation of a database error; None for any other error."""
     if not type(error).__module__.startswith(("sqlite3", "sqlalchemy")):
         return None  # avoids loading SQLAlchemy, which a command may never need
-    from app.platform.trouble import explain, in_plain_words, proves_damage
+    from app.platform.trouble import explain, not_durable_error, proves_damage
 
     if explain(error) is None and not proves_damage(error):
         return None
-    return in_plain_words("the database reported an error", error)
+    return not_durable_error("the database reported an error", error)

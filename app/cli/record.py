@@ -31,8 +31,8 @@ from app.features.results.analysis.tables import KINDS, Kind
 from app.features.results.exports.writing import Exported, export_study, usual_kind
 from app.models import Study
 from app.platform.access import hidden_sessions, session_by_id
-from app.platform.half_made import Notes
-from app.platform.trouble import in_plain_words
+from app.platform.incomplete_files import Notes
+from app.platform.trouble import not_durable_error
 from app.settings import read_settings
 
 
@@ -57,7 +57,7 @@ def export_to_folder(study: str, to: Path, activity: Activity, kind: str | None 
                 progress=lambda path: activity.now(f"exporting {study}: writing {path}"),
             )
         except OSError as error:
-            raise in_plain_words(f"the export to {to} could not be written", error) from error
+            raise not_durable_error(f"the export to {to} could not be written", error) from error
         _put_on_record(database, study, done)
     return (
         f"{done.sessions} session(s) of kind {done.kind} in {done.files} files: {to}\n"

@@ -8,7 +8,7 @@ from app.client.http import (
     Tablet,
     UnreachableError,
     call,
-    call_again,
+    call_with_retry,
 )
 from app.client.journal import Journal
 from app.client.telemetry import TelemetryClient, TelemetryError
@@ -24,5 +24,5 @@ __all__ = [
     "TelemetryError",
     "UnreachableError",
     "call",
-    "call_again",
+    "call_with_retry",
 ]

@@ -48,7 +48,7 @@ async def call(client: AsyncClient, method: str, path: str, body: Json | None = 
     return _decoded(response)
 
 
-async def call_again(
+async def call_with_retry(
     client: AsyncClient,
     method: str,
     path: str,
@@ -94,7 +94,7 @@ class Operator:
 
     async def view(self) -> Json:
         """Return the session as the cockpit shows it."""
-        view: Json = await call_again(self.client, "GET", f"/api/sessions/{self.session_id}")
+        view: Json = await call_with_retry(self.client, "GET", f"/api/sessions/{self.session_id}")
         return view
 
     async def command(self, view: Json, kind: str, **fields: Any) -> Json:
@@ -108,17 +108,17 @@ class Operator:
     async def _send(self, kind: str, fields: Json) -> Json:
         body = {"command_id": str(uuid.uuid4()), "type": kind, **fields}
         path = f"/api/sessions/{self.session_id}/commands"
-        result: Json = await call_again(self.client, "POST", path, body)
+        result: Json = await call_with_retry(self.client, "POST", path, body)
         return result
 
     async def pair(self, device: str, client: AsyncClient, name: str) -> Json:
         """Request a pairing code and use it from the device's own client."""
         path = f"/api/sessions/{self.session_id}/pairings"
         while True:
-            shown = await call_again(self.client, "POST", path, {"device": device})
+            shown = await call_with_retry(self.client, "POST", path, {"device": device})
             use = {"code": shown["code"], "name": name}
             try:
-                paired: Json = await call_again(client, "POST", "/api/devices/pair", use)
+                paired: Json = await call_with_retry(client, "POST", "/api/devices/pair", use)
             except ServerRefusedError as error:
                 # The code was used by an attempt whose response was lost; a new one replaces that
                 # pairing.
@@ -136,12 +136,12 @@ class Tablet:
 
     async def state(self) -> Json:
         """Return what the tablet should show now."""
-        state: Json = await call_again(self.client, "GET", "/api/tablet/state")
+        state: Json = await call_with_retry(self.client, "GET", "/api/tablet/state")
         return state
 
     async def acknowledge(self, step_index: int) -> Json:
         """Confirm that consent was given or instructions were read."""
-        state: Json = await call_again(
+        state: Json = await call_with_retry(
             self.client, "POST", "/api/tablet/acknowledge", {"step_index": step_index}
         )
         return state
@@ -149,7 +149,7 @@ class Tablet:
     async def consent(self, step_index: int, given: Json) -> Json:
         """Send a consent with its ticked statements and signature."""
         body = {"step_index": step_index, **given}
-        state: Json = await call_again(self.client, "POST", "/api/tablet/consent", body)
+        state: Json = await call_with_retry(self.client, "POST", "/api/tablet/consent", body)
         return state
 
     async def submit(self, administration: Json, answers: Json, idempotency_key: str) -> Json:
@@ -162,5 +162,5 @@ class Tablet:
             "seed": administration["seed"],
             "language": administration["language"],
         }
-        receipt: Json = await call_again(self.client, "POST", "/api/tablet/submissions", body)
+        receipt: Json = await call_with_retry(self.client, "POST", "/api/tablet/submissions", body)
         return receipt

@@ -31,7 +31,7 @@ from app.models import (
 )
 from app.protocol import StudyProtocol
 
-OVER = ("completed", "aborted", "withdrawn")
+ENDED_STATUSES = ("completed", "aborted", "withdrawn")
 _BY_ID = select(StudySession).where(StudySession.id == bindparam("session_id"))
 _LOCKED_BY_ID = _BY_ID.with_for_update(key_share=True)
 
@@ -56,7 +56,7 @@ def caller_of(account: Account) -> Caller:
     return Caller(account.id, account.username, account.role, account.all_studies)
 
 
-def is_theirs(caller: Caller) -> ColumnElement[bool]:
+def visible_to(caller: Caller) -> ColumnElement[bool]:
     """Return the SQL condition for the rows of `studies` that the caller may see."""
     if caller.all_studies:
         return true()
@@ -76,14 +76,14 @@ def require_object(db: Session, caller: Caller, template: str, params: Mapping[s
     if caller.all_studies:
         return
     if template.startswith("/api/studies/{key}"):
-        own = select(Study.key).where(is_theirs(caller)).order_by(Study.key)
+        own = select(Study.key).where(visible_to(caller)).order_by(Study.key)
         known = list(db.scalars(own))
         if params["key"] not in known:
             raise NotFound(f"there is no study {params['key']!r}", value=params["key"], valid=known)
         return
     for name, (what, studies) in _STUDY_OF.items():
         if name in params:
-            found = studies.where(_KEYS[name] == params[name], is_theirs(caller))
+            found = studies.where(_KEYS[name] == params[name], visible_to(caller))
             if db.scalar(found) is None:
                 raise NotFound(f"there is no such {what}", value=params[name])
 
@@ -104,7 +104,7 @@ def is_blind(
         return False
     if caller.role == "operator" or session is None:
         return True
-    return bool(_not_known(db, StudySession.id == session.id))
+    return bool(_undisclosed(db, StudySession.id == session.id))
 
 
 def hidden_sessions(db: Session, study: Study, caller: Caller | None = None) -> frozenset[str]:
@@ -120,7 +120,7 @@ def hidden_sessions(db: Session, study: Study, caller: Caller | None = None) -> 
     of_blinded = StudySession.study_version_id.in_(blinded)
     if caller is not None and caller.role == "operator":
         return frozenset(db.scalars(select(StudySession.id).where(of_blinded)))
-    return _not_known(db, of_blinded)
+    return _undisclosed(db, of_blinded)
 
 
 def revealed_sessions(db: Session, study: Study) -> frozenset[str]:
@@ -133,7 +133,7 @@ def revealed_sessions(db: Session, study: Study) -> frozenset[str]:
         return frozenset()
     of_blinded = StudySession.study_version_id.in_(blinded)
     open_ = select(StudySession.id).where(of_blinded, StudySession.status != "completed")
-    return frozenset(db.scalars(open_)) - _not_known(db, of_blinded)
+    return frozenset(db.scalars(open_)) - _undisclosed(db, of_blinded)
 
 
 def _blinded_versions(db: Session, study: Study) -> list[str]:
@@ -145,7 +145,7 @@ def _blinded_versions(db: Session, study: Study) -> list[str]:
     return [id_ for id_, text in versions if json.loads(text)["blinding"]["operator"]]
 
 
-def _not_known(db: Session, which: ColumnElement[bool]) -> frozenset[str]:
+def _undisclosed(db: Session, which: ColumnElement[bool]) -> frozenset[str]:
     """Return those of the given sessions whose order is still undisclosed.
 
     That is: their slot is now held by a session that is neither completed nor revealed.

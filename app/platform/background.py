@@ -140,7 +140,7 @@ class Background:
             return
         error = done.exception()
         if error is None:
-            self.well(name)
+            self.recovered(name)
         else:
             log.error("a task of %s failed", name, exc_info=error)
             self.failed(name, error)
@@ -168,7 +168,7 @@ class Background:
         if before is None or before.shown.state != state:
             self.on_change()
 
-    def well(self, name: str) -> None:
+    def recovered(self, name: str) -> None:
         """Record that the named task works, or works again."""
         # Called often, even by the telemetry writer: skip the lock if nothing has failed.
         if name not in self._troubles:

@@ -12,7 +12,7 @@ from fastapi import Depends, Request
 from sqlalchemy.orm import Session
 from starlette.requests import HTTPConnection
 
-from app.errors import KeptConflict, NotAllowed, NotSignedIn
+from app.errors import NotAllowed, NotSignedIn, RecordedConflict
 from app.models import Device
 from app.platform.access import Caller, caller_of, require_object
 from app.platform.admission import LOGIN_COOKIE, TABLET_COOKIE, bearer_token
@@ -40,11 +40,11 @@ def _reading(context: Context) -> Iterator[Session]:
 
 
 async def _writing(context: Context) -> AsyncIterator[Session]:
-    refusal: KeptConflict | None = None
+    refusal: RecordedConflict | None = None
     async with context.database.writing_async() as db:
         try:
             yield db
-        except KeptConflict as error:
+        except RecordedConflict as error:
             refusal = error
     if refusal is not None:
         raise refusal
@@ -64,12 +64,12 @@ FREES_SPACE = Depends(_make_room)
 
 async def write(context: AppContext, work: Callable[[Session], Result]) -> Result:
     """Run `work` in a transaction like that of `Writing`, all of it on one thread."""
-    refusals: list[KeptConflict] = []
+    refusals: list[RecordedConflict] = []
 
     def kept(db: Session) -> Result | None:
         try:
             return work(db)
-        except KeptConflict as error:
+        except RecordedConflict as error:
             refusals.append(error)
             return None
 
@@ -89,15 +89,15 @@ def get_caller(request: Request, context: Context) -> Caller:
     They are identified by cookie or bearer token. Raises NotSignedIn; NotAllowed if the route is
     not allowed for their role; NotFound if the object belongs to a study that they may not see.
     """
-    return admitted(request, context, request.method)
+    return authorised_caller(request, context, request.method)
 
 
-def admitted(request: HTTPConnection, context: AppContext, method: str) -> Caller:
+def authorised_caller(request: HTTPConnection, context: AppContext, method: str) -> Caller:
     """Return the caller of a request or a socket; `method` is the method's name in the policy.
 
     Raises the same errors as `get_caller`.
     """
-    caller = known_caller(request, context)
+    caller = signed_in_caller(request, context)
     template = _template(request)
     roles = allowed(method, template)
     if caller.role not in roles:
@@ -112,7 +112,7 @@ def admitted(request: HTTPConnection, context: AppContext, method: str) -> Calle
     return caller
 
 
-def known_caller(request: HTTPConnection, context: Context) -> Caller:
+def signed_in_caller(request: HTTPConnection, context: Context) -> Caller:
     """Return the signed-in person, whatever the route; raise NotSignedIn if there is none."""
     token = bearer_token(request) or read_cookie(request, LOGIN_COOKIE)
     if not token:

@@ -17,7 +17,7 @@ Key = TypeVar("Key")
 Value = TypeVar("Value")
 
 
-class Unchanging(Generic[Key, Value]):
+class ImmutableCache(Generic[Key, Value]):
     """A cache of immutable values by key; beyond `size` it evicts the least recently used."""
 
     def __init__(self, size: int) -> None:

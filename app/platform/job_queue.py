@@ -31,7 +31,7 @@ T = TypeVar("T")
 
 
 @dataclass(frozen=True)
-class Words:
+class JobMessages:
     """The messages of a queue, worded for the kind of job it runs.
 
     Attributes:
@@ -52,18 +52,18 @@ class Words:
 
 
 @dataclass
-class WorkingLine(Part, ABC):
+class JobQueue(Part, ABC):
     """Runs jobs one after the other in a worker process; `within_s` is the time limit of each."""
 
-    words: ClassVar[Words]
-    fill_the_process: ClassVar[tuple[type[Exception], ...]] = ()
+    messages: ClassVar[JobMessages]
+    memory_errors: ClassVar[tuple[type[Exception], ...]] = ()
     """Errors after which the process may not have freed its memory: it is restarted."""
 
     within_s: float = WITHIN_S
     _worker: Worker = field(default_factory=Worker)
     _turn: asyncio.Lock = field(default_factory=asyncio.Lock)
     _waiting: int = 0
-    _kept: "OrderedDict[Hashable, Any]" = field(default_factory=OrderedDict)
+    _cache: "OrderedDict[Hashable, Any]" = field(default_factory=OrderedDict)
 
     def watched_by(self, background: Background, name: str) -> Self:
         """Report the death of the worker process to `background` under a name."""
@@ -79,28 +79,28 @@ class WorkingLine(Part, ABC):
         async with self._my_turn():
             return await self._done(task, *args, **kwargs)
 
-    async def computed(self, task: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
+    async def run_cached(self, task: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
         """Run a job with a cached result: it must depend on nothing but its hashable arguments."""
         name = (task, args, tuple(sorted(kwargs.items())))
-        if name not in self._kept:
+        if name not in self._cache:
             async with self._my_turn():
                 # The preceding job may have computed the same result.
-                if name not in self._kept:
-                    self._kept[name] = await self._done(task, *args, **kwargs)
-                    while self._keeps_too_much():
-                        self._kept.popitem(last=False)
-                answer: T = self._kept[name]
+                if name not in self._cache:
+                    self._cache[name] = await self._done(task, *args, **kwargs)
+                    while self._cache_is_full():
+                        self._cache.popitem(last=False)
+                answer: T = self._cache[name]
                 return answer
-        self._kept.move_to_end(name)
-        kept: T = self._kept[name]
-        return kept
+        self._cache.move_to_end(name)
+        cached: T = self._cache[name]
+        return cached
 
     def stop(self) -> None:
         """End the worker process."""
         self._worker.end()
 
     @abstractmethod
-    def _keeps_too_much(self) -> bool:
+    def _cache_is_full(self) -> bool:
         """Return whether the oldest cached result has to be evicted."""
 
     @abstractmethod
@@ -111,7 +111,7 @@ class WorkingLine(Part, ABC):
     async def _my_turn(self) -> AsyncIterator[None]:
         if self._waiting >= WAITING:
             raise NotDurable(
-                self.words.busy,
+                self.messages.busy,
                 value=self._waiting,
                 valid=f"up to {WAITING} at once",
                 remedy="Try again in a minute.",
@@ -130,19 +130,19 @@ class WorkingLine(Part, ABC):
         except TimeoutError as error:
             await run_sync(self.stop)
             raise self._too_much(f"it takes longer than {self.within_s:g} s") from error
-        except self.fill_the_process as error:
+        except self.memory_errors as error:
             await run_sync(self.stop)
             raise self._too_much("it takes too much memory") from error
         except BrokenProcessPool as error:
-            raise self._too_much(self.words.ended) from error
+            raise self._too_much(self.messages.ended) from error
         except Exception as error:
             told = self._refusal(error)
             if told is not None:
                 raise told from None
-            log.exception(self.words.log)
+            log.exception(self.messages.log)
             raise InvalidInput(
-                f"{self.words.cannot}: {type(error).__name__}", remedy=self.words.otherwise
+                f"{self.messages.cannot}: {type(error).__name__}", remedy=self.messages.otherwise
             ) from error
 
     def _too_much(self, why: str) -> InvalidInput:
-        return InvalidInput(f"{self.words.cannot}: {why}", remedy=self.words.less)
+        return InvalidInput(f"{self.messages.cannot}: {why}", remedy=self.messages.less)

@@ -23,10 +23,10 @@ class SpaceReserve:
     """The reserve's file in `folder`; None where the database is on another machine."""
 
     folder: Path | None
-    given_up: bool = False
+    is_released: bool = False
     _bytes: int = MOST_BYTES
 
-    def keep(self) -> None:
+    def create(self) -> None:
         """Create the file if there is space for it; a disk that is too small has no reserve."""
         if self.folder is None:
             return
@@ -36,17 +36,17 @@ class SpaceReserve:
             if self._bytes >= FEWEST_BYTES:
                 self._allocate()
 
-    def give_up(self) -> None:
-        """Delete the file; other writers must wait until `take_back` succeeds."""
-        if self.folder is None or self.given_up or not self._size():
+    def release(self) -> None:
+        """Delete the file; other writers must wait until `restore` succeeds."""
+        if self.folder is None or self.is_released or not self._size():
             return
         with contextlib.suppress(OSError):
             (self.folder / NAME).unlink()
-            self.given_up = True
+            self.is_released = True
 
-    def take_back(self) -> bool:
+    def restore(self) -> bool:
         """Try to restore the file; return whether it exists in full or was never deleted."""
-        if not self.given_up:
+        if not self.is_released:
             return True
         try:
             # Check first: an attempt would fill the disk for a moment and make other writes fail.
@@ -57,7 +57,7 @@ class SpaceReserve:
             with contextlib.suppress(OSError):
                 self._path().unlink(missing_ok=True)
             return False
-        self.given_up = False
+        self.is_released = False
         return True
 
     def _path(self) -> Path:

@@ -100,7 +100,7 @@ class StorageHealth:
         if self._failure is None:
             return
         with self._lock:
-            if not self.reserve.take_back():
+            if not self.reserve.restore():
                 return
             failure, self._failure = self._failure, None
             if failure is None:
@@ -115,14 +115,14 @@ class StorageHealth:
         failure = self._failure
         if failure is not None and failure.trouble == FULL:
             with self._lock:
-                self.reserve.give_up()
+                self.reserve.release()
 
     def must_wait(self) -> bool:
         """Return whether writes that fill the disk have to wait until the reserve is restored."""
-        if not self.reserve.given_up:
+        if not self.reserve.is_released:
             return False
         with self._lock:
-            return not self.reserve.take_back()
+            return not self.reserve.restore()
 
     def is_untried(self, for_ns: int) -> bool:
         """Return whether storage fails and no write was attempted for `for_ns`."""

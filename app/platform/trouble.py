@@ -113,7 +113,7 @@ def proves_damage(error: Exception) -> bool:
 
 
 @contextmanager
-def plainly(what: str) -> Iterator[None]:
+def errors_as_not_durable(what: str) -> Iterator[None]:
     """Convert errors of a disk or a database to NotDurable with a one-sentence message.
 
     `what` begins the sentence, as in "the database FILE cannot be opened". Other errors pass.
@@ -121,10 +121,10 @@ def plainly(what: str) -> Iterator[None]:
     try:
         yield
     except (OSError, sqlite3.Error, DBAPIError, UnicodeDecodeError) as error:
-        raise in_plain_words(what, error) from error
+        raise not_durable_error(what, error) from error
 
 
-def in_plain_words(what: str, error: Exception) -> NotDurable:
+def not_durable_error(what: str, error: Exception) -> NotDurable:
     """Return the error that `plainly` raises for `error`."""
     if isinstance(error, OSError):
         trouble = _BY_ERRNO.get(error.errno or 0, REFUSED)

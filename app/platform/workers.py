@@ -80,7 +80,7 @@ class Worker:
         elif self._watched is not None:
             # Whatever the outcome of the task, the process works.
             background, name = self._watched
-            background.well(name)
+            background.recovered(name)
 
     def _forget(self, pool: ProcessPoolExecutor) -> bool:
         """Discard a pool whose process has died.

@@ -21,7 +21,7 @@ from app.protocol.explanations import UNKNOWN_KEY, explain, locate, remove
 from app.protocol.schema import Schema
 from app.protocol.source import Plain, Source, read_source
 from app.protocol.study import StudyProtocol
-from app.protocol.wording import with_own_words
+from app.protocol.wording import with_avatar_lines
 from app.science.instruments import Instrument
 
 _Value = TypeVar("_Value")
@@ -71,7 +71,7 @@ def load_study(
     found = [locate(one, source) for one in between]
     protocol = _validated(_STUDY, source, found)
     canonical = canonical_json(_STUDY.adapter.dump_python(protocol, mode="json"))
-    return LoadedStudy(with_own_words(protocol), sha256_of(canonical), canonical)
+    return LoadedStudy(with_avatar_lines(protocol), sha256_of(canonical), canonical)
 
 
 @lru_cache(maxsize=16)
@@ -101,7 +101,7 @@ def study_schema() -> Schema:
 
 def parse_study_json(canonical_json: str) -> StudyProtocol:
     """Parse a study stored as canonical JSON; raise ConfigError if it is invalid."""
-    return with_own_words(_parsed(_STUDY, canonical_json))
+    return with_avatar_lines(_parsed(_STUDY, canonical_json))
 
 
 def instrument_as_json(instrument: Instrument) -> dict[str, Plain]:

@@ -17,16 +17,18 @@ KINDS = ("delayed_copy", "physics")
 _MARK = re.compile(r"\[avatar:[ \t]*([^\]\n]*?)[ \t]*\][ \t]*")
 
 
-def with_own_words(protocol: StudyProtocol) -> StudyProtocol:
+def with_avatar_lines(protocol: StudyProtocol) -> StudyProtocol:
     """Return the study with only the text lines that apply to its avatar."""
     texts = {
-        key: {language: words_for(protocol.avatar, words) for language, words in text.items()}
+        key: {
+            language: lines_for_avatar(protocol.avatar, words) for language, words in text.items()
+        }
         for key, text in protocol.texts.items()
     }
     return protocol if texts == protocol.texts else protocol.model_copy(update={"texts": texts})
 
 
-def words_for(avatar: str, text: str) -> str:
+def lines_for_avatar(avatar: str, text: str) -> str:
     """Return the lines of a text for one kind of avatar, without their marks."""
     if "[avatar:" not in text:
         return text
@@ -56,7 +58,7 @@ def mark_problems(
             not found
             and isinstance(avatar, str)
             and words.strip()
-            and not words_for(avatar, words).strip()
+            and not lines_for_avatar(avatar, words).strip()
         ):
             yield DefinitionProblem(
                 at,

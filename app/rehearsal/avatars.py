@@ -8,7 +8,7 @@ import numpy as np
 from httpx2 import AsyncClient
 from numpy.typing import NDArray
 
-from app.client import Json, call_again
+from app.client import Json, call_with_retry
 from app.protocol.avatar import AvatarFile, configuration_of
 from app.science.avatar.configuration import Configuration
 from app.science.avatar.simulation import Follower, PhysicsAvatar, SurfaceTouches
@@ -87,7 +87,7 @@ def no_touches() -> tuple[Bools, Bools]:
 class AvatarSource(Protocol):
     """A source of the physics avatar of a session."""
 
-    async def take_up(self, stature_m: float) -> "PhysicsBody":
+    async def request_avatar(self, stature_m: float) -> "PhysicsBody":
         """Return the avatar for a participant of this stature."""
 
 
@@ -100,12 +100,12 @@ class FromServer:
 
     http: AsyncClient
 
-    async def take_up(self, stature_m: float) -> "PhysicsBody":
+    async def request_avatar(self, stature_m: float) -> "PhysicsBody":
         """Return the avatar for a participant of this stature.
 
-        Raises the errors of `call_again`.
+        Raises the errors of `call_with_retry`.
         """
-        answer: Json = await call_again(
+        answer: Json = await call_with_retry(
             self.http, "POST", "/api/vr/avatar", {"stature_m": stature_m}
         )
         configuration = configuration_of(AvatarFile.model_validate(answer["configuration"]))

@@ -175,7 +175,7 @@ class Headset:
         """Bring the headset in line with the session's state."""
         if self._avatar is None and state.materialised:
             # An earlier run of the client had requested the avatar.
-            await self._take_up(state)
+            await self._request_avatar(state)
         if state.step_kind == "materialise" and not state.materialised:
             await self._materialise(state)
         order = state.phase
@@ -201,14 +201,14 @@ class Headset:
             self._t_pose_since_s = self.t_s
         elif self.t_s - self._t_pose_since_s >= T_POSE_S and not self._materialised:
             self._materialised = True
-            await self._take_up(state)
+            await self._request_avatar(state)
             await self.client.report(MaterialisedReport(t_s=self.t_s))
 
-    async def _take_up(self, state: HeadsetState) -> None:
+    async def _request_avatar(self, state: HeadsetState) -> None:
         """Request the physics avatar, if there is one, for the recorded stature."""
         if self._physics is not None:
             stature_m = state.participant.stature_m or self._person.stature_m
-            self._avatar = await self._physics.take_up(stature_m)
+            self._avatar = await self._physics.request_avatar(stature_m)
 
     async def _enter_phase(self, order: PhaseOrder) -> None:
         await self._flush()

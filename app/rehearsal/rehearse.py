@@ -24,7 +24,7 @@ from app.client import (
     Tablet,
     TelemetryClient,
     call,
-    call_again,
+    call_with_retry,
 )
 from app.protocol import Tasks
 from app.rehearsal.avatars import FromServer
@@ -229,7 +229,7 @@ async def report_of(cast: Cast, plan: RehearsalPlan, duration_s: float) -> Rehea
     """Return what was sent, and what the server has stored of it."""
     view = await cast.operator.view()
     session_id = cast.operator.session_id
-    streams: list[Json] = await call_again(
+    streams: list[Json] = await call_with_retry(
         cast.operator.client, "GET", f"/api/sessions/{session_id}/streams"
     )
     stored: dict[str, int] = {}

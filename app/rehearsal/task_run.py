@@ -55,7 +55,7 @@ class BoxRun(TimedRun):
         return self._run.state.clock
 
     @property
-    def has_enough(self) -> bool:
+    def ends_early(self) -> bool:
         """Whether as many tasks are completed as a practice requires."""
         required = self.order.until_completions
         done = self._completed_before + self._reported_completions

@@ -58,7 +58,7 @@ class TimedRun(ABC):
         return self.clock.running_since_s is not None
 
     @property
-    def has_enough(self) -> bool:
+    def ends_early(self) -> bool:
         """Whether the phase ends before its time is up: a practice with its tasks completed."""
         return False
 
@@ -117,7 +117,7 @@ class TimedRun(ABC):
         if self.clock.last_s is not None:
             self.touch(t_s, touches)
         reports += self.news(t_s)
-        return [*reports, *self._freeze(t_s)] if self.has_enough else reports
+        return [*reports, *self._freeze(t_s)] if self.ends_early else reports
 
     def report(self, what: str, t_s: float, cause: str = "headset") -> PhaseReport:
         """Make a report of this phase's clock."""

@@ -13,7 +13,7 @@ from cryptography.x509.verification import PolicyBuilder, Store, VerificationErr
 
 from app.lan.serving.addresses import Address, Machine, host_names
 from app.lan.serving.authority import Authority, authority_from_pem, fingerprint, new_authority
-from app.lan.serving.leaf import Host, new_leaf, wanted_hosts
+from app.lan.serving.leaf import Host, new_leaf, permitted_hosts
 from app.lan.serving.listening import tls_context
 from tests.lan.machines import LAB_PC, NOW
 
@@ -146,7 +146,7 @@ def test_a_public_address_is_permitted_alone() -> None:
     authority = new_authority(Machine(("labpc.local",), (own,)), NOW)
     assert authority.permits(own)
     assert not authority.permits(ip_address("203.0.113.10"))
-    assert own in wanted_hosts(Machine(("labpc.local",), (own,)), authority)
+    assert own in permitted_hosts(Machine(("labpc.local",), (own,)), authority)
 
 
 def test_reading_gives_back_what_was_written(authority: Authority) -> None:

@@ -5,7 +5,7 @@ from datetime import UTC, datetime, timedelta, timezone
 import pytest
 from sqlalchemy import text
 
-from app.database import Database, kept_row, open_database
+from app.database import Database, open_database, referenced_row
 from app.errors import DamagedValue
 from app.models import Account
 
@@ -40,7 +40,7 @@ def test_a_row_that_leads_nowhere_is_a_damaged_value(database: Database) -> None
         database.reading() as db,
         pytest.raises(DamagedValue, match="'gone' names no row of Account"),
     ):
-        kept_row(db, Account, "gone")
+        referenced_row(db, Account, "gone")
 
 
 @pytest.mark.parametrize("damaged", ["2026-11-22 12:00:0\x7f", "2026-99-22 12:00:00", 7])

@@ -55,7 +55,7 @@ def test_a_thread_that_ends_by_an_error_is_named_and_begun_again(background: Bac
         *("work", "failing", "critical"),
         "ValueError",
     )
-    background.well("work")
+    background.recovered("work")
     assert background.failing() == ()
     (incident,) = background.take_incidents()
     assert incident.name == "work"

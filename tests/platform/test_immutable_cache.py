@@ -4,7 +4,7 @@ import pytest
 from sqlalchemy import create_engine
 from sqlalchemy.orm import Session
 
-from app.platform.immutable_cache import Unchanging
+from app.platform.immutable_cache import ImmutableCache
 
 HERE, THERE = (Session(create_engine(f"sqlite:///{name}.sqlite")) for name in ("here", "there"))
 """Two databases that nobody connects to."""
@@ -12,7 +12,7 @@ HERE, THERE = (Session(create_engine(f"sqlite:///{name}.sqlite")) for name in ("
 
 def test_a_value_is_read_once_and_the_longest_unwanted_goes() -> None:
     """Of two places the one that was asked for last keeps its value."""
-    kept: Unchanging[str, str] = Unchanging(2)
+    kept: ImmutableCache[str, str] = ImmutableCache(2)
     read: list[str] = []
 
     def ask(key: str) -> str:
@@ -28,13 +28,13 @@ def test_a_value_is_read_once_and_the_longest_unwanted_goes() -> None:
 
 def test_databases_share_nothing() -> None:
     """The same name may mean something else elsewhere."""
-    kept: Unchanging[str, str] = Unchanging(2)
+    kept: ImmutableCache[str, str] = ImmutableCache(2)
     assert (kept.get(HERE, "a", lambda: "h"), kept.get(THERE, "a", lambda: "t")) == ("h", "t")
 
 
 def test_what_failed_is_read_again() -> None:
     """A row that is not there yet may come."""
-    kept: Unchanging[str, int] = Unchanging(2)
+    kept: ImmutableCache[str, int] = ImmutableCache(2)
     with pytest.raises(ZeroDivisionError):
         kept.get(HERE, "a", lambda: 1 // 0)
     assert kept.get(HERE, "a", lambda: 7) == 7

@@ -45,7 +45,7 @@ def short() -> str:
 class BuiltHere:
     """Builds the avatar here, with the boxes of the shipped study."""
 
-    async def take_up(self, stature_m: float) -> PhysicsBody:
+    async def request_avatar(self, stature_m: float) -> PhysicsBody:
         """As the server would have built it."""
         tasks = study().tasks
         configuration = default_configuration()

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from app.adapters.captures.capture import Capture, CaptureError, Limits, Reading
 from app.adapters.captures.formats import FORMATS, format_of
-from app.adapters.captures.sniffing import what_it_looks_like
+from app.adapters.captures.sniffing import describe_unknown_file
 from app.science.rig import RigError
 from app.science.rotations import RotationError
 
@@ -36,7 +36,7 @@ def read_capture(
     found = format_of(data, name)
     if found is None:
         valid = ", ".join(one.title for one in FORMATS)
-        raise CaptureError(f"{what_it_looks_like(data)}; captures that can be read are {valid}.")
+        raise CaptureError(f"{describe_unknown_file(data)}; captures that can be read are {valid}.")
     try:
         return found.load_reader()(data, name=name, reading=reading, limits=limits)
     except (RigError, RotationError) as error:
@@ -65,13 +65,13 @@ def read_capture_file(
     if path.stat().st_size > limits.bytes:
         raise CaptureError(f"the file is larger than {limits.bytes} bytes, which is the limit.")
     if path.suffix.lower() == ".amc" and not reading.companions:
-        skeleton = skeleton_beside(path)
+        skeleton = companion_skeleton(path)
         if skeleton is not None and skeleton.stat().st_size <= limits.bytes:
             reading = replace(reading, companions={skeleton.name: skeleton.read_bytes()})
     return read_capture(path.read_bytes(), name=path.name, reading=reading, limits=limits)
 
 
-def skeleton_beside(path: Path) -> Path | None:
+def companion_skeleton(path: Path) -> Path | None:
     """Return the ASF in the folder of an AMC that belongs to it, if it is unambiguous."""
     found = sorted(one for one in path.parent.iterdir() if one.suffix.lower() == ".asf")
     named = [one for one in found if path.stem.startswith(one.stem)]

@@ -63,7 +63,7 @@ class Head:
         return any(fits(self.cells(separator)) for separator in (",", ";", "\t"))
 
 
-def what_it_looks_like(data: bytes) -> str:
+def describe_unknown_file(data: bytes) -> str:
     """Describe a file of unknown format to the user who chose it."""
     if not data.strip():
         return "the file is empty"

@@ -34,7 +34,7 @@ from app.lan.serving import (
     SocketProtocol,
     allow_open_files,
     bind,
-    look_around,
+    current_machine,
     make_plan,
     tls_context,
 )
@@ -42,7 +42,7 @@ from app.main import create_app
 from app.platform.background import Background
 from app.platform.folders import database_file
 from app.platform.rate_limit import network_of, usual_limits
-from app.platform.trouble import in_plain_words
+from app.platform.trouble import not_durable_error
 from app.settings import Settings, read_settings
 
 ENDS_WITHIN_S = 15.0
@@ -97,7 +97,8 @@ def _serve(settings: Settings, own: Ownership, *, new_database: bool) -> None:
     background: Background = app.state.context.background
     background.watch_process()
     watch.report_to(
-        lambda error: background.failed(CERTIFICATE, error), lambda: background.well(CERTIFICATE)
+        lambda error: background.failed(CERTIFICATE, error),
+        lambda: background.recovered(CERTIFICATE),
     )
     sys.setswitchinterval(SWITCH_INTERVAL_S)
     freeze_startup_objects()
@@ -131,7 +132,7 @@ def show_certificate(*, as_json: bool) -> str:
     """Describe the certificate of `serve --lan`; the built-in one is created if necessary."""
     plan = make_plan(settings_with({"lan": True, "without_tls": False}), Clock())
     assert plan.certificates is not None  # noqa: S101 - asked for with lan
-    return certificate_text(plan.certificates.current(look_around()), as_json=as_json)
+    return certificate_text(plan.certificates.current(current_machine()), as_json=as_json)
 
 
 def renew_certificate(*, new_authority: bool, as_json: bool) -> str:
@@ -140,7 +141,7 @@ def renew_certificate(*, new_authority: bool, as_json: bool) -> str:
     With `new_authority`, a new authority is created, too: every device then has to install it.
     """
     plan = make_plan(settings_with({"lan": True, "without_tls": False}), Clock())
-    source, machine = plan.certificates, look_around()
+    source, machine = plan.certificates, current_machine()
     if not isinstance(source, LabAuthority):
         raise InvalidInput(
             "the certificate is your own file, which only you can renew",
@@ -220,7 +221,9 @@ def why_not(error: Exception, settings: Settings) -> Exception:
         quarantine_if_damaged(settings, Clock(), every_row=True)
     except ReembodyError as said:
         return said
-    return in_plain_words("the server cannot start", error) if isinstance(error, OSError) else error
+    return (
+        not_durable_error("the server cannot start", error) if isinstance(error, OSError) else error
+    )
 
 
 def _end_with_the_input() -> None:

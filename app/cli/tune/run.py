@@ -97,7 +97,7 @@ def _carried_out(order: TuneOrder, options: TuningOptions, database: Database | 
     # Read the capture first, so that an error is reported before the tuning.
     movement = None if order.capture is None else _movement(order.capture, order.stature_m)
     started_s = time.process_time()
-    with _interruptible() as interrupted, tell_progress() as progress:
+    with _interruptible() as interrupted, show_progress() as progress:
         work: Callable[..., TuningReport | Assessment] = assess if order.evaluate else tune_avatar
         report = work(
             configuration,
@@ -150,7 +150,7 @@ def _interruptible() -> Iterator[Callable[[], bool]]:
 
 
 @contextmanager
-def tell_progress() -> Iterator[Callable[[TuningProgress], None]]:
+def show_progress() -> Iterator[Callable[[TuningProgress], None]]:
     """Show progress: on a terminal one line that is overwritten, elsewhere a line per phase."""
     live = sys.stderr.isatty()
     yield _show_live if live else _show_phases

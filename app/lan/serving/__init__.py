@@ -4,7 +4,7 @@ It is imported only by `reembody serve` and `reembody tls`: the application just
 it can be reached (`app.lan`).
 """
 
-from app.lan.serving.addresses import look_around
+from app.lan.serving.addresses import current_machine
 from app.lan.serving.certificates import Identity, LabAuthority
 from app.lan.serving.help.site import HelpSite
 from app.lan.serving.listening import (
@@ -29,7 +29,7 @@ __all__ = [
     "SocketProtocol",
     "allow_open_files",
     "bind",
-    "look_around",
+    "current_machine",
     "make_plan",
     "tls_context",
 ]

@@ -29,7 +29,7 @@ class Machine:
     addresses: tuple[Address, ...]
 
 
-def look_around() -> Machine:
+def current_machine() -> Machine:
     """Return this machine's current names and addresses, which change with its network."""
     return Machine(names=host_names(socket.gethostname()), addresses=_addresses())
 

@@ -27,10 +27,10 @@ from app.lan.serving.leaf import (
     Host,
     Leaf,
     hosts_of,
+    is_usable,
     leaf_from_pem,
     new_leaf,
-    still_good,
-    wanted_hosts,
+    permitted_hosts,
 )
 
 FOLDER = "tls"
@@ -130,9 +130,9 @@ class LabAuthority:
 
     def _identity(self, machine: Machine, *, renew: bool) -> Identity:
         authority, now = self.authority(machine), self.clock.utc_now()
-        hosts = wanted_hosts(machine, authority)
+        hosts = permitted_hosts(machine, authority)
         leaf = None if renew else self._stored_leaf()
-        if leaf is None or not still_good(leaf, authority, hosts, now):
+        if leaf is None or not is_usable(leaf, authority, hosts, now):
             leaf = new_leaf(authority, hosts, now)
             write_private(self.server_file, leaf.pem)
         return Identity(

@@ -52,7 +52,7 @@ def hosts_of(certificate: x509.Certificate) -> tuple[Host, ...]:
     return (*names.get_values_for_type(x509.DNSName), *addresses)
 
 
-def wanted_hosts(machine: Machine, authority: Authority) -> tuple[Host, ...]:
+def permitted_hosts(machine: Machine, authority: Authority) -> tuple[Host, ...]:
     """Return all names and addresses of this machine that the authority may sign."""
     hosts: Sequence[Host] = ("localhost", *machine.names, *LOOPBACK, *machine.addresses)
     return tuple(one for one in dict.fromkeys(hosts) if authority.permits(one))
@@ -99,7 +99,7 @@ def leaf_from_pem(pem: bytes) -> Leaf:
     return Leaf(pem, x509.load_pem_x509_certificates(pem)[0])
 
 
-def still_good(leaf: Leaf, authority: Authority, hosts: Sequence[Host], now: datetime) -> bool:
+def is_usable(leaf: Leaf, authority: Authority, hosts: Sequence[Host], now: datetime) -> bool:
     """Return whether a certificate can still be used.
 
     It must be signed by this authority, cover all hosts and be valid for another month.

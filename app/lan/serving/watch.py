@@ -16,7 +16,7 @@ from cryptography import x509
 
 from app.errors import ReembodyError
 from app.lan.network import Network
-from app.lan.serving.addresses import Machine, look_around
+from app.lan.serving.addresses import Machine, current_machine
 from app.lan.serving.certificates import Identity
 from app.lan.serving.plan import Plan
 
@@ -31,7 +31,7 @@ class CertificateWatch:
     plan: Plan
     network: Network
     tls: ssl.SSLContext | None = None
-    look: Callable[[], Machine] = look_around
+    look: Callable[[], Machine] = current_machine
     identity: Identity | None = None
     _failed: Callable[[Exception], object] = lambda _: None
     _well: Callable[[], object] = lambda: None

@@ -24,7 +24,7 @@ from app.features.care.backups.readable import unfit_rows
 from app.features.care.backups.rows import Progress, silent
 from app.features.care.backups.shapes import TableShape, shapes_of, shapes_of_models
 from app.platform.trouble import DAMAGED, explain
-from app.schema_revisions import known_revisions, migrate_file, newest_revision
+from app.schema_revisions import all_revisions, migrate_file, newest_revision
 
 
 @dataclass(frozen=True)
@@ -179,12 +179,12 @@ def as_newest(backup: Backup, workplace: Path) -> Iterator[Backup]:
     if revision == newest_revision():
         yield backup
         return
-    if revision not in known_revisions():
+    if revision not in all_revisions():
         raise InvalidInput(
             f"{backup.path} was made by version {backup.manifest.product_version} and has the "
             f"schema {revision}, which this program does not know; nothing was changed",
             value=revision,
-            valid=list(known_revisions()),
+            valid=list(all_revisions()),
             remedy=f"Install version {backup.manifest.product_version} or a later one.",
         )
     workplace.mkdir(parents=True, exist_ok=True)

@@ -32,7 +32,7 @@ from app.features.care.backups.writing import write_backup
 from app.features.people.audit import head_of
 from app.features.record.devices import devices_of_session, revoke
 from app.models import AuditHead, Participant, StudySession
-from app.platform.half_made import Notes
+from app.platform.incomplete_files import Notes
 
 ENDING = ".reembody"
 _S_PER_NS = 1e-9

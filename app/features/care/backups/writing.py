@@ -22,8 +22,8 @@ from app.features.care.backups.manifest import Manifest, write_manifest
 from app.features.care.backups.reading import opened_backup, opened_copy
 from app.features.care.backups.rows import Progress, read_rows, silent, sqlite_insert
 from app.features.care.backups.shapes import TableShape, shapes_of, shapes_of_models
-from app.platform.half_made import Notes, made_beside
-from app.schema_revisions import known_revisions, make_file, newest_revision, revision_of
+from app.platform.incomplete_files import Notes, partial_folder
+from app.schema_revisions import all_revisions, make_file, newest_revision, revision_of
 
 SPARE_BYTES = 64 * 1024 * 1024
 """Space that a backup leaves free on its disk, which the server may write to as well."""
@@ -78,11 +78,11 @@ def _require_known(revision: str | None) -> str:
             "there is no Reembody database here",
             remedy="Set REEMBODY_DATA_DIR or REEMBODY_DATABASE_URL as for the server.",
         )
-    if revision not in known_revisions():
+    if revision not in all_revisions():
         raise Conflict(
             f"the database has the schema {revision}, which this program does not know",
             value=revision,
-            valid=list(known_revisions()),
+            valid=list(all_revisions()),
             remedy="Back it up with the newer program that last used it.",
         )
     return revision
@@ -117,7 +117,7 @@ def _mb(size: int) -> str:
 @contextmanager
 def _temporary_file(to: Path, now: datetime, notes: Notes | None) -> Iterator[Path]:
     """Yield a file in a private temporary folder beside `to`, which is removed afterwards."""
-    with made_beside("backup", to, now=now, notes=notes) as folder:
+    with partial_folder("backup", to, now=now, notes=notes) as folder:
         yield folder / to.name
 
 

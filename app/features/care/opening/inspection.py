@@ -19,8 +19,8 @@ from pathlib import Path
 from app.database import BUSY_TIMEOUT_S
 from app.features.care.backups import TableShape, columns_in, shapes_at, wrong_rows, wrong_tables
 from app.features.care.opening.wal import frames_noted, inspect_log
-from app.platform.trouble import in_plain_words, proves_damage
-from app.schema_revisions import VERSION_TABLE, known_revisions, newest_revision
+from app.platform.trouble import not_durable_error, proves_damage
+from app.schema_revisions import VERSION_TABLE, all_revisions, newest_revision
 
 MAGIC = b"SQLite format 3\x00"
 ALWAYS_CHECKED_BYTES = 2 * 10**9
@@ -126,7 +126,7 @@ def _unless_hindered(file: Path) -> Iterator[None]:
         yield
     except (OSError, sqlite3.Error, UnicodeDecodeError) as error:
         words = f"the database {file} cannot be read, and was left as it is"
-        raise in_plain_words(words, error) from error
+        raise not_durable_error(words, error) from error
 
 
 def _proven_damage(error: Exception) -> str | None:
@@ -217,7 +217,7 @@ def _wrong_content(connection: sqlite3.Connection) -> str | None:
     names = [one for (one,) in connection.execute(f"SELECT version_num FROM {VERSION_TABLE}")]  # noqa: S608 - our own table
     if len(names) != 1 or not isinstance(names[0], str) or not _REVISION.fullmatch(names[0]):
         return UNNAMED
-    if names[0] not in known_revisions():
+    if names[0] not in all_revisions():
         return UNNAMED if names[0] < newest_revision() else None  # a newer program's
     shapes = shapes_at(names[0])
     wrong = wrong_tables(found, shapes) or _too_new(found, shapes)

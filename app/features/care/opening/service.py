@@ -24,9 +24,9 @@ from app.platform.folders import (
     require_one_name,
     traces_of_a_database,
 )
-from app.platform.trouble import in_plain_words, plainly
+from app.platform.trouble import errors_as_not_durable, not_durable_error
 from app.schema_revisions import (
-    known_revisions,
+    all_revisions,
     make_file,
     migrate,
     newest_revision,
@@ -53,7 +53,9 @@ def quarantine_if_damaged(settings: Settings, clock: Clock, *, every_row: bool =
     if file is None:
         return
     quarantine = Quarantine(file)
-    with plainly(f"what an earlier start began to move into {quarantine.folder} is not moved yet"):
+    with errors_as_not_durable(
+        f"what an earlier start began to move into {quarantine.folder} is not moved yet"
+    ):
         quarantine.finish()
     if not is_there(file) or is_open_elsewhere(file):
         return
@@ -111,7 +113,9 @@ def bring_up_to_date(settings: Settings, clock: Clock) -> Path | None:
     if file is not None and not is_there(file):
         create_database(file, clock)
         return None
-    with plainly(f"the database {_name_of(settings)} cannot be worked with, and was left as it is"):
+    with errors_as_not_durable(
+        f"the database {_name_of(settings)} cannot be worked with, and was left as it is"
+    ):
         database = open_database(url)
         try:
             with database.reading() as db:
@@ -152,7 +156,7 @@ def prepare_database(
     refuse_unconfirmed_new_database(settings, new_database=new_database)
     backup = bring_up_to_date(settings, clock)
     if to_write:
-        with plainly(f"the database {_name_of(settings)} cannot be written"):
+        with errors_as_not_durable(f"the database {_name_of(settings)} cannot be written"):
             database = open_database(settings.resolved_database_url)
             try:
                 with database.writing() as db:
@@ -183,12 +187,12 @@ def _revision(connection: Connection) -> str | None:
     found = revision_of(connection)
     if found is None:
         _refuse_foreign(inspect(connection).get_table_names(), str(connection.engine.url.database))
-    elif found not in known_revisions():
+    elif found not in all_revisions():
         raise Conflict(
             f"the database has the schema {found}, which version {__version__} does not know: "
             "a newer version has used it. It was left as it is",
             value=found,
-            valid=list(known_revisions()),
+            valid=list(all_revisions()),
             remedy="Start the newer version again, or restore a backup that this one can read.",
         )
     return found
@@ -230,7 +234,7 @@ def _quarantined(file: Path, damage: str, settings: Settings, clock: Clock) -> R
         place = Quarantine(file).put_away(damage, clock.utc_now())
     except OSError as error:
         words = f"the database {file} is damaged ({damage}), and it cannot be put into quarantine"
-        return in_plain_words(words, error)
+        return not_durable_error(words, error)
     return _damaged(f"the database {file} is damaged: {damage}", place, settings)
 
 
@@ -261,7 +265,7 @@ def _is_missing(settings: Settings) -> bool:
     file = database_file(settings)
     if file is not None:
         return not is_there(file)
-    with plainly(f"the database {_name_of(settings)} cannot be worked with"):
+    with errors_as_not_durable(f"the database {_name_of(settings)} cannot be worked with"):
         database = open_database(settings.resolved_database_url)
         try:
             with database.reading() as db:
@@ -277,7 +281,7 @@ def create_database(file: Path, clock: Clock) -> None:
     one. Raises NotDurable if the database cannot be created; nothing is left of it then.
     """
     folder = file.absolute().parent
-    with plainly(f"a new database cannot be begun in {folder}"):
+    with errors_as_not_durable(f"a new database cannot be begun in {folder}"):
         if any(file.with_name(file.name + suffix).exists() for suffix in DATABASE_SUFFIXES[1:]):
             quarantine = Quarantine(file)
             quarantine.resolve(quarantine.put_away("its database is missing", clock.utc_now()))

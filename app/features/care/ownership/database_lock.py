@@ -12,7 +12,7 @@ import re
 from sqlalchemy import Connection, text
 from sqlalchemy.exc import DBAPIError, SQLAlchemyError
 
-from app.database_address import connected, disconnect, first_line, shown_address
+from app.database_address import disconnect, first_line, open_connection, shown_address
 from app.errors import NotDurable
 from app.features.care.ownership.owner import Owned, Owner
 
@@ -35,7 +35,7 @@ _ENDED_NOTICED_BY_SERVER = (
 class DatabaseLock:
     """The lock on the database at `url`, taken on construction.
 
-    Raises Owned, and what `connected` raises.
+    Raises Owned, and what `open_connection` raises.
     """
 
     def __init__(self, url: str, owner: Owner) -> None:
@@ -66,7 +66,7 @@ class DatabaseLock:
         disconnect(self._connection)
 
     def _taken(self) -> Connection:
-        connection = connected(self._url)
+        connection = open_connection(self._url)
         try:
             for statement in _ENDED_NOTICED_BY_SERVER:
                 connection.execute(text(statement))

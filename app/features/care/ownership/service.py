@@ -210,4 +210,4 @@ class OwnerWatch(Part):
         else:
             if lost:
                 log.warning("the lock on the data was lost, and was taken again")
-            self._background.well(OWNER)
+            self._background.recovered(OWNER)

@@ -12,7 +12,7 @@ from app.features.care.backups import ENDING
 from app.features.people.audit import MAX_PLACE_LENGTH, record, record_copy
 from app.models import CopyMade, Participant, Study, StudySession
 from app.platform.folders import backups_of
-from app.platform.half_made import Notes, remove_left
+from app.platform.incomplete_files import Notes, remove_leftovers
 from app.settings import Settings
 
 FOUND_BY = "system"
@@ -92,7 +92,7 @@ def register_found(db: Session, settings: Settings, now: datetime) -> Sequence[C
             found.append(
                 record_copy(db, kind="backup", place=place, by=FOUND_BY, now=now, size_bytes=size)
             )
-    remove_left(settings)
+    remove_leftovers(settings)
     for one in Notes.of(settings).all():
         place = str(one.to or one.path)[-MAX_PLACE_LENGTH:]
         if one.kind == "backup" and place not in recorded:

@@ -19,7 +19,7 @@ from sqlalchemy.orm import Session
 from app.errors import InvalidInput, NotDurable, NotFound, file_problem, missing_file
 from app.models import Erasure
 from app.platform.folders import home_of
-from app.platform.trouble import plainly
+from app.platform.trouble import errors_as_not_durable
 from app.settings import Settings
 
 log = logging.getLogger(__name__)
@@ -55,7 +55,7 @@ class TombstoneFile:
         Raises NotDurable if it cannot be read, because erased data must not reappear for that
         reason.
         """
-        with plainly(f"the list of erasures {self.path} cannot be read"):
+        with errors_as_not_durable(f"the list of erasures {self.path} cannot be read"):
             if not self.path.exists():
                 return []
             found, unreadable = _parsed(self.path.read_bytes())
@@ -102,7 +102,7 @@ def read_list(path: Path) -> tuple[Tombstone, ...]:
             valid=f"the file {NAME} of a data folder",
             remedy="Name the list of erasures of the earlier data folder; nothing was changed.",
         )
-    with plainly(f"the list of erasures {path} cannot be read"):
+    with errors_as_not_durable(f"the list of erasures {path} cannot be read"):
         found, unreadable = _parsed(path.read_bytes())
     if unreadable:
         raise InvalidInput(

@@ -30,7 +30,7 @@ class StorageRecovery(Part):
 
     def start(self) -> None:
         """Allocate the disk reserve before anything is recorded, and start the thread."""
-        self.context.storage.reserve.keep()
+        self.context.storage.reserve.create()
         self._thread = self.context.background.thread(THREAD, self._run)
 
     def stop(self) -> None:
@@ -43,7 +43,7 @@ class StorageRecovery(Part):
         while not self._stop.wait(LOOK_EVERY_S):
             if self.context.storage.is_untried(UNTRIED_NS):
                 self.try_to_write()
-            self.context.background.well(THREAD)
+            self.context.background.recovered(THREAD)
 
     def try_to_write(self) -> None:
         """Write once; the database reports the result to the storage's health."""

@@ -16,9 +16,9 @@ from app.features.care.storage.schemas import (
 )
 from app.features.design.studies import newest_version, protocol_of
 from app.models import Study
-from app.platform.access import Caller, is_theirs
+from app.platform.access import Caller, visible_to
 from app.platform.context import AppContext
-from app.platform.half_made import half_made
+from app.platform.incomplete_files import incomplete_files
 
 LARGEST = 12
 """How many sessions are listed."""
@@ -30,7 +30,7 @@ def storage_view(db: Session, context: AppContext, caller: Caller, *, anew: bool
     """Return all sizes, with only those studies and sessions that the caller may see."""
     measured = context.part(StorageDesk).measured(anew=anew)
     disk = _disk(context, measured)
-    studies = db.scalars(select(Study).where(is_theirs(caller)).order_by(Study.key)).all()
+    studies = db.scalars(select(Study).where(visible_to(caller)).order_by(Study.key)).all()
     own = {study.key for study in studies}
     seen = [one for one in measured.sessions if one.room.study_key in own]
     largest = sorted(seen, key=lambda one: one.room.bytes, reverse=True)[:LARGEST]
@@ -53,7 +53,7 @@ def storage_view(db: Session, context: AppContext, caller: Caller, *, anew: bool
         sessions_total=len(seen),
         half_made=[
             HalfMadeView(kind=one.kind, place=str(one.path), since=one.since, going_on=one.going_on)
-            for one in half_made(context.settings)
+            for one in incomplete_files(context.settings)
             # Files in the scratch folder are in progress and are removed automatically.
             if one.kind != "upload"
             and one.kind != "check"

@@ -24,7 +24,7 @@ from app.features.design.instruments.service import (
 from app.features.design.instruments.trial_scoring import try_answers
 from app.features.design.instruments.views import detail_of, preview_of, summary_of
 from app.models import InstrumentVersion
-from app.platform.access import is_theirs
+from app.platform.access import visible_to
 from app.platform.config_problems import problem_views
 from app.platform.dependencies import Context, Reading, SignedIn, Writing
 from app.protocol import ConfigError, load_instrument
@@ -40,7 +40,7 @@ def get_instruments(db: Reading, caller: SignedIn) -> list[InstrumentSummary]:
             InstrumentVersion.key, InstrumentVersion.created_at, InstrumentVersion.id
         )
     )
-    used = uses(db, is_theirs(caller))
+    used = uses(db, visible_to(caller))
     by_key = groupby(rows, key=lambda row: row.key)
     return [summary_of(list(versions), used) for _, versions in by_key]
 
@@ -51,7 +51,7 @@ def post_instrument(
 ) -> InstrumentDetail:
     """Store a version; existing studies keep the wording that they were made with."""
     row = save_instrument(db, file.yaml, context.clock.utc_now())
-    return detail_of(db, row.key, is_theirs(caller))
+    return detail_of(db, row.key, visible_to(caller))
 
 
 @router.post("/instruments/check")
@@ -94,4 +94,4 @@ def post_score(request: TryRequest, db: Reading, _: SignedIn) -> TryResult:
 @router.get("/instruments/{key}")
 def get_instrument(key: str, db: Reading, caller: SignedIn) -> InstrumentDetail:
     """Return one instrument in full, with all its versions."""
-    return detail_of(db, key, is_theirs(caller))
+    return detail_of(db, key, visible_to(caller))

@@ -9,7 +9,7 @@ from fastapi import APIRouter, Query
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.database import kept_row
+from app.database import referenced_row
 from app.features.design.studies.comparing import compare_versions
 from app.features.design.studies.draft_endpoints import router as drafts
 from app.features.design.studies.lifecycle import archive, duplicate, restore
@@ -35,7 +35,7 @@ from app.features.design.studies.service import (
 from app.features.design.studies.versions import used_instrument
 from app.features.people.audit import record
 from app.models import Study, StudyVersion
-from app.platform.access import Caller, add_member, is_blind, is_theirs
+from app.platform.access import Caller, add_member, is_blind, visible_to
 from app.platform.dependencies import Context, Reading, SignedIn, Writing
 from app.protocol import TIMED_KINDS, compile_plan, sequences, visit_time
 
@@ -49,7 +49,7 @@ VersionNumber = Annotated[int, Query(ge=1, lt=1_000_000)]
 def get_studies(db: Reading, caller: SignedIn, *, archived: bool = False) -> list[StudySummary]:
     """Return the caller's studies in their newest version; `archived`: only archived ones."""
     condition = Study.archived_at.is_not(None) if archived else Study.archived_at.is_(None)
-    studies = db.scalars(select(Study).where(condition, is_theirs(caller)).order_by(Study.key))
+    studies = db.scalars(select(Study).where(condition, visible_to(caller)).order_by(Study.key))
     return [_summary(db, study, newest_version(db, study)) for study in studies]
 
 
@@ -145,7 +145,7 @@ def _created(
     details: Mapping[str, object] | None = None,
 ) -> StudyView:
     """Give the creator of a new study access to it, record its creation and return it."""
-    study = kept_row(db, Study, version.study_id)
+    study = referenced_row(db, Study, version.study_id)
     add_member(db, caller, study)
     _note(db, caller, action, study, now, details)
     return _view(db, study, caller)

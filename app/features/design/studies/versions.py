@@ -8,12 +8,12 @@ from typing import Any
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.database import kept_row
+from app.database import referenced_row
 from app.errors import NotFound
 from app.features.design.instruments import instrument_of
 from app.models import InstrumentVersion, StudyVersion
 from app.platform.config_problems import unpacking
-from app.platform.immutable_cache import Unchanging
+from app.platform.immutable_cache import ImmutableCache
 from app.protocol import StudyProtocol, parse_study_json
 from app.science.instruments import Instrument
 
@@ -37,8 +37,8 @@ class UsedInstrument:
     definition: Mapping[str, Any]
 
 
-_contents: Unchanging[str, VersionContent] = Unchanging(_VERSIONS)
-_used: Unchanging[tuple[str, str], UsedInstrument] = Unchanging(_INSTRUMENTS)
+_contents: ImmutableCache[str, VersionContent] = ImmutableCache(_VERSIONS)
+_used: ImmutableCache[tuple[str, str], UsedInstrument] = ImmutableCache(_INSTRUMENTS)
 
 
 def version_content(db: Session, version_id: str) -> VersionContent:
@@ -52,7 +52,7 @@ def used_instrument(db: Session, version_id: str, key: str) -> UsedInstrument:
 
 
 def _read_content(db: Session, version_id: str) -> VersionContent:
-    version = kept_row(db, StudyVersion, version_id)
+    version = referenced_row(db, StudyVersion, version_id)
     with unpacking(version.canonical_json, version.content_hash):
         protocol = parse_study_json(version.canonical_json)
     return VersionContent(protocol, dict(version.instruments))

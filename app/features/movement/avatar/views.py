@@ -24,7 +24,7 @@ from app.features.movement.avatar.service import (
 )
 from app.features.movement.humanoids import humanoid_by_hash, parsed_figure
 from app.models import Avatar, AvatarVersion, Study, StudySession
-from app.platform.access import Caller, is_theirs
+from app.platform.access import Caller, visible_to
 from app.platform.config_problems import problem_views
 from app.protocol import ConfigError, ConfigProblem
 from app.protocol.avatar import file_of, load_avatar, parse_avatar_json
@@ -136,7 +136,7 @@ def _sessions_by_hash(
     rows = db.execute(
         select(column, func.count())
         .join(Study, Study.id == StudySession.study_id)
-        .where(condition, is_theirs(caller))
+        .where(condition, visible_to(caller))
         .group_by(column)
     )
     return {str(found): count for found, count in rows}

@@ -35,7 +35,7 @@ from app.features.movement.captures.workbench import Workbench
 from app.features.movement.files import BINARY, BYTES, attachment, binary
 from app.platform.context import AppContext
 from app.platform.dependencies import Context, Reading, SignedIn, Writing
-from app.platform.half_made import uploads_of
+from app.platform.incomplete_files import uploads_of
 
 router = APIRouter(prefix="/captures", tags=["captures"])
 WRITTEN = " or ".join(one.name.en for one in WRITERS)
@@ -82,7 +82,7 @@ async def get_verification(
     mapped = await run_in_threadpool(mapped_capture, context, capture_id)
     statures = tuple(dict.fromkeys(avatars))
     return Response(
-        await context.part(Workbench).computed(
+        await context.part(Workbench).run_cached(
             verification_json, mapped, statures, lock_feet=lock_feet
         ),
         media_type="application/json",
@@ -130,7 +130,7 @@ async def get_retargeted_motion(
     """Return the positions of an avatar's joints over time, for a preview."""
     mapped = await run_in_threadpool(mapped_capture, context, capture_id)
     return Response(
-        await context.part(Workbench).computed(
+        await context.part(Workbench).run_cached(
             retargeted_positions, mapped, avatar, lock_feet=lock_feet
         ),
         media_type=BYTES,

@@ -123,7 +123,7 @@ async def get_motion(
     """Return positions over time for a preview, as recorded or of the capture's skeleton."""
     source = await run_in_threadpool(source_of_capture, context, capture_id)
     return Response(
-        await context.part(Workbench).computed(
+        await context.part(Workbench).run_cached(
             recorded_positions, store_of(context), source, shown
         ),
         media_type=BYTES,

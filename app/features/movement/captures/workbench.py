@@ -14,7 +14,7 @@ import psutil
 
 from app.errors import InvalidInput
 from app.features.movement.captures.source import Cannot
-from app.platform.job_queue import Words, WorkingLine
+from app.platform.job_queue import JobMessages, JobQueue
 from app.platform.workers import Worker
 
 WITHIN_S = 120.0
@@ -35,10 +35,10 @@ def limit_memory() -> None:
 
 
 @dataclass
-class Workbench(WorkingLine):
+class Workbench(JobQueue):
     """Run the tasks of captures one after the other, and cache their results (bytes)."""
 
-    words: ClassVar[Words] = Words(
+    messages: ClassVar[JobMessages] = JobMessages(
         busy="the server is busy with other captures",
         cannot="the capture cannot be processed",
         ended="the process that read it ended",
@@ -47,12 +47,12 @@ class Workbench(WorkingLine):
         log="a capture could not be processed",
     )
     # The process may not have released the memory that it had allocated.
-    fill_the_process: ClassVar[tuple[type[Exception], ...]] = (MemoryError,)
+    memory_errors: ClassVar[tuple[type[Exception], ...]] = (MemoryError,)
     within_s: float = WITHIN_S
     _worker: Worker = field(default_factory=lambda: Worker(limit_memory))
 
-    def _keeps_too_much(self) -> bool:
-        return sum(map(len, self._kept.values())) > KEPT_BYTES and len(self._kept) > 1
+    def _cache_is_full(self) -> bool:
+        return sum(map(len, self._cache.values())) > KEPT_BYTES and len(self._cache) > 1
 
     def _refusal(self, error: Exception) -> InvalidInput | None:
         if not isinstance(error, Cannot):

@@ -20,8 +20,8 @@ from starlette.requests import ClientDisconnect
 from app.errors import InvalidInput, NotDurable
 from app.features.movement.files.contents import plain_pieces
 from app.platform.context import AppContext
-from app.platform.half_made import uploads_of
-from app.platform.trouble import in_plain_words
+from app.platform.incomplete_files import uploads_of
+from app.platform.trouble import not_durable_error
 
 BLOCK_BYTES = 1024 * 1024
 FileName = Annotated[
@@ -74,7 +74,7 @@ def _new_folder(context: AppContext) -> "tempfile.TemporaryDirectory[str]":
             dir=uploads_of(context.settings), ignore_cleanup_errors=True
         )
     except OSError as error:
-        raise in_plain_words("the upload could not be put on the disk", error) from error
+        raise not_durable_error("the upload could not be put on the disk", error) from error
 
 
 async def _received_whole(body: AsyncIterator[bytes], to: Path) -> int:

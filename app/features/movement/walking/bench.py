@@ -9,7 +9,7 @@ from typing import ClassVar
 
 from app.errors import InvalidInput
 from app.features.movement.walking.sources import Cannot
-from app.platform.job_queue import Words, WorkingLine
+from app.platform.job_queue import JobMessages, JobQueue
 from app.platform.workers import Worker
 
 WITHIN_S = 120.0
@@ -23,10 +23,10 @@ def load() -> None:
 
 
 @dataclass
-class Bench(WorkingLine):
+class Bench(JobQueue):
     """Compute predictions one after the other, and cache their results."""
 
-    words: ClassVar[Words] = Words(
+    messages: ClassVar[JobMessages] = JobMessages(
         busy="the server is busy with other questions about walking",
         cannot="this cannot be answered",
         ended="the process that computed it ended",
@@ -37,8 +37,8 @@ class Bench(WorkingLine):
     within_s: float = WITHIN_S
     _worker: Worker = field(default_factory=lambda: Worker(load))
 
-    def _keeps_too_much(self) -> bool:
-        return len(self._kept) > KEPT
+    def _cache_is_full(self) -> bool:
+        return len(self._cache) > KEPT
 
     def _refusal(self, error: Exception) -> InvalidInput | None:
         if not isinstance(error, Cannot):

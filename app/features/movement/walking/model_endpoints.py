@@ -99,7 +99,7 @@ def get_model_file(model_id: str, context: Context, _: SignedIn) -> StreamingRes
 async def post_path(wish: PathAsked, context: Context, _: SignedIn) -> PathView:
     """Return the shortest path between two points, or check that a drawn one avoids obstacles."""
     question = await run_in_threadpool(_question, context, wish)
-    points = await context.part(Bench).computed(plan_way, question)
+    points = await context.part(Bench).run_cached(plan_way, question)
     length_m = sum(dist(a, b) for a, b in pairwise(points))
     return PathView(points_m=points, length_m=length_m)
 
@@ -111,7 +111,7 @@ async def post_prediction(
     """Predict how long people take on a path: a distribution, and walks drawn from it."""
     content_hash = await run_in_threadpool(_content, context, model_id)
     question = await run_in_threadpool(_question, context, wish)
-    found = await context.part(Bench).computed(
+    found = await context.part(Bench).run_cached(
         predict_walk, store_of(context), content_hash, question
     )
     return PredictionView.model_validate(found)
@@ -122,7 +122,9 @@ async def post_slice(model_id: str, wish: SliceAsked, context: Context, _: Signe
     """Return how suitable steering parameters are for a walk: a slice of the map."""
     content_hash = await run_in_threadpool(_content, context, model_id)
     question = SliceQuestion(tuple(sorted(wish.dependencies.items())), wish.held, wish.value)
-    found = await context.part(Bench).computed(slice_of, store_of(context), content_hash, question)
+    found = await context.part(Bench).run_cached(
+        slice_of, store_of(context), content_hash, question
+    )
     return SliceView.model_validate(found)
 
 

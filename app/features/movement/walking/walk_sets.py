@@ -38,7 +38,7 @@ from app.features.people.audit import record
 from app.models import WalkingModelRow, WalkSetRow
 from app.platform.access import Caller
 from app.platform.context import AppContext
-from app.platform.half_made import uploads_of
+from app.platform.incomplete_files import uploads_of
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,7 @@ from app.platform.dependencies import (
     FREES_SPACE,
     Context,
     SignedIn,
-    known_caller,
+    signed_in_caller,
 )
 from app.platform.hub import after_commit
 from app.platform.rate_limit import network_of
@@ -108,7 +108,7 @@ def post_logout(request: Request, response: Response, context: Context) -> None:
 def get_me(request: Request, context: Context) -> WhoView:
     """Return the account that is signed in, or null if none is."""
     try:
-        return WhoView(account=_view(known_caller(request, context)))
+        return WhoView(account=_view(signed_in_caller(request, context)))
     except NotSignedIn:
         return WhoView(account=None)
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from sqlalchemy import select
 from sqlalchemy.orm import Session, defer
 
-from app.database import kept_row
+from app.database import referenced_row
 from app.features.design.instruments import instrument_of
 from app.features.design.studies import instrument_for, protocol_of, versions_of
 from app.features.record.alarms import AlarmView, open_alarms
@@ -47,7 +47,7 @@ def session_view(
     db: Session, context: AppContext, session: StudySession, caller: Caller
 ) -> SessionView:
     """Return the full view of a session, without what `caller` may not see."""
-    version = kept_row(db, StudyVersion, session.study_version_id)
+    version = referenced_row(db, StudyVersion, session.study_version_id)
     protocol = protocol_of(version)
     blinded = is_blind(db, caller, protocol, session)
     state, plan, slot = state_of(session), plan_of(db, session), slot_of(db, session)
@@ -113,7 +113,7 @@ def event_views(db: Session, session: StudySession, caller: Caller) -> list[Even
     Blinded callers get no latencies and no hashes: from a hash, the latency can be found by trying
     the few possible values.
     """
-    version = kept_row(db, StudyVersion, session.study_version_id)
+    version = referenced_row(db, StudyVersion, session.study_version_id)
     blinded = is_blind(db, caller, protocol_of(version), session)
     views = []
     for row in events_of(db, session.id):

@@ -8,7 +8,7 @@ from datetime import datetime
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
-from app.database import kept_row
+from app.database import referenced_row
 from app.errors import Conflict
 from app.features.design.studies import protocol_of
 from app.features.record.alarms import Change, Condition, store_change
@@ -51,7 +51,7 @@ def welcome(db: Session, session_id: str, hello: Hello, now: datetime) -> Welcom
     session = session_by_id(db, session_id, lock=True)
     require_capture(db, session_id)
     _require_avatar(session, hello)
-    protocol = protocol_of(kept_row(db, StudyVersion, session.study_version_id))
+    protocol = protocol_of(referenced_row(db, StudyVersion, session.study_version_id))
     if hello.epoch is not None and not was_given(db, session_id, hello.epoch):
         message = f"a headset claims epoch {hello.epoch}, which the server did not assign"
         record_impossible(db, session_id, message, now)

@@ -15,7 +15,7 @@ from datetime import datetime
 from sqlalchemy import Select, func, select
 from sqlalchemy.orm import Session
 
-from app.database import kept_row
+from app.database import referenced_row
 from app.errors import Conflict
 from app.features.record.ledger.shortfalls import Shortfall, shortfalls_of
 from app.models import (
@@ -184,7 +184,7 @@ def settle_attempt(db: Session, session: StudySession, *, counts: bool) -> None:
     if not counts:
         attempt.outcome = "invalid"
     elif attempt.outcome == "invalid":
-        slot = kept_row(db, LedgerSlot, attempt.slot_id)
+        slot = referenced_row(db, LedgerSlot, attempt.slot_id)
         # Simultaneous joins queue on the same lock of the ledger.
         db.scalar(select(Ledger.id).where(Ledger.id == slot.ledger_id).with_for_update())
         occupied = select(SlotAttempt.id).where(

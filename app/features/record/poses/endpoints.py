@@ -17,7 +17,7 @@ from app.errors import NotSignedIn, ReembodyError
 from app.features.record.headset import TOPICS, TOUCHES
 from app.features.record.poses.setting import Setup, Touches, setup_of
 from app.platform.context import AppContext
-from app.platform.dependencies import admitted
+from app.platform.dependencies import authorised_caller
 from app.wire import StreamName
 
 router = APIRouter(tags=["sessions"])
@@ -108,7 +108,7 @@ class _Viewer:
             await self.socket.send_text(setup.model_dump_json())
 
     def _setup(self) -> Setup:
-        caller = admitted(self.socket, self.context, "WEBSOCKET")
+        caller = authorised_caller(self.socket, self.context, "WEBSOCKET")
         with self.context.database.reading() as db:
             return setup_of(db, caller, self.session_id)
 

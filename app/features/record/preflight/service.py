@@ -28,7 +28,7 @@ from app.features.record.sessions import (
     store_content,
 )
 from app.models import StudySession
-from app.platform.access import OVER, session_by_id
+from app.platform.access import ENDED_STATUSES, session_by_id
 from app.platform.context import AppContext
 
 CONTENT = "preflight"
@@ -88,7 +88,7 @@ def _line(check: PreflightCheck, found: Found) -> Check:
 
 def require_open(session: StudySession) -> None:
     """Raise Conflict if the session has ended."""
-    if session.status in OVER:
+    if session.status in ENDED_STATUSES:
         raise Conflict(
             "the session has ended, so there is nothing left to check",
             value=session.status,

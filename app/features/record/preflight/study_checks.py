@@ -3,7 +3,7 @@
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.database import kept_row
+from app.database import referenced_row
 from app.errors import ReembodyError
 from app.features.design.instruments import instrument_of
 from app.features.design.studies import instrument_for, protocol_of
@@ -23,7 +23,7 @@ _RESTORE = Words(
 
 
 def _version(situation: Situation) -> StudyVersion:
-    return kept_row(situation.db, StudyVersion, situation.session.study_version_id)
+    return referenced_row(situation.db, StudyVersion, situation.session.study_version_id)
 
 
 def _instruments(situation: Situation) -> Found:

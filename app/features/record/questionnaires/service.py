@@ -14,7 +14,7 @@ import numpy as np
 from sqlalchemy import Table, bindparam, insert, select
 from sqlalchemy.orm import Session
 
-from app.errors import InvalidInput, KeptConflict, NotNow
+from app.errors import InvalidInput, NotNow, RecordedConflict
 from app.features.design.studies import UsedInstrument, used_instrument
 from app.features.record.doubts import judge_with_doubts
 from app.features.record.questionnaires.schemas import (
@@ -117,7 +117,7 @@ def submit(
     """Store a form, advance the session, and return the receipt.
 
     A form that is already stored returns its first receipt. `session` must be locked. Raises
-    InvalidInput with every invalid answer, NotNow if this form is not due, and KeptConflict if
+    InvalidInput with every invalid answer, NotNow if this form is not due, and RecordedConflict if
     different answers are already stored; the new ones are then stored separately.
     """
     require_capture_of(db, session)
@@ -282,7 +282,7 @@ def keep_refused(
 ) -> NoReturn:
     """Reject answers that differ from the stored ones, but store them separately, once.
 
-    Raises KeptConflict, with which this transaction is committed.
+    Raises RecordedConflict, with which this transaction is committed.
     """
     hash_ = request_hash(request)
     if hash_ not in (stands.request_hash, *_known(db, session)):
@@ -298,7 +298,7 @@ def keep_refused(
         )
         kept = KeepRefusedForm(submission_id=stands.id, content=content)
         apply_command(db, context, session, kept, actor=actor)
-    raise KeptConflict(
+    raise RecordedConflict(
         "other answers to this form are stored already",
         value=request.administration,
         remedy="The first answers stand; these were kept beside them. The experimenter can open "

@@ -11,7 +11,7 @@ from datetime import datetime, timedelta
 from sqlalchemy import Select, select
 from sqlalchemy.orm import Session
 
-from app.database import kept_row
+from app.database import referenced_row
 from app.errors import InvalidInput
 from app.features.design.instruments import instrument_of
 from app.features.record.questionnaires.hints import hints_of
@@ -93,7 +93,9 @@ def correct_answer(
     The session must be locked. Raises InvalidInput if the form has no such item, if the value is
     not a possible answer to it, or if it is already the current answer.
     """
-    instrument = instrument_of(kept_row(db, InstrumentVersion, submission.instrument_version_id))
+    instrument = instrument_of(
+        referenced_row(db, InstrumentVersion, submission.instrument_version_id)
+    )
     _require_fit(instrument, item, value)
     before = answers_of(db, submission.id)
     number = float(value) if isinstance(value, bool | int | float) else None
@@ -166,7 +168,7 @@ def _given(row: Answer) -> str | float | None:
 def _stored_answers(db: Session, submission: Submission) -> StoredAnswers:
     rows = db.scalars(select(ScoreValue).where(ScoreValue.submission_id == submission.id))
     scores = {row.score: row.value for row in rows}
-    version = kept_row(db, InstrumentVersion, submission.instrument_version_id)
+    version = referenced_row(db, InstrumentVersion, submission.instrument_version_id)
     instrument = instrument_of(version)
     answers = answers_of(db, submission.id)
     own = select(Submission.id).where(Submission.id == submission.id)

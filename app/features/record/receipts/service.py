@@ -7,7 +7,7 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from app import __version__
-from app.database import kept_row
+from app.database import referenced_row
 from app.features.record.doubts import Doubt, doubts_of
 from app.features.record.receipts.completions import CompletionReceipt, completion_receipts
 from app.features.record.receipts.latencies import LatencyReceipt, latency_receipts
@@ -69,7 +69,7 @@ def receipt_of(db: Session, session_id: str) -> SessionReceipt:
     )
     return SessionReceipt(
         product_version=__version__,
-        study=kept_row(db, Study, session.study_id).key,
+        study=referenced_row(db, Study, session.study_id).key,
         session_id=session_id,
         status=session.status,
         simulated=session.kind == "simulated",

@@ -11,7 +11,7 @@ from typing import Any
 
 from sqlalchemy.orm import Session
 
-from app.database import kept_row
+from app.database import referenced_row
 from app.errors import InvalidInput
 from app.features.design.studies import protocol_of
 from app.features.record.sessions.consent_schemas import (
@@ -89,7 +89,7 @@ class ConsentDesk:
         return self._store(step, mode="paper", ticked=None, paper=paper.model_dump())
 
     def _store(self, step: Step, *, mode: str, ticked: list[int] | None, **more: Any) -> ContentRef:
-        version = kept_row(self.db, StudyVersion, self.session.study_version_id)
+        version = referenced_row(self.db, StudyVersion, self.session.study_version_id)
         now = self.context.clock.utc_now()
         body = {
             "study_key": protocol_of(version).key,
@@ -122,7 +122,7 @@ def _record(db: Session, session: StudySession, rows: Sequence[SessionContent]) 
     row = rows[-1]
     stored = content_body(row)
     body: dict[str, Any] = stored if isinstance(stored, dict) else {}
-    version = kept_row(db, StudyVersion, session.study_version_id)
+    version = referenced_row(db, StudyVersion, session.study_version_id)
     protocol, plan = protocol_of(version), plan_of(db, session)
     language = str(body.get("language", session.language))
     consents = [step for step in plan if step.consent is not None]

@@ -9,7 +9,7 @@ from typing import Literal
 
 from sqlalchemy.orm import Session
 
-from app.database import kept_row
+from app.database import referenced_row
 from app.features.design.studies import freeze
 from app.features.record.alarms import Change, Condition, clear_all, store_change
 from app.features.record.ledger import close_attempt
@@ -26,7 +26,7 @@ def project(
     match event:
         case e.SessionStarted():
             session.started_at = now
-            version = kept_row(db, StudyVersion, session.study_version_id)
+            version = referenced_row(db, StudyVersion, session.study_version_id)
             freeze(version, now)
         case e.SessionEnded(status=status):
             session.ended_at = now

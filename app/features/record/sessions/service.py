@@ -8,7 +8,7 @@ from functools import lru_cache, reduce
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.database import kept_row
+from app.database import referenced_row
 from app.errors import InvalidInput, NotNow, StaleVersion
 from app.features.design.studies import (
     newest_version,
@@ -36,10 +36,10 @@ from app.features.record.sessions.validity import settle_validity
 from app.models import KINDS, SessionEvent, StudySession, StudyVersion, new_id
 from app.platform.config_problems import unpacking
 from app.platform.context import AppContext
-from app.platform.immutable_cache import Unchanging
+from app.platform.immutable_cache import ImmutableCache
 from app.protocol import Step, StudyProtocol, compile_plan, parse_study_json
 
-_plans: Unchanging[str, tuple[Step, ...]] = Unchanging(1024)
+_plans: ImmutableCache[str, tuple[Step, ...]] = ImmutableCache(1024)
 
 
 def plan_of(db: Session, session: StudySession) -> tuple[Step, ...]:
@@ -56,7 +56,7 @@ def read_plan(db: Session, session: StudySession) -> tuple[Step, ...]:
     Raises sqlalchemy.exc.NoResultFound without a slot, DamagedValue without a study version, and
     ConfigError or PlanError if the stored texts are not a study or not an order of its conditions.
     """
-    version = kept_row(db, StudyVersion, session.study_version_id)
+    version = referenced_row(db, StudyVersion, session.study_version_id)
     slot = slot_of(db, session)
     texts = version.content_hash, version.canonical_json
     return _compiled(*texts, tuple(slot.sequence), slot.position % 2 == 1)

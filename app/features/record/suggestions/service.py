@@ -7,7 +7,7 @@ from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.database import kept_row
+from app.database import referenced_row
 from app.errors import Conflict, InvalidInput, NotFound
 from app.features.design.studies import newest_version, protocol_of, study_by_key
 from app.models import Participant, Study, StudySession, StudyVersion, Suggestion, new_id
@@ -126,7 +126,7 @@ def _adopted_in(db: Session, row: Suggestion, decision: Decision) -> int | None:
     """A version that exists, later than the one that the advice is about."""
     if decision.adopted_in is None:
         return None
-    about = kept_row(db, StudyVersion, row.study_version_id)
+    about = referenced_row(db, StudyVersion, row.study_version_id)
     numbers = _numbers(db, about.study_id)
     later = [number for number in numbers if number > about.number]
     if decision.status == "declined" or decision.adopted_in not in later:
@@ -144,7 +144,7 @@ def _version(db: Session, study: Study, wish: NewSuggestion) -> StudyVersion:
         session = session_by_id(db, wish.session_id)
         if session.study_id != study.id:
             raise NotFound("there is no such session", value=wish.session_id)
-        version = kept_row(db, StudyVersion, session.study_version_id)
+        version = referenced_row(db, StudyVersion, session.study_version_id)
     elif wish.version is None:
         version = newest_version(db, study)
     else:
@@ -191,7 +191,7 @@ def _titles(version: StudyVersion) -> dict[str, str]:
 
 
 def _view(db: Session, row: Suggestion) -> SuggestionView:
-    version = kept_row(db, StudyVersion, row.study_version_id)
+    version = referenced_row(db, StudyVersion, row.study_version_id)
     code = None
     if row.session_id is not None:
         session = db.get_one(StudySession, row.session_id)

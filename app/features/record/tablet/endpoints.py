@@ -7,7 +7,7 @@ from fastapi import APIRouter, Request, Response
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 from sqlalchemy.orm import Session
 
-from app.database import kept_row
+from app.database import referenced_row
 from app.errors import InvalidInput, NotSignedIn
 from app.features.design.studies import protocol_of
 from app.features.record.doubts import judge_with_doubts
@@ -87,7 +87,7 @@ def put_language(
 ) -> TabletState:
     """Go on in another language of the study."""
     session = session_by_id(db, tablet.session_id, lock=True)
-    valid = protocol_of(kept_row(db, StudyVersion, session.study_version_id)).languages
+    valid = protocol_of(referenced_row(db, StudyVersion, session.study_version_id)).languages
     if choice.language not in valid:
         raise InvalidInput(
             f"the study has no texts in {choice.language!r}",

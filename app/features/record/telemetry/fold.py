@@ -70,7 +70,7 @@ class Folder(Part):
                 checkpoints.turn()
                 if self.encoder is not None and self.context.hub.any_headset_connected:
                     self.encoder.begin()
-                self.context.background.well(FOLDER)
+                self.context.background.recovered(FOLDER)
             except Exception as error:  # the next turn tries again; nothing is lost meanwhile
                 # Where storage is at fault, its own health says so.
                 trouble = explain(error)

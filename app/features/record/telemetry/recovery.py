@@ -2,7 +2,7 @@
 
 from sqlalchemy import select
 
-from app.database import kept_row
+from app.database import referenced_row
 from app.features.design.studies import protocol_of
 from app.features.record.alarms import PERSISTENT, clear_all, sessions_with_open_alarms
 from app.features.record.sessions import HeadsetLost, apply_command, state_of
@@ -25,7 +25,7 @@ def stop_running_clocks(context: AppContext) -> int:
     for session_id in active:
         with context.database.writing() as db:
             session = session_by_id(db, session_id, lock=True)
-            version = kept_row(db, StudyVersion, session.study_version_id)
+            version = referenced_row(db, StudyVersion, session.study_version_id)
             phase = state_of(session).phase
             if phase is None or protocol_of(version).on_disconnect == "continue":
                 continue

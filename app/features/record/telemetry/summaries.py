@@ -107,7 +107,7 @@ class Summariser(Part):
             if explain(error) is None:
                 self.context.background.failed(SUMMARIES_OF_PHASES, error)
         else:
-            self.context.background.well(SUMMARIES_OF_PHASES)
+            self.context.background.recovered(SUMMARIES_OF_PHASES)
             self.context.hub.publish(session_id, "session")
 
     def _tell_doubts(self, session_id: str, phase_id: int) -> None:

@@ -139,7 +139,7 @@ class TelemetryWriter(Part):
             if arrivals:
                 self._store_or_keep(arrivals)
             if arrivals or begun_anew:
-                self.context.background.well(WRITER)
+                self.context.background.recovered(WRITER)
                 self._record_incidents()
                 begun_anew = False
             if self._stopping and not self._waiting:

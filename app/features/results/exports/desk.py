@@ -174,7 +174,7 @@ class ExportDesk(Part):
             future = job.worker.submit(make_archive, order)
         try:
             result = future.result()
-            self.background.well(QUEUE)
+            self.background.recovered(QUEUE)
         except (BrokenProcessPool, CancelledError) as error:
             result = ENDED
             if not job.cancelled:

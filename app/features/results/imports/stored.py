@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
-from app.database import kept_row
+from app.database import referenced_row
 from app.errors import NotFound
 from app.features.design.instruments import instrument_of
 from app.features.results.imports.schemas import ImportView, Mapping
@@ -44,7 +44,7 @@ def forms_of(db: Session, row: AnswerImport) -> list[ImportedForm]:
 
 def instrument_of_import(db: Session, row: AnswerImport) -> Instrument:
     """Return the instrument version whose formulas computed the scores of an import."""
-    return instrument_of(kept_row(db, InstrumentVersion, row.instrument_version_id))
+    return instrument_of(referenced_row(db, InstrumentVersion, row.instrument_version_id))
 
 
 def active_import(db: Session, study: Study, key: str, content_hash: str) -> AnswerImport | None:

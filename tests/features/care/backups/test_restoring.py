@@ -177,7 +177,7 @@ def test_a_newer_programs_backup_is_refused(
 ) -> None:
     """It says which version reads it."""
     make(sqlite, tmp_path / "all.reembody")
-    monkeypatch.setattr("app.features.care.backups.reading.known_revisions", lambda: ("0001",))
+    monkeypatch.setattr("app.features.care.backups.reading.all_revisions", lambda: ("0001",))
     monkeypatch.setattr("app.features.care.backups.reading.newest_revision", lambda: "0001")
     with pytest.raises(InvalidInput, match="does not know") as refused:
         put_back(sqlite, tmp_path / "all.reembody", replace=True)

@@ -15,7 +15,7 @@ import pytest
 from sqlalchemy import text
 
 from app.clock import Clock
-from app.database_address import connected, disconnect
+from app.database_address import disconnect, open_connection
 from app.errors import Conflict, NotDurable, NotNow
 from app.features.care.opening import existing_database
 from app.features.care.ownership import Owned, Ownership, OwnerWatch, own_data
@@ -300,7 +300,7 @@ def test_a_lost_lock_of_postgres_is_taken_again_or_given_up(
 
 
 def _end_connections_of(url: str, own: Ownership) -> None:
-    connection = connected(url)
+    connection = open_connection(url)
     try:
         query = (
             "SELECT count(pg_terminate_backend(pid)) FROM pg_stat_activity "

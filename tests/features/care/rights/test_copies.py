@@ -10,13 +10,13 @@ from pathlib import Path
 
 import pytest
 
-from app.platform.half_made import Notes, made_beside
+from app.platform.incomplete_files import Notes, partial_folder
 from app.settings import Settings
 from tests.faults.commands import reembody
 from tests.features.care.rights.visit import erase, in_bytes, make_visit, participant_of
 from tests.features.lab import STUDY, Json, error, ok
 from tests.features.record.headset.site import Site
-from tests.platform.test_half_made import KILLED
+from tests.platform.test_incomplete_files import KILLED
 
 
 def copies(site: Site) -> list[Json]:
@@ -83,7 +83,7 @@ def test_an_erasure_knows_what_is_half_made(site: Site, tmp_path: Path) -> None:
     settings = Settings(data_dir=data)
     to = tmp_path / "export"
     now = datetime.now(UTC)
-    with made_beside("export", to, now=now, notes=Notes.of(settings), study_key=STUDY):
+    with partial_folder("export", to, now=now, notes=Notes.of(settings), study_key=STUDY):
         shown = ok(site.operator.get("/api/storage"))["half_made"]
         assert {(one["place"], one["going_on"]) for one in shown} >= {(str(left), False)}
         places = [one["place"] for one in erase(site, visit)["remaining"]]

@@ -79,8 +79,8 @@ def test_what_was_computed_is_kept_within_bounds(
 
     async def ask() -> None:
         for n in (4, 5, 6):
-            assert await bench.computed(bytes, n) == bytes(n)
+            assert await bench.run_cached(bytes, n) == bytes(n)
 
     bench._turn = asyncio.Lock()
     asyncio.run(ask())
-    assert [len(one) for one in bench._kept.values()] == [6]
+    assert [len(one) for one in bench._cache.values()] == [6]

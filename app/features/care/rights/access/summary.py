@@ -9,7 +9,7 @@ from typing import Any
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
-from app.database import kept_row
+from app.database import referenced_row
 from app.features.care.rights.access.words import in_language
 from app.features.design.instruments import instrument_of
 from app.features.record.questionnaires import StoredAnswers, stored_answers
@@ -94,7 +94,7 @@ def _visit(db: Session, session: StudySession) -> Visit:
 
 def _instrument(db: Session, form: StoredAnswers) -> Instrument:
     submission = db.get_one(Submission, form.submission_id)
-    return instrument_of(kept_row(db, InstrumentVersion, submission.instrument_version_id))
+    return instrument_of(referenced_row(db, InstrumentVersion, submission.instrument_version_id))
 
 
 def _consents(db: Session, session: StudySession) -> list[Consent]:

@@ -18,7 +18,7 @@ from app.features.results.exports.writing.archive import zip_pieces
 from app.features.results.exports.writing.contents import Contents, Member
 from app.features.results.exports.writing.folder import Progress, silent, write_folder
 from app.models import StudySession
-from app.platform.half_made import Notes, made_beside
+from app.platform.incomplete_files import Notes, partial_folder
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ def export_study(
     if it cannot be written; in each case nothing has changed.
     """
     contents = Contents(db, study_key, kind, now)
-    temporary_folder = partial(made_beside, "export", now=now, notes=notes, study_key=study_key)
+    temporary_folder = partial(partial_folder, "export", now=now, notes=notes, study_key=study_key)
     write_folder(contents.members(), to, temporary_folder=temporary_folder, progress=progress)
     return Exported(
         to,

@@ -8,7 +8,13 @@ from pathlib import Path
 
 import pytest
 
-from app.platform.half_made import Notes, half_made, made_beside, remove_left, uploads_of
+from app.platform.incomplete_files import (
+    Notes,
+    incomplete_files,
+    partial_folder,
+    remove_leftovers,
+    uploads_of,
+)
 from app.settings import Settings
 
 NOW = datetime(2026, 11, 21, 6, 11, 8, tzinfo=UTC)
@@ -16,12 +22,12 @@ KILLED = """
 import os, signal, sys
 from datetime import UTC, datetime
 from pathlib import Path
-from app.platform.half_made import Notes, made_beside
+from app.platform.incomplete_files import Notes, partial_folder
 from app.settings import Settings
 notes = Notes.of(Settings(data_dir=Path(sys.argv[1])))
 now = datetime(2026, 11, 21, 6, 11, 8, tzinfo=UTC)
 to, study = Path(sys.argv[2]), sys.argv[3]
-with made_beside("export", to, now=now, notes=notes, study_key=study) as folder:
+with partial_folder("export", to, now=now, notes=notes, study_key=study) as folder:
     (folder / "new").mkdir()
     (folder / "new" / "answers.csv").write_text("somebody's")
     os.kill(os.getpid(), signal.SIGKILL)
@@ -46,13 +52,13 @@ def test_what_is_going_on_is_listed_and_left_alone(settings: Settings, tmp_path:
     """Also by whoever sweeps meanwhile; afterwards nothing of it is there."""
     to = tmp_path / "out" / "export"
     notes = Notes.of(settings)
-    with made_beside("export", to, now=NOW, notes=notes, study_key="pilot") as folder:
-        (one,) = half_made(settings)
+    with partial_folder("export", to, now=NOW, notes=notes, study_key="pilot") as folder:
+        (one,) = incomplete_files(settings)
         assert (one.kind, one.path, one.to, one.since) == ("export", folder, to, NOW)
         assert (one.study_key, one.going_on) == ("pilot", True)
-        assert remove_left(settings, starting=True) == []
+        assert remove_leftovers(settings, starting=True) == []
         assert folder.is_dir()
-    assert half_made(settings) == []
+    assert incomplete_files(settings) == []
     assert list(notes.folder.iterdir()) == []
     assert list((tmp_path / "out").iterdir()) == []
 
@@ -62,23 +68,23 @@ def test_what_a_killed_process_left_is_listed_and_removed(
 ) -> None:
     """Wherever it lies."""
     killed(settings, tmp_path / "out" / "export")
-    (one,) = half_made(settings)
+    (one,) = incomplete_files(settings)
     assert not one.going_on
     assert (one.path / "new" / "answers.csv").is_file()
-    (removed,) = remove_left(settings)
+    (removed,) = remove_leftovers(settings)
     assert removed.path == one.path
     assert list((tmp_path / "out").iterdir()) == []
-    assert half_made(settings) == []
+    assert incomplete_files(settings) == []
 
 
 def test_an_export_that_was_being_replaced_comes_back(settings: Settings, tmp_path: Path) -> None:
     """Killed between the two steps of the exchange, its place was empty."""
     to = tmp_path / "out" / "export"
     killed(settings, to)
-    (one,) = half_made(settings)
+    (one,) = incomplete_files(settings)
     (one.path / "old").mkdir()
     (one.path / "old" / "README.txt").write_text("the one before")
-    remove_left(settings)
+    remove_leftovers(settings)
     assert (to / "README.txt").read_text() == "the one before"
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["export"]
 
@@ -89,10 +95,10 @@ def test_what_lies_on_a_disk_that_is_not_there_stays_listed(
     """Nobody knows that it is gone."""
     killed(settings, tmp_path / "out" / "export")
     (tmp_path / "out").rename(tmp_path / "unplugged")
-    assert remove_left(settings, starting=True) == []
-    assert len(half_made(settings)) == 1
+    assert remove_leftovers(settings, starting=True) == []
+    assert len(incomplete_files(settings)) == 1
     (tmp_path / "unplugged").rename(tmp_path / "out")
-    assert len(remove_left(settings)) == 1
+    assert len(remove_leftovers(settings)) == 1
 
 
 def test_a_note_that_names_something_else_removes_nothing(
@@ -100,12 +106,12 @@ def test_a_note_that_names_something_else_removes_nothing(
 ) -> None:
     """Only folders that are named as we name them."""
     killed(settings, tmp_path / "out" / "export")
-    (one,) = half_made(settings)
+    (one,) = incomplete_files(settings)
     assert one.note is not None
     mine = tmp_path / "mine"
     mine.mkdir()
     one.note.write_text(one.note.read_text().replace(str(one.path), str(mine)))
-    assert remove_left(settings, starting=True) == []
+    assert remove_leftovers(settings, starting=True) == []
     assert mine.is_dir()
 
 
@@ -123,8 +129,8 @@ def test_what_a_server_left_goes_when_the_next_one_starts(settings: Settings) ->
     for path in (*left, kept):
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text("somebody's")
-    assert remove_left(settings) == []
-    assert len(remove_left(settings, starting=True)) == len(left)
+    assert remove_leftovers(settings) == []
+    assert len(remove_leftovers(settings, starting=True)) == len(left)
     assert [path for path in settings.data_dir.rglob("*") if path.is_file()] == [kept]
 
 
@@ -133,8 +139,8 @@ def test_a_note_that_was_cut_off_goes_at_a_start(settings: Settings) -> None:
     folder = Notes.of(settings).folder
     folder.mkdir()
     (folder / "cut.json").write_text('{"kind": "exp')
-    assert half_made(settings) == []
-    remove_left(settings, starting=True)
+    assert incomplete_files(settings) == []
+    remove_leftovers(settings, starting=True)
     assert list(folder.iterdir()) == []
 
 
@@ -150,18 +156,18 @@ def test_a_note_that_cannot_be_removed_fails_nothing(
 
     with monkeypatch.context() as patch:
         patch.setattr(Path, "unlink", refuse)
-        with made_beside("backup", to, now=NOW, notes=notes) as folder:
+        with partial_folder("backup", to, now=NOW, notes=notes) as folder:
             (folder / "new").write_text("whole")
             (folder / "new").rename(to)
     assert to.read_text() == "whole"
     assert len(list(notes.folder.iterdir())) == 1
-    assert remove_left(settings, starting=True) == []
+    assert remove_leftovers(settings, starting=True) == []
     assert list(notes.folder.iterdir()) == []
 
 
 def test_notes_are_for_their_owner(settings: Settings, tmp_path: Path) -> None:
     """They name studies and places; so are the folders they speak of."""
     to = tmp_path / "out" / "export"
-    with made_beside("export", to, now=NOW, notes=Notes.of(settings)) as folder:
+    with partial_folder("export", to, now=NOW, notes=Notes.of(settings)) as folder:
         assert folder.stat().st_mode & 0o077 == 0
         assert Notes.of(settings).folder.stat().st_mode & 0o077 == 0

@@ -37,7 +37,7 @@ _BY_PLACE: tuple[tuple[Kind, str], ...] = (
 
 
 @dataclass(frozen=True)
-class HalfMade:
+class IncompleteFile:
     """An incomplete file or folder: its kind, its path, and since when it exists.
 
     `to`: its intended destination. `study_key`: the study of an export. `going_on`: whether the
@@ -98,14 +98,14 @@ class Notes:
                     with suppress(OSError):
                         note.unlink()
 
-    def all(self) -> list[HalfMade]:
+    def all(self) -> list[IncompleteFile]:
         """Return what is noted, oldest first, without notes that are themselves incomplete."""
         found = [one for note in self.folder.glob("*.json") if (one := _read(note)) is not None]
         return sorted(found, key=lambda one: (one.since, one.path))
 
 
 @contextmanager
-def made_beside(
+def partial_folder(
     kind: Kind, to: Path, *, now: datetime, notes: Notes | None, study_key: str | None = None
 ) -> Iterator[Path]:
     """Make a private temporary folder next to `to`, and remove it afterwards.
@@ -127,7 +127,7 @@ def made_beside(
             shutil.rmtree(folder, ignore_errors=True)
 
 
-def half_made(settings: Settings) -> list[HalfMade]:
+def incomplete_files(settings: Settings) -> list[IncompleteFile]:
     """Return all incomplete files, in progress or left by a crash, oldest first."""
     home = home_of(settings)
     found = Notes.of(settings).all()
@@ -136,17 +136,17 @@ def half_made(settings: Settings) -> list[HalfMade]:
             for path in folder.glob(pattern):
                 with suppress(OSError):  # it was removed meanwhile
                     since = datetime.fromtimestamp(path.lstat().st_mtime, UTC)
-                    found.append(HalfMade(kind, path, since))
+                    found.append(IncompleteFile(kind, path, since))
     return sorted(found, key=lambda one: (one.since, one.path))
 
 
-def remove_left(settings: Settings, *, starting: bool = False) -> list[HalfMade]:
+def remove_leftovers(settings: Settings, *, starting: bool = False) -> list[IncompleteFile]:
     """Remove the incomplete files of processes that have ended; return what was removed.
 
     `starting`: no server uses the folder yet, so that files recognised by their location are
     removed as well. What cannot be removed (its disk is not mounted) stays on the list.
     """
-    found = half_made(settings) if starting else Notes.of(settings).all()
+    found = incomplete_files(settings) if starting else Notes.of(settings).all()
     removed = [one for one in found if not one.going_on and _remove(one)]
     if starting:
         # The crash happened while the note was written, before anything was made.
@@ -155,7 +155,7 @@ def remove_left(settings: Settings, *, starting: bool = False) -> list[HalfMade]
     return removed
 
 
-def _remove(one: HalfMade) -> bool:
+def _remove(one: IncompleteFile) -> bool:
     """Remove an incomplete file; return whether it existed and no longer does.
 
     A note that names any other kind of path removes nothing.
@@ -175,12 +175,12 @@ def _remove(one: HalfMade) -> bool:
     return there and gone
 
 
-def _read(note: Path) -> HalfMade | None:
+def _read(note: Path) -> IncompleteFile | None:
     try:
         with note.open("r+", encoding="utf-8") as file:
             going_on = not _lock(file, wait=False)
             words = json.load(file)
-            return HalfMade(
+            return IncompleteFile(
                 kind=words["kind"],
                 path=Path(words["path"]),
                 since=datetime.fromisoformat(words["since"]),
