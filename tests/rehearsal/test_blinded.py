@@ -121,7 +121,7 @@ def abort_what_runs(server: LiveServer) -> None:
     [
         (("--participants", 0), "--participants 0: 1 to 500 are valid"),
         (("--redo", 0), "--redo 0: phases count from 1"),
-        (("--redo", 3, "--withdraw-during", 2), "--redo 3 never comes"),
+        (("--redo", 3, "--withdraw-during", 2), "--redo 3 is never reached"),
         (("--redo", 6), "--redo 6: a visit of short-latency has 5 phases"),
         (("--withdraw-during", 9), "so 1 to 5 are valid"),
         (("--speed", 0), "a speed of 0.0 is not possible"),
