@@ -34,7 +34,7 @@ def build_pages(frontend: Path, static: Path, *, every_package: bool = False) ->
         return
     if are_current(frontend, static):
         return
-    wanted = sources_hash(frontend)
+    expected_hash = sources_hash(frontend)
     stamp = static / STAMP
     stamp.unlink(missing_ok=True)
     install_packages(frontend, every_package=every_package)
@@ -42,7 +42,7 @@ def build_pages(frontend: Path, static: Path, *, every_package: bool = False) ->
     npm(frontend, "run", "build")
     if not (static.is_dir() and any(static.iterdir())):
         raise PagesError(f"`npm run build` in {frontend} succeeded but left nothing in {static}")
-    stamp.write_text(wanted + "\n")
+    stamp.write_text(expected_hash + "\n")
 
 
 def are_current(frontend: Path, static: Path) -> bool:

@@ -36,7 +36,7 @@ TOOLS = ROOT / ".cache" / "build"
 FRONTEND = ROOT / "frontend"
 # What a server imports before it listens; importing it compiles it and has no other effect.
 STARTS = "import app.cli.commands, app.main, uvicorn.protocols.http.httptools_impl"
-SAYS_AGAIN_AFTER_S = 20.0
+PROGRESS_EVERY_S = 20.0
 TERMINATED = 128 + signal.SIGTERM
 
 
@@ -149,7 +149,7 @@ class SetUp:
             }
             try:
                 while sides:
-                    done, sides = wait(sides, SAYS_AGAIN_AFTER_S, FIRST_EXCEPTION)
+                    done, sides = wait(sides, PROGRESS_EVERY_S, FIRST_EXCEPTION)
                     for side in done:
                         side.result()
                     if sides and (doing := self.commands.underway()):
@@ -244,8 +244,8 @@ def project_key() -> str:
 
 def has_pages() -> bool:
     """Return whether the pages are current, or not needed."""
-    wanted = (FRONTEND / "package.json").is_file() and not os.environ.get("REEMBODY_SKIP_FRONTEND")
-    return not wanted or are_current(FRONTEND, ROOT / "app" / "static")
+    needed = (FRONTEND / "package.json").is_file() and not os.environ.get("REEMBODY_SKIP_FRONTEND")
+    return not needed or are_current(FRONTEND, ROOT / "app" / "static")
 
 
 def main() -> int:
@@ -254,14 +254,14 @@ def main() -> int:
     parser.add_argument("mode", choices=["run", "dev"])
     parser.add_argument("--check", action="store_true")
     parser.add_argument("--uv", type=Path, default=Path("uv"))
-    asked = parser.parse_args()
-    wanted = SetUp(asked.mode, asked.uv)
-    if asked.check:
-        return 0 if wanted.is_ready() else 1
+    options = parser.parse_args()
+    setup = SetUp(options.mode, options.uv)
+    if options.check:
+        return 0 if setup.is_ready() else 1
     for request in (signal.SIGTERM, signal.SIGHUP):
         signal.signal(request, lambda *_: sys.exit(TERMINATED))
     try:
-        wanted.do()
+        setup.do()
     except StepFailed:
         say("the set-up did not succeed, see above; ./run goes on from here when called again")
         return 1

@@ -57,7 +57,7 @@ def install_error_handler(app: FastAPI) -> None:
 
     @app.exception_handler(RequestValidationError)
     def validation(request: Request, error: RequestValidationError) -> JSONResponse:
-        fields, problems = _fields_beside_secrets(request.scope.get("route")), error.errors()
+        fields, problems = _fields_if_secret(request.scope.get("route")), error.errors()
         more = len(problems) - MOST_DETAILS
         return error_response(
             InvalidInput(
@@ -182,7 +182,7 @@ def _unreadable_body() -> InvalidInput:
     )
 
 
-def _fields_beside_secrets(route: object) -> frozenset[str]:
+def _fields_if_secret(route: object) -> frozenset[str]:
     """Return the field names of a route's body if one of them is secret (`writeOnly`), else none.
 
     If one is, error messages repeat no value, not even of other fields, and no names but these: a
@@ -190,11 +190,11 @@ def _fields_beside_secrets(route: object) -> frozenset[str]:
     """
     field = getattr(route, "body_field", None)
     model = getattr(getattr(field, "field_info", None), "annotation", None)
-    return frozenset() if model is None else _names_beside_secrets(model)
+    return frozenset() if model is None else _names_if_secret(model)
 
 
 @lru_cache(maxsize=256)
-def _names_beside_secrets(model: Any) -> frozenset[str]:
+def _names_if_secret(model: Any) -> frozenset[str]:
     schema = TypeAdapter(model).json_schema(mode="validation")
     if '"writeOnly": true' not in json.dumps(schema):
         return frozenset()
@@ -246,9 +246,9 @@ class _Bounded:
         if isinstance(value, Sequence | set | frozenset) and not isinstance(
             value, str | bytes | bytearray
         ):
-            kept = list(value)[:MOST_ITEMS]
+            items = list(value)[:MOST_ITEMS]
             # The end of a cut list is not marked: readers expect entries of one kind.
-            return [self.jsonable(one, depth + 1) for one in kept if self.left > 0]
+            return [self.jsonable(one, depth + 1) for one in items if self.left > 0]
         return self._text(value if isinstance(value, str) else _written(value))
 
     def _text(self, text: str) -> str:

@@ -43,7 +43,7 @@ STRANGERS_BODY_BYTES = 16 * 1024
 """Most bytes of a stranger's body; a login, pairing or invitation takes a few hundred."""
 SOCKET_COST = 10.0
 """A stranger's socket is closed immediately, but its handshake may have included a message."""
-HELD_S, MOST_HELD = 1.0, 512
+DELAY_S, MOST_DELAYED = 1.0, 512
 """Delay of refused requests, and how many may be delayed; each may keep 64 KiB of its body."""
 TOO_LARGE_COST = 10.0
 LARGE_BODY_BYTES = 64 * 1024
@@ -87,7 +87,7 @@ class Guards:
         self._max_body_bytes = max_body_bytes
         self._larger_bodies = larger_bodies
         self._host_names = host_names
-        self._held = 0
+        self._delayed = 0
         self._turnstile = asyncio.Lock()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -97,7 +97,7 @@ class Guards:
             return
         send = _headed(scope, send)
         try:
-            known = await self._known(scope)
+            known = await self._has_valid_token(scope)
             headers = Headers(scope=scope)
             self._check(scope, headers)
             if scope["type"] == "http":
@@ -106,26 +106,26 @@ class Guards:
             return
         except ReembodyError as error:
             if isinstance(error, TooManyAttempts):
-                await self._hold()
+                await self._delay()
             await _refuse(scope, receive, send, error)
             return
         await self._app(scope, receive, send)
 
-    async def _hold(self) -> None:
+    async def _delay(self) -> None:
         """Delay the response to a stranger who sends too many requests, at next to no cost.
 
         A client that retries as soon as it gets a response then does so once a second, and not as
         fast as this machine can refuse. No more of a body is read meanwhile.
         """
-        if self._held >= MOST_HELD:
+        if self._delayed >= MOST_DELAYED:
             return
-        self._held += 1
+        self._delayed += 1
         try:
-            await asyncio.sleep(HELD_S)
+            await asyncio.sleep(DELAY_S)
         finally:
-            self._held -= 1
+            self._delayed -= 1
 
-    async def _known(self, scope: Scope) -> bool:
+    async def _has_valid_token(self, scope: Scope) -> bool:
         """Return whether a valid token was presented; otherwise charge the stranger's budget.
 
         A token counts only after the database has confirmed it: otherwise anybody could pose as a

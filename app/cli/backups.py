@@ -157,15 +157,15 @@ def _restored(
 ) -> str:
     from app.main import create_app  # not needed to back up
 
-    clock, kept = Clock(), backups_of(settings)
+    clock, backups_folder = Clock(), backups_of(settings)
     lifetimes = Lifetimes(
         clock.utc_now(),
         login=timedelta(hours=settings.login_hours),
         pairing=timedelta(minutes=settings.pairing_minutes),
     )
     with (
-        _no_folder_left(kept),
-        checked_backup(path, kept, activity.rows(f"checking {path}")) as backup,
+        _no_folder_left(backups_folder),
+        checked_backup(path, backups_folder, activity.rows(f"checking {path}")) as backup,
     ):
         activity.now("checking the existing database")
         try:
@@ -182,7 +182,7 @@ def _restored(
                 done = restore(
                     context.database,
                     backup,
-                    keep_in=kept,
+                    keep_in=backups_folder,
                     clock=clock,
                     replace=replace,
                     even_though_active=even_though_active,
@@ -199,9 +199,11 @@ def _restored(
 
 
 @contextmanager
-def _no_folder_left(kept: Path) -> Iterator[None]:
+def _no_folder_left(backups_folder: Path) -> Iterator[None]:
     """Remove the folders that a failed restore has created."""
-    missing = [folder for folder in (kept, *kept.parents) if not folder.exists()]
+    missing = [
+        folder for folder in (backups_folder, *backups_folder.parents) if not folder.exists()
+    ]
     try:
         yield
     except BaseException:

@@ -13,8 +13,8 @@ from contextlib import contextmanager
 
 from app.cli.errors import ERASE_LINE
 
-SAID_AFTER_S = 0.7
-SAID_EVERY_S, DRAWN_EVERY_S = 5.0, 0.2
+FIRST_UPDATE_S = 0.7
+LOG_EVERY_S, DRAWN_EVERY_S = 5.0, 0.2
 """Shortest time between updates: in a log, and on a terminal."""
 
 
@@ -26,9 +26,9 @@ class Activity:
     """
 
     def __init__(self, what: str) -> None:
-        self._what, self._said = what, ""
-        self._ended, self._speaking = threading.Event(), threading.Lock()
-        self._thread = threading.Thread(target=self._speak, daemon=True)
+        self._what, self._shown = what, ""
+        self._ended, self._output_lock = threading.Event(), threading.Lock()
+        self._thread = threading.Thread(target=self._show, daemon=True)
         self._live = sys.stderr.isatty()
 
     def now(self, what: str) -> None:
@@ -48,7 +48,7 @@ class Activity:
     @contextmanager
     def silent(self) -> Iterator[None]:
         """Show no progress while the user answers a question."""
-        with self._speaking:
+        with self._output_lock:
             self._erase()
             yield
 
@@ -62,18 +62,18 @@ class Activity:
         self._erase()
 
     def _erase(self) -> None:
-        if self._live and self._said:
+        if self._live and self._shown:
             sys.stderr.write(ERASE_LINE)
             sys.stderr.flush()
 
-    def _speak(self) -> None:
-        wait_s = SAID_AFTER_S
+    def _show(self) -> None:
+        wait_s = FIRST_UPDATE_S
         while not self._ended.wait(wait_s):
-            wait_s = DRAWN_EVERY_S if self._live else SAID_EVERY_S
-            with self._speaking:
-                if self._what == self._said or self._ended.is_set():
+            wait_s = DRAWN_EVERY_S if self._live else LOG_EVERY_S
+            with self._output_lock:
+                if self._what == self._shown or self._ended.is_set():
                     continue
-                self._said = self._what
+                self._shown = self._what
                 if self._live:
                     sys.stderr.write(f"{ERASE_LINE}{self._said}")
                 else:

@@ -45,7 +45,7 @@ def export_to_folder(study: str, to: Path, activity: Activity, kind: str | None 
     """
     notes = Notes.of(read_settings())
     with opened_database("export") as database, database.reading() as db:
-        chosen = usual_kind(db, study) if kind is None else _known(kind)
+        chosen = usual_kind(db, study) if kind is None else _checked_kind(kind)
         try:
             done = export_study(
                 db,
@@ -95,7 +95,7 @@ def _put_on_record(database: Database, study: str, done: Exported) -> None:
         )
 
 
-def _known(kind: str) -> Kind:
+def _checked_kind(kind: str) -> Kind:
     for valid in KINDS:
         if kind == valid:
             return valid

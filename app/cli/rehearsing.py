@@ -236,11 +236,11 @@ def _ended(report: RehearsalReport) -> list[str]:
     return [] if report.status == "completed" else [f"NOT COMPLETED: it was {report.status}"]
 
 
-def summary_text(reports: Sequence[RehearsalReport], wanted: int) -> str:
+def summary_text(reports: Sequence[RehearsalReport], participants: int) -> str:
     """Summarise all participants on two lines."""
     statuses = Counter(report.status for report in reports)
     ended = ", ".join(f"{count} {status}" for status, count in statuses.items())
-    missing = wanted - len(reports)
+    missing = participants - len(reports)
     absent = f"; {missing} did not take part" if missing else ""
     together = (
         f"{sum(report.completions for report in reports)} completions,"
@@ -248,15 +248,19 @@ def summary_text(reports: Sequence[RehearsalReport], wanted: int) -> str:
         f" {sum(report.questionnaires for report in reports)} questionnaires"
         f" in {_length(sum(report.duration_s for report in reports))}"
     )
-    return f"{len(reports)} of {wanted} participants: {ended}{absent}\n{together}"
+    return f"{len(reports)} of {participants} participants: {ended}{absent}\n{together}"
 
 
-def _as_json(reports: Sequence[RehearsalReport], wanted: int) -> str:
+def _as_json(reports: Sequence[RehearsalReport], participants: int) -> str:
     """Return a single report as an object, or several in a list with the number of each status."""
-    if wanted == 1:
+    if participants == 1:
         return json.dumps(asdict(reports[0]), indent=2)
     statuses = dict(Counter(report.status for report in reports))
-    result = {"wanted": wanted, "statuses": statuses, "participants": list(map(asdict, reports))}
+    result = {
+        "wanted": participants,
+        "statuses": statuses,
+        "participants": list(map(asdict, reports)),
+    }
     return json.dumps(result, indent=2)
 
 

@@ -77,9 +77,11 @@ def require_object(db: Session, caller: Caller, template: str, params: Mapping[s
         return
     if template.startswith("/api/studies/{key}"):
         own = select(Study.key).where(visible_to(caller)).order_by(Study.key)
-        known = list(db.scalars(own))
-        if params["key"] not in known:
-            raise NotFound(f"there is no study {params['key']!r}", value=params["key"], valid=known)
+        visible_keys = list(db.scalars(own))
+        if params["key"] not in visible_keys:
+            raise NotFound(
+                f"there is no study {params['key']!r}", value=params["key"], valid=visible_keys
+            )
         return
     for name, (what, studies) in _STUDY_OF.items():
         if name in params:
@@ -151,14 +153,14 @@ def _undisclosed(db: Session, which: ColumnElement[bool]) -> frozenset[str]:
     That is: their slot is now held by a session that is neither completed nor revealed.
     """
     open_ = (which, StudySession.status != "completed")
-    asked = dict(
+    slot_of_session = dict(
         db.execute(
             select(SlotAttempt.session_id, SlotAttempt.slot_id)
             .join(StudySession, StudySession.id == SlotAttempt.session_id)
             .where(*open_)
         ).all()
     )
-    if not asked:
+    if not slot_of_session:
         return frozenset()
     # A subquery, because a list of ids could exceed the limit on parameters.
     slots = (
@@ -189,7 +191,7 @@ def _undisclosed(db: Session, which: ColumnElement[bool]) -> frozenset[str]:
     )
     return frozenset(
         session_id
-        for session_id, slot_id in asked.items()
+        for session_id, slot_id in slot_of_session.items()
         if holders[slot_id][1] != "completed" and holders[slot_id][0] not in revealed
     )
 

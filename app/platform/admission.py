@@ -28,9 +28,9 @@ from app.platform.tokens import account_of_token, hash_token, read_cookie
 LOGIN_COOKIE = "reembody_login"
 TABLET_COOKIE = "reembody_tablet"
 BEARER_SUBPROTOCOL = "bearer."
-KNOWN_FOR_S = 60.0
-MOST_KNOWN = 4096
-LOOKS_AT_ONCE = 2
+VALID_FOR_S = 60.0
+MOST_CACHED = 4096
+CHECKING_THREADS = 2
 """Most threads that check tokens, so that a flood of invented ones leaves the others free."""
 _TOKEN_LENGTH = 43
 """The length of `secrets.token_urlsafe(32)`; other tokens cannot be valid."""
@@ -62,8 +62,8 @@ class Admission:
 
     database: Database
     clock: Clock
-    _known: OrderedDict[str, float] = field(default_factory=OrderedDict)
-    _looking: CapacityLimiter = field(default_factory=lambda: CapacityLimiter(LOOKS_AT_ONCE))
+    _valid_until_s: OrderedDict[str, float] = field(default_factory=OrderedDict)
+    _checking: CapacityLimiter = field(default_factory=lambda: CapacityLimiter(CHECKING_THREADS))
 
     async def knows(self, tokens: tuple[str, ...]) -> bool:
         """Return whether one of the tokens is a valid login or pairing."""
@@ -74,19 +74,19 @@ class Admission:
 
     async def _is_valid(self, token: str) -> bool:
         key, now_s = hash_token(token), self.clock.monotonic_ns() / 1e9
-        until_s = self._known.get(key)
+        until_s = self._valid_until_s.get(key)
         if until_s is not None and now_s < until_s:
             return True
-        self._known.pop(key, None)
+        self._valid_until_s.pop(key, None)
         try:
-            valid = await run_sync(self._opens_something, token, key, limiter=self._looking)
+            valid = await run_sync(self._opens_something, token, key, limiter=self._checking)
         except DBAPIError:
             # The route itself will report that the database is unavailable.
             return True
         if valid:
-            self._known[key] = now_s + KNOWN_FOR_S
-            while len(self._known) > MOST_KNOWN:
-                self._known.popitem(last=False)
+            self._valid_until_s[key] = now_s + VALID_FOR_S
+            while len(self._valid_until_s) > MOST_CACHED:
+                self._valid_until_s.popitem(last=False)
         return valid
 
     def _opens_something(self, token: str, key: str) -> bool:

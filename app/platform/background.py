@@ -200,8 +200,8 @@ class Background:
     def _look_at_threads(self) -> None:
         # A thread may die without reporting it, as when memory runs out while it logs its error.
         for name, thread in list(self._threads.items()):
-            known = self._troubles.get(name)
-            if not thread.is_alive() and (known is None or known.shown.state != "stopped"):
+            trouble = self._troubles.get(name)
+            if not thread.is_alive() and (trouble is None or trouble.shown.state != "stopped"):
                 self.failed(name, RuntimeError("the thread has died"), state="stopped")
 
     def _forget_old(self) -> None:

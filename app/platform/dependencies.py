@@ -66,14 +66,14 @@ async def write(context: AppContext, work: Callable[[Session], Result]) -> Resul
     """Run `work` in a transaction like that of `Writing`, all of it on one thread."""
     refusals: list[RecordedConflict] = []
 
-    def kept(db: Session) -> Result | None:
+    def run(db: Session) -> Result | None:
         try:
             return work(db)
         except RecordedConflict as error:
             refusals.append(error)
             return None
 
-    result = await context.database.write(kept)
+    result = await context.database.write(run)
     for refusal in refusals:
         raise refusal
     return cast("Result", result)

@@ -167,12 +167,12 @@ def _remove(one: IncompleteFile) -> bool:
             if one.to is not None and (one.path / "old").is_dir() and not one.to.exists():
                 (one.path / "old").rename(one.to)
             shutil.rmtree(one.path) if one.path.is_dir() else one.path.unlink(missing_ok=True)
-    gone = not os.path.lexists(one.path)
+    removed = not os.path.lexists(one.path)
     # If its disk is not mounted, it still exists.
-    if gone and one.note is not None and one.path.parent.is_dir():
+    if removed and one.note is not None and one.path.parent.is_dir():
         with suppress(OSError):
             one.note.unlink()
-    return there and gone
+    return there and removed
 
 
 def _read(note: Path) -> IncompleteFile | None:

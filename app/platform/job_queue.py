@@ -136,9 +136,9 @@ class JobQueue(Part, ABC):
         except BrokenProcessPool as error:
             raise self._too_much(self.messages.ended) from error
         except Exception as error:
-            told = self._refusal(error)
-            if told is not None:
-                raise told from None
+            refusal = self._refusal(error)
+            if refusal is not None:
+                raise refusal from None
             log.exception(self.messages.log)
             raise InvalidInput(
                 f"{self.messages.cannot}: {type(error).__name__}", remedy=self.messages.otherwise

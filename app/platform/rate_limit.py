@@ -128,8 +128,8 @@ class Budget:
             left, at_s = self._left.get(key, (self.capacity, now_s))
             left = min(self.capacity, left + (now_s - at_s) * self.per_s)
             after = left - cost
-            kept = max(0.0, after) if all_of_it or after >= 0 else left
-            self._left[key] = (kept, now_s)
+            remaining = max(0.0, after) if all_of_it or after >= 0 else left
+            self._left[key] = (remaining, now_s)
             self._left.move_to_end(key)
             if len(self._left) > self.most_keys:
                 self._left.popitem(last=False)

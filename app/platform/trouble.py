@@ -131,6 +131,6 @@ def not_durable_error(what: str, error: Exception) -> NotDurable:
         return NotDurable(f"{what}: {error.strerror or error}", remedy=trouble.remedy)
     if proves_damage(error):
         return NotDurable(f"{what}: {DAMAGED.message}", remedy=DAMAGED.remedy)
-    said = str(getattr(error, "orig", None) or error).strip().partition("\n")[0]
+    reason = str(getattr(error, "orig", None) or error).strip().partition("\n")[0]
     found = explain(error)
-    return NotDurable(f"{what}: {said}", remedy=(found or REFUSED).remedy)
+    return NotDurable(f"{what}: {reason}", remedy=(found or REFUSED).remedy)

@@ -88,10 +88,10 @@ class Worker:
         Return False if it was already discarded, or was ended on purpose.
         """
         with self._lock:
-            known = self._pool is pool
-            if known:
+            is_current = self._pool is pool
+            if is_current:
                 self._pool = None
-            return known
+            return is_current
 
 
 def _begin(prepare: Callable[[], None] | None) -> None:

@@ -14,7 +14,7 @@ from app.science.instruments import DefinitionProblem, InstrumentDefinitionError
 UNKNOWN_KEY = ("extra_forbidden", "unexpected_keyword_argument")
 """Pydantic's error types for a key that a model, or a dataclass, does not have."""
 
-_WANTED = {
+_EXPECTED = {
     "string_type": ("text", "Write text; put it in quotes if it looks like a number."),
     "int_type": ("a whole number", "Write a whole number without quotes."),
     "int_from_float": ("a whole number", "Write a whole number."),
@@ -77,10 +77,10 @@ def _finding(details: ErrorDetails, path: Path, schema: Schema, tree: Plain) -> 
         value = given if context["value"] is None else context["value"]
         inner = (*path, *context["at"])
         return DefinitionProblem(inner, context["said"], value, context["valid"], context["remedy"])
-    if kind in _WANTED:
-        wanted, remedy = _WANTED[kind]
+    if kind in _EXPECTED:
+        expected, remedy = _EXPECTED[kind]
         return DefinitionProblem(
-            path, f"Expected {wanted}, got {_named(given)}.", given, wanted, remedy
+            path, f"Expected {expected}, got {_named(given)}.", given, expected, remedy
         )
     if kind in _LIMITS:
         limit, words = _LIMITS[kind]

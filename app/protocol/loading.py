@@ -157,14 +157,14 @@ def _validated(kind: _Kind[_Value], source: Source, found: list[ConfigProblem]) 
         value = kind.validate(source.tree)
     except ValidationError as error:
         problems += explain(error, kind.schema, source)
-        problems += _behind_unknown_keys(kind, error, source)
+        problems += _problems_without_unknown_keys(kind, error, source)
         raise ConfigError(problems) from error
     if problems:
         raise ConfigError(problems)
     return value
 
 
-def _behind_unknown_keys(
+def _problems_without_unknown_keys(
     kind: _Kind[_Value], error: ValidationError, source: Source
 ) -> Iterable[ConfigProblem]:
     """Yield problems that appear only once unknown keys are removed.

@@ -89,7 +89,7 @@ def _rule(
     key = rule.get("instrument")
     if not isinstance(key, str):
         return
-    early, late = _asked(tree)
+    early, late = _instruments_asked(tree)
     if key not in early:
         valid = sorted(early)
         when = "only after the blocks, when there is nothing left to stop" if key in late else ""
@@ -168,7 +168,7 @@ def _start(
         )
 
 
-def _asked(tree: Mapping[str, Plain]) -> tuple[set[str], set[str]]:
+def _instruments_asked(tree: Mapping[str, Plain]) -> tuple[set[str], set[str]]:
     """Return the instruments asked up to the end of the last block, and those asked after it."""
     procedure = _dict(tree.get("procedure"))
     block = _dict(procedure.get("block"))

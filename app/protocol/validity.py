@@ -139,13 +139,13 @@ def validity_problems(tree: Mapping[str, Plain]) -> Iterator[DefinitionProblem]:
             yield _unknown((*_AT, "forms", at), "form", key, forms)
 
 
-def _unknown(path: Path, what: str, key: str, known: list[str]) -> DefinitionProblem:
+def _unknown(path: Path, what: str, key: str, valid_keys: list[str]) -> DefinitionProblem:
     return DefinitionProblem(
         path,
         f"The study has no {what} {key!r}.",
         key,
-        known,
-        f"Use one of: {', '.join(known) or 'none is in the procedure'}.",
+        valid_keys,
+        f"Use one of: {', '.join(valid_keys) or 'none is in the procedure'}.",
     )
 
 

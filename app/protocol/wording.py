@@ -32,16 +32,16 @@ def lines_for_avatar(avatar: str, text: str) -> str:
     """Return the lines of a text for one kind of avatar, without their marks."""
     if "[avatar:" not in text:
         return text
-    kept: list[str] = []
+    selected: list[str] = []
     for line in text.split("\n"):
         mark = _MARK.match(line)
         if mark is not None and mark[1] != avatar:
             # Also drop the empty line before it, which would leave a gap.
-            if kept and not kept[-1].strip():
-                kept.pop()
+            if selected and not selected[-1].strip():
+                selected.pop()
             continue
-        kept.append(line if mark is None else line[mark.end() :])
-    return "\n".join(kept).strip("\n")
+        selected.append(line if mark is None else line[mark.end() :])
+    return "\n".join(selected).strip("\n")
 
 
 def mark_problems(

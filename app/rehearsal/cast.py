@@ -20,7 +20,10 @@ OVERTAKEN = ("stale", "not_now")
 LOOK_EVERY_S = 0.1
 REDO_REASON = "Rehearsal: the phase is repeated."
 WITHDRAWAL_REASON = "Rehearsal: the participant withdraws."
-SAID = {"redo": "is repeated from its beginning", "withdraw": "the participant withdraws"}
+INTERRUPTION_TEXTS = {
+    "redo": "is repeated from its beginning",
+    "withdraw": "the participant withdraws",
+}
 
 
 @dataclass(frozen=True)
@@ -107,7 +110,7 @@ async def _interrupt(view: Json, cast: Cast) -> None:
         await cast.operator.command(view, "redo", step_index=step_index, reason=REDO_REASON)
     else:
         await cast.operator.stop("withdraw", reason=WITHDRAWAL_REASON)
-    cast.say(f"phase {order.phase}: {SAID[order.kind]}")
+    cast.say(f"phase {order.phase}: {INTERRUPTION_TEXTS[order.kind]}")
     cast.interruptions.pop(0)
 
 

@@ -30,30 +30,30 @@ class _Words:
             (word, number) for number, line in lines for word in line.split()
         )
         self.line = 0
-        self._kept: str | None = None
+        self._pushed_back: str | None = None
 
-    def next(self, wanted: str) -> str:
-        """Return the next word; raise BvhError, naming what is `wanted`, at the end of the text."""
-        if self._kept is not None:
-            word, self._kept = self._kept, None
+    def next(self, expected: str) -> str:
+        """Return the next word; at the end of the text, raise BvhError with what is `expected`."""
+        if self._pushed_back is not None:
+            word, self._pushed_back = self._pushed_back, None
             return word
         found = next(self._words, None)
         if found is None:
-            raise BvhError(self.line, f"the text ends where {wanted} is expected.")
+            raise BvhError(self.line, f"the text ends where {expected} is expected.")
         word, self.line = found
         return word
 
     def give_back(self, word: str) -> None:
-        self._kept = word
+        self._pushed_back = word
 
     def expect(self, literal: str) -> None:
         word = self.next(repr(literal))
         if word.upper() != literal:
             raise BvhError(self.line, f"expected {literal!r}, got {word!r}.")
 
-    def number(self, wanted: str) -> float:
-        word = self.next(wanted)
-        return read_number(word, self.line, wanted)
+    def number(self, expected: str) -> float:
+        word = self.next(expected)
+        return read_number(word, self.line, expected)
 
     def name(self) -> tuple[str, int]:
         """Return the words before the opening brace, as one name, and their line.
@@ -68,14 +68,14 @@ class _Words:
         return " ".join(words), line
 
 
-def read_number(word: str, line: int, wanted: str) -> float:
+def read_number(word: str, line: int, expected: str) -> float:
     """Parse a finite number, or raise BvhError."""
     try:
         value = float(word)
     except ValueError:
-        raise BvhError(line, f"expected {wanted}, got {word!r}.") from None
+        raise BvhError(line, f"expected {expected}, got {word!r}.") from None
     if not math.isfinite(value):
-        raise BvhError(line, f"{wanted} is {word}, only finite numbers are valid.")
+        raise BvhError(line, f"{expected} is {word}, only finite numbers are valid.")
     return value
 
 

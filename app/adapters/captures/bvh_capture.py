@@ -129,10 +129,10 @@ def _motion(clip: BvhClip, scale: float) -> tuple[RigMotion, list[str]]:
         rotations=clip.rotations,
         observed=np.ones(clip.rotations.shape[:2], dtype=np.bool_),
     )
-    kept = without_rest_row(motion)
-    if kept is not motion:
+    trimmed = without_rest_row(motion)
+    if trimmed is not motion:
         notes.append("The first row is a rest pose put before the movement: it was left out.")
-    return kept, notes
+    return trimmed, notes
 
 
 def _offsets(clip: BvhClip, scale: float) -> tuple[FloatArray, list[str]]:

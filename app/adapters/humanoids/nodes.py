@@ -73,14 +73,14 @@ def tree_of(document: Document) -> Tree:
     return Tree(_names(nodes), tuple(parents), tuple(order), _world(nodes, parents, order))
 
 
-def rig_of(tree: Tree, wanted: set[int]) -> tuple[Rig, dict[int, int]]:
+def rig_of(tree: Tree, required: set[int]) -> tuple[Rig, dict[int, int]]:
     """Make a rig of the given nodes and all their ancestors.
 
     Returns:
         The rig, in metres as in the file, and node -> bone.
     """
-    kept = {above for node in wanted for above in tree.line_up(node)}
-    bones = [node for node in tree.order if node in kept]
+    included = {above for node in required for above in tree.line_up(node)}
+    bones = [node for node in tree.order if node in included]
     tops = [node for node in bones if tree.parents[node] < 0]
     first = 0 if len(tops) == 1 else 1
     bone_of = {node: row + first for row, node in enumerate(bones)}

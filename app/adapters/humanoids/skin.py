@@ -82,10 +82,12 @@ class _Reader:
             raise HumanoidFileError(
                 f"A vertex refers to bone {joints.max()} of {len(bones.joints)}.", place
             )
-        held = used[weights[used].sum(axis=1) > 0.0]  # a vertex without any weight has no position
-        strongest = np.argmax(weights[held], axis=1)
-        owners = np.array(bones.joints)[joints[held, strongest]]
-        moved = _blended(points[held], joints[held], weights[held], matrices)
+        weighted = used[
+            weights[used].sum(axis=1) > 0.0
+        ]  # a vertex without any weight has no position
+        strongest = np.argmax(weights[weighted], axis=1)
+        owners = np.array(bones.joints)[joints[weighted, strongest]]
+        moved = _blended(points[weighted], joints[weighted], weights[weighted], matrices)
         yield _finite(SkinnedVertices(moved, owners), place)
 
     def _used(self, primitive: Primitive, count: int, place: str) -> IndexArray:

@@ -88,7 +88,7 @@ def _serve(settings: Settings, own: Ownership, *, new_database: bool) -> None:
     app = create_app(
         settings,
         network=watch.network,
-        on_first_password=_tell_password,
+        on_first_password=_print_password,
         ownership=own,
         # Stop like on a signal of a service manager; the new owner of the data pauses running
         # phases.
@@ -194,13 +194,13 @@ def _config(app: object, settings: Settings) -> uvicorn.Config:
 def _prepare(settings: Settings, *, new_database: bool) -> None:
     with reported():
         try:
-            kept = prepare_database(settings, Clock(), new_database=new_database, to_write=True)
+            backup = prepare_database(settings, Clock(), new_database=new_database, to_write=True)
         except DBAPIError as error:
             if database_file(settings) is not None:
                 raise
             fail(f"the database cannot be opened: {first_line(error)}")
-    if kept is not None:
-        print(f"Backup     {kept}, made before the database was migrated", flush=True)
+    if backup is not None:
+        print(f"Backup     {backup}, made before the database was migrated", flush=True)
 
 
 def _is_no_trace(record: logging.LogRecord) -> bool:
@@ -241,7 +241,7 @@ def _where(settings: Settings) -> str:
     return str(settings.data_dir.resolve())
 
 
-def _tell_password(password: str) -> None:
+def _print_password(password: str) -> None:
     sys.stdout.write(
         f"\nFirst start: log in as  admin  with the password  {password}\n"
         "It is shown only once. Keep it.\n\n"

@@ -185,8 +185,8 @@ class ReceivingProtocol(HttpToolsProtocol):
     def _refuse(self, status: HTTPStatus) -> None:
         self._settle()
         # Within or after a response, these bytes would be taken for part of it or the next one.
-        begun = self.cycle is not None and self.cycle.response_started
-        silent = begun and (self._in_body or self._answering)
+        started = self.cycle is not None and self.cycle.response_started
+        silent = started and (self._in_body or self._answering)
         if not silent and not self.transport.is_closing():
             self.transport.write(
                 f"HTTP/1.1 {status.value} {status.phrase}\r\n"

@@ -22,17 +22,17 @@ def edit_text(text: str, changes: Iterable[Change]) -> str:
     """
     tree = read_source(text).tree
     for change in changes:
-        wanted = applied(tree, change)
-        text = _changed(text, change, wanted)
-        tree = wanted
+        intended = applied(tree, change)
+        text = _changed(text, change, intended)
+        tree = intended
     return text
 
 
-def _changed(text: str, change: Change, wanted: Plain) -> str:
+def _changed(text: str, change: Change, intended: Plain) -> str:
     root = spans_of(text)
-    for candidate in _candidates(text, root, change, wanted):
+    for candidate in _candidates(text, root, change, intended):
         try:
-            if same(read_source(candidate).tree, wanted):
+            if same(read_source(candidate).tree, intended):
                 return candidate
         except ConfigError:
             continue
@@ -48,13 +48,13 @@ def _changed(text: str, change: Change, wanted: Plain) -> str:
     )  # fmt: skip
 
 
-def _candidates(text: str, root: Span, change: Change, wanted: Plain) -> Iterator[str]:
+def _candidates(text: str, root: Span, change: Change, intended: Plain) -> Iterator[str]:
     fine = spliced(text, root, change)
     if fine is not None:
         yield fine
     path: Path = change.path[:-1]
     while path:
-        whole = spliced(text, root, Change(path, "set", _value(wanted, path)))
+        whole = spliced(text, root, Change(path, "set", _value(intended, path)))
         if whole is not None:
             yield whole
         path = path[:-1]

@@ -120,15 +120,15 @@ def _quoted(value: str) -> str:
     return escaped
 
 
-def _reads_back(text: str, wanted: Plain, word: str | None = None) -> bool:
-    """Return whether the text is parsed as `wanted`.
+def _reads_back(text: str, expected: Plain, word: str | None = None) -> bool:
+    """Return whether the text is parsed as `expected`.
 
     A bare `word` must also be read as text by parsers of YAML 1.1.
     """
     if word is not None and (word != word.strip() or not word or _is_special(word)):
         return False
     try:
-        return read_source(text).tree == wanted
+        return read_source(text).tree == expected
     except ConfigError:
         return False
 

@@ -22,7 +22,7 @@ class Rows:
     """Values (N, channels) of each moving bone, and whether each frame had its line (N,)."""
 
     values: dict[str, FloatArray]
-    told: dict[str, BoolArray]
+    present: dict[str, BoolArray]
     degrees: bool
     frames: int
 
@@ -37,7 +37,7 @@ def read_amc(data: bytes, skeleton: Acclaim, limits: Limits) -> Rows:
     # A frame is stored as one quaternion for each bone, moving or not.
     width = max(sum(len(b.channels) for b in moving.values()), 4 * (len(skeleton.bones) + 1))
     values = {name: array("d") for name in moving}
-    told = {name: bytearray() for name in moving}
+    present = {name: bytearray() for name in moving}
     degrees, frame, first = skeleton.degrees, 0, 0
     for line in iter(Lines(data).next, None):
         word = line.words[0]
@@ -46,19 +46,19 @@ def read_amc(data: bytes, skeleton: Acclaim, limits: Limits) -> Rows:
         elif len(line.words) == 1 and word.isascii() and word.isdigit():
             first = int(word[:9]) if frame == 0 else first
             _check_number(line, first + frame)
-            _begin_frame(values, told, moving)
+            _begin_frame(values, present, moving)
             frame += 1
             if frame * width > limits.values:
                 raise CaptureError(
                     f"{frame} frames of {width} values are too many.", line=line.number
                 )
         else:
-            _bone_row(line, moving, values, told, frame)
+            _bone_row(line, moving, values, present, frame)
     if frame == 0:
         raise CaptureError("there is no frame: expected a line with the number 1.")
     return Rows(
         {name: np.array(v).reshape(frame, -1) for name, v in values.items()},
-        {name: np.frombuffer(bytes(t), np.uint8).astype(np.bool_) for name, t in told.items()},
+        {name: np.frombuffer(bytes(t), np.uint8).astype(np.bool_) for name, t in present.items()},
         degrees,
         frame,
     )
@@ -74,19 +74,19 @@ def _check_number(line: Line, expected: int) -> None:
 
 
 def _begin_frame(
-    values: dict[str, "array[float]"], told: dict[str, bytearray], moving: dict[str, Bone]
+    values: dict[str, "array[float]"], present: dict[str, bytearray], moving: dict[str, Bone]
 ) -> None:
     for name, bone in moving.items():
         count = len(bone.channels)
         values[name].extend(values[name][-count:] or array("d", [0.0] * count))
-        told[name].append(0)
+        present[name].append(0)
 
 
 def _bone_row(
     line: Line,
     moving: dict[str, Bone],
     values: dict[str, "array[float]"],
-    told: dict[str, bytearray],
+    present: dict[str, bytearray],
     frame: int,
 ) -> None:
     name, *words = line.words
@@ -106,7 +106,7 @@ def _bone_row(
         )
     for place in range(count):
         values[name][place - count] = number(line, place + 1, "a value")
-    told[name][-1] = 1
+    present[name][-1] = 1
 
 
 def rotations_of(skeleton: Acclaim, rows: Rows) -> tuple[FloatArray, BoolArray]:
@@ -125,7 +125,7 @@ def rotations_of(skeleton: Acclaim, rows: Rows) -> tuple[FloatArray, BoolArray]:
         letters = "".join(bone.channels[place][1] for place in turns)
         moved = turn(letters, rows.values[name][:, turns], degrees=rows.degrees, line=0)
         rotations[:, joint] = multiply(multiply(bone.axis, moved), conjugate(bone.axis))
-        observed[:, joint] = rows.told[name]
+        observed[:, joint] = rows.present[name]
     return rotations, observed
 
 

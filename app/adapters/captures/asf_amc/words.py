@@ -27,31 +27,31 @@ class Lines:
             for number, text in enumerate(text_lines(data), 1)
             if (words := text.split()) and not words[0].startswith("#")
         )
-        self._kept: Line | None = None
+        self._pushed_back: Line | None = None
 
     def next(self) -> Line | None:
         """Return the next line, or None at the end."""
-        line, self._kept = self._kept or next(self._lines, None), None
+        line, self._pushed_back = self._pushed_back or next(self._lines, None), None
         return line
 
     def section(self) -> Iterator[Line]:
         """Yield the lines before the next one that begins with a colon."""
         while (line := self.next()) is not None:
             if line.words[0].startswith(":"):
-                self._kept = line
+                self._pushed_back = line
                 return
             yield line
 
 
-def number(line: Line, place: int, wanted: str) -> float:
+def number(line: Line, place: int, expected: str) -> float:
     """Parse the word at a position as a finite number of plausible size."""
     word = line.words[place] if len(line.words) > place else ""
     try:
         value = float(word)
     except ValueError:
-        raise CaptureError(f"expected {wanted}, got {word[:40]!r}.", line=line.number) from None
+        raise CaptureError(f"expected {expected}, got {word[:40]!r}.", line=line.number) from None
     if not math.isfinite(value) or abs(value) > _LARGEST:
-        raise CaptureError(f"{wanted} is {word[:40]}: that is out of range.", line=line.number)
+        raise CaptureError(f"{expected} is {word[:40]}: that is out of range.", line=line.number)
     return value
 
 

@@ -95,8 +95,8 @@ def _numbered(names: Sequence[str]) -> tuple[str, ...]:
 
 
 def _with_rest(chosen: Chosen, tracks: Sequence[Track]) -> Chosen:
-    kept = {id(track) for track in chosen.tracks}
-    counts = Counter(track.kind.lower() for track in tracks if id(track) not in kept)
+    chosen_ids = {id(track) for track in chosen.tracks}
+    counts = Counter(track.kind.lower() for track in tracks if id(track) not in chosen_ids)
     if not counts:
         return chosen
     listed = ", ".join(f"{count} x {kind}" for kind, count in counts.items())

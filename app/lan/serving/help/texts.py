@@ -367,8 +367,8 @@ GERMAN = HelpTexts(
 def texts_for(accept_language: str, chosen: str) -> HelpTexts:
     """Return the chosen language, else the browser's first supported one, else English."""
     offered = {"en": ENGLISH, "de": GERMAN}
-    wanted = [part.partition(";")[0].strip()[:2].lower() for part in accept_language.split(",")]
-    return next((offered[one] for one in (chosen, *wanted) if one in offered), ENGLISH)
+    preferred = [part.partition(";")[0].strip()[:2].lower() for part in accept_language.split(",")]
+    return next((offered[one] for one in (chosen, *preferred) if one in offered), ENGLISH)
 
 
 def device_of(user_agent: str, texts: HelpTexts) -> str:
