@@ -174,7 +174,7 @@ def restore(
     they are committed, and rejects them by raising ReembodyError.
     """
     began_ns = clock.monotonic_ns()
-    with _Before(database) as previous, database.writing() as db:
+    with _ReplacedContent(database) as previous, database.writing() as db:
         target = db.connection()
         hold_still(target, backup.shapes)
         if not even_though_active:
@@ -203,7 +203,7 @@ def restore(
 
 
 @dataclass
-class _Before:
+class _ReplacedContent:
     """The backup of what a restore replaces; deleted if the restore fails.
 
     After a failure the rows are still in the database, and the backup would be an unnecessary copy
@@ -217,7 +217,7 @@ class _Before:
     path: Path | None = None
     manifest: Manifest | None = None
 
-    def __enter__(self) -> "_Before":
+    def __enter__(self) -> "_ReplacedContent":
         return self
 
     def __exit__(

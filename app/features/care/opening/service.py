@@ -36,7 +36,7 @@ from app.settings import Settings
 
 
 class Damaged(Conflict):
-    """The database is damaged, and was put into quarantine."""
+    """The database is damaged and was moved into quarantine."""
 
 
 def quarantine_if_damaged(settings: Settings, clock: Clock, *, every_row: bool = False) -> None:

@@ -42,16 +42,16 @@ class Owner:
         return cls(os.getpid(), port, socket.gethostname(), now, command, _namespace())
 
     def at(self, port: int) -> "Owner":
-        """Return a copy with another port."""
+        """Return a copy of the owner with another port."""
         return replace(self, port=port)
 
     def as_text(self) -> str:
-        """Return the text of the lock file."""
+        """Return the owner as the JSON text of the lock file."""
         return json.dumps(asdict(self), indent=2) + "\n"
 
     @classmethod
     def from_text(cls, text: str) -> Self | None:
-        """Parse the text of `as_text`; return None for any other text."""
+        """Parse an owner from the text of a lock file; return None for any other text."""
         try:
             return cls(**json.loads(text))
         except (ValueError, TypeError):

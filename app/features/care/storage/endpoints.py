@@ -17,4 +17,4 @@ def get_storage(
 
     Sizes are cached for a minute; `anew` measures again.
     """
-    return storage_view(db, context, caller, anew=anew)
+    return storage_view(db, context, caller, refresh=anew)

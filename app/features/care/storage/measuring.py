@@ -61,11 +61,11 @@ class StorageDesk(Part):
 
     @classmethod
     def of(cls, context: AppContext) -> Self:
-        """Create the measurement of a server's database and disk."""
+        """Create the storage desk of a server."""
         return cls(context.database, context.settings, context.clock)
 
     def measured(self, *, refresh: bool = False) -> Measured:
-        """Return the sizes, measured at most a minute ago; `anew` measures again."""
+        """Return the sizes, measured at most a minute ago; `refresh` measures again."""
         with self._lock:
             now_ns = self.clock.monotonic_ns()
             cached = self._measured

@@ -35,7 +35,7 @@ class DiskView(BaseModel):
 
 
 class StudyRoom(BaseModel):
-    """The size of a study's data.
+    """The disk space used by a study.
 
     `mean_bytes`: of its `measured` completed sessions with movement, of the kind `measured_kind`:
     people's if there are any, since others may be shorter. `room_for`: how many more of these
@@ -53,7 +53,7 @@ class StudyRoom(BaseModel):
 
 
 class SessionRoom(BaseModel):
-    """The size of one session's data."""
+    """The disk space used by one session."""
 
     id: str
     study_key: str

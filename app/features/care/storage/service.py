@@ -26,9 +26,9 @@ MEASURED_BY: tuple[SessionKind, ...] = ("people", "test", "simulated")
 """Kinds of sessions to estimate sizes from: the first one with typical sessions is used."""
 
 
-def storage_view(db: Session, context: AppContext, caller: Caller, *, anew: bool) -> StorageView:
+def storage_view(db: Session, context: AppContext, caller: Caller, *, refresh: bool) -> StorageView:
     """Return all sizes, with only those studies and sessions that the caller may see."""
-    measured = context.part(StorageDesk).measured(anew=anew)
+    measured = context.part(StorageDesk).measured(refresh=refresh)
     disk = _disk(context, measured)
     studies = db.scalars(select(Study).where(visible_to(caller)).order_by(Study.key)).all()
     own = {study.key for study in studies}

@@ -49,14 +49,14 @@ def get_instruments(db: Reading, caller: SignedIn) -> list[InstrumentSummary]:
 def post_instrument(
     file: InstrumentFile, db: Writing, context: Context, caller: SignedIn
 ) -> InstrumentDetail:
-    """Store a version; existing studies keep the wording that they were made with."""
+    """Store an instrument version; existing studies keep the wording that they were made with."""
     row = save_instrument(db, file.yaml, context.clock.utc_now())
     return detail_of(db, row.key, visible_to(caller))
 
 
 @router.post("/instruments/check")
 def post_instrument_check(file: InstrumentFile, db: Reading, _: SignedIn) -> InstrumentCheck:
-    """Check a file without storing it."""
+    """Check an instrument file without storing it."""
     try:
         loaded = load_instrument(file.yaml)
     except ConfigError as error:

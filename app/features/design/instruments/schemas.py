@@ -31,7 +31,7 @@ class TryRequest(BaseModel):
 
 
 class FormulaView(BaseModel):
-    """A score with its formula, and the range its author states."""
+    """A score with its formula and the range that its author states."""
 
     key: str
     label: dict[str, str]
@@ -85,7 +85,7 @@ class InstrumentVersionView(BaseModel):
 
 
 class InstrumentDetail(InstrumentSummary):
-    """A complete instrument; `versions` from the oldest to the newest.
+    """An instrument in full; `versions` are ordered from the oldest to the newest.
 
     `preview`: a form of it, in the format in which tablets get their forms.
     """

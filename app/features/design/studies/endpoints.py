@@ -82,7 +82,7 @@ def post_version(
 
 @router.get("/studies/{key}/versions/{number}")
 def get_version(key: str, number: int, db: Reading, _: SignedIn) -> VersionDetail:
-    """Return one version in full."""
+    """Return one version of a study in full."""
     version = version_by_number(db, study_by_key(db, key), number)
     return VersionDetail(
         number=version.number,
@@ -102,7 +102,7 @@ def get_diff(
     source: Annotated[VersionNumber, Query(alias="from")],
     target: Annotated[VersionNumber, Query(alias="to")],
 ) -> StudyDiff:
-    """Return the differences from one version to another."""
+    """Return the differences between two versions of a study."""
     return compare_versions(db, study_by_key(db, key), source, target)
 
 

@@ -22,7 +22,7 @@ class StudyFile(BaseModel):
 
 
 class VersionView(BaseModel):
-    """One version of a study."""
+    """One version of a study, without its content."""
 
     number: int
     content_hash: str
@@ -31,7 +31,7 @@ class VersionView(BaseModel):
 
 
 class StudySummary(BaseModel):
-    """A study in a list."""
+    """The summary of a study, for the list of studies."""
 
     key: str
     title: str
@@ -72,7 +72,7 @@ class TemplateView(BaseModel):
 
 
 class ChangeRequest(BaseModel):
-    """One change of a file; see `app.protocol.editing.Change`."""
+    """One change of a study file; see `app.protocol.editing.Change`."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -170,7 +170,7 @@ class TimelineStep(BaseModel):
 
 
 class EstimateRule(BaseModel):
-    """The rule by which steps without a set duration are estimated; all in seconds."""
+    """The rule by which the duration of steps is estimated if the study sets none, in seconds."""
 
     reading_words_per_s: float
     opening_s: float
@@ -195,7 +195,7 @@ class TimelineView(BaseModel):
 
 
 class DifferenceView(BaseModel):
-    """One difference; `before` or `after` is null if the value did not exist."""
+    """One difference between two study files; `before` or `after` is null if it has no value."""
 
     path: str
     kind: Literal["added", "removed", "changed"]
@@ -249,7 +249,7 @@ class DuplicateRequest(BaseModel):
 
 
 class VersionDetail(BaseModel):
-    """One complete version of a study."""
+    """One version of a study in full."""
 
     number: int
     content_hash: str

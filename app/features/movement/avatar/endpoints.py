@@ -43,7 +43,7 @@ def get_avatars(db: Reading, caller: SignedIn) -> list[AvatarSummary]:
 
 @router.post("", status_code=201)
 def post_avatar(wish: NewAvatar, db: Writing, context: Context, caller: SignedIn) -> AvatarView:
-    """Save a configuration under a new key."""
+    """Save an avatar configuration under a new key."""
     create_avatar(db, caller.actor, wish, context.clock.utc_now())
     return avatar_view(db, caller, wish.key)
 
@@ -56,7 +56,7 @@ def post_avatar_check(file: AvatarText, db: Reading, _: SignedIn) -> AvatarCheck
 
 @router.get("/{key}")
 def get_avatar(key: str, db: Reading, caller: SignedIn) -> AvatarView:
-    """Return one avatar with all its versions, the newest one complete."""
+    """Return one avatar with all its versions, the newest one in full."""
     return avatar_view(db, caller, key)
 
 
@@ -64,7 +64,7 @@ def get_avatar(key: str, db: Reading, caller: SignedIn) -> AvatarView:
 def post_avatar_version(
     key: str, wish: NewAvatarVersion, db: Writing, context: Context, caller: SignedIn
 ) -> AvatarView:
-    """Append a version, unless its content is the same as the newest version's."""
+    """Append a version to an avatar, unless its content is that of the newest version."""
     add_avatar_version(db, caller.actor, key, wish, context.clock.utc_now())
     return avatar_view(db, caller, key)
 
@@ -73,7 +73,7 @@ def post_avatar_version(
 def get_avatar_version(
     key: str, number: Number, db: Reading, caller: SignedIn
 ) -> AvatarVersionDetail:
-    """Return one complete version."""
+    """Return one version of an avatar configuration in full."""
     return version_detail(db, caller, key, number)
 
 

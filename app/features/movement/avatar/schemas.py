@@ -57,7 +57,7 @@ class AvatarText(BaseModel):
 
 
 class AvatarVersionView(BaseModel):
-    """One version of a configuration."""
+    """One version of an avatar configuration, without its content."""
 
     number: int
     content_hash: str

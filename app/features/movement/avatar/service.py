@@ -43,7 +43,7 @@ def create_avatar(
     *,
     report: Mapping[str, Any] | None = None,
 ) -> AvatarVersion:
-    """Save a configuration under a new key.
+    """Save an avatar configuration under a new key.
 
     Raises Conflict if the key is taken, InvalidConfig with every problem of the configuration.
     """
@@ -162,7 +162,7 @@ def configuration_by_hash(db: Session, content_hash: str) -> Configuration:
 
 
 def typed(version: AvatarVersion) -> Configuration:
-    """Return the parsed configuration of a version."""
+    """Return the parsed configuration of an avatar version."""
     return _parsed(version.content_hash, version.canonical_json)
 
 

@@ -65,12 +65,12 @@ def avatar_view(db: Session, caller: Caller, key: str) -> AvatarView:
 def version_detail(
     db: Session, caller: Caller, key: str, number: int | None
 ) -> AvatarVersionDetail:
-    """Return one complete version, or the newest for None; raise NotFound if there is none."""
+    """Return one version of an avatar in full, or the newest for None; raise NotFound."""
     return _detail(db, caller, avatar_by_key(db, key), version_of(db, key, number))
 
 
 def version_view(row: AvatarVersion) -> AvatarVersionView:
-    """Return one version as an entry of a list."""
+    """Return one version of an avatar as an entry of a list."""
     return AvatarVersionView.model_validate(row, from_attributes=True)
 
 

@@ -16,7 +16,7 @@ from app.features.movement.captures.schemas import (
     Up,
 )
 from app.features.movement.captures.service import (
-    Wish,
+    UploadOptions,
     add_capture,
     change_capture,
     remove_capture,
@@ -56,7 +56,7 @@ async def post_capture(
     If a second file is needed (an AMC needs its ASF), it follows in the same body: its name is
     `companion`, and `companion_bytes` is its size in bytes.
     """
-    wish = Wish(
+    wish = UploadOptions(
         name, companion, companion_bytes, ReadingChoice(metres_per_unit=metres_per_unit, up=up)
     )
     capture_id, new = await add_capture(context, caller, wish, request.stream())

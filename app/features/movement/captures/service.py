@@ -27,7 +27,7 @@ from app.platform.context import AppContext
 
 
 @dataclass(frozen=True)
-class Wish:
+class UploadOptions:
     """The parameters of an upload: names of its files, and conventions to parse them with."""
 
     name: str
@@ -59,7 +59,7 @@ def source_of_capture(
 
 
 async def add_capture(
-    context: AppContext, caller: Caller, wish: Wish, body: AsyncIterator[bytes]
+    context: AppContext, caller: Caller, wish: UploadOptions, body: AsyncIterator[bytes]
 ) -> tuple[str, bool]:
     """Parse and store an upload; return the capture's id, and whether it is new.
 
@@ -106,7 +106,7 @@ def remove_capture(db: Session, context: AppContext, caller: Caller, capture_id:
     _record(db, context, caller, row, action="capture.removed")
 
 
-def _source(wish: Wish, files: tuple[Uploaded, ...]) -> Source:
+def _source(wish: UploadOptions, files: tuple[Uploaded, ...]) -> Source:
     return Source(
         name=wish.name,
         hash=files[0].hash,
@@ -126,7 +126,7 @@ def _store(
     db: Session,
     context: AppContext,
     caller: Caller,
-    wish: Wish,
+    wish: UploadOptions,
     source: Source,
     files: tuple[Uploaded, ...],
     inspected: Inspected,

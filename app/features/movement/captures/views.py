@@ -38,7 +38,7 @@ def capture_page(db: Session, *, limit: int, offset: int) -> CapturePage:
 
 
 def capture_view(db: Session, capture_id: str) -> CaptureView:
-    """Return one complete capture; raise NotFound if there is none with this id."""
+    """Return one capture in full; raise NotFound if there is none with this id."""
     row = capture_by_id(db, capture_id)
     return CaptureView(
         id=row.id,

@@ -46,7 +46,7 @@ def get_humanoids(
 
 @router.get("/{content_hash}")
 def get_humanoid(content_hash: ContentHash, db: Reading, _: SignedIn) -> HumanoidView:
-    """Return one model: the body parts it has and lacks, its lengths and convex pieces."""
+    """Return one humanoid model: the body parts it has and lacks, its lengths and convex pieces."""
     return humanoid_view(db, content_hash)
 
 

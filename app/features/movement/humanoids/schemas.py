@@ -41,7 +41,7 @@ class PieceView(BaseModel):
 
 
 class HumanoidView(HumanoidListed):
-    """A complete humanoid model.
+    """A humanoid model in full.
 
     `present` and `absent` are the body parts it has and lacks; those in `simple` have too little
     skin

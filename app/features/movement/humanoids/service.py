@@ -73,7 +73,7 @@ def humanoid_page(db: Session, *, limit: int, offset: int) -> HumanoidPage:
 
 
 def humanoid_view(db: Session, content_hash: str) -> HumanoidView:
-    """Return one complete model; raise NotFound if there is none with this hash."""
+    """Return one humanoid model in full; raise NotFound if there is none with this hash."""
     row = humanoid_by_hash(db, content_hash)
     figure = parsed_figure(row.figure)
     return HumanoidView.model_validate(

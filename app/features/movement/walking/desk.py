@@ -68,7 +68,7 @@ class FittingDesk(Part):
 
     @classmethod
     def of(cls, context: AppContext) -> Self:
-        """Create the fits of a server, in its data folder."""
+        """Create the fitting queue of a server, with its files in the data folder."""
         settings = context.settings
         return cls(
             settings.data_dir.resolve() / "walking",

@@ -33,7 +33,7 @@ from app.features.movement.walking.service import (
     remove_model,
 )
 from app.features.movement.walking.sources import Question, SliceQuestion
-from app.features.movement.walking.tasks import plan_way, predict_walk, slice_of
+from app.features.movement.walking.tasks import plan_path, predict_walk, slice_of
 from app.features.movement.walking.walk_sets import store_of
 from app.platform.context import AppContext
 from app.platform.dependencies import Context, Reading, SignedIn, write
@@ -99,7 +99,7 @@ def get_model_file(model_id: str, context: Context, _: SignedIn) -> StreamingRes
 async def post_path(wish: PathAsked, context: Context, _: SignedIn) -> PathView:
     """Return the shortest path between two points, or check that a drawn one avoids obstacles."""
     question = await run_in_threadpool(_question, context, wish)
-    points = await context.part(Bench).run_cached(plan_way, question)
+    points = await context.part(Bench).run_cached(plan_path, question)
     length_m = sum(dist(a, b) for a, b in pairwise(points))
     return PathView(points_m=points, length_m=length_m)
 

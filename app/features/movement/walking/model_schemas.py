@@ -40,7 +40,7 @@ class ReadingView(BaseModel):
 
 
 class ReadingScoreView(BaseModel):
-    """A reading and its mean error, CRPS in seconds, on people who were left out."""
+    """A reading with its mean error (CRPS in seconds) in predicting people who were left out."""
 
     reading: ReadingView
     crps_s: float
@@ -57,7 +57,7 @@ class ParameterView(BaseModel):
 
 
 class LeftOutView(BaseModel):
-    """Deviations of suitability in percent of its range, over entries that were left out."""
+    """Errors of predicted suitability in percent of its range, over entries that were left out."""
 
     mean_percent: float
     sd_percent: float
@@ -114,7 +114,7 @@ class SceneNamed(BaseModel):
 
 
 class ModelListed(BaseModel):
-    """A model in a list; `progress` while it is fitted, `trouble` if that failed."""
+    """A walking model in a list; `progress` while it is fitted, `trouble` if that failed."""
 
     id: str
     title: str
@@ -131,7 +131,7 @@ class ModelListed(BaseModel):
 
 
 class ModelView(ModelListed):
-    """A complete model; `content_hash` and `size_bytes` are those of its file."""
+    """A walking model in full; `content_hash` and `size_bytes` are those of its file."""
 
     scene: SceneNamed | None
     options: FitChoice
@@ -160,7 +160,7 @@ class PathAsked(BaseModel):
 
 
 class PathView(BaseModel):
-    """A path and its length."""
+    """A path on the floor and its length in metres."""
 
     points_m: list[Point]
     length_m: float

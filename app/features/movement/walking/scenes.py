@@ -56,7 +56,7 @@ def scene_text(db: Session, key: str) -> str:
 
 
 def scene_view(db: Session, key: str) -> SceneView:
-    """Return one complete scene; raise NotFound if there is no such scene."""
+    """Return one scene in full; raise NotFound if there is no such scene."""
     if key in _shipped():
         text, scene = _shipped()[key]
         return _view(scene, text, None)
@@ -91,7 +91,10 @@ def add_scene(db: Session, context: AppContext, caller: Caller, wish: NewScene) 
 
 
 def remove_scene(db: Session, context: AppContext, caller: Caller, key: str) -> None:
-    """Delete a scene; models keep what they need of it. Raises NotFound, Conflict."""
+    """Delete a scene of the lab; raise NotFound, or Conflict for one of the product.
+
+    Models that were fitted in the scene do not need it any more.
+    """
     if key in _shipped():
         raise Conflict(
             "this scene comes with the product and cannot be deleted",

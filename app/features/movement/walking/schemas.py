@@ -59,7 +59,7 @@ class SceneListed(BaseModel):
 
 
 class SceneView(SceneListed):
-    """A complete scene; `bounds_m` is left, near, right, far, with x to the right and y ahead."""
+    """A scene in full; `bounds_m` is left, near, right, far, with x to the right and y ahead."""
 
     about: str
     content_hash: str

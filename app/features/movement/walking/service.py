@@ -57,7 +57,7 @@ def model_list(db: Session, context: AppContext) -> list[ModelListed]:
 
 
 def model_view(db: Session, context: AppContext, model_id: str) -> ModelView:
-    """Return one complete model; raise NotFound if there is none with this id."""
+    """Return one walking model in full; raise NotFound if there is none with this id."""
     row = model_by_id(db, model_id)
     content_hash = row.content_hash
     return ModelView(

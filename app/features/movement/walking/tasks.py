@@ -56,7 +56,7 @@ def fit_model(store: Store, order: FitOrder, folder: Path) -> dict[str, Any]:
     return fit(store, order, folder)
 
 
-def plan_way(question: Question) -> list[tuple[float, float]]:
+def plan_path(question: Question) -> list[tuple[float, float]]:
     """Return the points of a path; raise Cannot."""
     from app.features.movement.walking.predicting import path_of
 

@@ -61,7 +61,7 @@ class Drawn:
 class Drawings(Part):
     """The cached dashboards and tests; a worker process makes what is missing, one at a time.
 
-    The cache holds up to MOST_KEPT_BYTES and evicts the least recently requested results. Tests
+    The cache holds up to MAX_CACHED_BYTES and evicts the least recently requested results. Tests
     have
     a worker process of their own: those of a thousand participants take minutes, and figures must
     not
@@ -78,7 +78,7 @@ class Drawings(Part):
 
     @classmethod
     def of(cls, context: AppContext) -> Self:
-        """Create the drawings of a server."""
+        """Create the cache of a server's dashboards and tests, with its worker processes."""
         background = context.background
         return cls(
             context.settings.resolved_database_url,

@@ -44,7 +44,7 @@ def make_archive(order: ExportOrder) -> ExportResult | ExportFailure:
 
 @dataclass(eq=False)
 class ExportDesk(Part):
-    """The exports of a server, with the thread that makes them; thread-safe.
+    """The queue of a server's exports, with the thread that makes them; thread-safe.
 
     `keep_free_bytes` of the disk are always left free.
     """
@@ -62,7 +62,7 @@ class ExportDesk(Part):
 
     @classmethod
     def of(cls, context: AppContext) -> Self:
-        """Create the exports of a server, in its scratch folder."""
+        """Create the export queue of a server, with its files in the scratch folder."""
         settings = context.settings
         return cls(
             settings.scratch_dir / "exports",

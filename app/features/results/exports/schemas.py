@@ -20,7 +20,7 @@ class ExportWish(BaseModel):
 
 
 class ExportTrouble(BaseModel):
-    """Why a file could not be made, and what to do about it."""
+    """The reason why an export failed, and what to do about it."""
 
     message: str
     remedy: str

@@ -169,7 +169,7 @@ class Shift(BaseModel):
 
 
 class FormPreview(BaseModel):
-    """A form as it would be stored."""
+    """One form of the previewed file, as it would be stored."""
 
     line: int
     participant_code: str

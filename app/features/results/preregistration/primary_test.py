@@ -27,20 +27,22 @@ class Values:
 
 
 def values_of(
-    db: Session, tables: Tables, protocol: StudyProtocol, kind: Kind, kept: set[str]
+    db: Session, tables: Tables, protocol: StudyProtocol, kind: Kind, session_ids: set[str]
 ) -> Values:
-    """Return the declared measure of the sessions in `kept`, by ascending added latency."""
+    """Return the declared measure of these sessions, by ascending added latency."""
     declared = protocol.preregistration
     assert declared is not None  # noqa: S101 - asked only where there is one
     rows = _rows(db, tables, declared.primary, protocol.key, kind)
-    rows = rows[rows["session_id"].isin(kept)].dropna(subset=["value"])
+    rows = rows[rows["session_id"].isin(session_ids)].dropna(subset=["value"])
     cells = rows.groupby(["participant_code", "limb", "condition"])["value"].mean().reset_index()
     n_limbs = max(1, cells["limb"].nunique())
     tasks = cells.groupby(["participant_code", "condition"])["value"].agg(["mean", "count"])
     whole = tasks[tasks["count"] == n_limbs]["mean"].reset_index()
     keys = [one.key for one in sorted(protocol.conditions, key=lambda one: one.latency_ms)]
     wide = whole.pivot(index="participant_code", columns="condition", values="mean")
-    codes = sorted(tables.sessions[tables.sessions["session_id"].isin(kept)]["participant_code"])
+    codes = sorted(
+        tables.sessions[tables.sessions["session_id"].isin(session_ids)]["participant_code"]
+    )
     wide = wide.reindex(index=list(dict.fromkeys(codes)), columns=keys).astype("float64")
     complete = wide.dropna()
     lacking = [str(code) for code in wide.index if code not in complete.index]

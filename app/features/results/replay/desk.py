@@ -23,7 +23,7 @@ class ReplayDesk(Part):
 
     @classmethod
     def of(cls, context: AppContext) -> Self:
-        """Create the replays of a server's sessions."""
+        """Create the replay desk of a server."""
         return cls(context.database)
 
     def movement(self, session_id: str, phase_id: int, *, full: bool) -> bytes:

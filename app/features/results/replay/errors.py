@@ -41,7 +41,7 @@ class RunErrors:
             self._targets[int(seq)] = (float(times_s[row]), rotations[row])
 
     def fill(self, errors_rad: NDArray[np.float32], hinges: HingeReference | None) -> None:
-        """Write the angles (21) of each moment that has both frames."""
+        """Write the angles (21) of each moment that has both frames to `errors_rad`."""
         if not self._moments:
             return
         at, seqs = np.concatenate(self._moments), self._seqs

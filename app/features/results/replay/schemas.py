@@ -65,7 +65,7 @@ class ReplayContact(BaseModel):
 
 
 class ReplayCompletion(BaseModel):
-    """A completed task."""
+    """A completed task in the replay of a phase."""
 
     number: int
     t_s: float

@@ -49,10 +49,10 @@ def forged(path: Path, *statements: str) -> Path:
     ("statement", "said"),
     [
         ("CREATE TABLE more (x INTEGER PRIMARY KEY)", "the table more is unknown to this program"),
-        ("ALTER TABLE accounts ADD COLUMN more TEXT", "column accounts.more is not of this"),
+        ("ALTER TABLE accounts ADD COLUMN more TEXT", "column accounts.more is unknown to this"),
         (
             """ALTER TABLE accounts ADD COLUMN "id"", ""role" TEXT""",
-            'column accounts.id", "role is not of this',
+            'column accounts.id", "role is unknown to this',
         ),
         ("ALTER TABLE accounts RENAME COLUMN role TO rolf", "no column accounts.role"),
         ("CREATE VIEW seen AS SELECT 1", "there is a view seen"),
@@ -62,7 +62,7 @@ def forged(path: Path, *statements: str) -> Path:
         ),
         ("UPDATE accounts SET created_at = 'once'", "accounts.created_at has values other"),
         ("UPDATE accounts SET role = x'00ff'", "accounts.role has values other"),
-        ("UPDATE study_versions SET instruments = '{'", "study_versions.instruments holds"),
+        ("UPDATE study_versions SET instruments = '{'", "study_versions.instruments has"),
         ("UPDATE sessions SET study_id = 'nobody'", "refer to nothing"),
     ],
 )

@@ -226,8 +226,8 @@ def test_items_turned_in_the_file_are_noticed_and_turned_back(lab: Lab) -> None:
     mapping = look(lab, text, instrument="ipq")["proposal"]
     dry = check(lab, text, mapping)
     assert dry["reversed_items"] == ["sp2"]
-    assert any("sp2" in note and "turned" in note for note in dry["notes"])
+    assert any("sp2" in note and "reversed" in note for note in dry["notes"])
     dry = check(lab, text, mapping | {"turned": ["sp2"]})
-    assert not any("sp2 enters" in note for note in dry["notes"])
+    assert not any("sp2 is reversed" in note for note in dry["notes"])
     answers = [one["answers"]["sp2"] for one in dry["first_forms"]]
     assert answers == [6.0 - n % 7 for n in range(len(answers))]

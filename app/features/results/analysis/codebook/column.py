@@ -34,7 +34,7 @@ class Column:
 
 @dataclass(frozen=True)
 class Describe:
-    """Create the columns of one table without repeating the table's name."""
+    """A factory of the columns of one table, so that the table's name need not be repeated."""
 
     table: str
 

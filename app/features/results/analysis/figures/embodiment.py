@@ -29,7 +29,7 @@ COMPONENTS: Mapping[str, tuple[str, str]] = {
 
 
 def embodiment_drawings(scores: pd.DataFrame) -> Iterator[Drawing]:
-    """Yield one drawing per component of embodiment, from valid rows of the table of scores."""
+    """Yield one drawing per embodiment component, from valid rows of the table of scores."""
     for score, (title, axis) in COMPONENTS.items():
         rows = scores[scores["score"] == score].dropna(subset=["limb", "value"])
         yield _component(score, title, axis, rows).of_group("embodiment")

@@ -60,7 +60,7 @@ def _empty_figure(rows: int, titles: tuple[str, ...], **options: object) -> go.F
 
 
 def hatched(colour: str, pattern: str) -> dict[str, object]:
-    """Return the look of a bar: colour and edge, and a pattern that replaces the colour in grey."""
+    """Return the look of a bar: colour, edge, and a pattern that distinguishes it in greyscale."""
     return {
         "color": colour,
         "pattern": {"shape": pattern},

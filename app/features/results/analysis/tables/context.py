@@ -29,9 +29,9 @@ _shared: ContextVar[Contexts | None] = ContextVar("shared_contexts", default=Non
 
 @contextmanager
 def shared_contexts(cache: Contexts) -> Iterator[None]:
-    """Read each context table only once inside this context manager, and store it in `kept`.
+    """Read each context table only once in this context manager, and store it in `cache`.
 
-    Only for tables of one database whose data do not change while `kept` is used.
+    Only for tables of one database whose data do not change while `cache` is used.
     """
     token = _shared.set(cache)
     try:
@@ -261,7 +261,10 @@ def phase_limbs(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
 
 
 def _positions(plan: Sequence[Step]) -> dict[tuple[int | None, str | None], int]:
-    """Return the position of each task in its block, from 1; steps outside blocks have none."""
+    """Return the position of each task in its block, counted from 1.
+
+    Steps outside the blocks have none.
+    """
     positions: dict[tuple[int | None, str | None], int] = {}
     for step in plan:
         if step.spec.counts:
