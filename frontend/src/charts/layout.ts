@@ -1,6 +1,6 @@
-/**
- * How a figure from the server looks on this page: its content is unchanged, its colours are ours.
- */
+/** How a figure from the server is styled for this page; its content stays unchanged. */
+
+/** The page's colours for a figure. */
 export interface Palette {
   readonly ink: string;
   readonly soft: string;

@@ -49,12 +49,11 @@ export const isCounted = ({ kind }: OfKind): boolean => KINDS[kind].counts;
 /** Whether the experimenter completes a step with a plain button; height and consent have forms. */
 export const isCompletedByButton = ({ kind }: OfKind): boolean => KINDS[kind].isCompletedByButton;
 
-/**
- * Whether a phase is over; its name has the block, the task, and the latency if it may be known.
- */
+/** Whether a phase is over, done or voided. */
 export const isOver = ({ status }: PhaseSummary): boolean =>
   status === "done" || status === "voided";
 
+/** Return a function that names a phase: its block, its task, and its latency if it may be known. */
 export function usePhaseName(): (session: SessionView, phase: PhaseSummary) => string {
   const { t } = useTexts();
   return (session, phase) => {

@@ -5,6 +5,7 @@
  * Values arrive from the server with the unit in their name (`active_s`, `latency_ms`); they are
  * branded once, on arrival, by the constructors below.
  */
+
 declare const unit: unique symbol;
 type Quantity<Unit extends string> = number & { readonly [unit]: Unit };
 

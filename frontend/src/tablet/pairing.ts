@@ -2,6 +2,7 @@
  * Pairing codes: six letters or digits in two groups of three (`4FQ-7KP`); also remembers that one
  * was used.
  */
+
 export const CODE_LENGTH = 6;
 
 /** The letters and digits that were typed, in capitals, at most as many as a code has. */

@@ -1,4 +1,4 @@
-/** Statures of avatars in the server's notation: `165cm`. */
+/** The avatars of the paper, named by their stature as on the server: `165cm`. */
 export const PAPER_AVATARS: readonly string[] = ["130cm", "165cm", "190cm"];
 export const MOST_AVATARS = 6;
 const SMALLEST_CM = 50;

@@ -1,4 +1,6 @@
 /** A joint map that is being edited: its history, its current state, and its problems. */
+
+/** The joint of the skeleton for each body joint. */
 export type BodyMap = Readonly<Record<string, string>>;
 
 export interface MapEdit {

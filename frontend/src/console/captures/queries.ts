@@ -18,7 +18,7 @@ export const motionQuery = (capture: Capture, shown: Shown) =>
     placeholderData: keepPreviousData,
   });
 
-/** `map` is the version of the joint map: another version moves the avatar differently. */
+/** The query of the movement on an avatar. `map` is the version of the joint map: another version moves the avatar differently. */
 export const avatarMotionQuery = (
   capture: Capture,
   avatar: string,

@@ -97,7 +97,7 @@ export function useUploads(): Uploads {
   };
 }
 
-/** Which of the chosen files belong together: an AMC moves the skeleton that its ASF describes. */
+/** What pairing needs of a file: its name. */
 interface Named {
   readonly name: string;
 }

@@ -1,4 +1,4 @@
-/** Paths within a file: keys and positions, in the server's notation. */
+/** A path within a file: keys and positions, in the server's notation. */
 export type Path = readonly (string | number)[];
 export type Json =
   | null

@@ -1,4 +1,5 @@
 /** Read the file from which answers are imported as text. */
+
 export interface OpenedFile {
   readonly name: string;
   readonly text: string;

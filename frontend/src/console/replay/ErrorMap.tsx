@@ -95,7 +95,7 @@ interface JointError {
   readonly degrees: number | null;
 }
 
-/** The error of each joint, between target and actual rotation, at a moment. */
+/** Joint errors without any joint, for a phase that has none. */
 export const NO_ERRORS: JointErrors = {
   joints: [],
   frames: 0,
@@ -103,6 +103,7 @@ export const NO_ERRORS: JointErrors = {
   values: new Float32Array(),
 };
 
+/** The error of each joint, between target and actual rotation, at a moment, s. */
 export function errorsAt({ joints, frames, rateHz, values }: JointErrors, time: number) {
   const frame = Math.min(Math.max(Math.round(time * rateHz), 0), frames - 1);
   return joints.map((joint, at): JointError => {

@@ -39,7 +39,7 @@ export function useTourStep(): number | null {
   );
 }
 
-/** The steps of the tour, in order, and where on the page each target is. */
+/** The side of its target on which a step's callout is shown. */
 type Side = "top" | "right" | "bottom" | "left";
 
 export interface TourStep {

@@ -5,6 +5,8 @@
  * HTTP
  * error; this feed then opens a new one, waiting a little longer each time.
  */
+
+/** Whether a feed is connected. */
 export type FeedState = "connecting" | "live" | "lost";
 
 /** The part of EventSource that is used here, so that tests can replace it. */

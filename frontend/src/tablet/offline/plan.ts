@@ -6,6 +6,7 @@
  *     server
  *     leave   everything else, above all every response of /api: not touched and never cached
  */
+
 export type Plan = "page" | "asset" | "leave";
 
 /** Prepended to the worker by the build: the files of the page, and a hash of all of them. */

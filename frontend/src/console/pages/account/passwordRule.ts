@@ -1,4 +1,5 @@
 /** The server's rule for passwords, checked during typing; the server's decision is final. */
+
 export const LEAST_LENGTH = 12;
 export const MOST_LENGTH = 200;
 export const LEAST_DIFFERENT = 5;

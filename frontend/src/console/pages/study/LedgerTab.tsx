@@ -138,7 +138,7 @@ function Balance({ slots }: { readonly slots: readonly (Slot | undefined)[] }): 
 const RANK = { completed: 0, open: 1, free: 2 } as const;
 const CELLS = { completed: classes.cellDone, open: classes.cellOpen, free: "" } as const;
 
-/** The ledger as a grid: a row for every order, a column for every replicate. */
+/** A row of the ledger's grid, which has a row for every order and a column for every replicate. */
 interface LedgerRow {
   readonly sequence: readonly number[];
   /** One slot for each column; undefined if a replicate does not have such an order (yet). */
