@@ -1,7 +1,7 @@
 /** A Plotly figure from the server. The library is large, so it is loaded with the first figure. */
 import { Center, Loader, Text, useComputedColorScheme } from "@mantine/core";
 import { type JSX, type RefObject, useEffect, useRef, useState } from "react";
-import { dressed, heightOf, type Palette } from "./layout";
+import { heightOf, type Palette, styled } from "./layout";
 
 interface FigureProps {
   /** The figure as Plotly's JSON: `{data, layout}`. */
@@ -55,8 +55,8 @@ export function Figure({
 }
 
 /** Whether an element has come near the window; always true unless `lazy`. */
-function useNear(root: RefObject<HTMLElement | null>, asked: boolean): boolean {
-  const [near, setNear] = useState(!asked);
+function useNear(root: RefObject<HTMLElement | null>, lazy: boolean): boolean {
+  const [near, setNear] = useState(!lazy);
   useEffect(() => {
     const element = root.current;
     if (element === null || near) return;
@@ -79,7 +79,7 @@ function draw(
   watermark: string | null,
   onState: (state: State) => void,
 ): () => void {
-  let gone = false;
+  let cancelled = false;
   let tidy = () => {};
   const { data = [], layout = {} } = figure as {
     data?: unknown[];
@@ -87,20 +87,20 @@ function draw(
   };
   import("plotly.js-cartesian-dist-min")
     .then(async ({ default: plotly }) => {
-      if (gone) return;
-      await plotly.react(element, data, dressed(layout, palette, watermark), CONFIG);
+      if (cancelled) return;
+      await plotly.react(element, data, styled(layout, palette, watermark), CONFIG);
       const observer = new ResizeObserver(() => plotly.Plots.resize(element));
       observer.observe(element);
       tidy = () => {
         observer.disconnect();
         plotly.purge(element);
       };
-      if (gone) tidy();
+      if (cancelled) tidy();
       else onState("drawn");
     })
     .catch(() => onState("failed"));
   return () => {
-    gone = true;
+    cancelled = true;
     tidy();
   };
 }

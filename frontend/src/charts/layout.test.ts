@@ -1,11 +1,11 @@
 import { describe, expect, it } from "vitest";
-import { dressed, heightOf, type Palette } from "./layout";
+import { heightOf, type Palette, styled } from "./layout";
 
 const palette: Palette = { ink: "#111", soft: "#555", line: "#ccc", sim: "#53a", font: "serif" };
 
 describe("the styling of a figure", () => {
   it("keeps the server's layout and applies the page's colours to every axis", () => {
-    const layout = dressed(
+    const layout = styled(
       { xaxis: { title: { text: "Added latency (ms)" } }, yaxis2: { range: [0, 1] }, template: {} },
       palette,
       null,
@@ -20,13 +20,13 @@ describe("the styling of a figure", () => {
   });
 
   it("adds a watermark to a figure of simulated data and keeps its annotations", () => {
-    const { annotations } = dressed({ annotations: [{ text: "n = 6" }] }, palette, "SIMULATED");
+    const { annotations } = styled({ annotations: [{ text: "n = 6" }] }, palette, "SIMULATED");
     expect(annotations).toMatchObject([{ text: "n = 6" }, { text: "SIMULATED" }]);
   });
 
   it("uses the height that the server requests", () => {
     expect(heightOf({ data: [], layout: { height: 660 } })).toBe(660);
     expect(heightOf({ data: [] })).toBeGreaterThan(300);
-    expect(dressed({ height: 660 }, palette, null)).not.toHaveProperty("height");
+    expect(styled({ height: 660 }, palette, null)).not.toHaveProperty("height");
   });
 });

@@ -29,7 +29,7 @@ const isObject = (value: unknown): value is Layout =>
   typeof value === "object" && value !== null && !Array.isArray(value);
 
 /** The server's layout in the page's colours, on every axis, with the watermark if there is one. */
-export function dressed(layout: Layout, palette: Palette, watermark: string | null): Layout {
+export function styled(layout: Layout, palette: Palette, watermark: string | null): Layout {
   const { template: _template, title: _title, height: _height, ...kept } = layout;
   return {
     colorway: COLORWAY,
@@ -43,7 +43,7 @@ export function dressed(layout: Layout, palette: Palette, watermark: string | nu
     ...axes(kept, palette),
     annotations: [
       ...annotationsOf(kept),
-      ...(watermark === null ? [] : [mark(watermark, palette)]),
+      ...(watermark === null ? [] : [watermarkOf(watermark, palette)]),
     ],
   };
 }
@@ -57,12 +57,12 @@ function axes(layout: Layout, palette: Palette): Layout {
   return Object.fromEntries(
     [...names].map((name) => {
       const axis = layout[name];
-      const given = isObject(axis) ? axis : {};
+      const axisLayout = isObject(axis) ? axis : {};
       return [
         name,
         {
           automargin: true,
-          ...given,
+          ...axisLayout,
           gridcolor: palette.line,
           linecolor: palette.soft,
           zerolinecolor: palette.soft,
@@ -77,7 +77,7 @@ const annotationsOf = (layout: Layout): readonly unknown[] =>
   Array.isArray(layout.annotations) ? layout.annotations : [];
 
 /** A watermark across the plot, so that a copied picture still shows what its data are. */
-function mark(text: string, palette: Palette): Layout {
+function watermarkOf(text: string, palette: Palette): Layout {
   return {
     text,
     xref: "paper",

@@ -1,7 +1,7 @@
 /**
  * A figure as a picture for a paper: black on white, with its title above and its caption below.
  */
-import { dressed, heightOf, type Palette } from "./layout";
+import { heightOf, type Palette, styled } from "./layout";
 
 interface PictureWords {
   readonly title: string;
@@ -40,7 +40,7 @@ export function printed(figure: unknown, words: PictureWords, wide: boolean): Pr
   const below = lines.length * CAPTION_LINE_PX + MARGIN_PX;
   const plot = Math.max(heightOf(figure), 460);
   const height = TITLE_PX + plot + below;
-  const dress = dressed(layout, PAPER, words.watermark);
+  const dress = styled(layout, PAPER, words.watermark);
   const margin = (dress.margin ?? {}) as Readonly<Record<string, number>>;
   const top = (margin.t ?? 16) + TITLE_PX;
   const bottom = Math.max(margin.b ?? 48, 48 + LEGEND_PX) + below;

@@ -9,7 +9,7 @@ import type { Account } from "@shared/api/types";
 import { Activity, type JSX, Suspense, useEffect } from "react";
 import { Router } from "wouter";
 import { useHashLocation } from "wouter/use-hash-location";
-import { useAccount, useEnded, useSignInAgain } from "./account";
+import { useAccount, useExpiredAccount, useExpiryDetection } from "./account";
 import { Failure } from "./errors";
 import { Header } from "./Header";
 import { useHelpKey } from "./help/useHelpKey";
@@ -25,7 +25,7 @@ const INVITATION = /^\/join\/(.+)$/;
 
 export function Console(): JSX.Element {
   const account = useAccount();
-  const ended = useEnded();
+  const ended = useExpiredAccount();
   const [address] = useHashLocation();
   const token = INVITATION.exec(address)?.[1];
   useOpenDialogsHidden(account.data === null);
@@ -65,7 +65,7 @@ function useOpenDialogsHidden(hidden: boolean): void {
 /** The signed-in console: its header, the page of the address, and background tasks. */
 function Shell({ account }: { readonly account: Account }): JSX.Element {
   const { t } = useTexts();
-  useSignInAgain();
+  useExpiryDetection();
   useHelpKey();
   return (
     <Router hook={useHashLocation}>

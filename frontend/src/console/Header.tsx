@@ -9,7 +9,7 @@ import { Link } from "wouter";
 import { DownloadsButton } from "./downloads/DownloadsButton";
 import { type Key, useTexts } from "./i18n";
 import { AccountMenu } from "./pages/account/AccountMenu";
-import { type Act, may } from "./permissions";
+import { may, type Permission } from "./permissions";
 import classes from "./Shell.module.css";
 import { HelpMenu } from "./tour/HelpMenu";
 
@@ -38,7 +38,7 @@ interface Place {
   readonly icon: IconName;
   readonly name: Key;
   /** The permission required to see it; without one it is shown to everybody. */
-  readonly act?: Act;
+  readonly permission?: Permission;
 }
 
 const PLACES: readonly Place[] = [
@@ -46,29 +46,31 @@ const PLACES: readonly Place[] = [
   { href: "/captures", icon: "walk", name: "captures.title" },
   { href: "/walking", icon: "foot", name: "walking.title" },
   { href: "/equipment", icon: "headset", name: "equipment.title" },
-  { href: "/network", icon: "link", name: "network.title", act: "network" },
-  { href: "/storage", icon: "chart", name: "storage.title", act: "storage" },
-  { href: "/people", icon: "people", name: "people.title", act: "people" },
+  { href: "/network", icon: "link", name: "network.title", permission: "network" },
+  { href: "/storage", icon: "chart", name: "storage.title", permission: "storage" },
+  { href: "/people", icon: "people", name: "people.title", permission: "people" },
 ];
 
 function Places({ role }: { readonly role: Role }): JSX.Element {
   const { t } = useTexts();
   return (
     <>
-      {PLACES.filter(({ act }) => act === undefined || may(role, act)).map((place) => (
-        <Button
-          key={place.href}
-          component={Link}
-          href={place.href}
-          variant="subtle"
-          color="gray"
-          fw={450}
-          size="compact-sm"
-          leftSection={<Icon name={place.icon} size={16} />}
-        >
-          {t(place.name)}
-        </Button>
-      ))}
+      {PLACES.filter(({ permission }) => permission === undefined || may(role, permission)).map(
+        (place) => (
+          <Button
+            key={place.href}
+            component={Link}
+            href={place.href}
+            variant="subtle"
+            color="gray"
+            fw={450}
+            size="compact-sm"
+            leftSection={<Icon name={place.icon} size={16} />}
+          >
+            {t(place.name)}
+          </Button>
+        ),
+      )}
     </>
   );
 }

@@ -7,7 +7,7 @@ import { InstrumentPage } from "./instruments/InstrumentPage";
 import { InstrumentsPage } from "./instruments/InstrumentsPage";
 import { ConsentPage } from "./pages/consent/ConsentPage";
 import { EquipmentPage } from "./pages/equipment/EquipmentPage";
-import { NothingHere, Only } from "./pages/NotForRole";
+import { PageNotFound, RequirePermission } from "./pages/NoPermission";
 import { NetworkPage } from "./pages/network/NetworkPage";
 import { PeoplePage } from "./pages/people/PeoplePage";
 import { StudiesPage } from "./pages/Studies";
@@ -58,9 +58,9 @@ export function Routes({ account }: { readonly account: Account }): JSX.Element 
     <Switch>
       <Route path="/sessions/:id/consent">
         {({ id }) => (
-          <Only act="run">
+          <RequirePermission permission="run">
             <ConsentPage key={id} id={id} />
-          </Only>
+          </RequirePermission>
         )}
       </Route>
       <Route path="/sessions/:id/:place">
@@ -105,11 +105,11 @@ export function Routes({ account }: { readonly account: Account }): JSX.Element 
       </Route>
       <Route path="/sessions/:id">{({ id }) => <SessionPage key={id} id={id} />}</Route>
       <Route path="/network">
-        <Only act="network">
+        <RequirePermission permission="network">
           <div className={classes.main}>
             <NetworkPage />
           </div>
-        </Only>
+        </RequirePermission>
       </Route>
       <Route path="/help/:name?/:heading?">
         {({ name, heading }) => (
@@ -119,33 +119,33 @@ export function Routes({ account }: { readonly account: Account }): JSX.Element 
         )}
       </Route>
       <Route path="/storage">
-        <Only act="storage">
+        <RequirePermission permission="storage">
           <div className={classes.main}>
             <StoragePage />
           </div>
-        </Only>
+        </RequirePermission>
       </Route>
       <Route path="/people/:tab?">
         {({ tab }) => (
-          <Only act="people">
+          <RequirePermission permission="people">
             <div className={classes.main}>
               <PeoplePage account={account} tab={tab} />
             </div>
-          </Only>
+          </RequirePermission>
         )}
       </Route>
       <Route path="/new">
-        <Only act="design">
+        <RequirePermission permission="design">
           <div className={classes.main}>
             <NewStudyPage />
           </div>
-        </Only>
+        </RequirePermission>
       </Route>
       <Route path="/new/:from/:name?">
         {({ from, name }) => (
-          <Only act="design">
+          <RequirePermission permission="design">
             <NewStudyEditor key={`${from} ${name}`} from={from} name={name} />
-          </Only>
+          </RequirePermission>
         )}
       </Route>
       <Route path="/instruments">
@@ -154,15 +154,15 @@ export function Routes({ account }: { readonly account: Account }): JSX.Element 
         </div>
       </Route>
       <Route path="/instruments/new">
-        <Only act="design">
+        <RequirePermission permission="design">
           <NewInstrumentPage />
-        </Only>
+        </RequirePermission>
       </Route>
       <Route path="/instruments/:name/edit">
         {({ name }) => (
-          <Only act="design">
+          <RequirePermission permission="design">
             <EditInstrumentPage key={name} name={name} />
-          </Only>
+          </RequirePermission>
         )}
       </Route>
       <Route path="/instruments/:name/:tab?">
@@ -174,9 +174,9 @@ export function Routes({ account }: { readonly account: Account }): JSX.Element 
       </Route>
       <Route path="/studies/:key/edit">
         {({ key }) => (
-          <Only act="design">
+          <RequirePermission permission="design">
             <EditStudyPage key={key} studyKey={key} />
-          </Only>
+          </RequirePermission>
         )}
       </Route>
       <Route path="/studies/:key/:tab?">
@@ -193,7 +193,7 @@ export function Routes({ account }: { readonly account: Account }): JSX.Element 
       </Route>
       <Route>
         <div className={classes.main}>
-          <NothingHere />
+          <PageNotFound />
         </div>
       </Route>
     </Switch>

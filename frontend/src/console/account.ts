@@ -7,7 +7,7 @@ import { useEffect } from "react";
 
 const KEY = ["account"] as const;
 /** The account whose sign-in expired while the page was in use, and whose page is kept for it. */
-const ENDED = ["account", "ended"] as const;
+const EXPIRED = ["account", "ended"] as const;
 
 /** The account, or null when nobody is signed in. */
 export function useAccount() {
@@ -19,9 +19,9 @@ export function useAccount() {
 }
 
 /** The account whose sign-in has expired; null if none has. */
-export function useEnded(): Account | null {
+export function useExpiredAccount(): Account | null {
   const ended = useQuery<Account | null>({
-    queryKey: ENDED,
+    queryKey: EXPIRED,
     queryFn: () => null,
     initialData: null,
     staleTime: Number.POSITIVE_INFINITY,
@@ -32,16 +32,16 @@ export function useEnded(): Account | null {
 
 export async function signIn(queries: QueryClient, username: string, password: string) {
   const { account } = await accounts.login(username, password);
-  begin(queries, account);
+  startSession(queries, account);
 }
 
 /**
  * Start a session of the console for an account; data of any other account are removed from memory.
  */
-export function begin(queries: QueryClient, account: Account): void {
-  const before = queries.getQueryData<Account | null>(ENDED);
+export function startSession(queries: QueryClient, account: Account): void {
+  const before = queries.getQueryData<Account | null>(EXPIRED);
   if (before?.id !== account.id) forget(queries);
-  queries.setQueryData(ENDED, null);
+  queries.setQueryData(EXPIRED, null);
   queries.setQueryData(KEY, account);
   // The same person continues where they were; the data may have changed meanwhile.
   void queries.invalidateQueries({ predicate: isData });
@@ -51,7 +51,7 @@ export function begin(queries: QueryClient, account: Account): void {
 export async function signOut(queries: QueryClient) {
   await accounts.logout().catch(() => undefined);
   forget(queries);
-  queries.setQueryData(ENDED, null);
+  queries.setQueryData(EXPIRED, null);
   queries.setQueryData(KEY, null);
 }
 
@@ -67,24 +67,26 @@ function forget(queries: QueryClient): void {
  * Check whether the sign-in still exists, because something suggests that it does not; a network
  * error proves nothing.
  */
-export async function lookAgain(queries: QueryClient): Promise<void> {
+export async function checkSignIn(queries: QueryClient): Promise<void> {
   const who = await accounts.me().catch(() => undefined);
-  if (who?.account === null) end(queries);
+  if (who?.account === null) expire(queries);
 }
 
 /** Show the sign-in page again as soon as any request fails because nobody is signed in. */
-export function useSignInAgain(): void {
+export function useExpiryDetection(): void {
   const queries = useQueryClient();
   useEffect(() => {
     // Only new errors: an old one is still in the cache when the same person continues.
-    const look = (news: { readonly type: string; readonly action?: unknown }) => {
-      const action = news.action as { readonly type: string; readonly error?: unknown } | undefined;
-      if (news.type !== "updated" || action?.type !== "error") return;
-      if (isUnauthorised(action.error)) end(queries);
+    const checkError = (event: { readonly type: string; readonly action?: unknown }) => {
+      const action = event.action as
+        | { readonly type: string; readonly error?: unknown }
+        | undefined;
+      if (event.type !== "updated" || action?.type !== "error") return;
+      if (isUnauthorised(action.error)) expire(queries);
     };
     const stops = [
-      queries.getQueryCache().subscribe(look),
-      queries.getMutationCache().subscribe(look),
+      queries.getQueryCache().subscribe(checkError),
+      queries.getMutationCache().subscribe(checkError),
     ];
     return () => {
       for (const stop of stops) stop();
@@ -92,9 +94,9 @@ export function useSignInAgain(): void {
   }, [queries]);
 }
 
-function end(queries: QueryClient): void {
+function expire(queries: QueryClient): void {
   const account = queries.getQueryData<Account | null>(KEY);
-  if (account != null) queries.setQueryData(ENDED, account);
+  if (account != null) queries.setQueryData(EXPIRED, account);
   queries.setQueryData(KEY, null);
 }
 

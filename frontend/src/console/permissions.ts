@@ -115,12 +115,12 @@ export const RULES = {
   reveal: { roles: DESIGNERS, routes: ["POST /api/sessions/{session_id}/reveal"] },
 } as const satisfies Readonly<Record<string, Rule>>;
 
-export type Act = keyof typeof RULES;
+export type Permission = keyof typeof RULES;
 
-export const may = (role: Role, act: Act): boolean => RULES[act].roles.includes(role);
+export const may = (role: Role, act: Permission): boolean => RULES[act].roles.includes(role);
 
 /** Return a function that checks the permissions of the signed-in account. */
-export function useMay(): (act: Act) => boolean {
+export function usePermissions(): (act: Permission) => boolean {
   const role = useAccount().data?.role;
   return (act) => role !== undefined && may(role, act);
 }

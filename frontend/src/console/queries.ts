@@ -1,5 +1,5 @@
 /** The console's queries to the server, each with its cache key. */
-import { type Asked, analysis, type FigureGroup } from "@shared/api/analysis";
+import { analysis, type FigureGroup, type Filter } from "@shared/api/analysis";
 import { drafts, instruments, versions } from "@shared/api/drafts";
 import { network, sessions, studies } from "@shared/api/endpoints";
 import { exports, storageRoom, tryouts } from "@shared/api/housekeeping";
@@ -56,10 +56,10 @@ export const ledgerQuery = (key: string, kind: Kind) =>
 export const sessionsQuery = (key: string) =>
   queryOptions({ queryKey: ["studies", key, "sessions"], queryFn: () => studies.sessions(key) });
 
-export const dashboardQuery = (key: string, asked: Asked, group: FigureGroup) =>
+export const dashboardQuery = (key: string, filter: Filter, group: FigureGroup) =>
   queryOptions({
-    queryKey: ["studies", key, "dashboard", asked, group],
-    queryFn: () => analysis.dashboard(key, asked, group),
+    queryKey: ["studies", key, "dashboard", filter, group],
+    queryFn: () => analysis.dashboard(key, filter, group),
     // The server returns the last figures it drew, and redraws them if there are newer data.
     refetchInterval: ({ state }) => (state.data?.current === false ? 1500 : false),
     placeholderData: keepPreviousData,

@@ -33,9 +33,9 @@ describe("a step", () => {
   });
 
   it("keeps its own name and icon after a task with a limb", () => {
-    const asked = { kind: "questionnaire", limb: "hand" } as const;
-    expect(isForm(asked)).toBe(true);
-    expect(stepName(asked)).toBe("step.questionnaire");
-    expect(stepIcon(asked)).toBe("form");
+    const step = { kind: "questionnaire", limb: "hand" } as const;
+    expect(isForm(step)).toBe(true);
+    expect(stepName(step)).toBe("step.questionnaire");
+    expect(stepIcon(step)).toBe("form");
   });
 });

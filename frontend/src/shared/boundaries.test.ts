@@ -64,7 +64,7 @@ const graphOf = (names: readonly string[]): Graph =>
   );
 
 /** The first import cycle reached from each file, as the path around it; empty if there is none. */
-function circles(graph: Graph): readonly string[] {
+function cycles(graph: Graph): readonly string[] {
   const done = new Set<string>();
   const found: string[] = [];
   const visit = (file: string, way: readonly string[]): void => {
@@ -96,7 +96,7 @@ describe("imports", () => {
     const graph = graphOf(files);
     const arrows = [...graph.values()].reduce((sum, to) => sum + to.length, 0);
     expect(arrows).toBeGreaterThan(files.length);
-    expect(circles(graph).map((way) => way.replaceAll(SOURCE + sep, ""))).toEqual([]);
+    expect(cycles(graph).map((cycle) => cycle.replaceAll(SOURCE + sep, ""))).toEqual([]);
   });
 
   it("that form a cycle are detected", () => {
@@ -107,6 +107,6 @@ describe("imports", () => {
       ["b", ["c"]],
       ["c", ["a"]],
     ]);
-    expect(circles(graph)).toEqual(["a -> b -> c -> a"]);
+    expect(cycles(graph)).toEqual(["a -> b -> c -> a"]);
   });
 });

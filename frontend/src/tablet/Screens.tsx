@@ -10,12 +10,12 @@ import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useEffect, useRef } from "react";
 import callForHelpClasses from "./CallForHelp.module.css";
 import { type Refusal, useRefusal } from "./drafts/refusal";
-import { useSweep } from "./drafts/useKept";
+import { useSweep } from "./drafts/useStored";
 import { useTexts } from "./i18n";
 import classes from "./Screens.module.css";
 import { Consent } from "./screens/Consent";
 import { FormScreen } from "./screens/FormScreen";
-import { Finished, Held, Refused, Waiting } from "./screens/NothingToDo";
+import { Finished, OnHold, Refused, Waiting } from "./screens/IdleScreens";
 import { Reading } from "./screens/Reading";
 import { useTextSize } from "./textSize";
 import { STATE_KEY } from "./useTabletState";
@@ -29,7 +29,7 @@ interface ScreensProps {
 export function Screens({ state, connected, refresh }: ScreensProps): JSX.Element {
   const { t, setLanguage, language } = useTexts();
   const refusal = useRefusal(state);
-  const content = useFocusOnNews(state, refusal);
+  const content = useFocusOnNewScreen(state, refusal);
   useSweep(state, connected);
   useEffect(() => {
     const spoken = state.language === "de" ? "de" : "en";
@@ -62,7 +62,7 @@ export function Screens({ state, connected, refresh }: ScreensProps): JSX.Elemen
 /**
  * Focus the heading of a new screen, so that screen readers and keyboard users start at the top.
  */
-function useFocusOnNews(state: TabletState, refusal: Refusal) {
+function useFocusOnNewScreen(state: TabletState, refusal: Refusal) {
   const { screen, step_index, administration } = state;
   const content = useRef<HTMLElement>(null);
   const shown = `${isRefused(state, refusal) ? "refused" : screen} ${step_index} ${administration?.key ?? ""}`;
@@ -87,12 +87,12 @@ interface ScreenProps extends ScreensProps {
 
 function Screen({ state, connected, refresh, refusal }: ScreenProps): JSX.Element {
   if (isRefused(state, refusal)) return <Refused connected={connected} refusal={refusal} />;
-  const refuse = () => refusal.say(true);
+  const refuse = () => refusal.setRefused(true);
   switch (state.screen) {
     case "held":
-      return <Held />;
+      return <OnHold />;
     case "consent":
-      if (state.consent != null && asksMore(state.consent)) {
+      if (state.consent != null && needsMoreThanOnePress(state.consent)) {
         return (
           <Consent key={state.step_index} state={state} form={state.consent} onRefuse={refuse} />
         );
@@ -139,7 +139,7 @@ function TextSizeButton(): JSX.Element {
 }
 
 /** Whether a consent needs more than one press: statements to tick, or a signature. */
-const asksMore = (form: ConsentForm): boolean =>
+const needsMoreThanOnePress = (form: ConsentForm): boolean =>
   form.signature !== "none" || form.statements.length > 0;
 
 function LanguageChoice({ state }: { readonly state: TabletState }): JSX.Element | null {
@@ -183,7 +183,7 @@ function CallForHelp({ state, connected }: CallForHelpProps): JSX.Element | null
   if (state.screen === "finished") return null;
   return (
     <div className={callForHelpClasses.help}>
-      <span className={callForHelpClasses.said} role="status">
+      <span className={callForHelpClasses.confirmation} role="status">
         {state.help_asked ? t("help.called") : call.isError || !connected ? t("help.failed") : ""}
       </span>
       {connected && (

@@ -4,7 +4,7 @@ import { translations } from "./i18n";
 import { Tablet } from "./Tablet";
 
 mountPage({ translations, children: <Tablet /> });
-void keepForOffline();
+void enableOfflineUse();
 
 /**
  * Let this page open without a network: register the service worker, and ask the browser to keep
@@ -13,7 +13,7 @@ void keepForOffline();
  * This needs a connection that the browser trusts (https, or localhost); without one there are no
  * service workers, and the tablet works as long as its page stays open.
  */
-async function keepForOffline(): Promise<void> {
+async function enableOfflineUse(): Promise<void> {
   // The development server builds no worker.
   if (!import.meta.env.PROD || !window.isSecureContext || !("serviceWorker" in navigator)) return;
   try {

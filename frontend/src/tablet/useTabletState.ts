@@ -8,7 +8,7 @@ import { ApiError, isUnauthorised } from "@shared/api/request";
 import type { TabletState } from "@shared/api/types";
 import { type QueryClient, useQuery, useQueryClient } from "@tanstack/react-query";
 import { useEffect, useState } from "react";
-import { drafts } from "./drafts/useKept";
+import { drafts } from "./drafts/useStored";
 
 export const STATE_KEY = ["tablet", "state"] as const;
 
@@ -27,7 +27,7 @@ export function useTabletState() {
     // Without a connection the page polls; with one the feed reports every change.
     refetchInterval: ({ state }) => (state.error === null ? false : 5000),
   });
-  useKeptScreen(query, queries);
+  useStoredScreen(query, queries);
   const paired = query.data !== undefined && query.error === null;
   useEffect(() => {
     if (!paired) return;
@@ -75,7 +75,7 @@ type StateQuery = Pick<
  * says
  * so, and the page keeps polling.
  */
-function useKeptScreen(
+function useStoredScreen(
   { data, error, failureReason, isSuccess }: StateQuery,
   queries: QueryClient,
 ): void {

@@ -4,7 +4,7 @@ import { number } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import { type JSX, useState } from "react";
 import { useTexts } from "../i18n";
-import { avatarOf, MOST_AVATARS, STATURE_LIMITS, statureOf, withAvatar } from "./avatars";
+import { avatarOf, MAX_AVATARS, STATURE_LIMITS, statureOf, withAvatar } from "./avatars";
 import classes from "./Verification.module.css";
 
 interface AvatarChipsProps {
@@ -40,10 +40,10 @@ export function AvatarChips(props: AvatarChipsProps): JSX.Element {
           </li>
         ))}
       </ul>
-      {avatars.length < MOST_AVATARS ? (
+      {avatars.length < MAX_AVATARS ? (
         <AddAvatar onAdd={(avatar) => onAvatars(withAvatar(avatars, avatar))} />
       ) : (
-        <span className={classes.soft}>{t("verify.avatar.most", { count: MOST_AVATARS })}</span>
+        <span className={classes.soft}>{t("verify.avatar.most", { count: MAX_AVATARS })}</span>
       )}
       <Checkbox
         label={t("verify.lock")}

@@ -15,7 +15,7 @@ export function AvatarChoice({ avatar, onAvatar }: AvatarChoiceProps): JSX.Eleme
   const { t } = useTexts();
   const [other, setOther] = useState(!PAPER_AVATARS.includes(avatar));
   const [typed, setTyped] = useState<number | string>(statureOf(avatar));
-  const take = (value: number | string) => {
+  const select = (value: number | string) => {
     const named = avatarOf(value);
     if (named !== null && named !== avatar) onAvatar(named);
   };
@@ -48,8 +48,8 @@ export function AvatarChoice({ avatar, onAvatar }: AvatarChoiceProps): JSX.Eleme
           w={110}
           value={typed}
           onChange={setTyped}
-          onBlur={() => take(typed)}
-          onKeyDown={(event) => event.key === "Enter" && take(typed)}
+          onBlur={() => select(typed)}
+          onKeyDown={(event) => event.key === "Enter" && select(typed)}
         />
       )}
     </>

@@ -9,7 +9,7 @@ import { useLocation } from "wouter";
 import { nameOf } from "../account";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
-import { useMay } from "../permissions";
+import { usePermissions } from "../permissions";
 import classes from "./Capture.module.css";
 import { DeleteCapture } from "./DeleteCapture";
 import { useFormatName } from "./DropZone";
@@ -17,7 +17,7 @@ import { captureQuery, capturesQuery } from "./queries";
 
 export function CaptureHead({ capture }: { readonly capture: Capture }): JSX.Element {
   const { t } = useTexts();
-  const mayWrite = useMay()("capture");
+  const mayWrite = usePermissions()("capture");
   const [, navigate] = useLocation();
   const [leaving, setLeaving] = useState(false);
   return (

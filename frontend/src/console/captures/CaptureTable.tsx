@@ -78,7 +78,7 @@ function Row({ capture, onDelete }: RowProps): JSX.Element {
         <span className={classes.sub}>{t("captures.by", { by: nameOf(capture.by) })}</span>
       </Table.Td>
       {onDelete !== null && (
-        <Table.Td className={classes.doing ?? ""}>
+        <Table.Td className={classes.rowActions ?? ""}>
           <Button
             size="compact-sm"
             variant="subtle"

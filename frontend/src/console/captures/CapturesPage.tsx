@@ -5,7 +5,7 @@ import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { nameOf } from "../account";
 import { useTexts } from "../i18n";
-import { useMay } from "../permissions";
+import { usePermissions } from "../permissions";
 import { EmptyState } from "../ui/EmptyState";
 import { Loaded } from "../ui/Loaded";
 import { useTitle } from "../ui/page";
@@ -20,7 +20,7 @@ import { useUploads } from "./useUploads";
 export function CapturesPage(): JSX.Element {
   const { t } = useTexts();
   useTitle(t("captures.title"));
-  const mayWrite = useMay()("capture");
+  const mayWrite = usePermissions()("capture");
   const uploads = useUploads();
   const query = useQuery(capturesQuery);
   return (
@@ -51,7 +51,7 @@ function Nothing({ mayWrite }: { readonly mayWrite: boolean }): JSX.Element {
 
 function All({ page }: { readonly page: CapturePage }): JSX.Element {
   const { t } = useTexts();
-  const mayWrite = useMay()("capture");
+  const mayWrite = usePermissions()("capture");
   const formatName = useFormatName();
   const [wanted, setWanted] = useState("");
   const [leaving, setLeaving] = useState<CaptureListed | null>(null);

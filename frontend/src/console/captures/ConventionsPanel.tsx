@@ -7,7 +7,7 @@ import { Icon, type IconName } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { type JSX, type ReactNode, useMemo } from "react";
 import { type Key, useTexts } from "../i18n";
-import { useMay } from "../permissions";
+import { usePermissions } from "../permissions";
 import classes from "./Capture.module.css";
 import { ReadingForm } from "./ReadingForm";
 
@@ -21,7 +21,7 @@ const CONVENTIONS: readonly (keyof Conventions)[] = ["length", "axes", "rotation
 
 export function ConventionsPanel({ capture, motion }: ConventionsPanelProps): JSX.Element {
   const { t, language } = useTexts();
-  const mayWrite = useMay()("capture");
+  const mayWrite = usePermissions()("capture");
   const { conventions, notes, observed } = capture.summary;
   const isGuessed = CONVENTIONS.some((name) => conventions[name].origin === "guessed");
   const size = useMemo(() => (motion === null ? null : boxOf(motion)), [motion]);

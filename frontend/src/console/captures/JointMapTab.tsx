@@ -9,15 +9,15 @@ import { type JSX, useEffect, useMemo, useState } from "react";
 import { nameOf } from "../account";
 import { Failure } from "../errors";
 import { type Key, useTexts } from "../i18n";
-import { useMay } from "../permissions";
+import { usePermissions } from "../permissions";
 import { EmptyState } from "../ui/EmptyState";
 import { BODY, GROUPS, type Group } from "./bodyJoints";
 import classes from "./JointMap.module.css";
 import { JointRow } from "./JointRow";
 import { type MapProblem, problemsOf, redo, replace, sameMap, undo } from "./jointMapEdit";
-import { LeftOver } from "./LeftOver";
 import { MapPreview } from "./MapPreview";
 import type { TabProps } from "./NoAvatar";
+import { UnassignedJoints } from "./UnassignedJoints";
 import type { JointMapDraft } from "./useJointMap";
 
 export function JointMapTab({ capture, map }: TabProps): JSX.Element {
@@ -48,7 +48,7 @@ interface EditorProps extends TabProps {
 
 function JointMapEditor({ capture, map, view }: EditorProps): JSX.Element {
   const { t } = useTexts();
-  const mayWrite = useMay()("capture");
+  const mayWrite = usePermissions()("capture");
   const [editing, setEditing] = useState<string | null>(null);
   const { present } = map.edit;
   const problems = useMemo(
@@ -87,7 +87,7 @@ function JointMapEditor({ capture, map, view }: EditorProps): JSX.Element {
             </section>
           ))}
         </div>
-        <LeftOver present={present} view={view} />
+        <UnassignedJoints present={present} view={view} />
       </div>
     </div>
   );

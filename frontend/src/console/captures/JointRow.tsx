@@ -85,9 +85,10 @@ interface SourceMarkProps {
 function SourceMark({ joint, played, view }: SourceMarkProps): JSX.Element {
   const { t } = useTexts();
   if (played === undefined) return <span className={classes.source} />;
-  const told = played === view.joint_map[joint] ? view.sources[joint] : undefined;
+  const stored = played === view.joint_map[joint] ? view.sources[joint] : undefined;
   const isProposed = played === view.proposal[joint];
-  const source = told === "chosen" || told === undefined ? (isProposed ? null : "chosen") : told;
+  const source =
+    stored === "chosen" || stored === undefined ? (isProposed ? null : "chosen") : stored;
   return (
     <span className={classes.source} data-source={source ?? "proposed"}>
       {source === null ? t("map.source.proposed") : t(`map.source.${source}`)}

@@ -24,19 +24,19 @@ export function ReadingForm({ capture }: { readonly capture: Capture }): JSX.Ele
   const [unit, setUnit] = useState(unitOf(now.metres_per_unit));
   const [metres, setMetres] = useState<number | string>(now.metres_per_unit ?? 0.01);
   const [up, setUp] = useState<(typeof UPS)[number] | "auto">(now.up ?? "auto");
-  const wanted: ReadingChoice = {
+  const choice: ReadingChoice = {
     metres_per_unit: unit === "auto" ? null : unit === "other" ? Number(metres) : UNITS[unit],
     up: up === "auto" ? null : up,
   };
   const read = useMutation({
-    mutationFn: () => captures.change(capture.id, { reading: wanted }),
+    mutationFn: () => captures.change(capture.id, { reading: choice }),
     onSuccess: async (changed) => {
       await queries.invalidateQueries({ queryKey: ["captures"], refetchType: "none" });
       queries.setQueryData(captureQuery(capture.id).queryKey, changed);
       void queries.invalidateQueries({ queryKey: ["captures", capture.id, "joint-map"] });
     },
   });
-  const isOther = wanted.metres_per_unit !== now.metres_per_unit || wanted.up !== now.up;
+  const isOther = choice.metres_per_unit !== now.metres_per_unit || choice.up !== now.up;
   return (
     <form
       className={classes.reading}

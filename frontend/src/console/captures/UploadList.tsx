@@ -8,7 +8,7 @@ import { Link } from "wouter";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import classes from "./Captures.module.css";
-import { missingBeside, type Phase, type Upload, type Uploads } from "./useUploads";
+import { missingCompanion, type Phase, type Upload, type Uploads } from "./useUploads";
 
 export function UploadList({ uploads }: { readonly uploads: Uploads }): JSX.Element | null {
   const { t } = useTexts();
@@ -25,7 +25,7 @@ export function UploadList({ uploads }: { readonly uploads: Uploads }): JSX.Elem
           tone={upload.phase.at}
           onDismiss={() => uploads.dismiss(upload.id)}
         >
-          <PhaseWords upload={upload} onAgain={() => uploads.again(upload)} />
+          <PhaseWords upload={upload} onAgain={() => uploads.retry(upload)} />
         </Row>
       ))}
     </ul>
@@ -173,7 +173,7 @@ function Lonely({
   readonly uploads: Uploads;
 }): JSX.Element {
   const { t } = useTexts();
-  const missing = missingBeside(file);
+  const missing = missingCompanion(file);
   const words = t("captures.upload.lonely", { missing });
   return (
     <Row name={file.name} tone="lonely" onDismiss={() => uploads.drop(file)}>

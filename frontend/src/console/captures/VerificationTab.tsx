@@ -15,8 +15,8 @@ import { AvatarChips } from "./AvatarChips";
 import { PAPER_AVATARS, statureOf } from "./avatars";
 import { NoAvatar, type TabProps } from "./NoAvatar";
 import { verificationQuery } from "./queries";
-import { Verdict } from "./Verdict";
 import classes from "./Verification.module.css";
+import { VerificationSummary } from "./VerificationSummary";
 import { VerificationTable } from "./VerificationTable";
 import { anglesFigure, type FigureWords, liftsFigure, toeFigure } from "./verificationFigures";
 
@@ -92,7 +92,7 @@ function Found({ capture, verification }: FoundProps): JSX.Element {
   );
   return (
     <>
-      <Verdict verification={verification} />
+      <VerificationSummary verification={verification} />
       <VerificationTable capture={capture} verification={verification} />
       {verification.unmapped_body_joints.length > 0 && (
         <p className={classes.soft}>

@@ -16,8 +16,8 @@ import { useTexts } from "../i18n";
 import { MOVEMENT_FORMATS } from "../i18n/registries.generated";
 import { useDownload } from "../pages/study/useDownload";
 import { statureOf } from "./avatars";
-import { liftsOf } from "./Verdict";
 import classes from "./Verification.module.css";
+import { liftsOf } from "./VerificationSummary";
 
 interface VerificationTableProps {
   readonly capture: Capture;

@@ -2,9 +2,9 @@
 import { ActionIcon, SegmentedControl, Tooltip } from "@mantine/core";
 import {
   type CameraMode,
+  type CameraSide,
   type Figure,
   LEFT_COLOUR,
-  type LookFrom,
   RIGHT_COLOUR,
 } from "@shared/stage/figure";
 import legend from "@shared/stage/Legend.module.css";
@@ -26,7 +26,7 @@ interface ViewerProps {
 }
 
 const CAMERAS: readonly CameraMode[] = ["orbit", "follow", "eyes"];
-const LOOKS: readonly LookFrom[] = ["corner", "front", "side", "top"];
+const CAMERA_SIDES: readonly CameraSide[] = ["corner", "front", "side", "top"];
 
 export function Viewer({ figures, title }: ViewerProps): JSX.Element {
   const { t } = useTexts();
@@ -91,13 +91,13 @@ export function CameraBar({ mode, hasEyes, stage, onMode }: CameraBarProps): JSX
           disabled: value === "eyes" && !hasEyes,
         }))}
       />
-      <fieldset className={classes.looks} disabled={mode === "eyes"}>
+      <fieldset className={classes.cameraSides} disabled={mode === "eyes"}>
         <legend className="visually-hidden">{t("stage.look")}</legend>
-        {LOOKS.map((from) => (
+        {CAMERA_SIDES.map((from) => (
           <button
             key={from}
             type="button"
-            className={classes.look}
+            className={classes.cameraSide}
             onClick={() => stage.current?.look(from)}
           >
             {t(`stage.look.${from}`)}

@@ -1,6 +1,6 @@
 /** The avatars of the paper, named by their stature as on the server: `165cm`. */
 export const PAPER_AVATARS: readonly string[] = ["130cm", "165cm", "190cm"];
-export const MOST_AVATARS = 6;
+export const MAX_AVATARS = 6;
 const SMALLEST_CM = 50;
 const LARGEST_CM = 260;
 export const STATURE_LIMITS = { min: SMALLEST_CM, max: LARGEST_CM } as const;

@@ -4,7 +4,7 @@ import { describe, expect, it } from "vitest";
 import { avatarOf, withAvatar } from "./avatars";
 import { BODY, GROUPS, placeOnBody, rolesFrom } from "./bodyJoints";
 import { assign, begin, problemsOf, redo, replace, sameMap, undo } from "./jointMapEdit";
-import { missingBeside, pairFiles } from "./useUploads";
+import { missingCompanion, pairFiles } from "./useUploads";
 
 const named = (...names: string[]) => names.map((name) => ({ name }));
 const pairs = (...names: string[]) =>
@@ -26,8 +26,8 @@ describe("files that belong together", () => {
   it("wait for each other, and the missing one is named", () => {
     const { ready, lonely } = pairFiles(named("02_01.amc"));
     expect(ready).toEqual([]);
-    expect(lonely.map(missingBeside)).toEqual([".asf"]);
-    expect(pairFiles(named("02.asf")).lonely.map(missingBeside)).toEqual([".amc"]);
+    expect(lonely.map(missingCompanion)).toEqual([".asf"]);
+    expect(pairFiles(named("02.asf")).lonely.map(missingCompanion)).toEqual([".amc"]);
   });
 
   it("are sent as one body, which ends with the companion", () => {
@@ -91,8 +91,8 @@ describe("the body", () => {
   it("has the joints and the hierarchy of the server's", () => {
     const file = new URL("../../../../app/science/skeleton/joints.py", import.meta.url);
     const lines = readFileSync(file, "utf-8").matchAll(/^ {4}"(\w+)": (?:"(\w+)"|None),$/gm);
-    const told = Object.fromEntries([...lines].map(([, name, above]) => [name, above ?? null]));
-    expect(BODY).toEqual(told);
+    const parents = Object.fromEntries([...lines].map(([, name, above]) => [name, above ?? null]));
+    expect(BODY).toEqual(parents);
     expect(Object.values(GROUPS).flat().toSorted()).toEqual(Object.keys(BODY).toSorted());
   });
 

@@ -92,8 +92,8 @@ function mappedAbove(
 }
 
 function isBelow({ names, parents }: Hierarchy, name: string, above: string): boolean {
-  const wanted = names.indexOf(above);
+  const expected = names.indexOf(above);
   let at = parents[names.indexOf(name)] ?? -1;
-  while (at >= 0 && at !== wanted) at = parents[at] ?? -1;
-  return at >= 0 && at === wanted;
+  while (at >= 0 && at !== expected) at = parents[at] ?? -1;
+  return at >= 0 && at === expected;
 }

@@ -1,5 +1,5 @@
 /** The queries of captures. Everything of one capture is cached under its id. */
-import { type Capture, captures, type ReadingChoice, type Shown } from "@shared/api/captures";
+import { type Capture, captures, type MotionView, type ReadingChoice } from "@shared/api/captures";
 import { keepPreviousData, queryOptions } from "@tanstack/react-query";
 
 export const capturesQuery = queryOptions({ queryKey: ["captures"], queryFn: captures.list });
@@ -8,11 +8,11 @@ export const captureQuery = (id: string) =>
   queryOptions({ queryKey: ["captures", id], queryFn: () => captures.get(id) });
 
 /** A file never changes, but its reading may, so the reading is part of the cache key. */
-const readAs = ({ metres_per_unit, up }: ReadingChoice) => `${metres_per_unit} ${up}`;
+const readingKey = ({ metres_per_unit, up }: ReadingChoice) => `${metres_per_unit} ${up}`;
 
-export const motionQuery = (capture: Capture, shown: Shown) =>
+export const motionQuery = (capture: Capture, shown: MotionView) =>
   queryOptions({
-    queryKey: ["captures", capture.id, "motion", shown, readAs(readingOf(capture))],
+    queryKey: ["captures", capture.id, "motion", shown, readingKey(readingOf(capture))],
     queryFn: () => captures.motion(capture.id, shown),
     staleTime: Number.POSITIVE_INFINITY,
     placeholderData: keepPreviousData,
@@ -28,7 +28,7 @@ export const avatarMotionQuery = (
   queryOptions({
     queryKey: [
       ...["captures", capture.id, "avatar", avatar, lockFeet],
-      ...[map, readAs(readingOf(capture))],
+      ...[map, readingKey(readingOf(capture))],
     ],
     queryFn: () => captures.onAvatar(capture.id, avatar, lockFeet),
     staleTime: Number.POSITIVE_INFINITY,
@@ -47,7 +47,7 @@ export const verificationQuery = (
   queryOptions({
     queryKey: [
       ...["captures", capture.id, "verification", avatars.join(" "), lockFeet],
-      ...[map, readAs(readingOf(capture))],
+      ...[map, readingKey(readingOf(capture))],
     ],
     queryFn: () => captures.verification(capture.id, avatars, lockFeet),
     staleTime: Number.POSITIVE_INFINITY,

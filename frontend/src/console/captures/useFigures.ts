@@ -20,7 +20,7 @@ export interface Wish {
 }
 
 /** Far enough apart for two people with their arms spread. */
-const BESIDE_M = 1.3;
+const OFFSET_M = 1.3;
 
 export function useFigures(capture: Capture, wish: Wish, map: JointMapDraft) {
   const isAvatar = wish.shown === "avatar";
@@ -71,5 +71,5 @@ function ghostOf(source: Figure, avatar: Figure): Figure {
   const start = placing(avatar);
   start.place(seconds(0));
   const [x, z] = facingOf(avatar, start.placed) ?? [0, -1];
-  return { ...source, tone: "ghost", aside: [BESIDE_M * z, -BESIDE_M * x] };
+  return { ...source, tone: "ghost", offset: [OFFSET_M * z, -OFFSET_M * x] };
 }

@@ -39,8 +39,8 @@ export function useJointMap(capture: Capture): JointMapDraft {
   const view = query.data;
   const unsaved = draft !== null && !sameMap(draft.edit.present, draft.base);
   // Without unsaved changes, the version that somebody else saved is shown.
-  const kept = draft !== null && (unsaved || draft.version === view?.version) ? draft : null;
-  const edit = kept?.edit ?? begin(view?.joint_map ?? NOTHING);
+  const current = draft !== null && (unsaved || draft.version === view?.version) ? draft : null;
+  const edit = current?.edit ?? begin(view?.joint_map ?? NOTHING);
   const save = useMutation({
     mutationFn: ({ map, version }: { readonly map: BodyMap; readonly version: number }) =>
       // A map equal to the proposal follows it, so that a better proposal of a later version is
@@ -65,10 +65,10 @@ export function useJointMap(capture: Capture): JointMapDraft {
     change: (step) => {
       if (view === undefined) return;
       if (!save.isIdle) save.reset();
-      const { base, version } = kept ?? { base: view.joint_map, version: view.version };
+      const { base, version } = current ?? { base: view.joint_map, version: view.version };
       setDraft({ edit: step(edit), base, version });
     },
-    save: () => kept !== null && save.mutate({ map: edit.present, version: kept.version }),
+    save: () => current !== null && save.mutate({ map: edit.present, version: current.version }),
     saving: save.isPending,
     saved: save.isSuccess && !unsaved,
     error: save.error,

@@ -4,7 +4,7 @@ import type { StageTexts } from "@shared/stage/Stage";
 import type { TransportTexts } from "@shared/stage/Transport";
 import { useTexts } from "../i18n";
 
-const MOST_NAMES = 4;
+const MAX_NAMES = 4;
 
 export function useStageTexts(): StageTexts {
   const { t, language } = useTexts();
@@ -36,10 +36,10 @@ export function useTransportTexts(): TransportTexts {
     gaps: t("stage.gaps"),
     unseen: (names) => {
       if (names.length === 0) return t("stage.unseen.none");
-      const told = names.slice(0, MOST_NAMES).join(", ");
-      const more = names.length - MOST_NAMES;
+      const listed = names.slice(0, MAX_NAMES).join(", ");
+      const more = names.length - MAX_NAMES;
       return t("stage.unseen", {
-        names: more > 0 ? t("stage.unseen.more", { names: told, count: more }) : told,
+        names: more > 0 ? t("stage.unseen.more", { names: listed, count: more }) : listed,
       });
     },
   };

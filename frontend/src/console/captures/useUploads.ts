@@ -51,7 +51,7 @@ function changed(state: State, change: Change): State {
 
 export interface Uploads extends State {
   readonly add: (files: readonly File[]) => void;
-  readonly again: (upload: Upload) => void;
+  readonly retry: (upload: Upload) => void;
   readonly dismiss: (id: number) => void;
   readonly drop: (file: File) => void;
 }
@@ -64,16 +64,16 @@ export function useUploads(): Uploads {
   const before = useRef<Promise<void>>(Promise.resolve());
   const send = ({ id, files }: Upload) => {
     before.current = before.current.then(async () => {
-      const say = (phase: Phase) => change({ do: "phase", id, phase });
-      say({ at: "sending", share: 0 });
+      const setPhase = (phase: Phase) => change({ do: "phase", id, phase });
+      setPhase({ at: "sending", share: 0 });
       try {
         const uploaded = await uploadCapture(files, (share) =>
-          say(share < 1 ? { at: "sending", share } : { at: "reading" }),
+          setPhase(share < 1 ? { at: "sending", share } : { at: "reading" }),
         );
-        say({ at: "done", uploaded });
+        setPhase({ at: "done", uploaded });
         await queries.invalidateQueries({ queryKey: capturesQuery.queryKey, exact: true });
       } catch (error) {
-        say({ at: "refused", error });
+        setPhase({ at: "refused", error });
       }
     });
   };
@@ -88,7 +88,7 @@ export function useUploads(): Uploads {
       change({ do: "add", uploads, lonely });
       uploads.forEach(send);
     },
-    again: (upload) => {
+    retry: (upload) => {
       change({ do: "phase", id: upload.id, phase: { at: "waiting" } });
       send(upload);
     },
@@ -114,7 +114,7 @@ const isAmc = ({ name }: Named): boolean => ending(name) === "amc";
 const isAsf = ({ name }: Named): boolean => ending(name) === "asf";
 
 /** The file type that a lonely file is missing. */
-export const missingBeside = (file: Named): ".asf" | ".amc" => (isAmc(file) ? ".asf" : ".amc");
+export const missingCompanion = (file: Named): ".asf" | ".amc" => (isAmc(file) ? ".asf" : ".amc");
 
 /**
  * Pair files by name. One ASF serves every AMC of its person: CMU's 02.asf goes with 02_01.amc and

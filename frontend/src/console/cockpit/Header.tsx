@@ -6,7 +6,7 @@ import { Icon } from "@shared/ui/Icon";
 import { type JSX, useEffect, useState } from "react";
 import { Link } from "wouter";
 import { useTexts } from "../i18n";
-import { useMay } from "../permissions";
+import { usePermissions } from "../permissions";
 import { isOver } from "../steps";
 import { KindBadge, StatusBadge } from "../ui/badges";
 import { Order } from "../ui/Order";
@@ -24,7 +24,7 @@ interface HeaderProps {
 
 export function Header({ session, feed, onChecks, onLog, onHelp }: HeaderProps): JSX.Element {
   const { t } = useTexts();
-  const may = useMay();
+  const can = usePermissions();
   return (
     <div className={classes.head}>
       <div>
@@ -49,7 +49,7 @@ export function Header({ session, feed, onChecks, onLog, onHelp }: HeaderProps):
       )}
       <div className={classes.tools} data-tour="head">
         <Feed state={feed} ended={session.ended_at !== null} />
-        {may("run") && hasConsent(session) && (
+        {can("run") && hasConsent(session) && (
           <Button
             component={Link}
             href={`/sessions/${session.id}/consent`}

@@ -7,7 +7,7 @@ import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Failure } from "../errors";
 import { type Key, useTexts } from "../i18n";
-import { useMay } from "../permissions";
+import { usePermissions } from "../permissions";
 import { sessionQuery } from "../queries";
 import { ReasonField } from "../ui/ReasonField";
 
@@ -20,9 +20,9 @@ const REASONS: readonly Key[] = [
 /** Renders nothing if no condition is hidden, or if it stays hidden for good. */
 export function Reveal({ session }: { readonly session: SessionView }): JSX.Element | null {
   const { t } = useTexts();
-  const may = useMay();
+  const can = usePermissions();
   const [opened, { open, close }] = useDisclosure();
-  if (!session.blinded || !may("reveal")) return null;
+  if (!session.blinded || !can("reveal")) return null;
   return (
     <>
       <Button size="compact-xs" variant="default" onClick={open}>

@@ -4,7 +4,7 @@ import type { SessionView } from "@shared/api/types";
 import { Notice } from "@shared/ui/Notice";
 import { type JSX, useState } from "react";
 import { useTexts } from "../i18n";
-import { useMay } from "../permissions";
+import { usePermissions } from "../permissions";
 import { AfterWithdrawal } from "../rights/AfterWithdrawal";
 import { Tour } from "../tour/Tour";
 import { Loaded } from "../ui/Loaded";
@@ -41,10 +41,10 @@ const PAUSING = ["pause", "resume"] as const;
 
 export function SessionPage({ id }: { readonly id: string }): JSX.Element {
   const live = useSession(id);
-  const may = useMay();
+  const can = usePermissions();
   return (
     <Loaded query={live.query}>
-      {(session) => <Cockpit session={may("run") ? session : readOnly(session)} live={live} />}
+      {(session) => <Cockpit session={can("run") ? session : readOnly(session)} live={live} />}
     </Loaded>
   );
 }
@@ -59,14 +59,14 @@ interface CockpitProps {
 
 function Cockpit({ session, live: direct }: CockpitProps): JSX.Element {
   const { t } = useTexts();
-  const may = useMay();
+  const can = usePermissions();
   const [asking, setAsking] = useState<Reasoned | null>(null);
   const [log, logs] = useDisclosure();
   const [help, helps] = useDisclosure();
   const [entry, entries] = useDisclosure();
   const [history, histories] = useDisclosure();
   const [list, lists] = useDisclosure();
-  const isPlanned = may("run") && session.status === "planned";
+  const isPlanned = can("run") && session.status === "planned";
   const flight = usePreflight(session, direct, isPlanned || list);
   // A start checks the pre-flight list first; every other command is sent directly.
   const send: Send = (command, onDone) =>
@@ -81,7 +81,7 @@ function Cockpit({ session, live: direct }: CockpitProps): JSX.Element {
       ? `▲ ${t(titleKey(worst))} · ${session.participant_code}`
       : session.participant_code,
   );
-  const ask = (type: Reasoned) => {
+  const openReason = (type: Reasoned) => {
     if (session.allowed.includes(type)) setAsking(type);
   };
   useKeys({
@@ -93,13 +93,13 @@ function Cockpit({ session, live: direct }: CockpitProps): JSX.Element {
       const type = PAUSING.find((one) => session.allowed.includes(one));
       if (type !== undefined) live.send({ type });
     },
-    redo: () => ask("redo"),
-    skip: () => ask("skip"),
+    redo: () => openReason("redo"),
+    skip: () => openReason("skip"),
     note: () => document.getElementById("note")?.focus(),
     log: logs.toggle,
     help: helps.toggle,
     alarms: histories.toggle,
-    checks: () => (isPlanned || ended || !may("run") ? undefined : lists.toggle()),
+    checks: () => (isPlanned || ended || !can("run") ? undefined : lists.toggle()),
     step: `${session.current?.index} ${session.current?.status}`,
   });
   return (
@@ -107,7 +107,7 @@ function Cockpit({ session, live: direct }: CockpitProps): JSX.Element {
       <Header
         session={session}
         feed={live.feed}
-        onChecks={isPlanned || ended || !may("run") ? undefined : lists.open}
+        onChecks={isPlanned || ended || !can("run") ? undefined : lists.open}
         onLog={logs.open}
         onHelp={helps.open}
       />
@@ -118,19 +118,19 @@ function Cockpit({ session, live: direct }: CockpitProps): JSX.Element {
           <Notice tone="sim" title={t("simulated.session", { scale: session.time_scale })} />
         )}
         {session.kind === "expert" && <Notice tone="info" title={t("expert.session")} />}
-        {!may("run") && <Notice tone="info" icon="info" title={t("read.only")} />}
-        {ended && may("rights") && <AfterWithdrawal session={session} send={live.send} />}
+        {!can("run") && <Notice tone="info" icon="info" title={t("read.only")} />}
+        {ended && can("rights") && <AfterWithdrawal session={session} send={live.send} />}
         <CommandFailure live={live} />
         {session.refusal !== null ? (
-          <RefusedCard refusal={session.refusal} onAsk={ask} />
+          <RefusedCard refusal={session.refusal} onAsk={openReason} />
         ) : session.held !== null ? (
-          <HeldCard held={session.held} onAsk={ask} />
+          <HeldCard held={session.held} onAsk={openReason} />
         ) : (
           <CurrentStep
             session={session}
             live={live}
             isReady={flight.isClear}
-            onAsk={ask}
+            onAsk={openReason}
             onEnterAnswers={entries.open}
           />
         )}
@@ -140,7 +140,7 @@ function Cockpit({ session, live: direct }: CockpitProps): JSX.Element {
         {ended && <PhaseTable session={session} />}
       </div>
       <aside className={classes.side} data-tour="side" aria-label={t("side.label")}>
-        {!ended && may("run") && <DevicesPanel session={session} />}
+        {!ended && can("run") && <DevicesPanel session={session} />}
         {session.kind === "expert" && <SuggestionsPanel session={session} />}
         <NotesPanel session={session} send={live.send} sending={live.sending} />
         <ScoresPanel session={session} />

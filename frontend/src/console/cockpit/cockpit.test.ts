@@ -3,7 +3,7 @@ import { describe, expect, it } from "vitest";
 import { at, session, steps } from "./example";
 import { groupSteps } from "./record/Timeline";
 import { guidance, lacksHeadset, primaryAction, redoable, redoTarget } from "./session/action";
-import { changesBetween, isOutlived } from "./session/useSession";
+import { changesBetween, isOutdated } from "./session/useSession";
 
 const view = (
   current: Current | null,
@@ -76,10 +76,10 @@ describe("an action that needs a headset", () => {
 describe("why a command failed", () => {
   it("is shown only until the session has moved on", () => {
     const sent = { view: view(at(2), []) };
-    expect(isOutlived(sent, view(at(2), [], { version: 9 }))).toBe(false);
-    expect(isOutlived(sent, view(at(3), []))).toBe(true);
-    expect(isOutlived(sent, view(null, [], { status: "completed" }))).toBe(true);
-    expect(isOutlived(undefined, session)).toBe(false);
+    expect(isOutdated(sent, view(at(2), [], { version: 9 }))).toBe(false);
+    expect(isOutdated(sent, view(at(3), []))).toBe(true);
+    expect(isOutdated(sent, view(null, [], { status: "completed" }))).toBe(true);
+    expect(isOutdated(undefined, session)).toBe(false);
   });
 });
 

@@ -189,7 +189,7 @@ function Checksum({ sha256 }: { readonly sha256: string }): JSX.Element {
 function Failed({ one, onRemove }: EndedProps): JSX.Element {
   const { t } = useTexts();
   const order = useOrder();
-  const again = () =>
+  const retry = () =>
     order.mutate(
       {
         studyKey: one.study_key,
@@ -206,7 +206,7 @@ function Failed({ one, onRemove }: EndedProps): JSX.Element {
         remedy={one.trouble?.remedy}
         actions={
           <div className={classes.actions}>
-            <Button size="xs" variant="default" loading={order.isPending} onClick={again}>
+            <Button size="xs" variant="default" loading={order.isPending} onClick={retry}>
               {t("downloads.again")}
             </Button>
             <Button size="xs" variant="subtle" color="gray" onClick={onRemove}>
@@ -230,22 +230,22 @@ interface DownloadListProps {
 /** The account's files, newest first; only those of one study on that study's pages. */
 export function DownloadList({ query, studyKey }: DownloadListProps): JSX.Element | null {
   const { t } = useTexts();
-  const { gone } = useDesk();
+  const { hasVanished } = useDesk();
   const shown = (query.data ?? []).filter(
     (one) => studyKey === undefined || one.study_key === studyKey,
   );
   const lost = query.isError && shown.some(isOpen);
-  if (shown.length === 0 && !gone) return null;
+  if (shown.length === 0 && !hasVanished) return null;
   return (
     <div>
-      {(lost || gone) && (
+      {(lost || hasVanished) && (
         <div className={classes.notices}>
           {lost && (
             <Notice tone="warn" title={t("downloads.lost")}>
               {t("downloads.lost.body")}
             </Notice>
           )}
-          {gone && (
+          {hasVanished && (
             <Notice tone="warn" title={t("downloads.gone")}>
               {t("downloads.gone.body")}
             </Notice>

@@ -5,7 +5,7 @@ import { Icon } from "@shared/ui/Icon";
 import type { JSX } from "react";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
-import { useMay } from "../permissions";
+import { usePermissions } from "../permissions";
 import { EmptyState } from "../ui/EmptyState";
 import { DownloadList } from "./DownloadCard";
 import classes from "./Downloads.module.css";
@@ -13,18 +13,18 @@ import {
   closeDownloads,
   isOpen,
   openDownloads,
+  useAutomaticDownloads,
   useDesk,
   useExports,
-  useHandingOver,
   useOrder,
 } from "./useExports";
 
 export function DownloadsButton(): JSX.Element {
   const { t } = useTexts();
-  const { opened, wanted } = useDesk();
+  const { opened, requested } = useDesk();
   // Nothing is requested while no file is expected and the list is closed.
-  const query = useExports(opened || wanted.length > 0);
-  useHandingOver(query.isFetchedAfterMount ? query.data : undefined);
+  const query = useExports(opened || requested.length > 0);
+  useAutomaticDownloads(query.isFetchedAfterMount ? query.data : undefined);
   const busy = query.data?.filter(isOpen).length ?? 0;
   return (
     <>
@@ -76,10 +76,10 @@ export function SessionDownload({
   readonly session: SessionView;
 }): JSX.Element | null {
   const { t } = useTexts();
-  const may = useMay();
+  const can = usePermissions();
   const order = useOrder();
   // An expert's session contains suggestions only, and is in no table.
-  if (!may("compare") || session.kind === "expert") return null;
+  if (!can("compare") || session.kind === "expert") return null;
   const kind: DataKind = session.kind;
   return (
     <>

@@ -14,11 +14,11 @@ export function useOrder() {
   const queries = useQueryClient();
   return useMutation({
     mutationFn: (wish: ExportWish) => exports.order(wish),
-    onSuccess: (made) => {
-      want(made.id);
+    onSuccess: (created) => {
+      addRequest(created.id);
       queries.setQueryData(exportsQuery.queryKey, (known) => [
-        made,
-        ...(known ?? []).filter(({ id }) => id !== made.id),
+        created,
+        ...(known ?? []).filter(({ id }) => id !== created.id),
       ]);
       void queries.invalidateQueries({ queryKey: exportsQuery.queryKey });
     },
@@ -29,7 +29,7 @@ export function useRemoval() {
   const queries = useQueryClient();
   return useMutation({
     mutationFn: (id: string) => {
-      wantNoMore(id);
+      removeRequest(id);
       return exports.remove(id);
     },
     onSettled: () => queries.invalidateQueries({ queryKey: exportsQuery.queryKey }),
@@ -40,23 +40,23 @@ export function useRemoval() {
  * Start the browser's download of each export requested in this tab once it is ready; the browser
  * writes it to disk as it arrives.
  */
-export function useHandingOver(list: readonly Export[] | undefined): void {
-  const { wanted } = useDesk();
+export function useAutomaticDownloads(list: readonly Export[] | undefined): void {
+  const { requested } = useDesk();
   const queries = useQueryClient();
   useEffect(() => {
     if (list === undefined) return;
-    for (const id of wanted) {
+    for (const id of requested) {
       const one = list.find((known) => known.id === id);
-      if (one === undefined) wantNoMore(id, true);
-      else if (one.state === "failed") wantNoMore(id);
+      if (one === undefined) removeRequest(id, true);
+      else if (one.state === "failed") removeRequest(id);
       else if (one.state === "ready") {
-        wantNoMore(id);
+        removeRequest(id);
         save(one);
         // It counts as fetched once the server has noticed the download.
         setTimeout(() => void queries.invalidateQueries({ queryKey: exportsQuery.queryKey }), 1000);
       }
     }
-  }, [list, wanted, queries]);
+  }, [list, requested, queries]);
 }
 
 function save(one: Export): void {
@@ -71,21 +71,21 @@ const KEY = "reembody.downloads.wanted";
 interface Desk {
   readonly opened: boolean;
   /** Exports that were requested here and are not downloaded yet. */
-  readonly wanted: readonly string[];
+  readonly requested: readonly string[];
   /** One of them vanished before it was ready. */
-  readonly gone: boolean;
+  readonly hasVanished: boolean;
 }
 
-let desk: Desk = { opened: false, wanted: kept(), gone: false };
+let desk: Desk = { opened: false, requested: storedRequests(), hasVanished: false };
 const listeners = new Set<() => void>();
 
-function kept(): readonly string[] {
+function storedRequests(): readonly string[] {
   return (sessionStorage.getItem(KEY) ?? "").split(" ").filter((id) => id !== "");
 }
 
 function change(next: Partial<Desk>): void {
   desk = { ...desk, ...next };
-  sessionStorage.setItem(KEY, desk.wanted.join(" "));
+  sessionStorage.setItem(KEY, desk.requested.join(" "));
   for (const listener of listeners) listener();
 }
 
@@ -94,11 +94,14 @@ function change(next: Partial<Desk>): void {
  * remembered when the page is reloaded, and other tabs do not fetch them too.
  */
 export const openDownloads = (): void => change({ opened: true });
-export const closeDownloads = (): void => change({ opened: false, gone: false });
-const want = (id: string): void =>
-  change({ wanted: [...desk.wanted.filter((one) => one !== id), id], gone: false });
-const wantNoMore = (id: string, gone = false): void =>
-  change({ wanted: desk.wanted.filter((one) => one !== id), gone: desk.gone || gone });
+export const closeDownloads = (): void => change({ opened: false, hasVanished: false });
+const addRequest = (id: string): void =>
+  change({ requested: [...desk.requested.filter((one) => one !== id), id], hasVanished: false });
+const removeRequest = (id: string, gone = false): void =>
+  change({
+    requested: desk.requested.filter((one) => one !== id),
+    hasVanished: desk.hasVanished || gone,
+  });
 
 export function useDesk(): Desk {
   return useSyncExternalStore(

@@ -19,7 +19,7 @@ import { DryRun } from "./DryRun";
 import classes from "./Editor.module.css";
 import { Form } from "./Form";
 import { FormContext, type FormState } from "./formContext";
-import { dropDraft, keepDraft, LeaveGuard } from "./LeaveGuard";
+import { dropDraft, LeaveGuard, storeDraft } from "./LeaveGuard";
 import { isList, type JsonObject } from "./paths";
 import { specOfFile } from "./schema";
 import { type Draft, useDraft } from "./useDraft";
@@ -45,7 +45,7 @@ export function Editor({ studyKey, title, stored, initial, notice }: EditorProps
   const id = studyKey ?? "new";
   const unsaved = draft.text !== stored;
   useEffect(() => {
-    if (unsaved) keepDraft(id, draft.text);
+    if (unsaved) storeDraft(id, draft.text);
     else dropDraft(id);
   }, [id, unsaved, draft.text]);
   const tabs = studyKey === null ? TABS.filter((one) => one !== "changes") : TABS;

@@ -16,7 +16,7 @@ import { templatesQuery } from "../queries";
 import { Loaded } from "../ui/Loaded";
 import { useTitle } from "../ui/page";
 import { Editor } from "./Editor";
-import { dropDraft, keptDraft } from "./LeaveGuard";
+import { dropDraft, storedDraft } from "./LeaveGuard";
 
 export function EditStudyPage({ studyKey }: { readonly studyKey: string }): JSX.Element {
   const { t, language } = useTexts();
@@ -31,7 +31,7 @@ export function EditStudyPage({ studyKey }: { readonly studyKey: string }): JSX.
   return (
     <Loaded query={query}>
       {(study) => (
-        <Begun
+        <EditorWithDraft
           key={study.content_hash}
           id={study.key}
           studyKey={study.key}
@@ -70,7 +70,7 @@ export function NewStudyEditor({ from, name = "" }: NewStudyEditorProps): JSX.El
     staleTime: Number.POSITIVE_INFINITY,
   });
   const begin = (text: string) => (
-    <Begun
+    <EditorWithDraft
       id="new"
       studyKey={null}
       title={t("new.title")}
@@ -93,7 +93,7 @@ export function NewStudyEditor({ from, name = "" }: NewStudyEditorProps): JSX.El
   return begin(EMPTY);
 }
 
-interface BegunProps {
+interface EditorWithDraftProps {
   readonly id: string;
   readonly studyKey: string | null;
   readonly title: string;
@@ -106,9 +106,16 @@ interface BegunProps {
 /**
  * The editor, starting with the unsaved changes kept from an earlier visit, which can be discarded.
  */
-function Begun({ id, studyKey, title, stored, begin, fresh = false }: BegunProps): JSX.Element {
+function EditorWithDraft({
+  id,
+  studyKey,
+  title,
+  stored,
+  begin,
+  fresh = false,
+}: EditorWithDraftProps): JSX.Element {
   const { t, language } = useTexts();
-  const [kept] = useState(() => (fresh ? null : keptDraft(id)));
+  const [kept] = useState(() => (fresh ? null : storedDraft(id)));
   const [dropped, setDropped] = useState(false);
   const [openedAt] = useState(() => new Date().toISOString());
   const restored = kept !== null && kept !== stored && !dropped;

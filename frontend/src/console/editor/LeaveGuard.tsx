@@ -58,11 +58,11 @@ export function LeaveGuard({ unsaved }: { readonly unsaved: boolean }): JSX.Elem
 /** The prefix of unsaved drafts in this browser's storage, so that closing a page loses nothing. */
 const PREFIX = "reembody.draft.";
 
-export function keptDraft(id: string): string | null {
+export function storedDraft(id: string): string | null {
   return localStorage.getItem(PREFIX + id);
 }
 
-export function keepDraft(id: string, text: string): void {
+export function storeDraft(id: string, text: string): void {
   try {
     localStorage.setItem(PREFIX + id, text);
   } catch {

@@ -10,7 +10,7 @@ import { useTexts } from "../i18n";
 import { studiesQuery, templatesQuery } from "../queries";
 import { Loaded } from "../ui/Loaded";
 import { useTitle } from "../ui/page";
-import { keepDraft } from "./LeaveGuard";
+import { storeDraft } from "./LeaveGuard";
 import classes from "./NewStudy.module.css";
 
 export function NewStudyPage(): JSX.Element {
@@ -37,11 +37,11 @@ export function NewStudyPage(): JSX.Element {
       <div className={classes.others}>
         <FromStudy />
         <FromFile />
-        <Way icon="document" title={t("new.empty")} lead={t("new.empty.lead")}>
+        <StartOption icon="document" title={t("new.empty")} lead={t("new.empty.lead")}>
           <Button component={Link} href="/new/empty" variant="default">
             {t("new.empty.do")}
           </Button>
-        </Way>
+        </StartOption>
       </div>
     </>
   );
@@ -59,16 +59,16 @@ function TemplateCard({ template }: { readonly template: Template }): JSX.Elemen
   );
 }
 
-interface WayProps {
+interface StartOptionProps {
   readonly icon: "document" | "upload" | "add";
   readonly title: string;
   readonly lead: string;
   readonly children: ReactNode;
 }
 
-function Way({ icon, title, lead, children }: WayProps): JSX.Element {
+function StartOption({ icon, title, lead, children }: StartOptionProps): JSX.Element {
   return (
-    <section className={classes.way}>
+    <section className={classes.option}>
       <h2>
         <Icon name={icon} size={18} />
         {title}
@@ -83,7 +83,7 @@ function FromStudy(): JSX.Element {
   const { t } = useTexts();
   const studies = useQuery(studiesQuery);
   return (
-    <Way icon="add" title={t("new.copy")} lead={t("new.copy.lead")}>
+    <StartOption icon="add" title={t("new.copy")} lead={t("new.copy.lead")}>
       <ul className={classes.list}>
         {(studies.data ?? []).map((study) => (
           <li key={study.key}>
@@ -91,7 +91,7 @@ function FromStudy(): JSX.Element {
           </li>
         ))}
       </ul>
-    </Way>
+    </StartOption>
   );
 }
 
@@ -100,11 +100,11 @@ function FromFile(): JSX.Element {
   const [, navigate] = useLocation();
   const open = async (file: File | null) => {
     if (file === null) return;
-    keepDraft("new", await file.text());
+    storeDraft("new", await file.text());
     navigate("/new/draft");
   };
   return (
-    <Way icon="upload" title={t("new.import")} lead={t("new.import.lead")}>
+    <StartOption icon="upload" title={t("new.import")} lead={t("new.import.lead")}>
       <FileButton accept=".yaml,.yml,text/yaml" onChange={(file) => void open(file)}>
         {(props) => (
           <Button {...props} variant="default">
@@ -112,6 +112,6 @@ function FromFile(): JSX.Element {
           </Button>
         )}
       </FileButton>
-    </Way>
+    </StartOption>
   );
 }

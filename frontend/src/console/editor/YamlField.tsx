@@ -68,7 +68,7 @@ const colours = HighlightStyle.define([
   },
 ]);
 
-const look = EditorView.theme({
+const theme = EditorView.theme({
   "&": { height: "100%", backgroundColor: "var(--surface)", color: "var(--ink)", fontSize: "13px" },
   "&.cm-focused": { outline: "2px solid var(--accent)", outlineOffset: "-2px" },
   ".cm-scroller": { fontFamily: "var(--mantine-font-family-monospace)", lineHeight: "1.55" },
@@ -135,7 +135,7 @@ function createYamlText(
         EditorView.lineWrapping,
         // Tab leaves the field, for keyboard users.
         keymap.of([...defaultKeymap, ...historyKeymap, ...lintKeymap]),
-        look,
+        theme,
         attributes.of(own("", true)),
         EditorView.updateListener.of((update) => {
           if (!update.docChanged) return;

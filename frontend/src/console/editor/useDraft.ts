@@ -40,15 +40,15 @@ export function useDraft(initial: string): Draft {
   const field = useRef<YamlText | null>(null);
   const queue = useRef(Promise.resolve());
   useEffect(() => setText(initial), [initial]);
-  const wanted = byForm ? text : settled;
+  const checked = byForm ? text : settled;
   const query = useQuery({
-    queryKey: ["check", wanted],
-    queryFn: () => drafts.check(wanted),
+    queryKey: ["check", checked],
+    queryFn: () => drafts.check(checked),
     placeholderData: keepPreviousData,
     staleTime: Number.POSITIVE_INFINITY,
     gcTime: 30_000,
   });
-  const upToDate = wanted === text && !query.isPlaceholderData && query.data !== undefined;
+  const upToDate = checked === text && !query.isPlaceholderData && query.data !== undefined;
   const change = (changes: readonly Change[]) => {
     queue.current = queue.current.then(async () => {
       try {

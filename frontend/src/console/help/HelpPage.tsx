@@ -79,11 +79,11 @@ function Body({
   readonly heading: string | undefined;
 }): JSX.Element {
   useEffect(() => {
-    const there = heading === undefined ? null : document.getElementById(headingId(heading));
-    if (there === null) window.scrollTo({ top: 0 });
+    const target = heading === undefined ? null : document.getElementById(headingId(heading));
+    if (target === null) window.scrollTo({ top: 0 });
     else {
-      there.scrollIntoView();
-      there.focus({ preventScroll: true });
+      target.scrollIntoView();
+      target.focus({ preventScroll: true });
     }
   }, [heading]);
   return (
@@ -107,11 +107,11 @@ function Contents({ current }: { readonly current: Page | undefined }): JSX.Elem
       input.current?.focus();
       return;
     }
-    const way = { ArrowDown: 1, ArrowUp: -1 }[event.key];
-    if (way === undefined) return;
+    const direction = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+    if (direction === undefined) return;
     const stops = [...(box.current?.querySelectorAll<HTMLElement>("input, a") ?? [])];
     const at = stops.indexOf(document.activeElement as HTMLElement);
-    stops[Math.max(0, Math.min(stops.length - 1, at + way))]?.focus();
+    stops[Math.max(0, Math.min(stops.length - 1, at + direction))]?.focus();
     event.preventDefault();
   };
   return (

@@ -7,7 +7,7 @@ export interface Found {
   readonly heading: HelpHeading | undefined;
 }
 
-const MOST = 40;
+const MAX_RESULTS = 40;
 
 /**
  * Find the pages and headings that contain every word of `query`, in any order and as parts of
@@ -34,5 +34,5 @@ export function search(parts: readonly HelpPart[], query: string): readonly Foun
     const title = (heading?.title ?? page.title).toLowerCase();
     return (title.startsWith(words[0] ?? "") ? 0 : 2) + (heading === undefined ? 0 : 1);
   };
-  return found.toSorted((a, b) => rank(a) - rank(b)).slice(0, MOST);
+  return found.toSorted((a, b) => rank(a) - rank(b)).slice(0, MAX_RESULTS);
 }

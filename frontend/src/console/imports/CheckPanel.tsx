@@ -133,7 +133,7 @@ function FirstForms({ check }: { readonly check: ImportCheck }): JSX.Element | n
               <td>{form.participant_code}</td>
               <td>{form.condition || "–"}</td>
               {scores.map((score) => (
-                <td key={score}>{told(form.scores[score], language)}</td>
+                <td key={score}>{formatted(form.scores[score], language)}</td>
               ))}
             </tr>
           ))}
@@ -147,5 +147,5 @@ function FirstForms({ check }: { readonly check: ImportCheck }): JSX.Element | n
 const formula = (multiply: number, add: number): string =>
   `${multiply} × x ${add < 0 ? "−" : "+"} ${Math.abs(add)}`;
 
-const told = (value: number | null | undefined, language: string): string =>
+const formatted = (value: number | null | undefined, language: string): string =>
   value === null || value === undefined ? "–" : number(value, language, 2);

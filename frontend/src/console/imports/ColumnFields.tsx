@@ -3,7 +3,7 @@
  * time.
  */
 import { NumberInput, Select } from "@mantine/core";
-import type { ImportLook, ImportMapping } from "@shared/api/imports";
+import type { ImportMapping, ImportPreview } from "@shared/api/imports";
 import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { useTexts } from "../i18n";
@@ -11,7 +11,7 @@ import { instrumentsQuery } from "../queries";
 import classes from "./Imports.module.css";
 
 interface FieldsProps {
-  readonly look: ImportLook;
+  readonly look: ImportPreview;
   readonly mapping: ImportMapping;
   readonly onChange: (part: Partial<ImportMapping>) => void;
   readonly onAgain: (instrument: string, headerRows: number | null) => void;

@@ -8,7 +8,7 @@ import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
-import { useMay } from "../permissions";
+import { usePermissions } from "../permissions";
 import { importQuery } from "../queries";
 import { Loaded } from "../ui/Loaded";
 import { useShown } from "../ui/page";
@@ -51,7 +51,7 @@ interface FoundProps {
 
 function Found({ studyKey, found }: FoundProps): JSX.Element {
   const { t, language } = useTexts();
-  const may = useMay();
+  const can = usePermissions();
   const { view, results } = found;
   const by = view.imported_by.replace("account:", "");
   return (
@@ -92,7 +92,7 @@ function Found({ studyKey, found }: FoundProps): JSX.Element {
           </Button>
         </Group>
       )}
-      {view.undone_at === null && may("design") && <Undo studyKey={studyKey} view={view} />}
+      {view.undone_at === null && can("design") && <Undo studyKey={studyKey} view={view} />}
     </Stack>
   );
 }

@@ -1,6 +1,6 @@
 /** The steps from a file to stored answers: choose it, map its columns, check the preview. */
 import { Button, FileButton, Modal } from "@mantine/core";
-import { type AnswerImport, type ImportLook, imports } from "@shared/api/imports";
+import { type AnswerImport, type ImportPreview, imports } from "@shared/api/imports";
 import type { StudyDetail } from "@shared/api/types";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
@@ -70,19 +70,31 @@ function Wizard({ study, onOpen }: Pick<WizardProps, "study" | "onOpen">): JSX.E
       )}
       {look.isError && <Failure error={look.error} />}
       {file !== null && look.data !== undefined && (
-        <Looked study={study} file={file} look={look.data} onAgain={again} onOpen={onOpen} />
+        <PreviewedImport
+          study={study}
+          file={file}
+          look={look.data}
+          onAgain={again}
+          onOpen={onOpen}
+        />
       )}
     </div>
   );
 }
 
-interface LookedProps extends Pick<WizardProps, "study" | "onOpen"> {
+interface PreviewedImportProps extends Pick<WizardProps, "study" | "onOpen"> {
   readonly file: OpenedFile;
-  readonly look: ImportLook;
+  readonly look: ImportPreview;
   readonly onAgain: (instrument: string, headerRows: number | null) => void;
 }
 
-function Looked({ study, file, look, onAgain, onOpen }: LookedProps): JSX.Element {
+function PreviewedImport({
+  study,
+  file,
+  look,
+  onAgain,
+  onOpen,
+}: PreviewedImportProps): JSX.Element {
   return (
     <>
       {look.same_file !== null && <Same found={look.same_file} onOpen={onOpen} />}

@@ -8,7 +8,7 @@ import classes from "./Imports.module.css";
 
 export function ImportedScore({ result }: { readonly result: ScoreResult }): JSX.Element {
   const { t, language } = useTexts();
-  const told = (value: number): string => number(value, language, 2);
+  const formatted = (value: number): string => number(value, language, 2);
   const exact = (value: number | null): string =>
     value === null ? "–" : decimals(value, language, 2);
   return (
@@ -56,7 +56,7 @@ export function ImportedScore({ result }: { readonly result: ScoreResult }): JSX
                     {one.a} – {one.b}
                   </th>
                   <td>{one.n}</td>
-                  <td>{told(one.w)}</td>
+                  <td>{formatted(one.w)}</td>
                   <td>{pWords(one.p)}</td>
                   <td>{pWords(one.p_holm)}</td>
                   <td>{exact(one.rank_biserial)}</td>

@@ -7,7 +7,7 @@ import { Icon } from "@shared/ui/Icon";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { useTexts } from "../i18n";
-import { useMay } from "../permissions";
+import { usePermissions } from "../permissions";
 import { importsQuery } from "../queries";
 import { Loaded } from "../ui/Loaded";
 import { ImportDetailDialog } from "./ImportDetailDialog";
@@ -16,7 +16,7 @@ import { ImportWizard } from "./ImportWizard";
 
 export function ImportsCard({ study }: { readonly study: StudyDetail }): JSX.Element {
   const { t } = useTexts();
-  const may = useMay();
+  const can = usePermissions();
   const [adding, setAdding] = useState(false);
   const [shown, setShown] = useState<string | null>(null);
   const open = (id: string): void => {
@@ -30,7 +30,7 @@ export function ImportsCard({ study }: { readonly study: StudyDetail }): JSX.Ele
           <Title order={2}>{t("imports.title")}</Title>
           <p className={classes.lead}>{t("imports.lead")}</p>
         </div>
-        {may("design") && (
+        {can("design") && (
           <Button
             variant="default"
             leftSection={<Icon name="upload" size={18} />}

@@ -1,6 +1,6 @@
 /** Which column contains which item; a wide file has one set of columns per condition. */
 import { Button, Checkbox, Select, TextInput, Title } from "@mantine/core";
-import type { ImportLook, ImportMapping } from "@shared/api/imports";
+import type { ImportMapping, ImportPreview } from "@shared/api/imports";
 import { inLanguage } from "@shared/text";
 import { Icon } from "@shared/ui/Icon";
 import type { JSX } from "react";
@@ -8,7 +8,7 @@ import { useTexts } from "../i18n";
 import classes from "./Imports.module.css";
 
 interface ItemsProps {
-  readonly look: ImportLook;
+  readonly look: ImportPreview;
   readonly items: readonly {
     readonly key: string;
     readonly text: Readonly<Record<string, string>>;

@@ -1,6 +1,6 @@
 /** The mapping of the columns, next to a preview of the result that is updated at every change. */
 import { Button, Group } from "@mantine/core";
-import { type ImportLook, type ImportMapping, imports } from "@shared/api/imports";
+import { type ImportMapping, type ImportPreview, imports } from "@shared/api/imports";
 import type { StudyDetail } from "@shared/api/types";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
@@ -19,7 +19,7 @@ import { WordFields } from "./WordFields";
 interface StepProps {
   readonly study: StudyDetail;
   readonly file: OpenedFile;
-  readonly look: ImportLook;
+  readonly look: ImportPreview;
   readonly onAgain: (instrument: string, headerRows: number | null) => void;
   readonly onDone: (id: string) => void;
 }
@@ -29,9 +29,9 @@ export function MappingStep({ study, file, look, onAgain, onDone }: StepProps): 
   const [mapping, setMapping] = useState<ImportMapping>(look.proposal ?? emptyMapping(look));
   const change = (part: Partial<ImportMapping>): void => setMapping({ ...mapping, ...part });
   const ready = mapping.participant !== "" && mapping.sets.some(hasItems);
-  const asked = { ...mapping, sets: mapping.sets.filter(hasItems) };
+  const requested = { ...mapping, sets: mapping.sets.filter(hasItems) };
   const check = useQuery({
-    ...checkQuery(study.key, `${file.name} ${file.text.length}`, file.text, asked),
+    ...checkQuery(study.key, `${file.name} ${file.text.length}`, file.text, requested),
     enabled: ready,
   });
   const items = useQuery(instrumentQuery(look.instrument));
@@ -71,7 +71,7 @@ export function MappingStep({ study, file, look, onAgain, onDone }: StepProps): 
       <Store
         study={study}
         file={file}
-        mapping={asked}
+        mapping={requested}
         allowed={ready && check.data?.n_problems === 0 && check.data.forms > 0 && !check.isFetching}
         forms={check.data?.forms ?? 0}
         onDone={onDone}
@@ -116,7 +116,7 @@ function Store({ study, file, mapping, allowed, forms, onDone }: StoreProps): JS
 
 const hasItems = (one: ImportMapping["sets"][number]): boolean => Object.keys(one.items).length > 0;
 
-function emptyMapping(look: ImportLook): ImportMapping {
+function emptyMapping(look: ImportPreview): ImportMapping {
   return {
     instrument: look.instrument,
     participant: "",
@@ -135,13 +135,13 @@ function emptyMapping(look: ImportLook): ImportMapping {
 
 /** The names of the conditions in the file, from the column that is selected now. */
 function conditionWords(
-  look: ImportLook,
+  look: ImportPreview,
   mapping: ImportMapping,
   found: readonly { readonly condition: string; readonly in_study: boolean }[] | undefined,
 ): readonly string[] {
-  const told = mapping.sets.flatMap(({ condition }) => condition ?? []);
+  const assigned = mapping.sets.flatMap(({ condition }) => condition ?? []);
   const same = mapping.condition !== null && mapping.condition === look.proposal?.condition;
-  const own = same ? look.condition_words : told;
+  const own = same ? look.condition_words : assigned;
   const unknown = (found ?? [])
     .filter(({ in_study }) => !in_study)
     .map(({ condition }) => condition);
@@ -157,7 +157,7 @@ const SEPARATORS: Readonly<Record<string, Key>> = {
 };
 
 /** The first rows of a file as they were read. */
-function FilePreview({ look }: { readonly look: ImportLook }): JSX.Element {
+function FilePreview({ look }: { readonly look: ImportPreview }): JSX.Element {
   const { t } = useTexts();
   const separator = t(SEPARATORS[look.separator] ?? "imports.separator.comma");
   return (

@@ -10,7 +10,7 @@ import { keepPreviousData, useMutation, useQuery, useQueryClient } from "@tansta
 import { type JSX, useEffect, useRef, useState } from "react";
 import { useLocation } from "wouter";
 import layout from "../editor/Editor.module.css";
-import { dropDraft, keepDraft, keptDraft, LeaveGuard } from "../editor/LeaveGuard";
+import { dropDraft, LeaveGuard, storeDraft, storedDraft } from "../editor/LeaveGuard";
 import { showLine, YamlField, type YamlText } from "../editor/YamlField";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
@@ -62,8 +62,8 @@ function InstrumentEditor({ id, title, stored, begin }: InstrumentEditorProps): 
   useTitle(t("instrumentEditor.title", { name: title }));
   const [, navigate] = useLocation();
   const queries = useQueryClient();
-  const kept = `instrument.${id}`;
-  const [initial] = useState(() => keptDraft(kept) ?? begin);
+  const storageKey = `instrument.${id}`;
+  const [initial] = useState(() => storedDraft(storageKey) ?? begin);
   const [text, setText] = useState(initial);
   const [settled] = useDebouncedValue(text, 350);
   const field = useRef<YamlText | null>(null);
@@ -77,16 +77,16 @@ function InstrumentEditor({ id, title, stored, begin }: InstrumentEditorProps): 
   });
   const unsaved = text !== stored && text !== begin;
   useEffect(() => {
-    if (unsaved) keepDraft(kept, text);
-    else dropDraft(kept);
-  }, [kept, unsaved, text]);
+    if (unsaved) storeDraft(storageKey, text);
+    else dropDraft(storageKey);
+  }, [storageKey, unsaved, text]);
   const upToDate = settled === text && !query.isPlaceholderData;
   const check = query.data;
   const problems = check?.problems ?? NO_PROBLEMS;
   const save = useMutation({
     mutationFn: () => instruments.save(text),
     onSuccess: async (instrument) => {
-      dropDraft(kept);
+      dropDraft(storageKey);
       await queries.invalidateQueries({ queryKey: ["instruments"] });
       notifications.show({
         message: t("instrumentEditor.saved", { key: instrument.key }),

@@ -8,7 +8,7 @@ import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { Link, useLocation } from "wouter";
 import { useTexts } from "../i18n";
-import { useMay } from "../permissions";
+import { usePermissions } from "../permissions";
 import { instrumentQuery } from "../queries";
 import { Loaded } from "../ui/Loaded";
 import { useTitle } from "../ui/page";
@@ -60,7 +60,7 @@ interface InstrumentProps {
 function Instrument({ instrument, tab }: InstrumentProps): JSX.Element {
   const { t, language } = useTexts();
   const [, navigate] = useLocation();
-  const may = useMay();
+  const can = usePermissions();
   const title = inLanguage(instrument.title, language);
   useTitle(title);
   return (
@@ -75,7 +75,7 @@ function Instrument({ instrument, tab }: InstrumentProps): JSX.Element {
             <Used instrument={instrument} />
           </div>
         </div>
-        {may("design") && (
+        {can("design") && (
           <Button
             component={Link}
             href={`/instruments/${instrument.key}/edit`}

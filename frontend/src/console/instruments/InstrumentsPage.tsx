@@ -8,7 +8,7 @@ import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { Link } from "wouter";
 import { useTexts } from "../i18n";
-import { useMay } from "../permissions";
+import { usePermissions } from "../permissions";
 import { instrumentsQuery } from "../queries";
 import { EmptyState } from "../ui/EmptyState";
 import { Loaded } from "../ui/Loaded";
@@ -17,7 +17,7 @@ import classes from "./Instruments.module.css";
 
 export function InstrumentsPage(): JSX.Element {
   const { t } = useTexts();
-  const may = useMay();
+  const can = usePermissions();
   useTitle(t("instruments.title"));
   return (
     <>
@@ -26,7 +26,7 @@ export function InstrumentsPage(): JSX.Element {
           <Title order={1}>{t("instruments.title")}</Title>
           <p className={classes.lead}>{t("instruments.lead")}</p>
         </div>
-        {may("design") && (
+        {can("design") && (
           <Button
             component={Link}
             href="/instruments/new"

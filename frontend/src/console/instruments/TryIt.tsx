@@ -33,7 +33,7 @@ export function TryIt({ preview, yaml }: TryItProps): JSX.Element {
   const [wanted, setWanted] = useState<string>(language);
   const [draft, setDraft] = useState<FormDraft>(EMPTY_DRAFT);
   const shown = preview.languages.includes(wanted) ? wanted : (preview.languages[0] ?? "en");
-  const again = () => {
+  const restart = () => {
     setDraft(EMPTY_DRAFT);
     setRound(round + 1);
   };
@@ -47,7 +47,7 @@ export function TryIt({ preview, yaml }: TryItProps): JSX.Element {
           onChange={setWanted}
           data={preview.languages.map((tag) => ({ value: tag, label: LANGUAGE_NAMES[tag] ?? tag }))}
         />
-        <Button variant="default" size="xs" onClick={again}>
+        <Button variant="default" size="xs" onClick={restart}>
           {t("try.again")}
         </Button>
       </div>

@@ -6,13 +6,13 @@ import { type JSX, useState } from "react";
 import { signIn } from "../account";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
-import { Front } from "./Front";
+import { SignedOutFrame } from "./SignedOutFrame";
 
 /** The sign-in page; `ended` is the account whose sign-in has expired. */
 export function Login({ ended = null }: { readonly ended?: Account | null }): JSX.Element {
   const { t } = useTexts();
   return (
-    <Front title={t("login.title")}>
+    <SignedOutFrame title={t("login.title")}>
       <Text c="dimmed" mt={4} mb="xl">
         {t("login.lead")}
       </Text>
@@ -24,7 +24,7 @@ export function Login({ ended = null }: { readonly ended?: Account | null }): JS
         </div>
       )}
       <LoginForm username={ended?.username ?? ""} />
-    </Front>
+    </SignedOutFrame>
   );
 }
 

@@ -6,7 +6,7 @@ import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Link } from "wouter";
 import { useTexts } from "../i18n";
-import { useMay } from "../permissions";
+import { usePermissions } from "../permissions";
 import { archivedQuery, studiesQuery } from "../queries";
 import { EmptyState } from "../ui/EmptyState";
 import { KINDS } from "../ui/KindFilter";
@@ -16,7 +16,7 @@ import classes from "./Studies.module.css";
 
 export function StudiesPage(): JSX.Element {
   const { t } = useTexts();
-  const may = useMay();
+  const can = usePermissions();
   const [archived, setArchived] = useState(false);
   const query = useQuery(archived ? archivedQuery : studiesQuery);
   useTitle(t("app.studies"));
@@ -31,7 +31,7 @@ export function StudiesPage(): JSX.Element {
           <Button variant="subtle" onClick={() => setArchived(!archived)}>
             {t(archived ? "versions.hide" : "versions.show")}
           </Button>
-          {may("design") && (
+          {can("design") && (
             <Button component={Link} href="/new" leftSection={<Icon name="add" size={18} />}>
               {t("new.title")}
             </Button>

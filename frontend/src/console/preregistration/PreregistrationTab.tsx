@@ -9,7 +9,7 @@ import { type JSX, useState } from "react";
 import { Link } from "wouter";
 import { useTexts } from "../i18n";
 import page from "../pages/study/StudyPage.module.css";
-import { useMay } from "../permissions";
+import { usePermissions } from "../permissions";
 import { EmptyState } from "../ui/EmptyState";
 import { KindFilter } from "../ui/KindFilter";
 import { Loaded } from "../ui/Loaded";
@@ -25,7 +25,7 @@ export function PreregistrationTab({ study }: { readonly study: StudyDetail }): 
     <>
       <div className={page.toolbar}>
         <KindFilter kind={kind} onChange={setKind} />
-        <Group className={page.push ?? ""} gap="xs">
+        <Group className={page.spacer ?? ""} gap="xs">
           {(["markdown", "json"] as const).map((form) => (
             <Button
               key={form}
@@ -71,13 +71,13 @@ function Page({ study, view }: PageProps): JSX.Element {
 
 function Undeclared({ study }: { readonly study: StudyDetail }): JSX.Element {
   const { t } = useTexts();
-  const may = useMay();
+  const can = usePermissions();
   return (
     <EmptyState
       icon="lock"
       title={t("prereg.none")}
       action={
-        may("design") && (
+        can("design") && (
           <Button component={Link} href={`/studies/${study.key}/edit`}>
             {t("prereg.none.do")}
           </Button>
@@ -105,28 +105,28 @@ function Deviations({ deviations }: { readonly deviations: readonly Deviation[] 
       ) : (
         <ul className={classes.list}>
           {real.map((one) => (
-            <Told key={one.text} told={one} />
+            <DeviationText key={one.text} deviation={one} />
           ))}
         </ul>
       )}
       <h3 className={classes.small}>{t("prereg.notes")}</h3>
       <ul className={classes.list}>
         {notes.map((one) => (
-          <Told key={one.text} told={one} />
+          <DeviationText key={one.text} deviation={one} />
         ))}
       </ul>
     </Paper>
   );
 }
 
-function Told({ told }: { readonly told: Deviation }): JSX.Element {
+function DeviationText({ deviation }: { readonly deviation: Deviation }): JSX.Element {
   const { t } = useTexts();
   return (
-    <li className={told.is_note ? classes.note : classes.deviation}>
-      <Icon name={told.is_note ? "info" : "alert"} size={18} />
+    <li className={deviation.is_note ? classes.note : classes.deviation}>
+      <Icon name={deviation.is_note ? "info" : "alert"} size={18} />
       <div>
-        <strong>{t(`prereg.code.${told.code}`)}</strong>
-        <p>{told.text}</p>
+        <strong>{t(`prereg.code.${deviation.code}`)}</strong>
+        <p>{deviation.text}</p>
       </div>
     </li>
   );

@@ -74,7 +74,7 @@ function Body({
       {errors.map(({ joint, degrees }) => {
         const [cx, cy] = placeOnBody(joint);
         if (degrees === null) return null;
-        const isMoved = degrees >= LEAST_DEG;
+        const isMoved = degrees >= MIN_DEG;
         return (
           <circle
             key={joint}
@@ -113,11 +113,11 @@ export function errorsAt({ joints, frames, rateHz, values }: JointErrors, time: 
 }
 
 /** Smaller errors cannot be distinguished from none. */
-const LEAST_DEG = 0.05;
+const MIN_DEG = 0.05;
 
 export const largest = (errors: readonly JointError[], count: number): readonly JointError[] =>
   [...errors]
-    .filter(({ degrees }) => degrees !== null && degrees >= LEAST_DEG)
+    .filter(({ degrees }) => degrees !== null && degrees >= MIN_DEG)
     .sort((one, other) => (other.degrees ?? 0) - (one.degrees ?? 0))
     .slice(0, count);
 

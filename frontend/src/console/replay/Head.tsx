@@ -9,7 +9,7 @@ import { useTexts } from "../i18n";
 import { sessionsQuery } from "../queries";
 import { isOver, usePhaseName } from "../steps";
 import { KindBadge } from "../ui/badges";
-import type { Chosen, Wanted } from "./address";
+import type { ReplayParams, ReplayParamsWithPhase } from "./address";
 import classes from "./Replay.module.css";
 
 /** The link from the replay to its session. */
@@ -26,12 +26,12 @@ export function BackLink({ id }: { readonly id: string }): JSX.Element {
 interface HeadProps {
   readonly session: SessionView;
   /** The session whose phases can be compared: this one, or another that was selected. */
-  readonly beside: SessionView;
-  readonly wanted: Chosen;
-  readonly onWanted: (wanted: Wanted) => void;
+  readonly comparedSession: SessionView;
+  readonly params: ReplayParamsWithPhase;
+  readonly onParams: (params: ReplayParams) => void;
 }
 
-export function Head({ session, beside, wanted, onWanted }: HeadProps): JSX.Element {
+export function Head({ session, comparedSession, params, onParams }: HeadProps): JSX.Element {
   const { t } = useTexts();
   return (
     <div className={classes.head}>
@@ -46,37 +46,42 @@ export function Head({ session, beside, wanted, onWanted }: HeadProps): JSX.Elem
         <PhaseSelect
           label={t("replay.phase")}
           session={session}
-          phase={wanted.phase}
+          phase={params.phase}
           onPhase={(phase) => {
-            if (phase !== null) onWanted({ ...wanted, phase, time: 0 });
+            if (phase !== null) onParams({ ...params, phase, time: 0 });
           }}
         />
-        <Beside session={session} beside={beside} wanted={wanted} onWanted={onWanted} />
+        <ComparisonSelect
+          session={session}
+          comparedSession={comparedSession}
+          params={params}
+          onParams={onParams}
+        />
       </div>
     </div>
   );
 }
 
-function Beside({ session, beside, wanted, onWanted }: HeadProps): JSX.Element {
+function ComparisonSelect({ session, comparedSession, params, onParams }: HeadProps): JSX.Element {
   const { t } = useTexts();
   const others = useQuery(sessionsQuery(session.study_key));
-  const over = (others.data ?? []).filter(
+  const finished = (others.data ?? []).filter(
     ({ ended_at, kind }) => ended_at !== null && kind === session.kind,
   );
-  const chosen = wanted.beside?.session ?? session.id;
+  const chosen = params.comparedWith?.session ?? session.id;
   const choose = (id: string, phase: number | null) =>
-    onWanted({ ...wanted, beside: phase === null ? null : { session: id, phase } });
+    onParams({ ...params, comparedWith: phase === null ? null : { session: id, phase } });
   return (
     <>
       <PhaseSelect
         label={t("replay.beside")}
         none={t("replay.beside.none")}
-        session={beside}
-        phase={wanted.beside?.phase ?? null}
-        without={beside.id === session.id ? wanted.phase : null}
+        session={comparedSession}
+        phase={params.comparedWith?.phase ?? null}
+        without={comparedSession.id === session.id ? params.phase : null}
         onPhase={(phase) => choose(chosen, phase)}
       />
-      {wanted.beside !== null && over.length > 1 && (
+      {params.comparedWith !== null && finished.length > 1 && (
         <Select
           size="xs"
           styles={{ wrapper: { width: 110 } }}
@@ -85,8 +90,11 @@ function Beside({ session, beside, wanted, onWanted }: HeadProps): JSX.Element {
           label={t("replay.beside.session")}
           classNames={{ root: classes.select ?? "", label: classes.selectLabel ?? "" }}
           value={chosen}
-          data={over.map(({ id, participant_code }) => ({ value: id, label: participant_code }))}
-          onChange={(id) => choose(id ?? session.id, wanted.beside?.phase ?? null)}
+          data={finished.map(({ id, participant_code }) => ({
+            value: id,
+            label: participant_code,
+          }))}
+          onChange={(id) => choose(id ?? session.id, params.comparedWith?.phase ?? null)}
         />
       )}
     </>

@@ -10,7 +10,7 @@ import { useStageTexts } from "../captures/useStageTexts";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { EmptyState } from "../ui/EmptyState";
-import { tonesAt } from "./happened";
+import { tonesAt } from "./events";
 import classes from "./Replay.module.css";
 import { type Lane, useBlocksOf, useFiguresOf } from "./useLane";
 
@@ -33,7 +33,7 @@ export function LaneStage(props: LaneStageProps): JSX.Element {
   const { t } = useTexts();
   const texts = useStageTexts();
   const figures = useFiguresOf(lane, ghost);
-  const beside = useFiguresOf(other ?? NOBODY, false);
+  const otherFigures = useFiguresOf(other ?? NOBODY, false);
   const blocks = useBlocksOf(lane);
   const tones = useSteady(tonesAt(lane.replay, time));
   const isGap = lane.movement?.gaps.some(([begin, end]) => begin < time && time < end) ?? false;
@@ -49,7 +49,7 @@ export function LaneStage(props: LaneStageProps): JSX.Element {
             {...(handle === undefined ? {} : { handle })}
             figures={figures}
             blocks={boxes ? blocks : NONE}
-            beside={beside}
+            comparedFigures={otherFigures}
             tones={tones}
             time={seconds(Math.min(time, durationOf(motion)))}
             mode={mode}
@@ -75,7 +75,7 @@ function NoFigure({ lane }: { readonly lane: Lane }): JSX.Element {
     );
   }
   return (
-    <div className={classes.nobody}>
+    <div className={classes.unavailable}>
       <EmptyState icon="walk" title={t("replay.noMovement")}>
         {t("replay.noMovement.body")}
       </EmptyState>
@@ -104,11 +104,11 @@ function Legend({ ghost }: { readonly ghost: boolean }): JSX.Element {
 /** Return the same map while its content is the same, so that nothing is redrawn needlessly. */
 function useSteady(tones: BlockTones): BlockTones {
   const before = useRef(tones);
-  const told = (map: BlockTones) =>
+  const signature = (map: BlockTones) =>
     [...map]
       .map((pair) => pair.join(" "))
       .sort()
       .join(",");
-  if (told(before.current) !== told(tones)) before.current = tones;
+  if (signature(before.current) !== signature(tones)) before.current = tones;
   return before.current;
 }

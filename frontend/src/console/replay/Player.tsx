@@ -3,7 +3,7 @@ import { Center, Checkbox, Loader } from "@mantine/core";
 import { useDisclosure } from "@mantine/hooks";
 import { isApiError } from "@shared/api/request";
 import type { SessionView } from "@shared/api/types";
-import type { CameraMode, LookFrom } from "@shared/stage/figure";
+import type { CameraMode, CameraSide } from "@shared/stage/figure";
 import type { StageHandle } from "@shared/stage/Stage";
 import { usePlayback } from "@shared/stage/usePlayback";
 import { seconds } from "@shared/units";
@@ -13,37 +13,37 @@ import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { usePhaseName } from "../steps";
 import { EmptyState } from "../ui/EmptyState";
-import { addressOf, type Chosen, type PhaseRef, type Wanted } from "./address";
+import { addressOf, type PhaseRef, type ReplayParams, type ReplayParamsWithPhase } from "./address";
+import { jumpFrom } from "./events";
 import { BackLink, Head } from "./Head";
-import { jumpFrom } from "./happened";
 import { ReplayKeys, SPEEDS, useReplayKeys } from "./keys";
 import { LaneStage } from "./LaneStage";
 import classes from "./Replay.module.css";
 import { Side } from "./Side";
 import { Tracks } from "./Tracks";
 import { Transport } from "./Transport";
-import { type Lane, useBeside, useLane } from "./useLane";
+import { type Lane, useComparedPhase, useLane } from "./useLane";
 
 interface PlayerProps {
   readonly session: SessionView;
-  readonly wanted: Chosen;
-  readonly onWanted: (wanted: Wanted) => void;
+  readonly params: ReplayParamsWithPhase;
+  readonly onParams: (params: ReplayParams) => void;
 }
 
 export function Player(props: PlayerProps): JSX.Element {
-  const { session, wanted } = props;
+  const { session, params } = props;
   const nameOf = usePhaseName();
   const own = useMemo(
-    (): PhaseRef => ({ session: session.id, phase: wanted.phase }),
-    [session.id, wanted.phase],
+    (): PhaseRef => ({ session: session.id, phase: params.phase }),
+    [session.id, params.phase],
   );
-  const phase = session.phases.find(({ phase_id }) => phase_id === wanted.phase);
+  const phase = session.phases.find(({ phase_id }) => phase_id === params.phase);
   const first = useLane(own, phase === undefined ? "" : nameOf(session, phase));
-  const beside = useBeside(session, wanted.beside);
-  const second = useLane(beside.ref, beside.label);
+  const compared = useComparedPhase(session, params.comparedWith);
+  const second = useLane(compared.ref, compared.label);
   return (
     <div className={classes.page}>
-      <Head {...props} beside={beside.session} />
+      <Head {...props} comparedSession={compared.session} />
       {first.error !== null && <Refused id={session.id} error={first.error} />}
       {first.error === null && first.lane === null && (
         <Center mih={320}>
@@ -93,31 +93,31 @@ interface PlayingProps extends PlayerProps {
 
 const CAMERAS: readonly CameraMode[] = ["orbit", "follow", "eyes"];
 
-function Playing({ session, wanted, lanes, refused }: PlayingProps): JSX.Element {
+function Playing({ session, params, lanes, refused }: PlayingProps): JSX.Element {
   const duration = seconds(Math.max(...lanes.map(({ replay }) => replay.duration_s)));
-  const playback = usePlayback(duration, { time: seconds(wanted.time), loop: false });
+  const playback = usePlayback(duration, { time: seconds(params.time), loop: false });
   const [mode, setMode] = useState<CameraMode>("orbit");
   const [ghost, setGhost] = useState(true);
   const [boxes, setBoxes] = useState(true);
   const [at, setAt] = useState(0);
   const [help, helps] = useDisclosure();
   const stages = useStages();
-  const told = lanes[Math.min(at, lanes.length - 1)] as Lane;
+  const shown = lanes[Math.min(at, lanes.length - 1)] as Lane;
   const link = () =>
-    new URL(addressOf(session.id, { ...wanted, time: playback.time }), window.location.href).href;
+    new URL(addressOf(session.id, { ...params, time: playback.time }), window.location.href).href;
   const rate = lanes.find(({ movement }) => movement !== null)?.movement?.participant.rateHz ?? 30;
   useReplayKeys({
     toggle: playback.toggle,
     by: (seconds_) => playback.seek(seconds(playback.time + seconds_)),
     frame: (frames) => playback.seek(seconds((Math.round(playback.time * rate) + frames) / rate)),
-    jump: (way) => {
-      const to = jumpFrom(told.all, playback.time, way);
+    jump: (direction) => {
+      const to = jumpFrom(shown.all, playback.time, direction);
       if (to !== null) playback.seek(seconds(to));
     },
-    end: (way) => playback.seek(way < 0 ? seconds(0) : duration),
+    end: (direction) => playback.seek(direction < 0 ? seconds(0) : duration),
     camera: () => setMode(CAMERAS[(CAMERAS.indexOf(mode) + 1) % CAMERAS.length] ?? "orbit"),
-    speed: (way) => {
-      const next = SPEEDS[(SPEEDS as readonly number[]).indexOf(playback.speed) + way];
+    speed: (direction) => {
+      const next = SPEEDS[(SPEEDS as readonly number[]).indexOf(playback.speed) + direction];
       if (next !== undefined) playback.setSpeed(next);
     },
     help: helps.toggle,
@@ -149,7 +149,7 @@ function Playing({ session, wanted, lanes, refused }: PlayingProps): JSX.Element
           ))}
         </div>
         <Transport
-          lane={told}
+          lane={shown}
           playback={playback}
           duration={duration}
           link={link}
@@ -169,7 +169,7 @@ function useStages() {
   const second = useRef<StageHandle>(null);
   const refs = [first, second] as const;
   const all = useRef<StageHandle>({
-    look: (from: LookFrom) => {
+    look: (from: CameraSide) => {
       for (const { current } of refs) current?.look(from);
     },
     zoom: (factor: number) => {

@@ -8,7 +8,7 @@ import { isCounted, isOver } from "../steps";
 import { EmptyState } from "../ui/EmptyState";
 import { Loaded } from "../ui/Loaded";
 import { useTitle } from "../ui/page";
-import { addressOf, type Wanted, wantedFrom } from "./address";
+import { addressOf, paramsFrom, type ReplayParams } from "./address";
 import { BackLink } from "./Head";
 import { Player } from "./Player";
 import classes from "./Replay.module.css";
@@ -21,10 +21,10 @@ export function ReplayPage({ id }: { readonly id: string }): JSX.Element {
 
 function Found({ session }: { readonly session: SessionView }): JSX.Element {
   const { t } = useTexts();
-  const { wanted, arrival, setWanted } = useWanted(session.id);
+  const { params, arrival, setParams } = useParams(session.id);
   useTitle(t("replay.page", { code: session.participant_code }));
   const first = session.phases.find((phase) => phase.status === "done" && isCounted(phase));
-  const phase = wanted.phase ?? (first ?? session.phases.find(isOver))?.phase_id ?? null;
+  const phase = params.phase ?? (first ?? session.phases.find(isOver))?.phase_id ?? null;
   if (phase === null) {
     return (
       <div className={classes.alone}>
@@ -39,35 +39,35 @@ function Found({ session }: { readonly session: SessionView }): JSX.Element {
       // Another phase starts at its beginning, and a link at its moment.
       key={`${phase} ${arrival}`}
       session={session}
-      wanted={{ ...wanted, phase }}
-      onWanted={setWanted}
+      params={{ ...params, phase }}
+      onParams={setParams}
     />
   );
 }
 
 /** The parameters in the address; changes on the page are written back to it. */
-function useWanted(session: string) {
-  const [{ wanted, arrival }, setState] = useState(() => ({
-    wanted: wantedFrom(window.location.hash, session),
+function useParams(session: string) {
+  const [{ params, arrival }, setState] = useState(() => ({
+    params: paramsFrom(window.location.hash, session),
     arrival: 0,
   }));
   useEffect(() => {
     // A link to another moment was followed in the same window.
     const onHash = () =>
       setState((before) => ({
-        wanted: wantedFrom(window.location.hash, session),
+        params: paramsFrom(window.location.hash, session),
         arrival: before.arrival + 1,
       }));
     window.addEventListener("hashchange", onHash);
     return () => window.removeEventListener("hashchange", onHash);
   }, [session]);
   return {
-    wanted,
+    params,
     /** How many links to this page were followed. */
     arrival,
-    setWanted: (next: Wanted) => {
+    setParams: (next: ReplayParams) => {
       window.history.replaceState(null, "", addressOf(session, next));
-      setState({ wanted: next, arrival });
+      setState({ params: next, arrival });
     },
   };
 }

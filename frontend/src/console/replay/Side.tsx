@@ -7,7 +7,7 @@ import { type JSX, useState } from "react";
 import { useTexts } from "../i18n";
 import { AnswersAfter } from "./AnswersAfter";
 import { ErrorMap, NO_ERRORS } from "./ErrorMap";
-import { Happened } from "./Happened";
+import { EventList } from "./EventList";
 import classes from "./Replay.module.css";
 import type { Lane } from "./useLane";
 
@@ -60,7 +60,7 @@ export function Side({ lanes, at, onAt, playback }: SideProps): JSX.Element {
           <Tabs.Tab value="answers">{t("replay.answers")}</Tabs.Tab>
         </Tabs.List>
         <Tabs.Panel value="events" className={classes.panel ?? ""}>
-          <Happened all={lane.all} time={playback.time} onSeek={playback.seek} />
+          <EventList all={lane.all} time={playback.time} onSeek={playback.seek} />
         </Tabs.Panel>
         <Tabs.Panel value="answers" className={classes.panel ?? ""}>
           <AnswersAfter replay={replay} />

@@ -3,7 +3,7 @@ import { BLOCK_COLOURS, type BlockTone } from "@shared/stage/figure";
 import { type Seconds, seconds } from "@shared/units";
 import { type CSSProperties, type JSX, memo, type PointerEvent } from "react";
 import { useTexts } from "../i18n";
-import { isActive, toneOf } from "./happened";
+import { isActive, toneOf } from "./events";
 import classes from "./Replay.module.css";
 import type { Lane } from "./useLane";
 
@@ -179,14 +179,14 @@ function Mark({ at, text }: { readonly at: number; readonly text: string }): JSX
 function TrackKey({ lanes }: Pick<TracksProps, "lanes">): JSX.Element {
   const { t } = useTexts();
   const contacts = lanes.flatMap(({ replay }) => replay.contacts);
-  const there = new Set<BarKind>(
+  const present = new Set<BarKind>(
     contacts.map((one) => toneOf({ surfaceKind: one.surface_kind, effect: one.effect })),
   );
   const hasGaps = lanes.some(({ movement }) => (movement?.gaps.length ?? 0) > 0);
   const kinds: readonly Exclude<BarKind, "plain">[] = [
     ...(["active", "standing"] as const),
     ...(hasGaps ? (["gap"] as const) : []),
-    ...(["good", "odd", "touched", "bad"] as const).filter((kind) => there.has(kind)),
+    ...(["good", "odd", "touched", "bad"] as const).filter((kind) => present.has(kind)),
   ];
   return (
     <ul className={classes.key}>

@@ -6,7 +6,7 @@ import { Icon } from "@shared/ui/Icon";
 import { type Seconds, seconds } from "@shared/units";
 import type { JSX } from "react";
 import { useTexts } from "../i18n";
-import { activeAt, isActive, jumpFrom, wallAt } from "./happened";
+import { activeAt, isActive, jumpFrom, wallAt } from "./events";
 import { SPEEDS } from "./keys";
 import classes from "./Replay.module.css";
 import type { Lane } from "./useLane";
@@ -30,7 +30,7 @@ export function Transport(props: TransportProps): JSX.Element {
   const play = t(playback.playing ? "replay.pause" : "replay.play");
   return (
     <div className={classes.transport}>
-      <div className={classes.presses}>
+      <div className={classes.buttons}>
         <Press name={t("replay.previous")} icon="back" onClick={() => jump(-1)} />
         <Press
           name={play}
@@ -41,7 +41,7 @@ export function Transport(props: TransportProps): JSX.Element {
         <Press name={t("replay.next")} icon="forward" onClick={() => jump(1)} />
       </div>
       <Times lane={lane} time={playback.time} duration={duration} />
-      <div className={classes.presses}>
+      <div className={classes.buttons}>
         <SegmentedControl
           size="xs"
           aria-label={t("replay.speed")}

@@ -6,33 +6,33 @@ export interface PhaseRef {
   readonly phase: number;
 }
 
-export interface Wanted {
+export interface ReplayParams {
   readonly phase: number | null;
   readonly time: number;
-  readonly beside: PhaseRef | null;
+  readonly comparedWith: PhaseRef | null;
 }
 
 /** What is shown: the address's parameters, with the phase always given. */
-export interface Chosen extends Wanted {
+export interface ReplayParamsWithPhase extends ReplayParams {
   readonly phase: number;
 }
 
 /** Parse `?phase=2&t=12.5&with=5`; `with=SESSION:5` is a phase of another session. */
-export function wantedFrom(address: string, session: string): Wanted {
+export function paramsFrom(address: string, session: string): ReplayParams {
   const query = new URLSearchParams(address.split("?")[1] ?? "");
   const time = Number(query.get("t"));
   return {
     phase: phaseNumber(query.get("phase")),
     time: Number.isFinite(time) ? Math.max(0, time) : 0,
-    beside: besideFrom(query.get("with"), session),
+    comparedWith: phaseRefFrom(query.get("with"), session),
   };
 }
 
-export function addressOf(session: string, { phase, time, beside }: Wanted): string {
+export function addressOf(session: string, { phase, time, comparedWith }: ReplayParams): string {
   const parts = [
     ...(phase === null ? [] : [`phase=${phase}`]),
     ...(time > 0 ? [`t=${Number(time.toFixed(3))}`] : []),
-    ...(beside === null ? [] : [`with=${named(beside, session)}`]),
+    ...(comparedWith === null ? [] : [`with=${named(comparedWith, session)}`]),
   ];
   const query = parts.length > 0 ? `?${parts.join("&")}` : "";
   return `#/sessions/${encodeURIComponent(session)}/replay${query}`;
@@ -41,7 +41,7 @@ export function addressOf(session: string, { phase, time, beside }: Wanted): str
 const named = ({ session, phase }: PhaseRef, own: string): string =>
   session === own ? String(phase) : `${encodeURIComponent(session)}:${phase}`;
 
-function besideFrom(text: string | null, own: string): PhaseRef | null {
+function phaseRefFrom(text: string | null, own: string): PhaseRef | null {
   const [first = "", second] = (text ?? "").split(":");
   const phase = phaseNumber(second ?? first);
   if (phase === null) return null;

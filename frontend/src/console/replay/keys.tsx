@@ -10,16 +10,16 @@ import classes from "./Replay.module.css";
 
 export const SPEEDS = [0.25, 0.5, 1, 2, 4] as const;
 
-type Way = -1 | 1;
+type Direction = -1 | 1;
 
 export interface Keys {
   readonly toggle: () => void;
   readonly by: (seconds: number) => void;
-  readonly frame: (frames: Way) => void;
-  readonly jump: (way: Way) => void;
-  readonly end: (way: Way) => void;
+  readonly frame: (frames: Direction) => void;
+  readonly jump: (direction: Direction) => void;
+  readonly end: (direction: Direction) => void;
   readonly camera: () => void;
-  readonly speed: (way: Way) => void;
+  readonly speed: (direction: Direction) => void;
   readonly help: () => void;
 }
 

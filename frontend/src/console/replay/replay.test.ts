@@ -1,17 +1,17 @@
 import { decodeMovement, type Replay } from "@shared/api/replays";
 import { describe, expect, it } from "vitest";
-import { addressOf, wantedFrom } from "./address";
+import { addressOf, paramsFrom } from "./address";
 import { errorsAt, largest, overall } from "./ErrorMap";
 import {
   activeAt,
-  happenings,
+  eventsOf,
   isActive,
   jumpFrom,
-  latestAt,
+  latestEventAt,
   tonesAt,
   touches,
   wallAt,
-} from "./happened";
+} from "./events";
 
 const contact = (surface: string, begin_s: number, end_s: number, more: object = {}) => ({
   surface,
@@ -44,18 +44,18 @@ const paused = {
 
 describe("the address of a moment", () => {
   it("leads back to the same phase, time and comparison", () => {
-    const wanted = { phase: 2, time: 12.5, beside: { session: "own", phase: 5 } };
-    const address = addressOf("own", wanted);
+    const params = { phase: 2, time: 12.5, comparedWith: { session: "own", phase: 5 } };
+    const address = addressOf("own", params);
     expect(address).toBe("#/sessions/own/replay?phase=2&t=12.5&with=5");
-    expect(wantedFrom(address, "own")).toEqual(wanted);
-    const other = { ...wanted, beside: { session: "other", phase: 3 } };
-    expect(wantedFrom(addressOf("own", other), "own")).toEqual(other);
+    expect(paramsFrom(address, "own")).toEqual(params);
+    const other = { ...params, comparedWith: { session: "other", phase: 3 } };
+    expect(paramsFrom(addressOf("own", other), "own")).toEqual(other);
   });
 
   it("is ignored if it is invalid", () => {
-    const nothing = { phase: null, time: 0, beside: null };
-    expect(wantedFrom("#/sessions/own/replay", "own")).toEqual(nothing);
-    expect(wantedFrom("#/sessions/own/replay?phase=x&t=-3&with=a:", "own")).toEqual(nothing);
+    const nothing = { phase: null, time: 0, comparedWith: null };
+    expect(paramsFrom("#/sessions/own/replay", "own")).toEqual(nothing);
+    expect(paramsFrom("#/sessions/own/replay?phase=x&t=-3&with=a:", "own")).toEqual(nothing);
   });
 });
 
@@ -98,14 +98,14 @@ describe("the events of a phase", () => {
   });
 
   it("are in order of time, and lead from one to the next", () => {
-    const all = happenings({
+    const all = eventsOf({
       moments: [{ what: "started", t_s: 0, active_s: 0, cause: null }],
       contacts: [contact("hand/2/left", 1, 3)],
       completions: [completion(1, 2)],
       notes: [{ id: "n", text: "Asked for water", by: "account:a", at: "", t_s: 1.5 }],
     } as unknown as Replay);
     expect(all.map(({ kind }) => kind)).toEqual(["clock", "touch", "note", "done"]);
-    expect(latestAt(all, 1.6)).toBe(2);
+    expect(latestEventAt(all, 1.6)).toBe(2);
     expect([jumpFrom(all, 1, 1), jumpFrom(all, 1, -1), jumpFrom(all, 2, 1)]).toEqual([
       1.5,
       0,

@@ -9,7 +9,7 @@ import { AVATAR_MAP, rolesFrom } from "../captures/bodyJoints";
 import { sessionQuery } from "../queries";
 import { isOver, usePhaseName } from "../steps";
 import type { PhaseRef } from "./address";
-import { type Happening, happenings } from "./happened";
+import { eventsOf, type ReplayEvent } from "./events";
 
 export interface Lane {
   readonly ref: PhaseRef;
@@ -19,7 +19,7 @@ export interface Lane {
   /** Why there is no movement to draw although some is stored. */
   readonly error: Error | null;
   readonly retry: () => void;
-  readonly all: readonly Happening[];
+  readonly all: readonly ReplayEvent[];
 }
 
 const NOWHERE: PhaseRef = { session: "", phase: -1 };
@@ -39,7 +39,7 @@ export function useLane(ref: PhaseRef | null, label: string) {
       movement: movement.data ?? null,
       error: movement.error,
       retry: () => void movement.refetch(),
-      all: happenings(replay.data),
+      all: eventsOf(replay.data),
     };
   }, [ref, label, replay.data, movement.data, movement.error, movement.refetch]);
   return { lane, error: replay.error };
@@ -99,14 +99,14 @@ const movementQuery = ({ session, phase }: PhaseRef, view: string) =>
   });
 
 /** The phase to compare with, of this session or of another one of the study. */
-export function useBeside(session: SessionView, wanted: PhaseRef | null) {
+export function useComparedPhase(session: SessionView, reference: PhaseRef | null) {
   const nameOf = usePhaseName();
-  const isOther = wanted !== null && wanted.session !== session.id;
-  const other = useQuery({ ...sessionQuery(wanted?.session ?? ""), enabled: isOther });
+  const isOther = reference !== null && reference.session !== session.id;
+  const other = useQuery({ ...sessionQuery(reference?.session ?? ""), enabled: isOther });
   const source = isOther ? (other.data ?? null) : session;
-  const phase = source?.phases.find(({ phase_id }) => phase_id === wanted?.phase);
-  const there = phase !== undefined && isOver(phase);
-  const ref = there ? wanted : null;
+  const phase = source?.phases.find(({ phase_id }) => phase_id === reference?.phase);
+  const isReplayable = phase !== undefined && isOver(phase);
+  const ref = isReplayable ? reference : null;
   const name = source === null || phase === undefined ? "" : nameOf(source, phase);
   return {
     ref,

@@ -14,7 +14,7 @@ import { participantsQuery } from "../queries";
 import { EraseDialog } from "./EraseDialog";
 
 /** The participant's decision is recorded as a note, in the language of the operator. */
-const MAY_BE_KEPT: readonly string[] = [rightsEn["withdrew.note"], rightsDe["withdrew.note"]];
+const CONSENT_NOTES: readonly string[] = [rightsEn["withdrew.note"], rightsDe["withdrew.note"]];
 
 interface AfterWithdrawalProps {
   readonly session: SessionView;
@@ -26,11 +26,11 @@ export function AfterWithdrawal({ session, send }: AfterWithdrawalProps): JSX.El
   const [erasing, setErasing] = useState<Participant | null>(null);
   const own = everybody?.find(({ sessions }) => sessions.some(({ id }) => id === session.id));
   if (own === undefined) return null;
-  const kept = session.notes.some(({ text }) => MAY_BE_KEPT.includes(text));
+  const isDecidedToKeep = session.notes.some(({ text }) => CONSENT_NOTES.includes(text));
   return (
     <>
       <Erased participant={own} />
-      {session.status === "withdrawn" && own.erasure === null && !kept && (
+      {session.status === "withdrawn" && own.erasure === null && !isDecidedToKeep && (
         <Question send={send} onErase={() => setErasing(own)} />
       )}
       <EraseDialog

@@ -70,8 +70,11 @@ function Choice({ form, item, value, onChange }: AnswerFieldProps): JSX.Element 
             label: inLanguage(one.label, language),
           }))
         : stepsOf(scale ?? { minimum: 1, maximum: 7, labels: [] }).map((step) => {
-            const said = labelAt(scale, step, language);
-            return { value: String(step), label: said === null ? `${step}` : `${step} (${said})` };
+            const label = labelAt(scale, step, language);
+            return {
+              value: String(step),
+              label: label === null ? `${step}` : `${step} (${label})`,
+            };
           });
   const chosen = (next: string | null): AnswerValue => {
     if (next === null) return null;

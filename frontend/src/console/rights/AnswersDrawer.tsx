@@ -82,12 +82,12 @@ function Answer({ sessionId, form, item }: AnswerProps): JSX.Element {
   const { t, language } = useTexts();
   const [correcting, setCorrecting] = useState(false);
   const words = { leftOut: t("answers.leftOut"), yes: t("answers.yes"), no: t("answers.no") };
-  const asked = inLanguage(item.text, language);
+  const itemText = inLanguage(item.text, language);
   return (
     <li>
       <div className={classes.answer}>
         <div>
-          <div className={classes.asked}>{asked}</div>
+          <div className={classes.questionText}>{itemText}</div>
           <div>{answerText(form, item, form.answers[item.key] ?? null, language, words)}</div>
           {form.corrections
             .filter((one) => one.item === item.key)
@@ -106,7 +106,7 @@ function Answer({ sessionId, form, item }: AnswerProps): JSX.Element {
           <Button
             variant="subtle"
             size="compact-sm"
-            aria-label={`${t("answers.correct")}: ${asked}`}
+            aria-label={`${t("answers.correct")}: ${itemText}`}
             onClick={() => setCorrecting(true)}
           >
             {t("answers.correct")}

@@ -1,6 +1,6 @@
 /** Copies outside the database, and a button to record that one was destroyed. */
 import { Button } from "@mantine/core";
-import { type CopyLeft, rights } from "@shared/api/rights";
+import { type RemainingCopy, rights } from "@shared/api/rights";
 import { dateTime } from "@shared/format";
 import { useMutation, useQueryClient } from "@tanstack/react-query";
 import type { JSX } from "react";
@@ -8,7 +8,7 @@ import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import classes from "./Rights.module.css";
 
-export function CopyList({ copies }: { readonly copies: readonly CopyLeft[] }): JSX.Element {
+export function CopyList({ copies }: { readonly copies: readonly RemainingCopy[] }): JSX.Element {
   return (
     <ul className={classes.copies}>
       {copies.map((copy) => (
@@ -18,7 +18,7 @@ export function CopyList({ copies }: { readonly copies: readonly CopyLeft[] }): 
   );
 }
 
-function OneCopy({ copy: listed }: { readonly copy: CopyLeft }): JSX.Element {
+function OneCopy({ copy: listed }: { readonly copy: RemainingCopy }): JSX.Element {
   const { t, language } = useTexts();
   const queries = useQueryClient();
   const destroyed = useMutation({
@@ -26,7 +26,7 @@ function OneCopy({ copy: listed }: { readonly copy: CopyLeft }): JSX.Element {
     onSuccess: () => queries.invalidateQueries({ queryKey: ["studies"] }),
   });
   // The list may be a snapshot, as after an erasure, so the answer to the click takes precedence.
-  const copy: CopyLeft = destroyed.data ?? listed;
+  const copy: RemainingCopy = destroyed.data ?? listed;
   return (
     <li>
       <div>

@@ -41,7 +41,7 @@ export function EraseDialog({ studyKey, participant, onClose }: EraseDialogProps
 }
 
 const REASONS: readonly ErasureReason[] = ["withdrawn", "requested", "retention", "mistake"];
-const GOES = ["movement", "answers", "words", "devices", "code"] as const;
+const ERASED = ["movement", "answers", "words", "devices", "code"] as const;
 const STAYS = ["session", "log", "tombstone"] as const;
 
 interface EraseProps extends EraseDialogProps {
@@ -74,7 +74,7 @@ function Erase({ studyKey, participant, onClose }: EraseProps): JSX.Element {
       <Stack>
         <div className={classes.both}>
           <Facts title={t("erase.goes")} icon="close">
-            {GOES.map((what) => t(`erase.goes.${what}`, { code }))}
+            {ERASED.map((what) => t(`erase.goes.${what}`, { code }))}
           </Facts>
           <Facts title={t("erase.stays")} icon="check">
             {STAYS.map((what) => t(`erase.stays.${what}`))}

@@ -13,8 +13,8 @@ const item = (fields: Partial<Item>) => ({ key: "q", text: { en: "?" }, ...field
 describe("an answer in words", () => {
   it("shows the label of a step if it has one, otherwise the number", () => {
     const likert = item({ type: "likert" });
-    const said = [1, 4, 7].map((value) => answerText(form, likert, value, "en", words));
-    expect(said).toEqual(["1 (not at all)", "4", "7 (fully)"]);
+    const texts = [1, 4, 7].map((value) => answerText(form, likert, value, "en", words));
+    expect(texts).toEqual(["1 (not at all)", "4", "7 (fully)"]);
   });
 
   it("shows yes and no as they are stored, a choice by its label, a number with its unit", () => {

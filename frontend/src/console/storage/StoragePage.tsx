@@ -14,7 +14,7 @@ import { Loaded } from "../ui/Loaded";
 import { useTitle } from "../ui/page";
 import { diskShares } from "./figures";
 import classes from "./Storage.module.css";
-import { LargestSessions, StudyRooms } from "./StudyRooms";
+import { LargestSessions, StudySizes } from "./StudySizes";
 
 export function StoragePage(): JSX.Element {
   const { t, language } = useTexts();
@@ -49,12 +49,12 @@ export function StoragePage(): JSX.Element {
         </div>
       </div>
       {measure.isError && <Failure error={measure.error} />}
-      <Loaded query={query}>{(room) => <Room room={room} />}</Loaded>
+      <Loaded query={query}>{(room) => <DiskSpace room={room} />}</Loaded>
     </>
   );
 }
 
-function Room({ room }: { readonly room: StorageRoom }): JSX.Element {
+function DiskSpace({ room }: { readonly room: StorageRoom }): JSX.Element {
   const { t, language } = useTexts();
   const size = (value: number): string => bytes(value, language);
   return (
@@ -91,13 +91,13 @@ function Room({ room }: { readonly room: StorageRoom }): JSX.Element {
         {room.half_made.length > 0 && (
           <Paper className={classes.wide ?? ""}>
             <Title order={2}>{t("storage.halfMade")}</Title>
-            <HalfMade found={room.half_made} />
+            <UnfinishedFiles found={room.half_made} />
             <p className={classes.soft}>{t("storage.halfMade.note")}</p>
           </Paper>
         )}
         <Paper className={classes.wide ?? ""}>
           <Title order={2}>{t("storage.studies")}</Title>
-          <StudyRooms studies={room.studies} />
+          <StudySizes studies={room.studies} />
         </Paper>
         <Paper>
           <Title order={2}>{t("storage.parts")}</Title>
@@ -130,13 +130,13 @@ function DiskBar({ room }: { readonly room: StorageRoom }): JSX.Element {
   const size = (value: number): string => bytes(value, language);
   const percent = (value: number): string => `${(100 * value) / Math.max(1, shares.total)}%`;
   const limit = room.disk.warn_below_bytes;
-  const told = { own: size(shares.own), other: size(shares.other), free: size(shares.free) };
+  const sizes = { own: size(shares.own), other: size(shares.other), free: size(shares.free) };
   return (
     <>
       <p className={`${classes.free} numbers`}>
-        {t("storage.disk.free", { free: told.free, total: size(shares.total) })}
+        {t("storage.disk.free", { free: sizes.free, total: size(shares.total) })}
       </p>
-      <div className={classes.bar} role="img" aria-label={t("storage.disk.bar", told)}>
+      <div className={classes.bar} role="img" aria-label={t("storage.disk.bar", sizes)}>
         <span className={classes.own} style={{ width: percent(shares.own) }} />
         <span className={classes.other} style={{ width: percent(shares.other) }} />
         <span className={classes.mark} style={{ insetInlineEnd: percent(limit) }} />
@@ -144,11 +144,11 @@ function DiskBar({ room }: { readonly room: StorageRoom }): JSX.Element {
       <ul className={`${classes.legend} numbers`}>
         <li>
           <span className={classes.own} />
-          {t("storage.disk.own")} {told.own}
+          {t("storage.disk.own")} {sizes.own}
         </li>
         <li>
           <span className={classes.other} />
-          {t("storage.disk.other")} {told.other}
+          {t("storage.disk.other")} {sizes.other}
         </li>
         <li>
           <span className={classes.markKey} />
@@ -160,7 +160,7 @@ function DiskBar({ room }: { readonly room: StorageRoom }): JSX.Element {
 }
 
 /** Files that a crash left unfinished, or that a command is writing now. */
-function HalfMade({ found }: { readonly found: StorageRoom["half_made"] }): JSX.Element {
+function UnfinishedFiles({ found }: { readonly found: StorageRoom["half_made"] }): JSX.Element {
   const { t, language } = useTexts();
   return (
     <ul className={classes.halfMade}>

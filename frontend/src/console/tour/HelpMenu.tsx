@@ -13,11 +13,11 @@ import { useHashLocation } from "wouter/use-hash-location";
 import { useErrorTexts } from "../errors";
 import { helpFor } from "../help/address";
 import { useTexts } from "../i18n";
-import { useMay } from "../permissions";
+import { usePermissions } from "../permissions";
 import { studiesQuery, studyQuery } from "../queries";
 import { Key } from "../ui/Key";
 import classes from "./HelpMenu.module.css";
-import { spoken, useStartTryout } from "./TryIt";
+import { studyLanguage, useStartTryout } from "./TryIt";
 import { startTour } from "./tourStore";
 
 export function HelpMenu(): JSX.Element {
@@ -27,8 +27,8 @@ export function HelpMenu(): JSX.Element {
   const errors = useErrorTexts();
   const queries = useQueryClient();
   const start = useStartTryout();
-  const may = useMay();
-  const known = useQuery({ ...studiesQuery, enabled: opened && may("tryout") });
+  const can = usePermissions();
+  const known = useQuery({ ...studiesQuery, enabled: opened && can("tryout") });
   const studyKey = choose(address, known.data?.map(({ key }) => key) ?? []);
   const begin = useMutation({
     mutationFn: async (key: string) => {
@@ -36,7 +36,10 @@ export function HelpMenu(): JSX.Element {
         ...studyQuery(key),
         queryFn: () => studies.get(key),
       });
-      return start.mutateAsync({ studyKey: key, language: spoken(study.languages, language) });
+      return start.mutateAsync({
+        studyKey: key,
+        language: studyLanguage(study.languages, language),
+      });
     },
     onError: (error) => {
       const { message, remedy } = describe(error, errors);
@@ -73,7 +76,7 @@ export function HelpMenu(): JSX.Element {
           {t("helpPages.menu")}
           <span className={classes.hint}>{t("helpPages.menu.hint")}</span>
         </Menu.Item>
-        {may("tryout") && (
+        {can("tryout") && (
           <Menu.Item
             leftSection={<Icon name="play" size={16} />}
             disabled={studyKey === null}
@@ -85,7 +88,7 @@ export function HelpMenu(): JSX.Element {
             </span>
           </Menu.Item>
         )}
-        {may("tryout") && isSession(address) && (
+        {can("tryout") && isSession(address) && (
           <Menu.Item leftSection={<Icon name="flag" size={16} />} onClick={startTour}>
             {t("help.tour")}
           </Menu.Item>

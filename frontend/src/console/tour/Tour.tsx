@@ -69,7 +69,7 @@ function Callout({ number, step }: CalloutProps): JSX.Element {
     >
       <Popover.Target>
         <div
-          className={`${classes.spot} ${place === null ? classes.nowhere : ""}`}
+          className={`${classes.spot} ${place === null ? classes.noTarget : ""}`}
           style={place === null ? undefined : { ...place }}
           aria-hidden="true"
         />
@@ -86,7 +86,7 @@ function Callout({ number, step }: CalloutProps): JSX.Element {
           <Button variant="subtle" color="gray" size="xs" onClick={endTour}>
             {t("tour.skip")}
           </Button>
-          <span className={classes.turns}>
+          <span className={classes.navigation}>
             {number > 0 && (
               <Button
                 variant="default"

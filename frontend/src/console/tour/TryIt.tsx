@@ -7,7 +7,7 @@ import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
-import { useMay } from "../permissions";
+import { usePermissions } from "../permissions";
 import { tryoutQuery } from "../queries";
 import classes from "./Tour.module.css";
 
@@ -18,9 +18,9 @@ interface TryItProps {
 /** An empty page's offer of a scripted participant, with an explanation. */
 export function TryIt({ study }: TryItProps): JSX.Element | null {
   const { t, language } = useTexts();
-  const may = useMay();
+  const can = usePermissions();
   const start = useStartTryout();
-  if (!may("tryout") || study.archived_at !== null) return null;
+  if (!can("tryout") || study.archived_at !== null) return null;
   return (
     <div className={classes.offer}>
       <Button
@@ -28,7 +28,7 @@ export function TryIt({ study }: TryItProps): JSX.Element | null {
         loading={start.isPending}
         leftSection={<Icon name="play" size={18} />}
         onClick={() =>
-          start.mutate({ studyKey: study.key, language: spoken(study.languages, language) })
+          start.mutate({ studyKey: study.key, language: studyLanguage(study.languages, language) })
         }
       >
         {t("try.button")}
@@ -40,8 +40,8 @@ export function TryIt({ study }: TryItProps): JSX.Element | null {
 }
 
 /** The page's language if the study has it, otherwise the study's first. */
-export const spoken = (languages: readonly string[], wanted: string): string =>
-  languages.includes(wanted) ? wanted : (languages[0] ?? "en");
+export const studyLanguage = (languages: readonly string[], preferred: string): string =>
+  languages.includes(preferred) ? preferred : (languages[0] ?? "en");
 
 // The scripted participant: whether one is running, starting and stopping it.
 

@@ -14,7 +14,7 @@ import { useHashLocation } from "wouter/use-hash-location";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import classes from "./Tour.module.css";
-import { spoken, useStartTryout, useStopTryout, useTryout } from "./TryIt";
+import { studyLanguage, useStartTryout, useStopTryout, useTryout } from "./TryIt";
 import { startTour, useTourStep, wasSeen } from "./tourStore";
 
 const isOn = ({ state }: Tryout): boolean => state === "starting" || state === "running";
@@ -24,13 +24,13 @@ export function TryoutBar(): JSX.Element | null {
   const [address, navigate] = useHashLocation();
   const [dismissed, dismiss] = useState<string | null>(null);
   const queries = useQueryClient();
-  const seenStarting = useRef(false);
+  const sawStart = useRef(false);
   const session = tryout?.session_id ?? null;
   useEffect(() => {
-    if (tryout?.state === "starting" && tryout.mine) seenStarting.current = true;
-    if (session === null || !seenStarting.current) return;
+    if (tryout?.state === "starting" && tryout.mine) sawStart.current = true;
+    if (session === null || !sawStart.current) return;
     // Only a page that saw it start goes to its session, and only once.
-    seenStarting.current = false;
+    sawStart.current = false;
     void queries.invalidateQueries({ queryKey: ["studies"] });
     navigate(`/sessions/${session}`);
     if (!wasSeen()) startTour();
@@ -64,7 +64,7 @@ function Bar({ tryout, watching, onWatch, onClose }: BarProps): JSX.Element {
   return (
     <section className={classes.bar} data-state={tryout.state} aria-label={t("try.label")}>
       {tryout.state === "starting" ? <Loader size="xs" /> : <Icon name="body" size={18} />}
-      <Words tryout={tryout} />
+      <StatusText tryout={tryout} />
       <div className={classes.buttons}>
         {watching && isOn(tryout) && !touring && (
           <Button size="compact-sm" variant="subtle" onClick={startTour}>
@@ -88,7 +88,7 @@ function Bar({ tryout, watching, onWatch, onClose }: BarProps): JSX.Element {
           </Button>
         ) : (
           <>
-            {tryout.state === "failed" && <Again tryout={tryout} />}
+            {tryout.state === "failed" && <RestartButton tryout={tryout} />}
             <Button size="compact-sm" variant="default" onClick={onClose}>
               {t("try.dismiss")}
             </Button>
@@ -100,7 +100,7 @@ function Bar({ tryout, watching, onWatch, onClose }: BarProps): JSX.Element {
   );
 }
 
-function Words({ tryout }: { readonly tryout: Tryout }): JSX.Element {
+function StatusText({ tryout }: { readonly tryout: Tryout }): JSX.Element {
   const { t, language } = useTexts();
   const { state, step, trouble } = tryout;
   if (state === "failed") {
@@ -131,7 +131,7 @@ function Words({ tryout }: { readonly tryout: Tryout }): JSX.Element {
   );
 }
 
-function Again({ tryout }: { readonly tryout: Tryout }): JSX.Element {
+function RestartButton({ tryout }: { readonly tryout: Tryout }): JSX.Element {
   const { t, language } = useTexts();
   const start = useStartTryout();
   return (
@@ -139,7 +139,7 @@ function Again({ tryout }: { readonly tryout: Tryout }): JSX.Element {
       size="compact-sm"
       loading={start.isPending}
       onClick={() =>
-        start.mutate({ studyKey: tryout.study_key, language: spoken([language], language) })
+        start.mutate({ studyKey: tryout.study_key, language: studyLanguage([language], language) })
       }
     >
       {t("try.again")}

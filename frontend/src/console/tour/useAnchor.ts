@@ -9,7 +9,7 @@ export interface Place {
   readonly height: number;
 }
 
-const LOOK_EVERY_MS = 150;
+const UPDATE_EVERY_MS = 150;
 const MARGIN = 6;
 
 export function useAnchor(step: TourStep): Place | null {
@@ -18,14 +18,14 @@ export function useAnchor(step: TourStep): Place | null {
     const anchor = anchorOf(step);
     // Without animation: a callout that follows a scrolling target is hard to read.
     anchor?.scrollIntoView({ block: "nearest" });
-    const look = () => setPlace((known) => same(known, placeOf(anchorOf(step))));
-    look();
+    const update = () => setPlace((known) => same(known, placeOf(anchorOf(step))));
+    update();
     // The target may appear, disappear and move with the session, which no event reports.
-    const timer = setInterval(look, LOOK_EVERY_MS);
-    window.addEventListener("resize", look);
+    const timer = setInterval(update, UPDATE_EVERY_MS);
+    window.addEventListener("resize", update);
     return () => {
       clearInterval(timer);
-      window.removeEventListener("resize", look);
+      window.removeEventListener("resize", update);
     };
   }, [step]);
   return place;

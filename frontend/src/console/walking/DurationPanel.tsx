@@ -16,13 +16,16 @@ interface DurationPanelProps {
   readonly busy: boolean;
 }
 
-type Way = "histogram" | "ecdf";
+type ChartKind = "histogram" | "ecdf";
 
 export function DurationPanel({ prediction, busy }: DurationPanelProps): JSX.Element {
   const { t, language } = useTexts();
-  const [way, setWay] = useState<Way>("histogram");
+  const [chartKind, setChartKind] = useState<ChartKind>("histogram");
   const words = useDurationWords();
-  const figure = useMemo(() => durationFigure(prediction, words, way), [prediction, words, way]);
+  const figure = useMemo(
+    () => durationFigure(prediction, words, chartKind),
+    [prediction, words, chartKind],
+  );
   const synthetic = prediction.kinds.includes("synthetic");
   const s = (value: number) => decimals(value, language, 1);
   const q = prediction.quantiles_s;
@@ -52,8 +55,8 @@ export function DurationPanel({ prediction, busy }: DurationPanelProps): JSX.Ele
         mt="xs"
         size="xs"
         aria-label={t("walking.figure")}
-        value={way}
-        onChange={(value) => setWay(value as Way)}
+        value={chartKind}
+        onChange={(value) => setChartKind(value as ChartKind)}
         data={[
           { value: "histogram", label: t("walking.histogram") },
           { value: "ecdf", label: t("walking.ecdf") },
@@ -66,12 +69,12 @@ export function DurationPanel({ prediction, busy }: DurationPanelProps): JSX.Ele
         loading={t("walking.drawing")}
         failed={t("walking.notDrawn")}
       />
-      <Told prediction={prediction} />
+      <Summary prediction={prediction} />
     </section>
   );
 }
 
-function Told({ prediction }: { readonly prediction: Prediction }): JSX.Element {
+function Summary({ prediction }: { readonly prediction: Prediction }): JSX.Element {
   const { t, language } = useTexts();
   const dependency = useDependency();
   const { count, seed, lost, dependencies, assumed } = prediction;

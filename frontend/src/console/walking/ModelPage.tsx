@@ -62,7 +62,7 @@ function Found({ model }: { readonly model: Model }): JSX.Element {
       <div className={classes.ask}>
         <div className={classes.column}>
           <About model={model} />
-          {model.summary !== null && <LeftOut model={model} summary={model.summary} />}
+          {model.summary !== null && <HeldOutWalks model={model} summary={model.summary} />}
         </div>
         {model.summary !== null && <Census model={model} summary={model.summary} />}
       </div>
@@ -146,7 +146,7 @@ const Fact = ({ name, value }: { readonly name: string; readonly value: string }
   </>
 );
 
-function LeftOut({ summary }: PartProps): JSX.Element {
+function HeldOutWalks({ summary }: PartProps): JSX.Element {
   const { t, language } = useTexts();
   const n = (value: number) => number(value, language, 3);
   const best = summary.readings[0];

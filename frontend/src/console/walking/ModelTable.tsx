@@ -7,11 +7,11 @@ import type { JSX } from "react";
 import { Link } from "wouter";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
-import { useMay } from "../permissions";
+import { usePermissions } from "../permissions";
 import { DeleteButton } from "./DeleteButton";
 import { modelsQuery } from "./queries";
 import classes from "./Walking.module.css";
-import { Made, Synthetic, WalkingTable } from "./WalkingTable";
+import { Created, Synthetic, WalkingTable } from "./WalkingTable";
 
 const COLUMNS = ["title", "state", "on", "by"] as const;
 
@@ -51,8 +51,8 @@ function Row({ model }: { readonly model: ModelListed }): JSX.Element {
           </span>
         )}
       </Table.Td>
-      <Made at={model.at} by={model.by} />
-      <Table.Td className={classes.doing ?? ""}>
+      <Created at={model.at} by={model.by} />
+      <Table.Td className={classes.rowActions ?? ""}>
         <Doing model={model} />
       </Table.Td>
     </Table.Tr>
@@ -68,7 +68,7 @@ const NOTHING = () => {};
 
 export function Doing({ model, onDeleted = NOTHING }: DoingProps): JSX.Element | null {
   const { t } = useTexts();
-  const mayWrite = useMay()("walking");
+  const mayWrite = usePermissions()("walking");
   const queries = useQueryClient();
   const act = useMutation({
     mutationFn: (what: "stop" | "resume") =>
@@ -119,7 +119,7 @@ export function FitProgress({ model, named }: FitProgressProps): JSX.Element | n
     maps: 0,
     maps_total: 0,
   };
-  const told =
+  const progress =
     total > 0 && stage !== "blending"
       ? t("walking.stage.maps", { maps, total })
       : t(`walking.stage.${stage}`);
@@ -134,7 +134,7 @@ export function FitProgress({ model, named }: FitProgressProps): JSX.Element | n
         my={4}
       />
       <span className={classes.sub}>
-        {model.state === "stopped" ? t("walking.state.stopped.at", { maps, total }) : told}
+        {model.state === "stopped" ? t("walking.state.stopped.at", { maps, total }) : progress}
       </span>
     </div>
   );

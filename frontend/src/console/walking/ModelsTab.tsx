@@ -4,7 +4,7 @@ import { Icon } from "@shared/ui/Icon";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { useTexts } from "../i18n";
-import { useMay } from "../permissions";
+import { usePermissions } from "../permissions";
 import { EmptyState } from "../ui/EmptyState";
 import { Loaded } from "../ui/Loaded";
 import { ModelTable } from "./ModelTable";
@@ -16,7 +16,7 @@ import { WalkSetTable } from "./WalkSetTable";
 
 export function ModelsTab(): JSX.Element {
   const { t } = useTexts();
-  const mayWrite = useMay()("walking");
+  const mayWrite = usePermissions()("walking");
   const [adding, setAdding] = useState<"model" | "walks" | null>(null);
   const sets = useQuery(walkSetsQuery);
   const done = () => setAdding(null);

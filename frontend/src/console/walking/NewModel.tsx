@@ -53,10 +53,10 @@ function Form({
   const [scene, setScene] = useState<string | null>(null);
   const [options, setOptions] = useState(USUAL);
   const chosen = sets.find(({ id }) => id === setId);
-  const isMadeUp = chosen?.origin.kind === "population";
+  const isSynthetic = chosen?.origin.kind === "population";
   const order = useMutation({
     mutationFn: () =>
-      walking.addModel({ title, walk_set_id: setId, scene: isMadeUp ? null : scene, options }),
+      walking.addModel({ title, walk_set_id: setId, scene: isSynthetic ? null : scene, options }),
     onSuccess: async () => {
       await queries.invalidateQueries({ queryKey: modelsQuery.queryKey });
       onDone();
@@ -78,7 +78,7 @@ function Form({
           allowDeselect={false}
         />
         <NameField value={title} onChange={setTitle} />
-        {!isMadeUp && (
+        {!isSynthetic && (
           <SceneField
             label={t("walking.model.scene")}
             description={t("walking.model.scene.hint")}

@@ -23,18 +23,18 @@ import { NameField, SceneField, WholeNumbers } from "./FormFields";
 import { populationsQuery, walkSetsQuery } from "./queries";
 import classes from "./Walking.module.css";
 
-const WAYS = ["tracks", "captures", "population"] as const;
-type Way = (typeof WAYS)[number];
+const SOURCES = ["tracks", "captures", "population"] as const;
+type Source = (typeof SOURCES)[number];
 
-interface WayProps {
+interface SourceProps {
   readonly title: string;
   readonly onDone: () => void;
 }
 
-const FORMS: Readonly<Record<Way, (props: WayProps) => JSX.Element>> = {
+const FORMS: Readonly<Record<Source, (props: SourceProps) => JSX.Element>> = {
   tracks: Tracks,
   captures: CapturedWalks,
-  population: MadeUp,
+  population: SyntheticWalks,
 };
 
 interface NewWalksProps {
@@ -44,9 +44,9 @@ interface NewWalksProps {
 
 export function NewWalks({ opened, onClose }: NewWalksProps): JSX.Element {
   const { t } = useTexts();
-  const [way, setWay] = useState<Way>("tracks");
+  const [source, setSource] = useState<Source>("tracks");
   const [title, setTitle] = useState("");
-  const Form = FORMS[way];
+  const Form = FORMS[source];
   return (
     <Modal
       opened={opened}
@@ -58,11 +58,11 @@ export function NewWalks({ opened, onClose }: NewWalksProps): JSX.Element {
       <Stack>
         <SegmentedControl
           aria-label={t("walking.sets.way")}
-          value={way}
-          onChange={(value) => setWay(WAYS.find((one) => one === value) ?? "tracks")}
-          data={WAYS.map((value) => ({ value, label: t(`walking.way.${value}`) }))}
+          value={source}
+          onChange={(value) => setSource(SOURCES.find((one) => one === value) ?? "tracks")}
+          data={SOURCES.map((value) => ({ value, label: t(`walking.way.${value}`) }))}
         />
-        <p className={classes.soft}>{t(`walking.way.${way}.hint`)}</p>
+        <p className={classes.soft}>{t(`walking.way.${source}.hint`)}</p>
         <NameField value={title} onChange={setTitle} />
         <Form
           title={title.trim()}
@@ -107,7 +107,7 @@ function Send({ sending, ready }: SendProps): JSX.Element {
   );
 }
 
-function Tracks({ title, onDone }: WayProps): JSX.Element {
+function Tracks({ title, onDone }: SourceProps): JSX.Element {
   const { t } = useTexts();
   const [file, setFile] = useState<File | null>(null);
   const [rateHz, setRate] = useState<number | null>(null);
@@ -176,7 +176,7 @@ function Tracks({ title, onDone }: WayProps): JSX.Element {
   );
 }
 
-function MadeUp({ title, onDone }: WayProps): JSX.Element {
+function SyntheticWalks({ title, onDone }: SourceProps): JSX.Element {
   const { t } = useTexts();
   const populations = useQuery(populationsQuery);
   const [population, setPopulation] = useState("students");
@@ -228,7 +228,7 @@ interface Person {
 const NOBODY: Person = { subject: "", stature: null };
 
 /** Cut walks from stored captures: which ones, and who walks in each. */
-function CapturedWalks({ title, onDone }: WayProps): JSX.Element {
+function CapturedWalks({ title, onDone }: SourceProps): JSX.Element {
   const { t } = useTexts();
   const captures = useQuery(capturesQuery).data?.captures ?? [];
   const [chosen, setChosen] = useState<readonly string[]>([]);

@@ -6,7 +6,7 @@ import type { JSX } from "react";
 import { Link } from "wouter";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
-import { useMay } from "../permissions";
+import { usePermissions } from "../permissions";
 import { EmptyState } from "../ui/EmptyState";
 import { FitProgress } from "./ModelTable";
 import { modelsQuery, walkSetsQuery } from "./queries";
@@ -14,7 +14,7 @@ import classes from "./Walking.module.css";
 
 export function NoModel({ models }: { readonly models: readonly ModelListed[] }): JSX.Element {
   const { t } = useTexts();
-  const mayWrite = useMay()("walking");
+  const mayWrite = usePermissions()("walking");
   const fitting = models.filter(({ state }) => state === "fitting");
   if (fitting.length > 0) {
     return (

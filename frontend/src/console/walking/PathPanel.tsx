@@ -58,7 +58,7 @@ export function PathPanel(props: PathPanelProps): JSX.Element {
       <SceneDrawing
         scene={scene}
         points={path.points}
-        way={path.points.length > 1 ? (prediction?.points_m ?? null) : null}
+        plannedPath={path.points.length > 1 ? (prediction?.points_m ?? null) : null}
         walkers={path.points.length > 1 ? (prediction?.walkers ?? []) : []}
         synthetic={synthetic}
         atS={seenAt}

@@ -19,7 +19,7 @@ import classes from "./Walking.module.css";
 interface SceneDrawingProps {
   readonly scene: Scene;
   readonly points: readonly Point[];
-  readonly way: readonly Point[] | null;
+  readonly plannedPath: readonly Point[] | null;
   readonly walkers: Prediction["walkers"];
   readonly synthetic: boolean;
   /** The time at which each walker is shown, s. */
@@ -41,7 +41,7 @@ const KEYS: Readonly<Record<string, Point>> = {
 };
 
 export function SceneDrawing(props: SceneDrawingProps): JSX.Element {
-  const { scene, points, way, walkers, synthetic, atS, onChange } = props;
+  const { scene, points, plannedPath: way, walkers, synthetic, atS, onChange } = props;
   const { t } = useTexts();
   const plan = useMemo(() => planOf(scene.bounds_m), [scene]);
   const root = useRef<SVGSVGElement>(null);
@@ -82,7 +82,7 @@ export function SceneDrawing(props: SceneDrawingProps): JSX.Element {
           />
         ))}
         <polyline
-          className={classes.way}
+          className={classes.plannedPath}
           points={lineOf(plan, drag === null && way !== null ? way : shown)}
         />
         {walkers.map(({ xy_m, step_s, duration_s, vector }) => {

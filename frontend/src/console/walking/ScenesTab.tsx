@@ -7,7 +7,7 @@ import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useMemo, useState } from "react";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
-import { useMay } from "../permissions";
+import { usePermissions } from "../permissions";
 import { Loaded } from "../ui/Loaded";
 import { DeleteButton } from "./DeleteButton";
 import { planOf, WIDTH } from "./plan";
@@ -21,7 +21,7 @@ export function ScenesTab(): JSX.Element {
 
 function Scenes({ scenes }: { readonly scenes: readonly SceneListed[] }): JSX.Element {
   const { t } = useTexts();
-  const mayWrite = useMay()("walking");
+  const mayWrite = usePermissions()("walking");
   const queries = useQueryClient();
   const [wanted, setWanted] = useState(scenes[0]?.key ?? "");
   const key = scenes.some((one) => one.key === wanted) ? wanted : (scenes[0]?.key ?? "");
@@ -64,7 +64,7 @@ function Scenes({ scenes }: { readonly scenes: readonly SceneListed[] }): JSX.El
         )}
       </div>
       {add.isError && <Failure error={add.error} />}
-      <Loaded query={useQuery(sceneQuery(key))}>{(scene) => <Shown scene={scene} />}</Loaded>
+      <Loaded query={useQuery(sceneQuery(key))}>{(scene) => <SceneCard scene={scene} />}</Loaded>
     </>
   );
 }
@@ -72,9 +72,9 @@ function Scenes({ scenes }: { readonly scenes: readonly SceneListed[] }): JSX.El
 /** Join the lines of the file, which are wrapped for editors, into paragraphs. */
 const unwrapped = (text: string): string => text.trim().replace(/(\S)\n(?=\S)/g, "$1 ");
 
-function Shown({ scene }: { readonly scene: Scene }): JSX.Element {
+function SceneCard({ scene }: { readonly scene: Scene }): JSX.Element {
   const { t, language } = useTexts();
-  const mayWrite = useMay()("walking");
+  const mayWrite = usePermissions()("walking");
   const plan = useMemo(() => planOf(scene.bounds_m), [scene]);
   return (
     <div className={classes.ask}>

@@ -63,7 +63,7 @@ function Found({ slice, prediction, held, onHeld, onValue }: FoundProps): JSX.El
   const { t, language } = useTexts();
   const parameter = useParameter();
   const units = { [slice.x.name]: slice.x, [slice.y.name]: slice.y, [slice.held.name]: slice.held };
-  const told = (name: string) => parameter(name, units[name]?.unit ?? "");
+  const axisTitle = (name: string) => parameter(name, units[name]?.unit ?? "");
   // biome-ignore lint/correctness/useExhaustiveDependencies: words follow the language.
   const figure = useMemo(
     () =>
@@ -82,7 +82,7 @@ function Found({ slice, prediction, held, onHeld, onValue }: FoundProps): JSX.El
       <div className={classes.choices}>
         <Select
           label={t("walking.held")}
-          data={slice.order.map((name) => ({ value: name, label: told(name) }))}
+          data={slice.order.map((name) => ({ value: name, label: axisTitle(name) }))}
           value={held}
           onChange={(name) => name !== null && onHeld(name)}
           allowDeselect={false}
@@ -90,7 +90,7 @@ function Found({ slice, prediction, held, onHeld, onValue }: FoundProps): JSX.El
         <Slider
           // Follows the pointer while dragged; the value is requested once it is released.
           key={slice.held.name}
-          thumbLabel={t("walking.held.at", { what: told(slice.held.name) })}
+          thumbLabel={t("walking.held.at", { what: axisTitle(slice.held.name) })}
           label={(at) => number(at, language)}
           defaultValue={slice.held_at}
           min={low}
@@ -106,7 +106,7 @@ function Found({ slice, prediction, held, onHeld, onValue }: FoundProps): JSX.El
       </div>
       <p className={classes.soft} role="status">
         {t("walking.held.is", {
-          what: told(slice.held.name),
+          what: axisTitle(slice.held.name),
           value: number(slice.held_at, language),
         })}
       </p>

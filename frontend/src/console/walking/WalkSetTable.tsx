@@ -4,11 +4,11 @@ import { type WalkSet, walking } from "@shared/api/walking";
 import { number } from "@shared/format";
 import type { JSX } from "react";
 import { useTexts } from "../i18n";
-import { useMay } from "../permissions";
+import { usePermissions } from "../permissions";
 import { DeleteButton } from "./DeleteButton";
 import { walkSetsQuery } from "./queries";
 import classes from "./Walking.module.css";
-import { Made, Synthetic, WalkingTable } from "./WalkingTable";
+import { Created, Synthetic, WalkingTable } from "./WalkingTable";
 
 const COLUMNS = ["walks", "origin", "lengths", "durations", "by"] as const;
 
@@ -24,7 +24,7 @@ export function WalkSetTable({ sets }: { readonly sets: readonly WalkSet[] }): J
 
 function Row({ set }: { readonly set: WalkSet }): JSX.Element {
   const { t, language } = useTexts();
-  const mayWrite = useMay()("walking");
+  const mayWrite = usePermissions()("walking");
   const { census, duration_s: duration, walks, people } = set.summary;
   const n = (value: number) => number(value, language);
   const [first, second, third] = census.quartiles_m;
@@ -52,8 +52,8 @@ function Row({ set }: { readonly set: WalkSet }): JSX.Element {
           {t("walking.s.range", { from: n(duration.low), to: n(duration.high) })}
         </span>
       </Table.Td>
-      <Made at={set.at} by={set.by} />
-      <Table.Td className={classes.doing ?? ""}>
+      <Created at={set.at} by={set.by} />
+      <Table.Td className={classes.rowActions ?? ""}>
         {mayWrite && (
           <DeleteButton
             title={set.title}

@@ -5,8 +5,8 @@ import type { JSX } from "react";
 import { useLocation } from "wouter";
 import { useTexts } from "../i18n";
 import { useTitle } from "../ui/page";
-import { AskTab } from "./AskTab";
 import { ModelsTab } from "./ModelsTab";
+import { QueryTab } from "./QueryTab";
 import { ScenesTab } from "./ScenesTab";
 import classes from "./Walking.module.css";
 
@@ -15,7 +15,7 @@ type Tab = (typeof TABS)[number];
 
 const ICONS: Readonly<Record<Tab, IconName>> = { ask: "clock", models: "chart", scenes: "form" };
 const CONTENT: Readonly<Record<Tab, () => JSX.Element>> = {
-  ask: AskTab,
+  ask: QueryTab,
   models: ModelsTab,
   scenes: ScenesTab,
 };

@@ -28,12 +28,12 @@ export function WalkingTable({ columns, children }: WalkingTableProps): JSX.Elem
   );
 }
 
-interface MadeProps {
+interface CreatedProps {
   readonly at: string;
   readonly by: string;
 }
 
-export function Made({ at, by }: MadeProps): JSX.Element {
+export function Created({ at, by }: CreatedProps): JSX.Element {
   const { language } = useTexts();
   return (
     <Table.Td>

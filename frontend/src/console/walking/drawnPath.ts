@@ -16,8 +16,8 @@ export type PathChange =
   | { readonly do: "undo" };
 
 export const NO_PATH: DrawnPath = { points: [], before: [] };
-const MOST_UNDONE = 100;
-const MOST_POINTS = 200;
+const MAX_UNDO_STEPS = 100;
+const MAX_POINTS = 200;
 
 export function changedPath(path: DrawnPath, change: PathChange): DrawnPath {
   if (change.do === "undo") {
@@ -26,7 +26,7 @@ export function changedPath(path: DrawnPath, change: PathChange): DrawnPath {
   }
   const points = pointsAfter(path.points, change);
   if (same(points, path.points)) return path;
-  return { points, before: [...path.before, path.points].slice(-MOST_UNDONE) };
+  return { points, before: [...path.before, path.points].slice(-MAX_UNDO_STEPS) };
 }
 
 function pointsAfter(
@@ -35,7 +35,7 @@ function pointsAfter(
 ): readonly Point[] {
   switch (change.do) {
     case "add":
-      return points.length < MOST_POINTS ? [...points, rounded(change.point)] : points;
+      return points.length < MAX_POINTS ? [...points, rounded(change.point)] : points;
     case "move":
       return points.map((point, at) => (at === change.at ? rounded(change.point) : point));
     case "remove":
@@ -53,5 +53,5 @@ const isSame = (a: Point, b: Point | undefined): boolean =>
   b !== undefined && a[0] === b[0] && a[1] === b[1];
 
 /** Whether the path can be queried: at least two points, no two consecutive ones the same. */
-export const isWay = (points: readonly Point[]): boolean =>
+export const isCompletePath = (points: readonly Point[]): boolean =>
   points.length > 1 && points.every((point, at) => !isSame(point, points[at + 1]));

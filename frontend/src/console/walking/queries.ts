@@ -1,8 +1,8 @@
 /** The queries about walking. */
 import {
   type ModelListed,
-  type PredictionAsked,
-  type SliceAsked,
+  type PredictionRequest,
+  type SliceRequest,
   walking,
 } from "@shared/api/walking";
 import { keepPreviousData, queryOptions } from "@tanstack/react-query";
@@ -42,7 +42,7 @@ export const modelQuery = (id: string) =>
       query.state.data !== undefined && isFitting(query.state.data) ? WHILE_FITTING_MS : false,
   });
 
-export const predictionQuery = (id: string, asked: PredictionAsked) =>
+export const predictionQuery = (id: string, asked: PredictionRequest) =>
   queryOptions({
     queryKey: ["walking", "prediction", id, asked],
     queryFn: () => walking.predict(id, asked),
@@ -51,7 +51,7 @@ export const predictionQuery = (id: string, asked: PredictionAsked) =>
     retry: false,
   });
 
-export const sliceQuery = (id: string, asked: SliceAsked) =>
+export const sliceQuery = (id: string, asked: SliceRequest) =>
   queryOptions({
     queryKey: ["walking", "slice", id, asked],
     queryFn: () => walking.slice(id, asked),

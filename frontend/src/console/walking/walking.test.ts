@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { changedPath, isWay, NO_PATH } from "./drawnPath";
+import { changedPath, isCompletePath, NO_PATH } from "./drawnPath";
 import { planOf, ticks, WIDTH } from "./plan";
 import { binned } from "./walkingFigures";
 
@@ -16,9 +16,9 @@ describe("a drawn path", () => {
       [1, 1],
     ]);
     expect([
-      isWay(NO_PATH.points),
-      isWay(drawn.points),
-      isWay([
+      isCompletePath(NO_PATH.points),
+      isCompletePath(drawn.points),
+      isCompletePath([
         [1, 1],
         [1, 1],
       ]),

@@ -23,7 +23,7 @@ const [PROB, STAT, ADAPT] = COLORWAY;
 const SOFT_BAND = "rgba(14,138,151,0.16)";
 const BAND = "rgba(14,138,151,0.3)";
 const FEWEST_BINS = 8;
-const MOST_BINS = 40;
+const MAX_BINS = 40;
 
 /**
  * A histogram, or the fraction of walks that have ended by a time; bands contain 50 and 90 % of the
@@ -114,10 +114,10 @@ export function binned(sorted: readonly number[]): {
   const low = sorted[0] ?? 0;
   const high = sorted.at(-1) ?? 1;
   const at = (share: number) => sorted[Math.floor(share * (sorted.length - 1))] ?? 0;
-  const wanted = (2 * (at(0.75) - at(0.25))) / Math.cbrt(Math.max(1, sorted.length));
+  const idealWidth = (2 * (at(0.75) - at(0.25))) / Math.cbrt(Math.max(1, sorted.length));
   const count =
-    wanted > 0
-      ? Math.min(MOST_BINS, Math.max(FEWEST_BINS, Math.ceil((high - low) / wanted)))
+    idealWidth > 0
+      ? Math.min(MAX_BINS, Math.max(FEWEST_BINS, Math.ceil((high - low) / idealWidth)))
       : FEWEST_BINS;
   const width = (high - low || 1) / count;
   const counts = new Array<number>(count).fill(0);

@@ -14,7 +14,7 @@ export type Measure = Schemas["MeasureView"];
 export type Result = Schemas["ResultView"];
 
 /** The filter that chooses which sessions are shown; null or empty means no restriction. */
-export interface Asked {
+export interface Filter {
   readonly kind: DataKind;
   readonly participant: readonly string[];
   readonly order: string | null;
@@ -25,20 +25,20 @@ export interface Asked {
 }
 
 /** The filter as URL query parameters; defaults are left out. */
-export function searchOf(asked: Asked): URLSearchParams {
+export function searchOf(filter: Filter): URLSearchParams {
   const search = new URLSearchParams();
-  if (asked.kind !== "people") search.set("kind", asked.kind);
-  for (const code of asked.participant) search.append("participant", code);
-  if (asked.rows !== "valid") search.set("rows", asked.rows);
+  if (filter.kind !== "people") search.set("kind", filter.kind);
+  for (const code of filter.participant) search.append("participant", code);
+  if (filter.rows !== "valid") search.set("rows", filter.rows);
   for (const name of ["order", "since", "until", "limb"] as const) {
-    const value = asked[name];
+    const value = filter[name];
     if (value !== null && value !== "") search.set(name, value);
   }
   return search;
 }
 
 /** The filter in a URL's query parameters; invalid values are ignored. */
-export function askedOf(search: URLSearchParams): Asked {
+export function filterFrom(search: URLSearchParams): Filter {
   const one = <Word extends string>(name: string, known: readonly Word[]): Word | null =>
     known.find((word) => word === search.get(name)) ?? null;
   const day = (name: string): string | null =>
@@ -56,14 +56,14 @@ export function askedOf(search: URLSearchParams): Asked {
 
 export const analysis = {
   /** One group of figures, which is ready sooner than all of them. */
-  dashboard: (key: string, asked: Asked, group: FigureGroup) =>
+  dashboard: (key: string, filter: Filter, group: FigureGroup) =>
     answer<Dashboard>(
       server.GET("/api/studies/{key}/dashboard", {
-        params: { path: { key }, query: { ...asked, group } },
+        params: { path: { key }, query: { ...filter, group } },
       }),
     ),
-  rowsUrl: (key: string, figure: string, asked: Asked) => {
-    const search = searchOf(asked).toString();
+  rowsUrl: (key: string, figure: string, filter: Filter) => {
+    const search = searchOf(filter).toString();
     const path = `/api/studies/${encodeURIComponent(key)}/dashboard/${figure}/rows`;
     return search === "" ? path : `${path}?${search}`;
   },

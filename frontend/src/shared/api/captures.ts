@@ -19,7 +19,7 @@ export type AvatarWalker = Schemas["AvatarWalkerView"];
 export type MovementFormat = NonNullable<
   operations["get_retargeted_api_captures__capture_id__retargeted_get"]["parameters"]["query"]["format"]
 >;
-export type Shown = "recorded" | "skeleton";
+export type MotionView = "recorded" | "skeleton";
 
 /** The one or two files of a capture: an AMC comes with its ASF. */
 export interface CaptureFiles {
@@ -42,7 +42,7 @@ export const captures = {
   change: (id: string, change: Schemas["CaptureChange"]) =>
     answer<Capture>(server.PATCH("/api/captures/{capture_id}", { ...at(id), body: change })),
   remove: (id: string) => answer<undefined>(server.DELETE("/api/captures/{capture_id}", at(id))),
-  motion: (id: string, shown: Shown) => motionFrom(`${path(id)}/motion?shown=${shown}`),
+  motion: (id: string, shown: MotionView) => motionFrom(`${path(id)}/motion?shown=${shown}`),
   onAvatar: (id: string, avatar: string, lockFeet: boolean) =>
     motionFrom(`${path(id)}/retargeted-motion?avatar=${avatar}&lock_feet=${lockFeet}`),
   jointMap: (id: string) =>

@@ -127,10 +127,10 @@ export const tablet = {
     answer<TabletState>(server.PUT("/api/tablet/language", { body: { language } })),
   submit: (submission: Submission) =>
     answer<Receipt>(server.POST("/api/tablet/submissions", { body: submission })),
-  help: (asked: boolean) =>
-    answer<TabletState>(server.PUT("/api/tablet/help", { body: { asked } })),
-  question: (asked: boolean) =>
-    answer<TabletState>(server.PUT("/api/tablet/question", { body: { asked } })),
+  help: (isCalling: boolean) =>
+    answer<TabletState>(server.PUT("/api/tablet/help", { body: { asked: isCalling } })),
+  question: (isAsked: boolean) =>
+    answer<TabletState>(server.PUT("/api/tablet/question", { body: { asked: isAsked } })),
   refuse: (wish: RefusalWish) =>
     answer<TabletState>(server.PUT("/api/tablet/refusal", { body: wish })),
   acknowledge: (stepIndex: number) =>

@@ -4,7 +4,7 @@ import type { components } from "./schema";
 
 type Schemas = components["schemas"];
 export type ImportMapping = Required<Schemas["Mapping"]>;
-export type ImportLook = Omit<Schemas["LookView"], "proposal"> & {
+export type ImportPreview = Omit<Schemas["LookView"], "proposal"> & {
   readonly proposal: ImportMapping | null;
 };
 export type ImportCheck = Schemas["CheckView"];
@@ -22,7 +22,7 @@ export const imports = {
   get: (key: string, id: string) =>
     answer<ImportDetail>(server.GET("/api/studies/{key}/imports/{import_id}", one(key, id))),
   look: (key: string, text: string, instrument: string | null, headerRows: number | null) =>
-    answer<ImportLook>(
+    answer<ImportPreview>(
       server.POST("/api/studies/{key}/imports/look", {
         ...of(key),
         body: { text, instrument, header_rows: headerRows },

@@ -31,10 +31,10 @@ const OPENED = new Event("open");
 function started() {
   const sources: FakeSource[] = [];
   const states: FeedState[] = [];
-  const heard: unknown[] = [];
+  const received: unknown[] = [];
   const stop = openFeed({
     url: "/live",
-    on: { session: (data) => heard.push(data) },
+    on: { session: (data) => received.push(data) },
     onState: (state) => states.push(state),
     open: () => {
       const source = new FakeSource();
@@ -42,7 +42,7 @@ function started() {
       return source;
     },
   });
-  return { sources, states, heard, stop };
+  return { sources, states, heard: received, stop };
 }
 
 describe("a live feed", () => {

@@ -118,7 +118,7 @@ export function openPoses(options: PoseFeedOptions): PoseFeed {
     socket = opened;
     opened.onmessage = ({ data }) => {
       failures = 0;
-      take(data);
+      receive(data);
     };
     opened.onclose = ({ code }) => {
       if (closed) return;
@@ -129,18 +129,18 @@ export function openPoses(options: PoseFeedOptions): PoseFeed {
     };
   };
 
-  const take = (data: unknown) => {
+  const receive = (data: unknown) => {
     if (data instanceof ArrayBuffer) {
       const pose = decodePose(data);
       if (pose !== null) options.onPose(pose);
       return;
     }
-    const told = JSON.parse(String(data)) as
+    const message = JSON.parse(String(data)) as
       | PoseSetup
       | { readonly type: "touches"; readonly touches: readonly PoseTouch[] };
-    if (told.type === "touches") return options.onTouches(told.touches);
+    if (message.type === "touches") return options.onTouches(message.touches);
     options.onState("live");
-    options.onSetup(told);
+    options.onSetup(message);
   };
 
   options.onState("connecting");

@@ -73,12 +73,12 @@ export function decodeMovement(bytes: ArrayBuffer): ReplayMovement {
   const header = JSON.parse(new TextDecoder().decode(new Uint8Array(bytes, 4, length))) as Header;
   const ofBody = header.frames * header.names.length * 3;
   const ofErrors = header.error_frames * header.error_joints.length;
-  const wanted = header.bodies.length * ofBody + ofErrors;
-  const there = (bytes.byteLength - 4 - length) / 4;
-  if (there !== wanted) {
-    throw new MotionError(`Expected ${wanted} numbers after the header, got ${there}.`);
+  const expected = header.bodies.length * ofBody + ofErrors;
+  const actual = (bytes.byteLength - 4 - length) / 4;
+  if (actual !== expected) {
+    throw new MotionError(`Expected ${expected} numbers after the header, got ${actual}.`);
   }
-  const all = new Float32Array(bytes, 4 + length, wanted);
+  const all = new Float32Array(bytes, 4 + length, expected);
   const body = (name: string): PointMotion | null => {
     const at = header.bodies.indexOf(name);
     if (at < 0) return null;

@@ -5,7 +5,7 @@ import type { Instrument, Kind, SessionStatus, StoredAnswers } from "./types";
 
 type Schemas = components["schemas"];
 export type ErasureReason = Schemas["ErasureRequest"]["reason_code"];
-export type CopyLeft = Schemas["CopyLeft"];
+export type RemainingCopy = Schemas["CopyLeft"];
 export type Copy = Schemas["CopyView"];
 export type Erasure = Schemas["ErasureView"];
 export type Correction = Schemas["CorrectionView"];

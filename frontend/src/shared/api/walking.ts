@@ -39,9 +39,9 @@ export type Prediction = With<
     readonly walkers: readonly With<Schemas["SampledWalk"], { readonly xy_m: readonly Point[] }>[];
   }
 >;
-export type PredictionAsked = Schemas["PredictionAsked"];
+export type PredictionRequest = Schemas["PredictionAsked"];
 export type Slice = Schemas["SliceView"];
-export type SliceAsked = Schemas["SliceAsked"];
+export type SliceRequest = Schemas["SliceAsked"];
 export type Range = Schemas["Range"];
 
 export interface Table {
@@ -83,11 +83,11 @@ export const walking = {
   removeModel: (id: string) =>
     answer<undefined>(server.DELETE("/api/walking/models/{model_id}", model(id))),
   modelFile: (id: string) => `/api/walking/models/${encodeURIComponent(id)}/file`,
-  predict: (id: string, body: PredictionAsked) =>
+  predict: (id: string, body: PredictionRequest) =>
     answer<Prediction>(
       server.POST("/api/walking/models/{model_id}/prediction", { ...model(id), body }),
     ),
-  slice: (id: string, body: SliceAsked) =>
+  slice: (id: string, body: SliceRequest) =>
     answer<Slice>(server.POST("/api/walking/models/{model_id}/slice", { ...model(id), body })),
 };
 

@@ -6,7 +6,7 @@
  */
 import { residual, solveInPlace } from "./linear";
 
-const MOST_PASSES = 200;
+const MAX_PASSES = 200;
 const SPARE_ATTEMPTS = 3;
 const TOLERANCE = 1e-12;
 const FREE = 0;
@@ -19,22 +19,22 @@ export function boundedStep(
   low: Float64Array,
   high: Float64Array,
 ): Float64Array {
-  const held = new Int8Array(pull.length);
-  let step = withHeld(hessian, pull, held, low, high);
+  const sides = new Int8Array(pull.length);
+  let step = solveFree(hessian, pull, sides, low, high);
   let fewest = pull.length + 1;
   let spare = SPARE_ATTEMPTS;
-  for (let pass = 0; pass < MOST_PASSES; pass++) {
-    const changes = wrongs(held, residual(hessian, pull, step), step, low, high);
+  for (let pass = 0; pass < MAX_PASSES; pass++) {
+    const changes = violations(sides, residual(hessian, pull, step), step, low, high);
     const last = changes.at(-1);
     if (last === undefined) break;
-    let made = changes;
+    let applied = changes;
     if (changes.length < fewest) {
       fewest = changes.length;
       spare = SPARE_ATTEMPTS;
     } else if (spare > 0) spare -= 1;
-    else made = [last];
-    for (const [i, side] of made) held[i] = side;
-    step = withHeld(hessian, pull, held, low, high);
+    else applied = [last];
+    for (const [i, side] of applied) sides[i] = side;
+    step = solveFree(hessian, pull, sides, low, high);
   }
   return step.map((value, i) => Math.min(Math.max(value, low[i] as number), high[i] as number));
 }
@@ -43,7 +43,7 @@ export function boundedStep(
  * The unknowns that are on the wrong side, each with its new side: free ones that left their
  * bounds, and held ones that are pulled inwards.
  */
-function wrongs(
+function violations(
   held: Int8Array,
   left: Float64Array,
   step: Float64Array,
@@ -63,7 +63,7 @@ function wrongs(
   return found;
 }
 
-function withHeld(
+function solveFree(
   hessian: Float64Array,
   pull: Float64Array,
   held: Int8Array,

@@ -8,7 +8,7 @@ import type { DoubleBuffer, MjData, MjModel } from "@mujoco/mujoco";
 import { GOAL_PARTS, IkError } from "./goals";
 import type { Trunk } from "./hips";
 import type { Mujoco } from "./mujoco";
-import { length, minus, type Quaternion, type Vector } from "./turns";
+import { length, minus, type Quaternion, type Vector } from "./rotations";
 
 interface Hinge {
   readonly name: string;
@@ -41,8 +41,8 @@ export class Chain {
     this.bodies = GOAL_PARTS.map((part) => this.body(part));
     this.hinges = readHinges(mujoco, model);
     const moves = this.bodies.map((body) => {
-      const way = above(model, body);
-      return this.hinges.map((hinge) => way.has(hinge.bodyId));
+      const ancestors = above(model, body);
+      return this.hinges.map((hinge) => ancestors.has(hinge.bodyId));
     });
     this.moving = [...this.hinges.keys()].filter((index) => moves.some((row) => row[index]));
     this.moves = moves.map((row) => this.moving.map((index) => row[index] === true));
@@ -170,9 +170,9 @@ function readHinges(mujoco: Mujoco, model: MjModel): readonly Hinge[] {
 }
 
 function above(model: MjModel, body: number): ReadonlySet<number> {
-  const way = new Set<number>();
-  for (let at = body; at > 0; at = model.body_parentid[at]) way.add(at);
-  return way;
+  const ancestors = new Set<number>();
+  for (let at = body; at > 0; at = model.body_parentid[at]) ancestors.add(at);
+  return ancestors;
 }
 
 function freeAddress(mujoco: Mujoco, model: MjModel, hips: number): number | null {

@@ -16,7 +16,7 @@ import {
   rotate,
   times,
   type Vector,
-} from "./turns";
+} from "./rotations";
 
 const RIGHT: Vector = [1, 0, 0];
 const UP: Vector = [0, 1, 0];
@@ -73,8 +73,8 @@ function triangle(
 ): Vector {
   const knees = times(plus(left.positionM, right.positionM), 0.5);
   const half = times(minus(right.positionM, left.positionM), 0.5);
-  const apart = minus(half, times(rightwards, trunk.halfBreadthM));
-  const thighs = Math.sqrt(Math.max(trunk.thighM * trunk.thighM - dot(apart, apart), 0));
+  const sideways = minus(half, times(rightwards, trunk.halfBreadthM));
+  const thighs = Math.sqrt(Math.max(trunk.thighM * trunk.thighM - dot(sideways, sideways), 0));
   const below = thighs + trunk.hipsToSocketsM;
   const above = trunk.hipsToHeadM;
   const line = minus(headM, knees);

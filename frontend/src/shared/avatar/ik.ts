@@ -12,7 +12,15 @@ import { type Goals, rowsOf } from "./goals";
 import { estimatedHips, type Place } from "./hips";
 import { gram, transposedTimes } from "./linear";
 import type { Mujoco } from "./mujoco";
-import { length, minus, normalised, plus, rotationBetween, turned, type Vector } from "./turns";
+import {
+  length,
+  minus,
+  normalised,
+  plus,
+  rotated,
+  rotationBetween,
+  type Vector,
+} from "./rotations";
 
 export interface Solution {
   /** The angle of every hinge, in the model's order; see `axisNames`. */
@@ -130,13 +138,13 @@ export class InverseKinematics {
     if (head === null) return null;
     const shins = left !== null && right !== null ? ([left, right] as const) : null;
     const estimate = estimatedHips(this.chain.trunk, head, shins);
-    if (!this.begun || this.farFrom(estimate)) this.hips = estimate;
+    if (!this.begun || this.isFarFrom(estimate)) this.hips = estimate;
     this.begun = true;
     return estimate;
   }
 
   /** Whether the body was moved elsewhere: further than any error of the estimate. */
-  private farFrom({ positionM, rotation }: Place): boolean {
+  private isFarFrom({ positionM, rotation }: Place): boolean {
     const turn = rotationBetween(this.hips.rotation, rotation);
     return length(minus(positionM, this.hips.positionM)) > FAR_M || length(turn) > FAR_RAD;
   }
@@ -196,7 +204,7 @@ export class InverseKinematics {
     const { positionM, rotation } = this.hips;
     this.hips = {
       positionM: plus(positionM, vectorAt(step, 0)),
-      rotation: turned(rotation, vectorAt(step, 3)),
+      rotation: rotated(rotation, vectorAt(step, 3)),
     };
   }
 

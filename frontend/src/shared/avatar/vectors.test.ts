@@ -56,15 +56,15 @@ describe("inverse kinematics in the browser's MuJoCo", () => {
     const solved = ik.frames.map((_, index) => solver.solve(goalsOf(index, vector.waist)));
     const columns = vector.axes.map((name) => solver.axisNames.indexOf(name));
     const anglesOf = (one: Solution) => columns.map((at) => one.anglesRad[at] ?? Number.NaN);
-    expect(apart(solved.map(anglesOf), vector.angles_rad)).toBeLessThanOrEqual(ALIKE);
+    expect(greatestDifference(solved.map(anglesOf), vector.angles_rad)).toBeLessThanOrEqual(ALIKE);
     expect(
-      apart(
+      greatestDifference(
         solved.map((one) => one.hips.positionM),
         vector.hips_m,
       ),
     ).toBeLessThanOrEqual(ALIKE);
     expect(
-      apart(
+      greatestDifference(
         solved.map((one) => one.hips.rotation),
         vector.hips,
       ),
@@ -76,17 +76,18 @@ describe("inverse kinematics in the browser's MuJoCo", () => {
     const solver = new InverseKinematics(mujoco, model);
     const solved = ik.frames.map((_, index) => solver.solve(goalsOf(index, vector.waist)));
     const known = (values: Float64Array) => Array.from(values, (one) => (one >= 0 ? one : -1));
-    const told = (rows: IkCase["position_errors_m"]) => rows.map((row) => row.map((x) => x ?? -1));
+    const withoutNulls = (rows: IkCase["position_errors_m"]) =>
+      rows.map((row) => row.map((x) => x ?? -1));
     expect(
-      apart(
+      greatestDifference(
         solved.map((one) => known(one.positionErrorsM)),
-        told(vector.position_errors_m),
+        withoutNulls(vector.position_errors_m),
       ),
     ).toBeLessThanOrEqual(ALIKE);
     expect(
-      apart(
+      greatestDifference(
         solved.map((one) => known(one.rotationErrorsRad)),
-        told(vector.rotation_errors_rad),
+        withoutNulls(vector.rotation_errors_rad),
       ),
     ).toBeLessThanOrEqual(ALIKE);
     solver.delete();
@@ -106,7 +107,7 @@ describe("MuJoCo's memory, when it grows,", () => {
     const angles = (vector?.axes ?? []).map(
       (name) => after.anglesRad[solver.axisNames.indexOf(name)] ?? Number.NaN,
     );
-    expect(apart([angles], [vector?.angles_rad[1] ?? []])).toBeLessThanOrEqual(ALIKE);
+    expect(greatestDifference([angles], [vector?.angles_rad[1] ?? []])).toBeLessThanOrEqual(ALIKE);
     for (const owned of [large, data, solver]) owned.delete();
   });
 });
@@ -115,18 +116,18 @@ describe("the simulated body in the browser's MuJoCo", () => {
   it("reproduces the server's angles and contacts for ten seconds", () => {
     const found = simulated(trajectory);
     expect(found.map(({ ncon }) => ncon)).toEqual(trajectory.samples.map(({ ncon }) => ncon));
-    const wanted = trajectory.samples.map(({ qpos }) => qpos);
+    const expected = trajectory.samples.map(({ qpos }) => qpos);
     expect(
-      apart(
+      greatestDifference(
         found.map(({ qpos }) => qpos),
-        wanted,
+        expected,
       ),
     ).toBeLessThanOrEqual(ALIKE);
   });
 });
 
 /** The greatest absolute difference; infinite if the two cannot be compared. */
-function apart(found: Rows, wanted: Rows): number {
+function greatestDifference(found: Rows, wanted: Rows): number {
   const gaps = wanted.flatMap((row, i) => row.map((value, j) => Math.abs(value - at(found, i, j))));
   return gaps.reduce((most, gap) => (gap <= most ? most : gap), 0);
 }

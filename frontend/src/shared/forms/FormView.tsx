@@ -38,8 +38,8 @@ export function FormView(props: FormViewProps): JSX.Element {
       heading.current?.focus({ preventScroll: true });
       return;
     }
-    const wanted = `[data-name="${form.goal.question}"] :is(input, textarea)`;
-    top.current?.querySelector<HTMLElement>(wanted)?.focus();
+    const selector = `[data-name="${form.goal.question}"] :is(input, textarea)`;
+    top.current?.querySelector<HTMLElement>(selector)?.focus();
   }, [form.goal]);
   return (
     <div className={classes.form} ref={top}>
@@ -132,7 +132,7 @@ function PageDots({ page, pages, label }: PageDotsProps): JSX.Element {
       <div className={classes.dots} aria-hidden="true">
         {Array.from({ length: pages }, (_, index) => (
           // biome-ignore lint/suspicious/noArrayIndexKey: pages have no identifier other than their number
-          <span key={index} className={index <= page ? classes.passed : classes.ahead} />
+          <span key={index} className={index <= page ? classes.passed : classes.next} />
         ))}
       </div>
       <span className="numbers" role="status">

@@ -9,7 +9,7 @@ import type { Item } from "../api/types";
 type Family = "scale" | "fine" | "facts" | "prose";
 
 /** The most items on a page: as many as fit a tablet in both orientations without scrolling. */
-const MOST: Readonly<Record<Family, number>> = {
+const MAX_ITEMS: Readonly<Record<Family, number>> = {
   scale: 3,
   fine: 2,
   facts: 3,
@@ -25,7 +25,7 @@ export function pagesOf(
   steps: (item: Item) => number = () => 0,
 ): readonly (readonly Item[])[] {
   const runs = runsOf(items, (item) => familyOf(item, steps(item)));
-  return joinShortEnd(runs.flatMap(({ family, items: run }) => evenly(run, MOST[family])));
+  return joinShortEnd(runs.flatMap(({ family, items: run }) => evenly(run, MAX_ITEMS[family])));
 }
 
 function familyOf(item: Item, steps = 0): Family {

@@ -6,7 +6,7 @@ import { answersOf, firstProblem, problemOf, type Question, questionPages } from
 const options = { language: "en", words, mayOmit: false };
 const questions = (changed = {}, of = administration): readonly Question[] =>
   questionPages(of, { ...options, ...changed }).flat();
-const asked = (key: string, changed = {}, of = administration): Question => {
+const questionOf = (key: string, changed = {}, of = administration): Question => {
   const found = questions(changed, of).find((one) => one.key === key);
   if (found === undefined) throw new Error(`no question ${key}`);
   return found;
@@ -26,12 +26,12 @@ describe("an instrument as a form", () => {
   });
 
   it("marks the few optional questions as optional", () => {
-    expect(asked("weight").title).toBe("Weight (optional)");
-    expect(asked("weight", { mayOmit: true }).title).toBe("Weight");
+    expect(questionOf("weight").title).toBe("Weight (optional)");
+    expect(questionOf("weight", { mayOmit: true }).title).toBe("Weight");
   });
 
   it("offers every step of the scale with its label", () => {
-    const question = asked("calm");
+    const question = questionOf("calm");
     expect(question).toMatchObject({ kind: "rating", ends: null });
     expect(question.kind === "rating" && question.options.map(({ value }) => value)).toEqual([
       1, 2, 3, 4, 5,
@@ -41,7 +41,11 @@ describe("an instrument as a form", () => {
 
   it("labels both ends if only they have labels", () => {
     const labels = [{ en: "low" }, { en: "high" }];
-    const question = asked("calm", {}, withItems({ scale: { minimum: 0, maximum: 20, labels } }));
+    const question = questionOf(
+      "calm",
+      {},
+      withItems({ scale: { minimum: 0, maximum: 20, labels } }),
+    );
     expect(question).toMatchObject({ kind: "rating", ends: ["low", "high"] });
     expect(question.kind === "rating" && question.options).toHaveLength(21);
   });
@@ -52,7 +56,7 @@ describe("an instrument as a form", () => {
     const items = instrument.items.map((item) =>
       item.key === "calm" ? { ...item, scale: own } : item,
     );
-    const question = asked("calm", {}, withItems({ items }));
+    const question = questionOf("calm", {}, withItems({ items }));
     expect(question.kind === "rating" && question.options.map(({ value }) => value)).toEqual([
       0, 25, 50, 75, 100,
     ]);
@@ -61,9 +65,9 @@ describe("an instrument as a form", () => {
 
 describe("the validation of a form", () => {
   it("blocks the next page until the required answers are given, and says so", () => {
-    expect(problemOf(asked("calm"), undefined, words)).toBe("Please answer.");
-    expect(problemOf(asked("job"), "   ", words)).toBe("Please answer.");
-    expect(problemOf(asked("weight"), undefined, words)).toBeNull();
+    expect(problemOf(questionOf("calm"), undefined, words)).toBe("Please answer.");
+    expect(problemOf(questionOf("job"), "   ", words)).toBe("Please answer.");
+    expect(problemOf(questionOf("weight"), undefined, words)).toBeNull();
     expect(firstProblem(questions(), { glasses: "no" }, words)?.key).toBe("calm");
   });
 
@@ -73,17 +77,17 @@ describe("the validation of a form", () => {
 
   it("accepts zero and no as answers", () => {
     const scale = { minimum: 0, maximum: 4, labels: [] };
-    expect(problemOf(asked("calm", {}, withItems({ scale })), 0, words)).toBeNull();
-    expect(problemOf(asked("glasses"), "no", words)).toBeNull();
+    expect(problemOf(questionOf("calm", {}, withItems({ scale })), 0, words)).toBeNull();
+    expect(problemOf(questionOf("glasses"), "no", words)).toBeNull();
   });
 
   it("rejects a number out of range and half a year", () => {
-    const age = asked("age");
+    const age = questionOf("age");
     expect(problemOf(age, "17", words)).toBe("At least 18 years.");
     expect(problemOf(age, "111", words)).toBe("At most 110 years.");
     expect(problemOf(age, "20.5", words)).toBe("A whole number.");
     expect(problemOf(age, "20", words)).toBeNull();
-    expect(problemOf(asked("weight"), "70.5", words)).toBeNull();
+    expect(problemOf(questionOf("weight"), "70.5", words)).toBeNull();
   });
 });
 

@@ -29,25 +29,25 @@ export interface Option {
   readonly text: string;
 }
 
-interface Asked {
+interface QuestionBase {
   readonly key: string;
   readonly title: string;
   readonly required: boolean;
 }
 
 /** `ends`: the names of the lowest and the highest step, if only they have names. */
-export interface Rating extends Asked {
+export interface Rating extends QuestionBase {
   readonly kind: "rating";
   readonly options: readonly Option[];
   readonly ends: readonly [string, string] | null;
 }
 
-export interface Choosing extends Asked {
+export interface Choosing extends QuestionBase {
   readonly kind: "choice";
   readonly options: readonly Option[];
 }
 
-export interface NumberField extends Asked {
+export interface NumberField extends QuestionBase {
   readonly kind: "number";
   readonly whole: boolean;
   readonly low: number | null;
@@ -56,7 +56,7 @@ export interface NumberField extends Asked {
   readonly hint: string;
 }
 
-export interface TextField extends Asked {
+export interface TextField extends QuestionBase {
   readonly kind: "text";
   readonly long: boolean;
   readonly most: number | null;
@@ -81,7 +81,7 @@ function question(item: Item, scale: Scale | null, options: FormOptions): Questi
   const { language, words, mayOmit } = options;
   const text = inLanguage(item.text, language);
   const free = item.required === false;
-  const asked: Asked = {
+  const base: QuestionBase = {
     key: item.key,
     // Optional questions are marked in words, since there are few of them.
     title: free && !mayOmit ? `${text} (${words.optional})` : text,
@@ -89,16 +89,16 @@ function question(item: Item, scale: Scale | null, options: FormOptions): Questi
   };
   switch (item.type) {
     case "likert":
-      return { ...asked, ...rating(scale, language) };
+      return { ...base, ...rating(scale, language) };
     case "choice":
-      return { ...asked, kind: "choice", options: choices(item, language) };
+      return { ...base, kind: "choice", options: choices(item, language) };
     case "boolean":
-      return { ...asked, kind: "choice", options: yesOrNo(words) };
+      return { ...base, kind: "choice", options: yesOrNo(words) };
     case "integer":
     case "number":
-      return { ...asked, ...numberField(item, words) };
+      return { ...base, ...numberField(item, words) };
     case "text":
-      return { ...asked, kind: "text", long: isLong(item), most: item.max_length ?? null };
+      return { ...base, kind: "text", long: isLong(item), most: item.max_length ?? null };
   }
 }
 
@@ -117,7 +117,7 @@ function stepsOf(scale: Scale | null): readonly number[] {
 }
 
 /** Every step is listed if each has its own label; otherwise the ends are named. */
-function rating(scale: Scale | null, language: string): Omit<Rating, keyof Asked> {
+function rating(scale: Scale | null, language: string): Omit<Rating, keyof QuestionBase> {
   const steps = stepsOf(scale);
   const written = (scale?.labels ?? []).map((label) => inLanguage(label, language));
   const [low, high] = written;
@@ -131,7 +131,7 @@ function rating(scale: Scale | null, language: string): Omit<Rating, keyof Asked
   };
 }
 
-function numberField(item: Item, words: FormWords): Omit<NumberField, keyof Asked> {
+function numberField(item: Item, words: FormWords): Omit<NumberField, keyof QuestionBase> {
   const low = item.minimum ?? null;
   const high = item.maximum ?? null;
   const unit = item.unit ?? "";

@@ -62,23 +62,23 @@ export function useFilledForm(options: FilledFormOptions): FilledForm {
   const page = Math.min(draft.page, Math.max(0, pages.length - 1));
   const questions = pages[page] ?? [];
 
-  const keep = (changed: Partial<FormDraft>): void => {
-    const kept = { ...draft, ...changed };
-    setDraft(kept);
-    options.onChange(kept);
+  const update = (changed: Partial<FormDraft>): void => {
+    const next = { ...draft, ...changed };
+    setDraft(next);
+    options.onChange(next);
   };
   const show = (number: number, question: string | null = null): void => {
     setGoal({ question });
     if (number === page) return;
     turn.current = pageShown(performance.now());
-    keep({ page: number });
+    update({ page: number });
   };
   /** Show what is wrong on a page, if anything is, and go there. */
   const stays = (number: number): boolean => {
-    const asked = pages[number] ?? [];
-    const wrong = firstProblem(asked, draft.data, texts);
+    const questionsOf = pages[number] ?? [];
+    const wrong = firstProblem(questionsOf, draft.data, texts);
     if (wrong === undefined) return false;
-    setChecked(new Set([...checked, ...asked.map(({ key }) => key)]));
+    setChecked(new Set([...checked, ...questionsOf.map(({ key }) => key)]));
     show(number, wrong.key);
     return true;
   };
@@ -97,7 +97,7 @@ export function useFilledForm(options: FilledFormOptions): FilledForm {
       turn.current = noted.turn;
       const elapsed = (Date.now() - options.startedAt.getTime()) / 1000;
       const timings = { ...draft.timings, [key]: Math.round(elapsed * 10) / 10 };
-      keep({ data: withAnswer(draft.data, key, value), timings, traces: noted.traces });
+      update({ data: withAnswer(draft.data, key, value), timings, traces: noted.traces });
     },
     back: () => show(page - 1),
     next: () => {

@@ -48,10 +48,10 @@ export function useTranslations<Key extends string>(): Texts<Key> {
 }
 
 /** The browser's language if it is supported, otherwise English. */
-export function preferredLanguage(wanted: readonly string[]): Language {
-  for (const tag of wanted) {
-    const known = LANGUAGES.find((language) => tag.toLowerCase().startsWith(language));
-    if (known !== undefined) return known;
+export function preferredLanguage(preferred: readonly string[]): Language {
+  for (const tag of preferred) {
+    const supported = LANGUAGES.find((language) => tag.toLowerCase().startsWith(language));
+    if (supported !== undefined) return supported;
   }
   return "en";
 }

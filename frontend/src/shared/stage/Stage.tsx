@@ -13,8 +13,8 @@ import {
   type Block,
   type BlockTones,
   type CameraMode,
+  type CameraSide,
   type Figure,
-  type LookFrom,
   paletteOf,
 } from "./figure";
 import { SideView } from "./SideView";
@@ -31,7 +31,7 @@ export interface StageTexts {
 }
 
 export interface StageHandle {
-  readonly look: (from: LookFrom) => void;
+  readonly look: (from: CameraSide) => void;
   readonly zoom: (factor: number) => void;
 }
 
@@ -48,7 +48,7 @@ interface StageProps {
    * Figures of other stages for comparison, which share the floor's size; the same array while they
    * are the same.
    */
-  readonly beside?: readonly Figure[];
+  readonly comparedFigures?: readonly Figure[];
   /** Must be the same map while the tones are the same. */
   readonly tones?: BlockTones;
 }
@@ -59,17 +59,24 @@ const ALL_PLAIN: BlockTones = new Map();
 
 export function Stage(props: StageProps): JSX.Element {
   const { figures, time, mode, label, texts, handle } = props;
-  const { blocks = NO_BLOCKS, beside = NOBODY, tones = ALL_PLAIN } = props;
+  const { blocks = NO_BLOCKS, comparedFigures = NOBODY, tones = ALL_PLAIN } = props;
   const root = useRef<HTMLDivElement>(null);
-  const { way, stage, step } = useStage3d(root, { figures, time, mode, blocks, beside, tones });
+  const { drawingState, stage, step } = useStage3d(root, {
+    figures,
+    time,
+    mode,
+    blocks,
+    comparedFigures,
+    tones,
+  });
   const [pointed, setPointed] = useState<Pointed | null>(null);
   useImperativeHandle(handle, () => ({
     look: (from) => stage?.look(from),
     zoom: (factor) => stage?.zoom(factor),
   }));
-  if (way === "flat") {
+  if (drawingState === "flat") {
     return (
-      <div className={classes.stage} data-way={way}>
+      <div className={classes.stage} data-way={drawingState}>
         <div className={classes.flat}>
           <Notice tone="warn" title={texts.flat} remedy={texts.flatRemedy} />
           <SideView figures={figures} time={time} label={label} />
@@ -78,7 +85,7 @@ export function Stage(props: StageProps): JSX.Element {
     );
   }
   return (
-    <div className={classes.stage} data-way={way}>
+    <div className={classes.stage} data-way={drawingState}>
       {/* The label describes the picture; the buttons around it move the camera. */}
       <div
         ref={root}
@@ -92,7 +99,7 @@ export function Stage(props: StageProps): JSX.Element {
         }}
         onPointerLeave={() => setPointed(null)}
       />
-      {way === "loading" && (
+      {drawingState === "loading" && (
         <Center pos="absolute" inset={0}>
           <Loader role="status" aria-label={texts.loading} />
         </Center>
@@ -102,24 +109,24 @@ export function Stage(props: StageProps): JSX.Element {
           {pointed.name}
         </span>
       )}
-      {way === "space" && <span className={classes.scale}>{texts.squares(step)}</span>}
+      {drawingState === "space" && <span className={classes.scale}>{texts.squares(step)}</span>}
     </div>
   );
 }
 
-interface Shown {
+interface StageContent {
   readonly figures: readonly Figure[];
   readonly time: Seconds;
   readonly mode: CameraMode;
   readonly blocks: readonly Block[];
-  readonly beside: readonly Figure[];
+  readonly comparedFigures: readonly Figure[];
   readonly tones: BlockTones;
 }
 
-function useStage3d(root: React.RefObject<HTMLDivElement | null>, shown: Shown) {
+function useStage3d(root: React.RefObject<HTMLDivElement | null>, shown: StageContent) {
   const scheme = useComputedColorScheme("light");
-  const { way, drawing: stage } = useDrawing(root, loadStage);
-  const { figures, blocks, beside, tones, mode, time } = shown;
+  const { drawingState, drawing: stage } = useDrawing(root, loadStage);
+  const { figures, blocks, comparedFigures, tones, mode, time } = shown;
   const newest = useRef(tones);
   newest.current = tones;
   const [step, setStep] = useState(1);
@@ -129,12 +136,12 @@ function useStage3d(root: React.RefObject<HTMLDivElement | null>, shown: Shown) 
   // Read the colours again when the colour scheme changes.
   useEffect(() => {
     if (stage === null || root.current === null || scheme === undefined) return;
-    stage.setFigures(figures, paletteOf(root.current), { blocks, beside });
+    stage.setFigures(figures, paletteOf(root.current), { blocks, comparedFigures });
     stage.light(newest.current);
     setStep(stage.step);
-  }, [root, stage, figures, blocks, beside, scheme]);
+  }, [root, stage, figures, blocks, comparedFigures, scheme]);
   useEffect(() => stage?.light(tones), [stage, tones]);
-  return { way, stage, step };
+  return { drawingState, stage, step };
 }
 
 async function loadStage() {

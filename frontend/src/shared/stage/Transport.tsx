@@ -62,7 +62,7 @@ export function Transport({ motion, playback, texts }: TransportProps): JSX.Elem
           onClick={playback.toggle}
         />
         <Press icon="forward" name={texts.stepOn} onClick={() => go(frame + 1)} />
-        <span className={`${classes.now} numbers`} data-frame={recordedFrame(motion, frame)}>
+        <span className={`${classes.playhead} numbers`} data-frame={recordedFrame(motion, frame)}>
           {texts.time(playback.time, durationOf(motion))}
           <span className={classes.frame}>
             {" · "}

@@ -196,13 +196,13 @@ function makeMeshes(
   figure: Figure,
   palette: StagePalette,
 ): Meshes {
-  const look =
+  const material =
     figure.tone === "ghost" ? { transparent: true, opacity: GHOST_OPACITY, depthWrite: false } : {};
   const points = motion.names.length;
   const ball = motion.kind === "bodies" ? new OctahedronGeometry(1) : new SphereGeometry(1, 14, 10);
   const bone = new CylinderGeometry(1, 1, 1, 8);
   const flat = new MeshBasicMaterial({ color: palette.shadow });
-  const bones = instanced(new InstancedMesh(bone, new MeshLambertMaterial(look), boneCount));
+  const bones = instanced(new InstancedMesh(bone, new MeshLambertMaterial(material), boneCount));
   const shadow = instanced(new InstancedMesh(bone.clone(), flat, boneCount));
   // The bones a second time, flattened onto the floor.
   shadow.scale.y = 0;
@@ -212,11 +212,11 @@ function makeMeshes(
   return {
     bones,
     shadow,
-    joints: instanced(new InstancedMesh(ball, new MeshLambertMaterial(look), points)),
+    joints: instanced(new InstancedMesh(ball, new MeshLambertMaterial(material), points)),
     unseen: instanced(
       new InstancedMesh(new OctahedronGeometry(1, 1), new MeshBasicMaterial(hollow), points),
     ),
-    head: headOf(figure, palette, look),
+    head: headOf(figure, palette, material),
     pointer: pointerOf(palette),
   };
 }

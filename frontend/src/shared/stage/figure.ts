@@ -16,7 +16,7 @@ export interface Figure {
   /** A ghost is there for comparison: grey and translucent. */
   readonly tone: "solid" | "ghost";
   /** Offset on the floor, metres. */
-  readonly aside?: readonly [x: number, z: number];
+  readonly offset?: readonly [x: number, z: number];
   readonly roles?: BodyRoles;
   /** The point to highlight. */
   readonly highlighted?: number | null;
@@ -27,7 +27,7 @@ export interface Figure {
  * figure's.
  */
 export type CameraMode = "orbit" | "follow" | "eyes";
-export type LookFrom = "corner" | "front" | "side" | "top";
+export type CameraSide = "corner" | "front" | "side" | "top";
 
 export interface StagePalette {
   readonly ground: string;

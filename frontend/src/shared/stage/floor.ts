@@ -11,12 +11,12 @@ export interface FloorPlan {
   readonly box: Box;
 }
 
-const MOST_CELLS = 40;
+const MAX_CELLS = 40;
 const MARGIN_CELLS = 0.25;
 
 export function floorPlan(figures: readonly Figure[], blocks: readonly Block[] = []): FloorPlan {
   const all = boxOfAll(figures, blocks);
-  const box = figures.some(({ motion }) => motion.names.length > 2) ? all : withRoom(all);
+  const box = figures.some(({ motion }) => motion.names.length > 2) ? all : atLeastOneMetre(all);
   const span = Math.max(...box.max.map((value, axis) => value - (box.min[axis] ?? 0)));
   const step = stepFor(span);
   const low = (value: number) => Math.floor(value / step - MARGIN_CELLS) * step;
@@ -32,14 +32,14 @@ export function floorPlan(figures: readonly Figure[], blocks: readonly Block[] =
 /** Whole metres for what fits into a room; multiples of ten for what does not. */
 export function stepFor(span: number): number {
   if (!(span > 0)) return 1;
-  if (span >= MOST_CELLS) return 10 ** Math.floor(Math.log10(span / 4));
+  if (span >= MAX_CELLS) return 10 ** Math.floor(Math.log10(span / 4));
   return span >= 1 ? 1 : 10 ** Math.max(-4, Math.floor(Math.log10(span)));
 }
 
 /**
  * Extend the box to at least a metre: one or two trackers at rest do not show how large things are.
  */
-function withRoom({ min, max }: Box): Box {
+function atLeastOneMetre({ min, max }: Box): Box {
   const [[minX, maxX], [minZ, maxZ]] = ([0, 2] as const).map((axis) => {
     const more = Math.max(0, 1 - (max[axis] - min[axis])) / 2;
     return [min[axis] - more, max[axis] + more] as const;
@@ -53,10 +53,10 @@ const boxOfBlock = ({ center, halfSize }: Block): Box => ({
 });
 
 function boxOfAll(figures: readonly Figure[], blocks: readonly Block[]): Box {
-  const boxes = figures.flatMap(({ motion, aside = [0, 0] }) => {
+  const boxes = figures.flatMap(({ motion, offset = [0, 0] }) => {
     const box = boxOf(motion);
     if (box === null) return [];
-    const moved = ([x, y, z]: Box["min"]): Box["min"] => [x + aside[0], y, z + aside[1]];
+    const moved = ([x, y, z]: Box["min"]): Box["min"] => [x + offset[0], y, z + offset[1]];
     return [{ min: moved(box.min), max: moved(box.max) }];
   });
   boxes.push(...blocks.map(boxOfBlock));

@@ -12,7 +12,7 @@ import {
 import type { StagePalette } from "./figure";
 import type { FloorPlan } from "./floor";
 
-const MOST_LABELS = 14;
+const MAX_LABELS = 14;
 
 export function makeFloor(plan: FloorPlan, palette: StagePalette): Group {
   const floor = new Group();
@@ -20,14 +20,14 @@ export function makeFloor(plan: FloorPlan, palette: StagePalette): Group {
   for (const axis of [0, 1] as const) {
     const [first, last] = [plan.min[axis], plan.max[axis]];
     const cells = Math.round((last - first) / plan.step);
-    const every = Math.max(1, Math.ceil(cells / MOST_LABELS));
+    const every = Math.max(1, Math.ceil(cells / MAX_LABELS));
     for (let cell = 1; cell <= cells; cell += every) {
       const value = first + cell * plan.step;
       const text = `${tidy(value)} m`;
-      const beside = 0.22 * plan.step;
+      const margin = 0.22 * plan.step;
       const label = sprite(text, palette);
-      if (axis === 0) label.position.set(value, 0, plan.max[1] + beside);
-      else label.position.set(plan.max[0] + 1.4 * beside, 0, value);
+      if (axis === 0) label.position.set(value, 0, plan.max[1] + margin);
+      else label.position.set(plan.max[0] + 1.4 * margin, 0, value);
       floor.add(label);
     }
   }

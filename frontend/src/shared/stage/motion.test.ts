@@ -109,7 +109,7 @@ describe("an unseen point", () => {
   });
 
   it("is placed there and marked", () => {
-    const body = placing({ key: "a", motion, tone: "solid", aside: [5, -5] });
+    const body = placing({ key: "a", motion, tone: "solid", offset: [5, -5] });
     body.place(timeOf(motion, 3));
     expect([...body.placed]).toEqual([5, 1, -5]);
     expect([...body.seen]).toEqual([0]);
@@ -133,7 +133,7 @@ describe("the floor", () => {
   it("lies under everything that moves, in whole steps, wherever it was moved to", () => {
     const motion = movement([0, 0, 0, 2.5, 1.8, -1.2]);
     expect(boxOf(motion)?.max).toEqual([2.5, Math.fround(1.8), 0]);
-    const plan = floorPlan([{ key: "a", motion, tone: "solid", aside: [0, 10] }]);
+    const plan = floorPlan([{ key: "a", motion, tone: "solid", offset: [0, 10] }]);
     expect(plan).toMatchObject({ min: [-1, 8], max: [3, 11], step: 1 });
   });
 

@@ -47,10 +47,10 @@ export function decodeMotion(bytes: ArrayBuffer): PointMotion {
     throw new MotionError(`The header should have ${length} bytes; the answer has fewer.`);
   }
   const header = headerOf(new Uint8Array(bytes, 4, length));
-  const wanted = header.frames * header.names.length * 3;
-  const there = (bytes.byteLength - 4 - length) / 4;
-  if (there !== wanted) {
-    throw new MotionError(`Expected ${wanted} numbers after the header, got ${there}.`);
+  const expected = header.frames * header.names.length * 3;
+  const actual = (bytes.byteLength - 4 - length) / 4;
+  if (actual !== expected) {
+    throw new MotionError(`Expected ${expected} numbers after the header, got ${actual}.`);
   }
   return {
     kind: header.kind,
@@ -59,7 +59,7 @@ export function decodeMotion(bytes: ArrayBuffer): PointMotion {
     frames: header.frames,
     rateHz: header.rate_hz,
     recordedRateHz: header.recorded_rate_hz,
-    positions: numbers(bytes, 4 + length, wanted),
+    positions: numbers(bytes, 4 + length, expected),
   };
 }
 

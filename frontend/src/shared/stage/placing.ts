@@ -16,7 +16,7 @@ export interface Placing {
 export function placing(figure: Figure): Placing {
   const { motion } = figure;
   const points = motion.names.length;
-  const [asideX, asideZ] = figure.aside ?? [0, 0];
+  const [asideX, asideZ] = figure.offset ?? [0, 0];
   const from = hasGaps(motion) ? seenFrames(motion) : null;
   const placed = new Float32Array(3 * points).fill(Number.NaN);
   const seen = new Uint8Array(points).fill(1);

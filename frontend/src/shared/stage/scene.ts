@@ -9,22 +9,22 @@ import { Body3d } from "./body3d";
 import {
   type Block,
   type CameraMode,
+  type CameraSide,
   type Figure,
   facingOf,
-  type LookFrom,
   middleOf,
   type StagePalette,
 } from "./figure";
 import { type FloorPlan, floorPlan } from "./floor";
 import type { Placing } from "./placing";
 import { Space3d } from "./space3d";
-import { alongFloor, directionOf, fitting, lookOut } from "./views";
+import { alongFloor, directionOf, fitting, lookThroughEyes } from "./views";
 
 /** What else is in the scene with the figures. */
 export interface Surroundings {
   readonly blocks?: readonly Block[];
   /** Figures of other stages: the room is made large enough for them too, so that both compare. */
-  readonly beside?: readonly Figure[];
+  readonly comparedFigures?: readonly Figure[];
 }
 
 /** Vertical fields of view, degrees. */
@@ -53,11 +53,11 @@ export class Stage3d extends Space3d {
   setFigures(
     figures: readonly Figure[],
     palette: StagePalette,
-    { blocks = [], beside = [] }: Surroundings = {},
+    { blocks = [], comparedFigures = [] }: Surroundings = {},
   ): void {
     this.standBodies(figures.map((figure) => new Body3d(figure, palette)));
     this.standBlocks(blocks, palette);
-    const plan = floorPlan([...figures, ...beside], blocks);
+    const plan = floorPlan([...figures, ...comparedFigures], blocks);
     const isElsewhere = JSON.stringify(plan) !== JSON.stringify(this.#plan);
     if (isElsewhere || palette.ground !== this.#ground) {
       this.layFloor(plan, palette);
@@ -97,7 +97,7 @@ export class Stage3d extends Space3d {
   }
 
   /** Place the camera so that the whole movement is in view, seen from a side of the body. */
-  look(from: LookFrom): void {
+  look(from: CameraSide): void {
     const plan = this.#plan;
     if (plan === null) return;
     for (const body of this.bodies) body.show(this.#time);
@@ -158,7 +158,7 @@ export class Stage3d extends Space3d {
       this.#controls.update();
       return;
     }
-    lookOut(this.camera, body.figure, placed, this.blocks?.middle ?? null);
+    lookThroughEyes(this.camera, body.figure, placed, this.blocks?.middle ?? null);
   }
 }
 

@@ -7,7 +7,7 @@ interface Drawing {
 }
 
 /** `flat` if the browser has no WebGL or refuses a context. */
-export type Way = "loading" | "space" | "flat";
+export type DrawingState = "loading" | "space" | "flat";
 
 /**
  * Draw on an element while it is on the page. `load` imports three.js and the drawing code, and
@@ -16,30 +16,30 @@ export type Way = "loading" | "space" | "flat";
 export function useDrawing<T extends Drawing>(
   root: RefObject<HTMLElement | null>,
   load: () => Promise<(canvas: HTMLCanvasElement) => T>,
-): { readonly way: Way; readonly drawing: T | null } {
-  const [way, setWay] = useState<Way>("loading");
+): { readonly drawingState: DrawingState; readonly drawing: T | null } {
+  const [drawingState, setWay] = useState<DrawingState>("loading");
   const [drawing, setDrawing] = useState<T | null>(null);
   useEffect(() => {
     const element = root.current;
     if (element === null) return;
-    let gone = false;
+    let cancelled = false;
     let tidy = () => {};
     void load().then((make) => {
-      if (gone) return;
-      const begun = mount(element, make);
-      if (begun === null) return setWay("flat");
-      tidy = begun.tidy;
-      setDrawing(begun.drawing);
+      if (cancelled) return;
+      const mounted = mount(element, make);
+      if (mounted === null) return setWay("flat");
+      tidy = mounted.tidy;
+      setDrawing(mounted.drawing);
       setWay("space");
     });
     return () => {
-      gone = true;
+      cancelled = true;
       setDrawing(null);
       setWay("loading");
       tidy();
     };
   }, [root, load]);
-  return { way, drawing };
+  return { drawingState, drawing };
 }
 
 /** Start to draw; null if the browser has no WebGL or refuses a context. */

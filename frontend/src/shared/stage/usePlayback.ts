@@ -33,16 +33,16 @@ export function usePlayback(
   useEffect(() => {
     if (!playing || duration <= 0) return;
     let before: number | null = null;
-    let asked = requestAnimationFrame(function tick(now) {
+    let frame = requestAnimationFrame(function tick(now) {
       const passed = before === null ? 0 : (now - before) / 1000;
       before = now;
       const next = advanced(at.current, passed * speed, duration, loop);
       at.current = next.time;
       setTime(next.time);
       if (next.ended) setPlaying(false);
-      else asked = requestAnimationFrame(tick);
+      else frame = requestAnimationFrame(tick);
     });
-    return () => cancelAnimationFrame(asked);
+    return () => cancelAnimationFrame(frame);
   }, [playing, speed, loop, duration]);
   return {
     // The current movement may be shorter than the previous one.
@@ -50,7 +50,7 @@ export function usePlayback(
     playing,
     speed,
     loop,
-    seek: (wanted) => moveTo(seconds(Math.min(Math.max(wanted, 0), duration))),
+    seek: (time) => moveTo(seconds(Math.min(Math.max(time, 0), duration))),
     toggle: () => {
       if (!playing && at.current >= duration) moveTo(seconds(0));
       setPlaying(!playing);

@@ -1,10 +1,10 @@
 /** Where the camera of a stage is placed, and how far away it must be. */
 import { type PerspectiveCamera, Vector3 } from "three";
-import { type Figure, facingOf, type LookFrom } from "./figure";
+import { type CameraSide, type Figure, facingOf } from "./figure";
 import type { FloorPlan } from "./floor";
 
 /** The unit vector from the middle to the camera; `facing` is the direction the body faces. */
-export function directionOf(from: LookFrom, [x, z]: readonly [x: number, z: number]): Vector3 {
+export function directionOf(from: CameraSide, [x, z]: readonly [x: number, z: number]): Vector3 {
   const front = new Vector3(x, 0, z);
   // Its right-hand side: facing x up.
   const right = new Vector3(-z, 0, x);
@@ -63,13 +63,13 @@ function cornersOf({ box, step }: FloorPlan): Vector3[] {
 }
 
 /** The least distance ahead at which eyes look, relative to the distance down. */
-const LEAST_AHEAD = 0.55;
+const MIN_AHEAD = 0.55;
 
 /**
  * Look from a figure's eyes at a place, or ahead if it is null; do nothing if the body's parts are
  * unknown.
  */
-export function lookOut(
+export function lookThroughEyes(
   camera: PerspectiveCamera,
   figure: Figure,
   placed: Float32Array,
@@ -85,6 +85,6 @@ export function lookOut(
   const [px, py, pz] = place ?? [x + fx, y - 0.4, z + fz];
   // Never straight down: what is ahead stays at the top of the picture, with the own feet in view.
   const ahead = (px - x) * fx + (pz - z) * fz;
-  const more = Math.max(0, LEAST_AHEAD * (y - py) - ahead);
+  const more = Math.max(0, MIN_AHEAD * (y - py) - ahead);
   camera.lookAt(px + more * fx, py, pz + more * fz);
 }

@@ -6,7 +6,7 @@ import { openDB } from "idb";
 import { beforeEach, describe, expect, it } from "vitest";
 import { deliver } from "./deliver";
 import { isFinal } from "./refusal";
-import { DraftStore, type Kept } from "./store";
+import { DraftStore, type StoredForm } from "./store";
 
 const NOW = new Date("2026-01-01T12:00:00Z");
 const DRAFT = {
@@ -16,7 +16,7 @@ const DRAFT = {
   traces: { q1: { response_s: 3.1, changes: 1 } },
 };
 
-const submissionOf = (kept: Kept, answer = 4): Submission => ({
+const submissionOf = (kept: StoredForm, answer = 4): Submission => ({
   idempotency_key: kept.idempotencyKey,
   administration: kept.administration,
   answers: { q1: answer },
@@ -30,7 +30,7 @@ const submissionOf = (kept: Kept, answer = 4): Submission => ({
 
 let name: string;
 let store: DraftStore;
-let kept: Kept;
+let kept: StoredForm;
 
 beforeEach(async () => {
   name = uuid();
@@ -41,10 +41,10 @@ beforeEach(async () => {
 describe("a draft", () => {
   it("is restored after a reload, with its original key", async () => {
     await store.keep(kept.id, DRAFT);
-    const again = await new DraftStore(name).open("session", "form#1", new Date());
-    expect(again.draft).toEqual(DRAFT);
-    expect(again.idempotencyKey).toBe(kept.idempotencyKey);
-    expect(again.startedAt).toBe(NOW.toISOString());
+    const reopened = await new DraftStore(name).open("session", "form#1", new Date());
+    expect(reopened.draft).toEqual(DRAFT);
+    expect(reopened.idempotencyKey).toBe(kept.idempotencyKey);
+    expect(reopened.startedAt).toBe(NOW.toISOString());
   });
 
   it("belongs to one session and one form only", async () => {
@@ -111,9 +111,12 @@ describe("delivering a form", () => {
       return receipt;
     };
     const queued = await store.queue(kept.id, submissionOf(kept));
-    const ask = () => deliver(store, kept.id, queued, counted);
-    expect(await Promise.all([ask(), ask()])).toEqual([{ kind: "stored" }, { kind: "stored" }]);
-    expect(await ask()).toEqual({ kind: "stored" });
+    const sendOnce = () => deliver(store, kept.id, queued, counted);
+    expect(await Promise.all([sendOnce(), sendOnce()])).toEqual([
+      { kind: "stored" },
+      { kind: "stored" },
+    ]);
+    expect(await sendOnce()).toEqual({ kind: "stored" });
     expect(keys).toEqual([kept.idempotencyKey]);
   });
 
@@ -194,7 +197,7 @@ describe("the last screen", () => {
 });
 
 describe("an unfinished consent", () => {
-  const asked = {
+  const wish = {
     session_id: "session",
     version: 2,
     screen: "consent",
@@ -203,29 +206,29 @@ describe("an unfinished consent", () => {
   const SIGNING = { ticked: [0, 2], name: "", path: "M1 1L90 40", types: false };
 
   it("is restored after a restart, for its own step only", async () => {
-    await store.keepScreen(asked);
-    await store.keepSigning(asked, SIGNING);
-    const again = new DraftStore(name);
-    expect(await again.signing(asked)).toEqual(SIGNING);
-    expect(await again.signing({ ...asked, step_index: 3 })).toBeUndefined();
-    expect(await again.signing({ ...asked, session_id: "other" })).toBeUndefined();
+    await store.keepScreen(wish);
+    await store.keepSigning(wish, SIGNING);
+    const reopened = new DraftStore(name);
+    expect(await reopened.signing(wish)).toEqual(SIGNING);
+    expect(await reopened.signing({ ...wish, step_index: 3 })).toBeUndefined();
+    expect(await reopened.signing({ ...wish, session_id: "other" })).toBeUndefined();
   });
 
   it("stays while its screen is updated, and is deleted from the tablet once it was given", async () => {
-    await store.keepSigning(asked, SIGNING);
-    await store.keepScreen({ ...asked, version: 3, help_asked: true });
-    expect(await store.signing(asked)).toEqual(SIGNING);
-    await store.keepScreen({ ...asked, version: 4, screen: "form", step_index: 1 });
-    expect(await store.signing(asked)).toBeUndefined();
+    await store.keepSigning(wish, SIGNING);
+    await store.keepScreen({ ...wish, version: 3, help_asked: true });
+    expect(await store.signing(wish)).toEqual(SIGNING);
+    await store.keepScreen({ ...wish, version: 4, screen: "form", step_index: 1 });
+    expect(await store.signing(wish)).toBeUndefined();
   });
 
   it("is deleted when the tablet is unpaired or the session ends", async () => {
-    await store.keepSigning(asked, SIGNING);
+    await store.keepSigning(wish, SIGNING);
     await store.forgetScreen();
-    expect(await store.signing(asked)).toBeUndefined();
-    await store.keepSigning(asked, SIGNING);
-    await store.keepScreen({ ...asked, screen: "finished" });
-    expect(await store.signing(asked)).toBeUndefined();
+    expect(await store.signing(wish)).toBeUndefined();
+    await store.keepSigning(wish, SIGNING);
+    await store.keepScreen({ ...wish, screen: "finished" });
+    expect(await store.signing(wish)).toBeUndefined();
   });
 });
 

@@ -14,7 +14,7 @@ import { uuid } from "@shared/uuid";
 import { useQueryClient } from "@tanstack/react-query";
 import { useEffect, useRef, useState } from "react";
 import { STATE_KEY } from "../useTabletState";
-import { drafts } from "./useKept";
+import { drafts } from "./useStored";
 
 const RETRY_MS = 3000;
 const UNPAIRED = 401;
@@ -26,23 +26,23 @@ export interface Refusal {
   readonly waiting: RefusalWish | null;
   /** Whether sending has failed so far; it will be retried. */
   readonly failed: boolean;
-  readonly say: (refused: boolean) => void;
+  readonly setRefused: (refused: boolean) => void;
 }
 
 export function useRefusal({ session_id: sessionId, step_index }: TabletState): Refusal {
   const queries = useQueryClient();
   const [waiting, setWaiting] = useState<RefusalWish | null>(null);
   const [failed, setFailed] = useState(false);
-  const onItsWay = useRef<Promise<void>>(Promise.resolve());
+  const inFlight = useRef<Promise<void>>(Promise.resolve());
 
   useEffect(() => {
-    let gone = false;
+    let cancelled = false;
     setWaiting(null);
     void drafts.wish(sessionId).then((kept) => {
-      if (!gone && kept !== undefined) setWaiting((newer) => newer ?? kept);
+      if (!cancelled && kept !== undefined) setWaiting((newer) => newer ?? kept);
     });
     return () => {
-      gone = true;
+      cancelled = true;
     };
   }, [sessionId]);
 
@@ -69,7 +69,7 @@ export function useRefusal({ session_id: sessionId, step_index }: TabletState): 
       if (!gone) setWaiting(null);
     };
     const attempt = () => {
-      onItsWay.current = onItsWay.current.then(send);
+      inFlight.current = inFlight.current.then(send);
     };
     attempt();
     return () => {
@@ -78,9 +78,9 @@ export function useRefusal({ session_id: sessionId, step_index }: TabletState): 
     };
   }, [waiting, sessionId, queries]);
 
-  const say = (refused: boolean) =>
+  const setRefused = (refused: boolean) =>
     setWaiting({ wish_id: uuid(), step_index: step_index ?? 0, refused });
-  return { waiting, failed, say };
+  return { waiting, failed, setRefused };
 }
 
 /** Whether the server has rejected it for good, so that resending is useless. */

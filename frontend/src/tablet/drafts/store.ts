@@ -21,9 +21,9 @@ import type { RefusalWish, Submission, TabletState } from "@shared/api/types";
 import { EMPTY_DRAFT, type FormDraft } from "@shared/forms/draft";
 import { uuid } from "@shared/uuid";
 import { type DBSchema, type IDBPDatabase, openDB } from "idb";
-import type { Signing } from "../screens/signed";
+import type { Signing } from "../screens/consentToSend";
 
-export interface Kept {
+export interface StoredForm {
   /** Session and administration: one form, filled in once. */
   readonly id: string;
   readonly sessionId: string;
@@ -36,7 +36,7 @@ export interface Kept {
 }
 
 interface Tables extends DBSchema {
-  kept: { key: string; value: Kept };
+  kept: { key: string; value: StoredForm };
   screen: { key: string; value: TabletState };
   signing: { key: string; value: Signing };
   wish: { key: string; value: RefusalWish };
@@ -47,7 +47,7 @@ const LAST = "last";
 
 const OLD_MS = 48 * 3_600_000;
 
-export const keptId = (sessionId: string, administration: string): string =>
+export const formId = (sessionId: string, administration: string): string =>
   `${sessionId}/${administration}`;
 
 const signingKey = ({ session_id, step_index }: TabletState): string =>
@@ -70,8 +70,8 @@ export class DraftStore {
   }
 
   /** The record of this form; a new one, with a key of its own, if there is none yet. */
-  async open(sessionId: string, administration: string, now: Date): Promise<Kept> {
-    const id = keptId(sessionId, administration);
+  async open(sessionId: string, administration: string, now: Date): Promise<StoredForm> {
+    const id = formId(sessionId, administration);
     const database = await this.#database;
     const transaction = database.transaction("kept", "readwrite");
     const known = await transaction.store.get(id);
@@ -123,7 +123,7 @@ export class DraftStore {
   }
 
   /** The forms of this session that wait to be sent. */
-  async waiting(sessionId: string): Promise<readonly Kept[]> {
+  async waiting(sessionId: string): Promise<readonly StoredForm[]> {
     const all = await (await this.#database).getAll("kept");
     return all.filter((kept) => kept.sessionId === sessionId && kept.queued !== null);
   }
@@ -134,7 +134,7 @@ export class DraftStore {
     await transaction.objectStore("kept").delete(id);
     const screens = transaction.objectStore("screen");
     const last = await screens.get(LAST);
-    if (last != null && id === keptId(last.session_id, last.administration?.key ?? "")) {
+    if (last != null && id === formId(last.session_id, last.administration?.key ?? "")) {
       await screens.put(waitingAfter(last), LAST);
     }
     await transaction.done;
@@ -159,8 +159,8 @@ export class DraftStore {
       await screens.delete(LAST);
       const drafts = transaction.objectStore("kept");
       for (const kept of await drafts.getAll()) {
-        const over = kept.sessionId === state.session_id && kept.queued === null;
-        if (over) await drafts.delete(kept.id);
+        const isOver = kept.sessionId === state.session_id && kept.queued === null;
+        if (isOver) await drafts.delete(kept.id);
       }
     } else await screens.put(state, LAST);
     await transaction.done;

@@ -11,7 +11,7 @@ interface Lasting extends Event {
   waitUntil(done: Promise<unknown>): void;
 }
 
-interface Asking extends Lasting {
+interface FetchEventLike extends Lasting {
   readonly request: Request;
   respondWith(answer: Promise<Response>): void;
 }
@@ -21,7 +21,7 @@ interface Worker {
   readonly clients: { claim(): Promise<void> };
   skipWaiting(): Promise<void>;
   addEventListener(type: "install" | "activate", listener: (event: Lasting) => void): void;
-  addEventListener(type: "fetch", listener: (event: Asking) => void): void;
+  addEventListener(type: "fetch", listener: (event: FetchEventLike) => void): void;
 }
 
 const worker = self as unknown as Worker;
@@ -40,7 +40,7 @@ worker.addEventListener("fetch", (event) => {
 
 async function install(): Promise<void> {
   try {
-    await keepAll(await caches.open(own));
+    await cacheAll(await caches.open(own));
   } catch (error) {
     // An incomplete cache is useless; the previous worker stays, and the next start tries again.
     await caches.delete(own);
@@ -49,7 +49,7 @@ async function install(): Promise<void> {
   await worker.skipWaiting();
 }
 
-async function keepAll(cache: Cache): Promise<void> {
+async function cacheAll(cache: Cache): Promise<void> {
   await cache.addAll(build.files);
   const fetched = await fetch(build.page, { cache: "no-cache" });
   // The server may have a newer build by now; its page needs that build's worker.
@@ -66,13 +66,13 @@ async function takeOver(): Promise<void> {
 }
 
 async function page(request: Request): Promise<Response> {
-  const kept = await (await caches.open(own)).match(build.page);
-  if (kept === undefined) return fetch(request);
+  const cached = await (await caches.open(own)).match(build.page);
+  if (cached === undefined) return fetch(request);
   const late = new Promise<undefined>((resolve) => {
     setTimeout(() => resolve(undefined), PATIENCE_MS);
   });
   const fresh = await Promise.race([fetch(request).catch(() => undefined), late]);
-  return fresh?.ok ? fresh : kept;
+  return fresh?.ok ? fresh : cached;
 }
 
 async function asset(request: Request): Promise<Response> {

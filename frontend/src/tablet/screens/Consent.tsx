@@ -8,16 +8,16 @@ import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
-import { useKeptSigning } from "../drafts/useKept";
+import { useStoredSigning } from "../drafts/useStored";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { STATE_KEY } from "../useTabletState";
-import { Asking, QuestionNotice, useQuestion } from "./Asking";
 import classes from "./Consent.module.css";
+import { consentToSend, missingOf, type Signing } from "./consentToSend";
 import { Prose, ScrollHint } from "./Prose";
+import { QuestionButtons, QuestionNotice, useQuestion } from "./Question";
 import { SignaturePad } from "./SignaturePad";
 import screen from "./screens.module.css";
-import { givenOf, missingOf, type Signing } from "./signed";
 
 interface ConsentProps {
   readonly state: TabletState;
@@ -28,11 +28,11 @@ interface ConsentProps {
 export function Consent({ state, form, onRefuse }: ConsentProps): JSX.Element {
   const { t } = useTexts();
   const queries = useQueryClient();
-  const [signing, setSigning] = useKeptSigning(state);
+  const [signing, setSigning] = useStoredSigning(state);
   const question = useQuestion(state);
   const [shown, setShown] = useState(false);
   const give = useMutation({
-    mutationFn: () => consents.give(givenOf(form, signing, state.step_index ?? 0)),
+    mutationFn: () => consents.give(consentToSend(form, signing, state.step_index ?? 0)),
     onSuccess: (answer) => queries.setQueryData(STATE_KEY, answer),
   });
   const missing = missingOf(form, signing);
@@ -58,7 +58,7 @@ export function Consent({ state, form, onRefuse }: ConsentProps): JSX.Element {
       </div>
       <ScrollHint />
       <div className={screen.foot}>
-        <Asking question={question} onRefuse={onRefuse} />
+        <QuestionButtons question={question} onRefuse={onRefuse} />
         <Button
           type="submit"
           size="lg"

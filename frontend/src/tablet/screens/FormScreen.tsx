@@ -5,7 +5,7 @@ import { FormView } from "@shared/forms/FormView";
 import { formTexts } from "@shared/forms/texts";
 import { Notice } from "@shared/ui/Notice";
 import type { JSX } from "react";
-import { type FormPhase, useKeptForm } from "../drafts/useKept";
+import { type FormPhase, useStoredForm } from "../drafts/useStored";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import classes from "./screens.module.css";
@@ -19,9 +19,9 @@ interface FormScreenProps {
 export function FormScreen({ state, administration, refresh }: FormScreenProps): JSX.Element {
   const { t } = useTexts();
   const texts = formTexts(t);
-  const form = useKeptForm(state.session_id, administration, state.language, refresh);
+  const form = useStoredForm(state.session_id, administration, state.language, refresh);
   const { phase } = form;
-  if (phase.name !== "filling") return <Between phase={phase} again={form.again} />;
+  if (phase.name !== "filling") return <Between phase={phase} retry={form.retry} />;
   return (
     <>
       {phase.refused !== null && <Failure error={phase.refused} />}
@@ -32,7 +32,7 @@ export function FormScreen({ state, administration, refresh }: FormScreenProps):
         draft={phase.kept.draft}
         startedAt={new Date(phase.kept.startedAt)}
         busy={false}
-        onChange={form.keep}
+        onChange={form.storeDraft}
         onSubmit={form.send}
       />
     </>
@@ -49,11 +49,11 @@ function Opening(): JSX.Element {
 
 interface BetweenProps {
   readonly phase: Exclude<FormPhase, { name: "filling" }>;
-  readonly again: () => void;
+  readonly retry: () => void;
 }
 
 /** The screen before the form has loaded, and after it was sent. */
-function Between({ phase, again }: BetweenProps): JSX.Element {
+function Between({ phase, retry }: BetweenProps): JSX.Element {
   const { t } = useTexts();
   switch (phase.name) {
     case "opening":
@@ -77,7 +77,7 @@ function Between({ phase, again }: BetweenProps): JSX.Element {
             tone="warn"
             title={t("held.title")}
             actions={
-              <Button variant="default" onClick={again}>
+              <Button variant="default" onClick={retry}>
                 {t("error.retry")}
               </Button>
             }

@@ -9,8 +9,8 @@ import type { JSX } from "react";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { STATE_KEY } from "../useTabletState";
-import { Asking, QuestionNotice, useQuestion } from "./Asking";
 import { Prose, ScrollHint } from "./Prose";
+import { QuestionButtons, QuestionNotice, useQuestion } from "./Question";
 import classes from "./screens.module.css";
 
 interface ReadingProps {
@@ -23,7 +23,7 @@ export function Reading({ state, screen, onRefuse }: ReadingProps): JSX.Element 
   const { t } = useTexts();
   const queries = useQueryClient();
   const question = useQuestion(state);
-  const goOn = useMutation({
+  const proceed = useMutation({
     mutationFn: () => tablet.acknowledge(state.step_index ?? 0),
     onSuccess: (answer) => queries.setQueryData(STATE_KEY, answer),
   });
@@ -32,22 +32,22 @@ export function Reading({ state, screen, onRefuse }: ReadingProps): JSX.Element 
       <h1 className={classes.readingTitle}>{state.title ?? t(`${screen}.title`)}</h1>
       <Prose text={state.text ?? ""} />
       <div className={classes.ask} aria-live="polite">
-        {screen === "instructions" && !question.asked && (
+        {screen === "instructions" && !question.isAsked && (
           <Notice tone="info" icon="talk" title={t("instructions.ask")}>
             {t("instructions.askBody")}
           </Notice>
         )}
         <QuestionNotice question={question} />
-        {goOn.isError && <Failure error={goOn.error} onRetry={() => goOn.mutate()} />}
+        {proceed.isError && <Failure error={proceed.error} onRetry={() => proceed.mutate()} />}
       </div>
       <ScrollHint />
       <div className={classes.foot}>
-        <Asking question={question} onRefuse={onRefuse} />
+        <QuestionButtons question={question} onRefuse={onRefuse} />
         <Button
           size="lg"
-          loading={goOn.isPending}
+          loading={proceed.isPending}
           rightSection={<Icon name="check" />}
-          onClick={() => goOn.mutate()}
+          onClick={() => proceed.mutate()}
         >
           {t(`${screen}.go`)}
         </Button>

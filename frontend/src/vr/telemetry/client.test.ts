@@ -19,7 +19,7 @@ const bed = testBed();
 describe("a client", () => {
   it("sends hello, takes its epoch, and offers the token as a subprotocol", async () => {
     const telemetry = await bed.opened();
-    expect(bed.server.heard[0]).toEqual({
+    expect(bed.server.received[0]).toEqual({
       type: "hello",
       protocol: 1,
       client: "test",

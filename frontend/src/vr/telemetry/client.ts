@@ -106,7 +106,7 @@ export class Listeners<News> {
   }
 
   /** Call all listeners; an error in one is reported as uncaught and does not stop the others. */
-  tell(news: News): void {
+  notify(news: News): void {
     for (const listener of this.#listeners) {
       try {
         listener(news);

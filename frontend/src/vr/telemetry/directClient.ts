@@ -20,7 +20,7 @@ import { type ReportBody, textOf } from "./wire/fromClient";
 import type { HeadsetState, Welcome } from "./wire/fromServer";
 
 /** The environment that the client depends on; tests replace it. */
-interface Ground {
+interface Environment {
   readonly journal: Journal;
   readonly limits: Limits;
   /** The client's monotonic clock, s. */
@@ -34,7 +34,7 @@ interface Ground {
 }
 
 export class DirectClient implements TelemetryClient {
-  readonly #ground: Ground;
+  readonly #ground: Environment;
   readonly #journal: Journal;
   readonly #connection: Connection;
   readonly #admission: Admission;
@@ -51,7 +51,7 @@ export class DirectClient implements TelemetryClient {
   #told = "";
   #toldAll = "";
 
-  constructor(options: TelemetryOptions, ground: Ground) {
+  constructor(options: TelemetryOptions, ground: Environment) {
     this.#ground = ground;
     this.#journal = ground.journal;
     this.#admission = new Admission(ground.journal);
@@ -63,9 +63,9 @@ export class DirectClient implements TelemetryClient {
         onWelcome: (welcome) => this.#welcomed(welcome),
         onState: (state) => {
           this.#state = state;
-          this.#states.tell(state);
+          this.#states.notify(state);
         },
-        onNotice: (notice) => this.#notices.tell(notice),
+        onNotice: (notice) => this.#notices.notify(notice),
         onChange: () => this.#changed(),
       },
     });
@@ -219,15 +219,15 @@ export class DirectClient implements TelemetryClient {
     const failure = this.#failure;
     this.#admission.admit();
     if (failure !== null) this.#admission.refuseAll(failure);
-    this.#waiters.look(failure);
+    this.#waiters.check(failure);
     const status = this.status;
-    if (this.#told !== turningPoint(status)) this.#tellStatus(status);
+    if (this.#told !== urgentPart(status)) this.#tellStatus(status);
   }
 
   #tellStatus(status: Status): void {
-    this.#told = turningPoint(status);
+    this.#told = urgentPart(status);
     this.#toldAll = JSON.stringify(status);
-    this.#statuses.tell(status);
+    this.#statuses.notify(status);
   }
 }
 
@@ -235,7 +235,7 @@ export class DirectClient implements TelemetryClient {
  * The parts of a status that are reported immediately; the rest changes all the time and waits for
  * the next tick.
  */
-const turningPoint = ({ connected, level, settled, reportsMade, failure }: Status): string =>
+const urgentPart = ({ connected, level, settled, reportsMade, failure }: Status): string =>
   `${connected} ${level} ${settled} ${reportsMade} ${failure?.code}`;
 
 const otherProtocol = (version: number): Failure => ({
@@ -268,7 +268,7 @@ class Waiters {
   }
 
   /** Check all conditions after a change. With a failure, the remaining calls are rejected. */
-  look(failure: Failure | null): void {
+  check(failure: Failure | null): void {
     const over = this.#waiting.filter((one) => failure !== null || one.isDone());
     if (over.length === 0) return;
     this.#waiting = this.#waiting.filter((one) => !over.includes(one));

@@ -43,8 +43,8 @@ export async function openTelemetry(
 async function started(options: TelemetryOptions, around: Surroundings): Promise<DirectClient> {
   const { storageKey, durability = "relaxed" } = options;
   const limits = { ...DEFAULT_LIMITS, ...options.limits };
-  const letGo = await takeLock(`reembody-telemetry/${storageKey}`, limits.lockTimeoutS);
-  if (letGo === null) throw inUse(storageKey);
+  const release = await takeLock(`reembody-telemetry/${storageKey}`, limits.lockTimeoutS);
+  if (release === null) throw inUse(storageKey);
   try {
     const store = await IndexedDbBlocks.open(storageKey, durability);
     const journal = await Journal.open({ store, limits, room: storageRoom });
@@ -57,11 +57,11 @@ async function started(options: TelemetryOptions, around: Surroundings): Promise
       onStatus: around.onStatus ?? (() => undefined),
       onClosed: async () => {
         if (journal.messages === 0) await deleteJournal(storageKey);
-        letGo();
+        release();
       },
     });
   } catch (error) {
-    letGo();
+    release();
     throw error;
   }
 }

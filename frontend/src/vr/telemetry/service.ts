@@ -6,7 +6,7 @@ import type { Call, FromWorker, Port, ToWorker, Wrong } from "./port";
 
 export function serveTelemetry(port: Port<FromWorker, ToWorker>, open = openTelemetry): void {
   const givenUp = new AbortController();
-  const tell = (message: FromWorker) => port.postMessage(message, []);
+  const send = (message: FromWorker) => port.postMessage(message, []);
   let client: TelemetryClient | null = null;
 
   const start = async ({ options, timeOriginMs }: ToWorker & { kind: "open" }) => {
@@ -14,18 +14,18 @@ export function serveTelemetry(port: Port<FromWorker, ToWorker>, open = openTele
       client = await open(options, {
         clock: pageClock(timeOriginMs),
         signal: givenUp.signal,
-        onStatus: (status) => tell({ kind: "status", status }),
+        onStatus: (status) => send({ kind: "status", status }),
       });
     } catch (error) {
-      tell({ kind: "refused", wrong: wrongOf(error) });
+      send({ kind: "refused", wrong: wrongOf(error) });
       return;
     }
     const { welcome, state } = client;
     client.onState((newest) => {
-      tell({ kind: "state", state: newest, welcome: client?.welcome ?? welcome });
+      send({ kind: "state", state: newest, welcome: client?.welcome ?? welcome });
     });
-    client.onNotice((notice) => tell({ kind: "notice", notice }));
-    tell({ kind: "opened", welcome, state });
+    client.onNotice((notice) => send({ kind: "notice", notice }));
+    send({ kind: "opened", welcome, state });
   };
 
   port.addEventListener("message", ({ data }) => {
@@ -34,8 +34,8 @@ export function serveTelemetry(port: Port<FromWorker, ToWorker>, open = openTele
     else if (client !== null) {
       const { id } = data;
       perform(client, data.call).then(
-        () => tell({ kind: "done", id, wrong: null }),
-        (error) => tell({ kind: "done", id, wrong: wrongOf(error) }),
+        () => send({ kind: "done", id, wrong: null }),
+        (error) => send({ kind: "done", id, wrong: wrongOf(error) }),
       );
     }
   });

@@ -31,7 +31,7 @@ export class WorkerClient implements TelemetryClient {
   #welcome: Welcome | null = null;
   #state: HeadsetState | null = null;
   #status = NOTHING_YET;
-  #over: Failure | null = null;
+  #failure: Failure | null = null;
 
   /** `timeOriginMs`: of the page, whose clock the client's times refer to. */
   constructor(port: Port<ToWorker, FromWorker>, options: TelemetryOptions, timeOriginMs: number) {
@@ -41,7 +41,7 @@ export class WorkerClient implements TelemetryClient {
     });
     this.#opening = opening;
     this.#port = port;
-    port.addEventListener("message", ({ data }) => this.#heard(data));
+    port.addEventListener("message", ({ data }) => this.#receive(data));
     port.postMessage({ kind: "open", options, timeOriginMs }, []);
   }
 
@@ -57,7 +57,7 @@ export class WorkerClient implements TelemetryClient {
 
   /** Called when the worker itself has failed; what it had journaled is on disk. */
   fail(failure: Failure): void {
-    this.#over = failure;
+    this.#failure = failure;
     const error = new TelemetryError(failure);
     this.#opening.reject(error);
     for (const { reject } of this.#pending.values()) reject(error);
@@ -118,13 +118,13 @@ export class WorkerClient implements TelemetryClient {
   }
 
   async close(): Promise<void> {
-    if (this.#over !== null) return;
+    if (this.#failure !== null) return;
     if (this.#welcome === null) {
       this.giveUp();
       return;
     }
     const closed = this.#call({ what: "close" });
-    this.#over = CLOSED;
+    this.#failure = CLOSED;
     await closed;
   }
 
@@ -141,7 +141,7 @@ export class WorkerClient implements TelemetryClient {
   }
 
   async #call(call: Call, transfer: Transferable[] = []): Promise<void> {
-    if (this.#over !== null) throw new TelemetryError(this.#over);
+    if (this.#failure !== null) throw new TelemetryError(this.#failure);
     const id = this.#nextId++;
     await new Promise<void>((resolve, reject) => {
       this.#pending.set(id, { resolve, reject });
@@ -149,7 +149,7 @@ export class WorkerClient implements TelemetryClient {
     });
   }
 
-  #heard(message: FromWorker): void {
+  #receive(message: FromWorker): void {
     switch (message.kind) {
       case "opened":
         this.#welcome = message.welcome;
@@ -157,7 +157,7 @@ export class WorkerClient implements TelemetryClient {
         this.#opening.resolve();
         break;
       case "refused":
-        this.#over = message.wrong.failure ?? CLOSED;
+        this.#failure = message.wrong.failure ?? CLOSED;
         this.#opening.reject(errorOf(message.wrong));
         break;
       case "done":
@@ -166,13 +166,13 @@ export class WorkerClient implements TelemetryClient {
       case "state":
         this.#welcome = message.welcome;
         this.#state = message.state;
-        this.#states.tell(message.state);
+        this.#states.notify(message.state);
         break;
       case "status":
         this.#tellStatus(message.status);
         break;
       case "notice":
-        this.#notices.tell(message.notice);
+        this.#notices.notify(message.notice);
     }
   }
 
@@ -185,7 +185,7 @@ export class WorkerClient implements TelemetryClient {
 
   #tellStatus(status: Status): void {
     this.#status = status;
-    this.#statuses.tell(status);
+    this.#statuses.notify(status);
   }
 }
 

@@ -38,10 +38,10 @@ function History({ session }: { readonly session: SessionView }): JSX.Element {
     <Loaded query={query}>
       {(alarms) =>
         alarms.length === 0 ? (
-          <p className={classes.nothing}>{t("alarm.none")}</p>
+          <p className={classes.empty}>{t("alarm.none")}</p>
         ) : (
           <>
-            <p className={classes.nothing}>{t("alarm.kept")}</p>
+            <p className={classes.empty}>{t("alarm.kept")}</p>
             <AlarmTable alarms={alarms} />
           </>
         )
@@ -94,7 +94,7 @@ function AlarmRow({ alarm }: { readonly alarm: Alarm }): JSX.Element {
           {t(titleKey(shown))}
           {much !== null && ` · ${much}`}
         </span>
-        <div className={classes.nothing}>{details.join(" · ")}</div>
+        <div className={classes.empty}>{details.join(" · ")}</div>
       </td>
     </tr>
   );

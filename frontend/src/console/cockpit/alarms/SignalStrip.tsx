@@ -10,7 +10,7 @@ import { Icon } from "@shared/ui/Icon";
 import { useMutation, useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { type Key, useTexts } from "../../i18n";
-import { useMay } from "../../permissions";
+import { usePermissions } from "../../permissions";
 import { alarmsQuery } from "../../queries";
 import {
   type Alarms,
@@ -72,9 +72,9 @@ export function SignalStrip({ session, alarms, onHistory }: SignalStripProps): J
 /** The participant's call ends when somebody is there, not when somebody has read it. */
 function AnswerCall({ session }: { readonly session: SessionView }): JSX.Element | null {
   const { t } = useTexts();
-  const may = useMay();
+  const can = usePermissions();
   const answer = useMutation({ mutationFn: () => sessions.answerHelp(session.id) });
-  if (!may("run")) return null;
+  if (!can("run")) return null;
   return (
     <Button size="xs" loading={answer.isPending} onClick={() => answer.mutate()}>
       {t("alarm.help_asked.answer")}
@@ -138,7 +138,7 @@ function Wrong({ alarm, session, others }: WrongProps): JSX.Element {
             </span>
           )}
           {others > 0 && (
-            <span className={classes.others}>{t("alarm.more", { count: others })}</span>
+            <span className={classes.otherAlarms}>{t("alarm.more", { count: others })}</span>
           )}
         </div>
         <div className={classes.remedy} aria-hidden="true" title={remedy}>

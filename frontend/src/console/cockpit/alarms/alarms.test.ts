@@ -93,8 +93,14 @@ describe("the active alarms", () => {
 
   it("include the server's own, which neither the headset nor the record can report", () => {
     const codes = (news: Partial<StorageNews>) => {
-      const told = { status: "ok", since: null, reason: null, low_disk: false, ...news } as const;
-      const storage = { news: told, heardAt: "2026-03-02T09:30:00Z" };
+      const message = {
+        status: "ok",
+        since: null,
+        reason: null,
+        low_disk: false,
+        ...news,
+      } as const;
+      const storage = { news: message, receivedAt: "2026-03-02T09:30:00Z" };
       return currentAlarms(session, quality([live("gap")]), storage, at0).map(({ code }) => code);
     };
     expect(codes({})).toEqual(["gap"]);
@@ -133,8 +139,8 @@ const at0 = milliseconds(0);
 
 describe("the texts of an alarm", () => {
   it("exist for every code, including unknown ones", () => {
-    const said = ["question_asked", "consent_refused", "refusal_retracted"];
-    for (const code of ["silent", "gap", "clock_unknown", ...said, "of a later version"]) {
+    const codes = ["question_asked", "consent_refused", "refusal_retracted"];
+    for (const code of ["silent", "gap", "clock_unknown", ...codes, "of a later version"]) {
       const alarm = shown(live(code));
       expect(en[titleKey(alarm) as keyof typeof en]).toBeTruthy();
       expect(en[remedyKey(alarm, session) as keyof typeof en]).toBeTruthy();

@@ -24,7 +24,7 @@ export interface ShownAlarm {
 /**
  * Messages about the headset come once a second; when they stop, the session's own alarms count.
  */
-const NEWS_LAST: Milliseconds = 3000 as Milliseconds;
+const MESSAGES_VALID: Milliseconds = 3000 as Milliseconds;
 
 /** The active alarms: critical first, then the newest. */
 export function currentAlarms(
@@ -34,9 +34,9 @@ export function currentAlarms(
   now: Milliseconds,
   failing: readonly FailingNews[] = [],
 ): readonly ShownAlarm[] {
-  const fresh = quality !== null && now - quality.at < NEWS_LAST;
-  const recorded = session.alarms.filter((alarm) => !fresh || isOfPerson(alarm.code));
-  const alarms = [...(fresh ? quality.alarms.map(fromNews) : []), ...recorded.map(fromRecord)];
+  const fresh = quality !== null && now - quality.at < MESSAGES_VALID;
+  const recorded = session.alarms.filter((alarm) => !fresh || isAboutParticipant(alarm.code));
+  const alarms = [...(fresh ? quality.alarms.map(fromMessage) : []), ...recorded.map(fromRecord)];
   return [...alarms, ...storageAlarms(storage), ...failing.map(failingAlarm)].toSorted(
     (a, b) => urgency(b) - urgency(a) || Date.parse(b.since) - Date.parse(a.since),
   );
@@ -45,7 +45,7 @@ export function currentAlarms(
 /**
  * Alarms about the participant rather than the headset: the headset's messages never contain them.
  */
-const isOfPerson = (code: string): boolean => ALARMS_OF_PERSON.some((one) => one === code);
+const isAboutParticipant = (code: string): boolean => ALARMS_OF_PERSON.some((one) => one === code);
 
 const SEVERITIES = ["info", "warning", "critical"] as const;
 const urgency = (alarm: ShownAlarm): number => SEVERITIES.indexOf(alarm.severity);
@@ -53,7 +53,7 @@ const urgency = (alarm: ShownAlarm): number => SEVERITIES.indexOf(alarm.severity
 const keyOf = (alarm: Alarm | LiveAlarm): string =>
   `${alarm.code} ${alarm.stream ?? ""} ${Date.parse(alarm.since)}`;
 
-const fromNews = (alarm: LiveAlarm): ShownAlarm => ({ ...alarm, key: keyOf(alarm) });
+const fromMessage = (alarm: LiveAlarm): ShownAlarm => ({ ...alarm, key: keyOf(alarm) });
 
 /**
  * An alarm from the record, which has the value at its start; except for a gap's, a duration has
@@ -122,7 +122,7 @@ export function jointNames(alarm: ShownAlarm): string | null {
 export interface Storage {
   readonly news: StorageNews;
   /** When this page received it, as an ISO time. */
-  readonly heardAt: string;
+  readonly receivedAt: string;
 }
 
 /**
@@ -130,7 +130,7 @@ export interface Storage {
  */
 function storageAlarms(storage: Storage | null): readonly ShownAlarm[] {
   if (storage === null) return [];
-  const { news, heardAt } = storage;
+  const { news, receivedAt: heardAt } = storage;
   if (news.status === "failing") return [alarm("storage", "critical", news.since ?? heardAt)];
   return news.low_disk ? [alarm("low_disk", "warning", heardAt)] : [];
 }
@@ -168,7 +168,7 @@ export function useAlarms(
 ): Alarms {
   const quality = useQuality(store);
   const [seen, setSeen] = useState<ReadonlySet<string>>(new Set());
-  useAgain(quality);
+  useRerenderWhenOutdated(quality);
   return {
     on: currentAlarms(session, quality, storage, milliseconds(performance.now()), failing),
     quality,
@@ -178,10 +178,10 @@ export function useAlarms(
 }
 
 /** Re-render when the messages have become outdated, since nothing else would. */
-function useAgain(quality: Quality | null): void {
+function useRerenderWhenOutdated(quality: Quality | null): void {
   const [, again] = useState<Quality | null>(null);
   useEffect(() => {
-    const timer = setTimeout(() => again(quality), NEWS_LAST + 50);
+    const timer = setTimeout(() => again(quality), MESSAGES_VALID + 50);
     return () => clearTimeout(timer);
   }, [quality]);
 }

@@ -103,7 +103,7 @@ function CodeShown({ pairing, device, onRenew }: CodeShownProps): JSX.Element {
         />
       )}
       {pairing.url === null ? (
-        <OnlyHere pairing={pairing} device={device} />
+        <LocalhostOnly pairing={pairing} device={device} />
       ) : (
         <span className={classes.url}>{pairing.url}</span>
       )}
@@ -114,7 +114,7 @@ function CodeShown({ pairing, device, onRenew }: CodeShownProps): JSX.Element {
 }
 
 /** No other device can reach the server: how to change that, and what works without. */
-function OnlyHere({
+function LocalhostOnly({
   pairing,
   device,
 }: {
@@ -125,10 +125,10 @@ function OnlyHere({
   const network = useQuery(networkQuery).data;
   return (
     <Notice tone="warn" title={t("pairing.onlyHere")}>
-      <p className={classes.onlyHere}>{t("pairing.onlyHere.body")}</p>
-      <code className={classes.onlyHere}>./run --lan</code>
+      <p className={classes.localhostOnly}>{t("pairing.onlyHere.body")}</p>
+      <code className={classes.localhostOnly}>./run --lan</code>
       {device === "tablet" ? (
-        <p className={classes.onlyHere}>
+        <p className={classes.localhostOnly}>
           <Anchor href={`/tablet?code=${pairing.code}`} target="_blank">
             {t("pairing.onlyHere.open")}
           </Anchor>
@@ -136,9 +136,9 @@ function OnlyHere({
       ) : (
         network !== undefined && (
           <>
-            <p className={classes.onlyHere}>{t("pairing.onlyHere.cable")}</p>
-            <code className={classes.onlyHere}>{network.cable.command}</code>
-            <code className={classes.onlyHere}>{network.cable.url}</code>
+            <p className={classes.localhostOnly}>{t("pairing.onlyHere.cable")}</p>
+            <code className={classes.localhostOnly}>{network.cable.command}</code>
+            <code className={classes.localhostOnly}>{network.cable.url}</code>
           </>
         )
       )}

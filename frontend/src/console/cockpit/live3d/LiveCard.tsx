@@ -74,7 +74,7 @@ function Picture({ session, store, view }: LiveCardProps & { readonly view: View
   const isBlinded = live.setup?.blinded ?? true;
   return (
     <>
-      <div className={classes.frame} data-way={live.way} data-moving={live.isMoving}>
+      <div className={classes.frame} data-way={live.drawingState} data-moving={live.isMoving}>
         <div
           ref={root}
           className={classes.canvas}
@@ -83,7 +83,7 @@ function Picture({ session, store, view }: LiveCardProps & { readonly view: View
         />
         <State session={session} live={live} />
         {!isBlinded && (
-          <div className={classes.told}>
+          <div className={classes.overlay}>
             <LastTouch touch={live.last} />
             <Legend />
           </div>
@@ -102,7 +102,7 @@ function Picture({ session, store, view }: LiveCardProps & { readonly view: View
 /** Why nothing moves, shown over the picture. */
 function State({ session, live }: { readonly session: SessionView; readonly live: Live }) {
   const { t } = useTexts();
-  const { way, feed, setup, isMoving } = live;
+  const { drawingState: way, feed, setup, isMoving } = live;
   if (way === "flat") {
     return (
       <div className={`${classes.state} ${classes.warn}`} role="status">
@@ -118,21 +118,21 @@ function State({ session, live }: { readonly session: SessionView; readonly live
       </div>
     );
   }
-  if (feed === "lost") return <Told text={t("live3d.lost")} warns />;
+  if (feed === "lost") return <Message text={t("live3d.lost")} warns />;
   if (isMoving) return null;
   const connected = session.devices.some((one) => one.kind === "headset" && one.connected);
-  if (setup?.recording !== true) return <Told text={t("live3d.before")} />;
-  if (!connected) return <Told text={t("live3d.noHeadset")} warns />;
-  return <Told text={t("live3d.none")} remedy={t("live3d.none.remedy")} warns />;
+  if (setup?.recording !== true) return <Message text={t("live3d.before")} />;
+  if (!connected) return <Message text={t("live3d.noHeadset")} warns />;
+  return <Message text={t("live3d.none")} remedy={t("live3d.none.remedy")} warns />;
 }
 
-interface ToldProps {
+interface MessageProps {
   readonly text: string;
   readonly remedy?: string;
   readonly warns?: boolean;
 }
 
-function Told({ text, remedy, warns = false }: ToldProps): JSX.Element {
+function Message({ text, remedy, warns = false }: MessageProps): JSX.Element {
   return (
     <div className={`${classes.state} ${warns ? classes.warn : ""}`} role="status">
       <strong>
@@ -185,14 +185,14 @@ function LastTouch({ touch }: { readonly touch: PoseTouch | null }): JSX.Element
     return <span className={classes.last}>{t("live3d.completed")}</span>;
   }
   const box = touch.surface?.split("/")[1] ?? "";
-  const told = t("live3d.touch", {
+  const text = t("live3d.touch", {
     part: (touch.part ?? "").replace(/([a-z])([A-Z])/g, "$1 $2"),
     surface: t(`live3d.surface.${touch.kind}`, { box }),
     effect: t(EFFECTS[touch.effect] ?? "live3d.effect.none"),
   });
   return (
     <span className={classes.last}>
-      {t("live3d.last")} <b>{told}</b>
+      {t("live3d.last")} <b>{text}</b>
     </span>
   );
 }

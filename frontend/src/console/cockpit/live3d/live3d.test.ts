@@ -87,12 +87,14 @@ describe("the boxes' lights", () => {
   });
 
   it("do not come on for touches that are repeated or long past", () => {
-    const told = [touch(0, "green", "hand/1/panel"), touch(1, "side", "hand/1/left")];
-    expect(withTouches(withTouches(first, told, 500), told, 9000).lit.get("hand/1/left")).toEqual({
+    const touches = [touch(0, "green", "hand/1/panel"), touch(1, "side", "hand/1/left")];
+    expect(
+      withTouches(withTouches(first, touches, 500), touches, 9000).lit.get("hand/1/left"),
+    ).toEqual({
       tone: "bad",
       until: 500 + FLASH_MS,
     });
-    expect([...tonesAt(withTouches(DARK, told, 500), 500).keys()]).toEqual(["hand/1/panel"]);
+    expect([...tonesAt(withTouches(DARK, touches, 500), 500).keys()]).toEqual(["hand/1/panel"]);
   });
 
   it("start over with the next phase", () => {

@@ -137,7 +137,7 @@ function makePlayer(
   const body = new Body3d(figure, palette);
   if (known !== undefined && known.placed.positions.length === placed.positions.length) {
     placed.positions.set(known.placed.positions);
-    placed.turns.set(known.placed.turns);
+    placed.rotations.set(known.placed.rotations);
   }
   body.show(NOW);
   return { body, placed, came: known?.came ?? false };

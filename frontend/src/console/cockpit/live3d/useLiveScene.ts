@@ -8,7 +8,7 @@ import { sessions } from "@shared/api/endpoints";
 import type { FeedState } from "@shared/api/live";
 import { openPoses, type PoseSetup, type PoseTouch } from "@shared/api/poses";
 import { paletteOf } from "@shared/stage/figure";
-import { useDrawing, type Way } from "@shared/stage/useDrawing";
+import { type DrawingState, useDrawing } from "@shared/stage/useDrawing";
 import { type RefObject, useEffect, useRef, useState } from "react";
 import type { TelemetryStore } from "../session/telemetryStore";
 import { DARK, type Lights, nextChange, tonesAt, withTouches } from "./lights";
@@ -18,7 +18,7 @@ import type { View } from "./views";
 const STILL_AFTER_MS = 1500;
 
 export interface Live {
-  readonly way: Way;
+  readonly drawingState: DrawingState;
   readonly feed: FeedState;
   readonly setup: PoseSetup | null;
   readonly isMoving: boolean;
@@ -33,7 +33,7 @@ export function useLiveScene(
 ): Live {
   const scheme = useComputedColorScheme("light");
   const isSeen = useDocumentVisibility() === "visible";
-  const { way, drawing: scene } = useDrawing(root, loadScene);
+  const { drawingState, drawing: scene } = useDrawing(root, loadScene);
   const [feed, setFeed] = useState<FeedState>("connecting");
   const [setup, setSetup] = useState<PoseSetup | null>(null);
   const [isMoving, setMoving] = useState(false);
@@ -112,7 +112,7 @@ export function useLiveScene(
     };
   }, [root, scene, isSeen, id]);
 
-  return { way, feed, setup, isMoving, last };
+  return { drawingState: drawingState, feed, setup, isMoving, last };
 }
 
 async function loadScene() {

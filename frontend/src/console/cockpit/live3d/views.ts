@@ -1,7 +1,7 @@
 /** The cameras of the live scene. */
 import type { PoseSetup } from "@shared/api/poses";
 import type { PerspectiveCamera } from "three";
-import { type Placed, turned } from "./kinematics";
+import { type Placed, rotateToWorld } from "./kinematics";
 
 /** Through the participant's eyes, from their right, or from behind them. */
 export type View = "first" | "side" | "third";
@@ -34,8 +34,8 @@ function fromEyes({ setup, eyes }: Subjects): readonly [Vector, Vector] | null {
   const head = setup?.joints.indexOf("Head") ?? -1;
   if (eyes === null || head < 0) return null;
   const [x = 0, y = 0, z = 0] = eyes.positions.subarray(3 * head, 3 * head + 3);
-  const [fx, fy, fz] = turned(eyes.turns, head, [0, 0, -1]);
-  const [ux, uy, uz] = turned(eyes.turns, head, [0, 1, 0]);
+  const [fx, fy, fz] = rotateToWorld(eyes.rotations, head, [0, 0, -1]);
+  const [ux, uy, uz] = rotateToWorld(eyes.rotations, head, [0, 1, 0]);
   if (!Number.isFinite(x + fx + ux)) return null;
   // Between the top of the neck and the eyes; tilted down a little, like a headset's picture.
   const from = [x + 0.09 * ux + 0.1 * fx, y + 0.09 * uy + 0.1 * fy, z + 0.09 * uz + 0.1 * fz];

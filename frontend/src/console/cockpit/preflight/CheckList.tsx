@@ -5,8 +5,8 @@ import { timeOfDay } from "@shared/format";
 import { Icon, type IconName } from "@shared/ui/Icon";
 import type { JSX } from "react";
 import { useTexts } from "../../i18n";
+import { amountOf, expectationOf, todoOf, valuesOf } from "./checkTexts";
 import classes from "./Preflight.module.css";
-import { amountOf, expectationOf, todoOf, valuesOf } from "./words";
 
 const ICONS: Readonly<Record<Check["status"], IconName>> = {
   ok: "check",
@@ -39,7 +39,7 @@ interface RowProps {
 function Row({ check, onOverride }: RowProps): JSX.Element {
   const { t, language } = useTexts();
   const todo = todoOf(check);
-  const said = check.status === "overridden" ? check.override : null;
+  const override = check.status === "overridden" ? check.override : null;
   return (
     <li className={`${classes.row} ${classes[check.status]}`} data-check={check.key}>
       <span className={classes.mark}>
@@ -48,7 +48,7 @@ function Row({ check, onOverride }: RowProps): JSX.Element {
       <span className={classes.name}>{t(`preflight.check.${check.key}`)}</span>
       <span className={`${classes.found} numbers`}>
         {t(`preflight.found.${check.code}`, valuesOf(check, language))}
-        <Aside check={check} />
+        <CheckDetails check={check} />
       </span>
       <span className={classes.status}>{t(`preflight.status.${check.status}`)}</span>
       {todo !== null && (
@@ -66,12 +66,12 @@ function Row({ check, onOverride }: RowProps): JSX.Element {
           )}
         </div>
       )}
-      {said != null && (
+      {override != null && (
         <div className={classes.todo}>
           {t("preflight.said", {
-            by: said.by.replace(/^account:/, ""),
-            time: timeOfDay(said.at, language),
-            reason: said.reason,
+            by: override.by.replace(/^account:/, ""),
+            time: timeOfDay(override.at, language),
+            reason: override.reason,
           })}
         </div>
       )}
@@ -80,7 +80,7 @@ function Row({ check, onOverride }: RowProps): JSX.Element {
 }
 
 /** The limit of a check, and the names and hashes behind it. */
-function Aside({ check }: { readonly check: Check }): JSX.Element | null {
+function CheckDetails({ check }: { readonly check: Check }): JSX.Element | null {
   const { t, language } = useTexts();
   const expectation = expectationOf(check);
   const parts = [...(check.details ?? [])];
@@ -88,10 +88,10 @@ function Aside({ check }: { readonly check: Check }): JSX.Element | null {
     parts.unshift(t(expectation, { limit: amountOf(check.limit, check.unit, language) }));
   }
   if (parts.length === 0) return null;
-  const told = parts.join(" · ");
+  const details = parts.join(" · ");
   return (
-    <span className={classes.aside} title={told}>
-      {told}
+    <span className={classes.details} title={details}>
+      {details}
     </span>
   );
 }

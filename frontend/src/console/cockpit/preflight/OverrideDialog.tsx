@@ -10,8 +10,8 @@ import { useShown } from "../../ui/page";
 import { ReasonField } from "../../ui/ReasonField";
 import type { useSession } from "../session/useSession";
 import { CheckList } from "./CheckList";
+import { failing } from "./checkTexts";
 import { type Flight, overrideAll } from "./usePreflight";
-import { failing } from "./words";
 
 interface OverrideDialogProps {
   readonly session: SessionView;
@@ -99,12 +99,12 @@ interface StartAnywayProps {
 /** The dialog for starting although a check has failed. */
 export function StartAnyway({ session, live, flight }: StartAnywayProps): JSX.Element {
   const failed = failing(flight.query.data?.checks ?? []);
-  const { asking, stopAsking } = flight;
+  const { asking, dismissReason } = flight;
   return (
     <OverrideDialog
       session={session}
       checks={asking ? failed : null}
-      onClose={stopAsking}
+      onClose={dismissReason}
       then={() => live.sendAnew(session, { type: "start" })}
     />
   );

@@ -7,10 +7,10 @@ import { type JSX, useState } from "react";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
 import { CheckList } from "./CheckList";
+import { failing } from "./checkTexts";
 import { OverrideDialog } from "./OverrideDialog";
 import classes from "./Preflight.module.css";
 import type { Flight } from "./usePreflight";
-import { failing } from "./words";
 
 interface PreflightCardProps {
   readonly session: SessionView;
@@ -58,7 +58,7 @@ export function PreflightBody({ session, flight, title }: PreflightBodyProps): J
       {error !== null && <Failure error={error} onRetry={() => void refetch()} />}
       {data !== undefined && (
         <>
-          <Summary checks={data.checks} asks={data.asks} />
+          <Summary checks={data.checks} needsReason={data.asks} />
           <CheckList checks={data.checks} onOverride={data.asks ? setOverriding : undefined} />
         </>
       )}
@@ -71,7 +71,13 @@ export function PreflightBody({ session, flight, title }: PreflightBodyProps): J
   );
 }
 
-function Summary({ checks, asks }: { readonly checks: readonly Check[]; readonly asks: boolean }) {
+function Summary({
+  checks,
+  needsReason,
+}: {
+  readonly checks: readonly Check[];
+  readonly needsReason: boolean;
+}) {
   const { t } = useTexts();
   const failed = failing(checks).length;
   const waiting = checks.filter(({ status }) => status === "wait").length;
@@ -81,7 +87,7 @@ function Summary({ checks, asks }: { readonly checks: readonly Check[]; readonly
     ...(overridden > 0 ? [t("preflight.overridden", { count: overridden })] : []),
     ...(failed + overridden === 0 ? [t("preflight.clear")] : []),
     ...(waiting > 0 ? [t("preflight.waiting", { count: waiting })] : []),
-    ...(asks ? [] : [t("preflight.harmless")]),
+    ...(needsReason ? [] : [t("preflight.harmless")]),
   ];
   return (
     <p className={classes.summary} role="status">

@@ -1,7 +1,14 @@
 import type { Check } from "@shared/api/types";
 import { describe, expect, it } from "vitest";
 import { registryEn } from "../../i18n/registries.generated";
-import { againAfter, amountOf, expectationOf, failing, todoOf, valuesOf } from "./words";
+import {
+  amountOf,
+  expectationOf,
+  failing,
+  refetchIntervalFor,
+  todoOf,
+  valuesOf,
+} from "./checkTexts";
 
 const check = (more: Partial<Check>): Check => ({
   key: "clock",
@@ -42,9 +49,9 @@ describe("the texts of a check", () => {
   it("are refreshed while something is missing, and sooner while somebody is connecting a device", () => {
     const wait = check({ status: "wait" });
     const fail = check({ key: "disk", status: "fail", code: "disk.low" });
-    expect(againAfter([check({}), wait])).toBe(3000);
-    expect(againAfter([check({}), fail])).toBe(20_000);
-    expect(againAfter([check({}), check({ status: "overridden" })])).toBe(false);
+    expect(refetchIntervalFor([check({}), wait])).toBe(3000);
+    expect(refetchIntervalFor([check({}), fail])).toBe(20_000);
+    expect(refetchIntervalFor([check({}), check({ status: "overridden" })])).toBe(false);
     expect(failing([wait, fail])).toEqual([fail]);
   });
 });

@@ -5,10 +5,10 @@ import { useQuery, useQueryClient } from "@tanstack/react-query";
 import { useState } from "react";
 import { preflightQuery } from "../../queries";
 import type { useSession } from "../session/useSession";
-import { againAfter } from "./words";
+import { refetchIntervalFor } from "./checkTexts";
 
 /** The delay before a retry when the list could not be loaded. */
-const AGAIN_MS = 3000;
+const RETRY_MS = 3000;
 
 export type Flight = ReturnType<typeof usePreflight>;
 
@@ -19,28 +19,28 @@ export function usePreflight(
   watched: boolean,
 ) {
   const queries = useQueryClient();
-  const [asking, setAsking] = useState(false);
-  const [looking, setLooking] = useState(false);
+  const [needsReason, setNeedsReason] = useState(false);
+  const [isChecking, setIsChecking] = useState(false);
   const query = useQuery({
     ...preflightQuery(session.id),
     enabled: watched && session.ended_at === null,
     refetchOnMount: "always",
     // A hidden page does not poll.
     refetchInterval: ({ state }) =>
-      state.data === undefined ? AGAIN_MS : againAfter(state.data.checks),
+      state.data === undefined ? RETRY_MS : refetchIntervalFor(state.data.checks),
   });
 
   /** Start, or ask for a reason if a check has just failed. */
   const start = async () => {
-    if (looking) return;
-    setLooking(true);
+    if (isChecking) return;
+    setIsChecking(true);
     try {
       const fresh = await queries.fetchQuery({ ...preflightQuery(session.id), staleTime: 0 });
-      if (fresh.asks && !fresh.clear) return setAsking(true);
+      if (fresh.asks && !fresh.clear) return setNeedsReason(true);
     } catch {
       // The list cannot be loaded: if the start is refused, its error says why.
     } finally {
-      setLooking(false);
+      setIsChecking(false);
     }
     live.send({ type: "start" });
   };
@@ -48,9 +48,9 @@ export function usePreflight(
   return {
     query,
     start,
-    looking,
-    asking,
-    stopAsking: () => setAsking(false),
+    looking: isChecking,
+    asking: needsReason,
+    dismissReason: () => setNeedsReason(false),
     /** Whether the list is loaded and has no open check. */
     isClear: query.data?.clear === true,
   };

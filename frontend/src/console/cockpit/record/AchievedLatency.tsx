@@ -30,7 +30,7 @@ export function AchievedLatency({ phase }: AchievedLatencyProps): JSX.Element {
             {t("achieved.moved", {
               // Truncated rather than rounded: 4.97 s must not read as the 5 s that are required.
               moved: number(Math.floor(verdict.movement * 10) / 10, language, 1),
-              needed: LEAST_MOVEMENT,
+              needed: MIN_MOVEMENT,
             })}
           </small>
         </Soft>
@@ -116,7 +116,7 @@ function Reason({ text }: { readonly text: string | null }): JSX.Element | null 
 // The verdicts on the achieved latency of a phase, compared with the set one.
 
 /** With less movement than this the server gives no result (`LEAST_MOVEMENT_S` in its science). */
-const LEAST_MOVEMENT: Seconds = seconds(5);
+const MIN_MOVEMENT: Seconds = seconds(5);
 
 type Verdict =
   /** The phase is not over, or was voided before it was measured. */
@@ -144,7 +144,7 @@ type Verdict =
 export function verdictOn(phase: PhaseSummary): Verdict {
   if (phase.movement_s === null) return { kind: phase.status === "done" ? "measuring" : "none" };
   if (phase.latency_off === null)
-    return phase.movement_s < LEAST_MOVEMENT
+    return phase.movement_s < MIN_MOVEMENT
       ? { kind: "still", movement: seconds(phase.movement_s) }
       : { kind: "unknown", reason: phase.latency_reason };
   const { achieved_latency_ms: value, achieved_low_ms: low, achieved_high_ms: high } = phase;

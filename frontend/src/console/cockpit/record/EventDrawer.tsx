@@ -57,7 +57,7 @@ function EventTable({ events }: { readonly events: readonly SessionEvent[] }): J
                 {event.type === "blinding_lifted"
                   ? t("log.blinding_lifted")
                   : event.type.replaceAll("_", " ")}
-                <div className={classes.nothing}>{detailsOf(event)}</div>
+                <div className={classes.empty}>{detailsOf(event)}</div>
               </td>
               <td className={classes.nowrap}>{actorName(event.by)}</td>
             </tr>

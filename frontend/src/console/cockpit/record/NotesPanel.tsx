@@ -51,7 +51,7 @@ export function NotesPanel({ session, send, sending }: NotesPanelProps): JSX.Ele
         />
       )}
       {session.notes.length === 0 ? (
-        <p className={classes.nothing}>{t("notes.empty")}</p>
+        <p className={classes.empty}>{t("notes.empty")}</p>
       ) : (
         <ol className={classes.notes}>
           {[...session.notes].reverse().map((note) => (

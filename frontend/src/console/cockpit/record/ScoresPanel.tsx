@@ -7,7 +7,7 @@ import { Icon } from "@shared/ui/Icon";
 import { milliseconds } from "@shared/units";
 import type { JSX } from "react";
 import { useTexts } from "../../i18n";
-import { useMay } from "../../permissions";
+import { usePermissions } from "../../permissions";
 import { AnswersDrawer } from "../../rights/AnswersDrawer";
 import { isCounted, stepName } from "../../steps";
 import cockpit from "../Cockpit.module.css";
@@ -16,7 +16,7 @@ import answerHintsClasses from "./AnswerHints.module.css";
 
 export function ScoresPanel({ session }: { readonly session: SessionView }): JSX.Element {
   const { t } = useTexts();
-  const may = useMay();
+  const can = usePermissions();
   const [opened, { open, close }] = useDisclosure();
   const scored = session.scores.filter(
     ({ score_views, hints }) => score_views.length > 0 || hints.length > 0,
@@ -25,7 +25,7 @@ export function ScoresPanel({ session }: { readonly session: SessionView }): JSX
     <section>
       <div className={classes.titleRow}>
         <h2 className={cockpit.sectionTitle}>{t("scores.title")}</h2>
-        {may("rights") && (
+        {can("rights") && (
           <Button variant="subtle" size="compact-sm" onClick={open}>
             {t("answers.open")}
           </Button>
@@ -38,7 +38,7 @@ export function ScoresPanel({ session }: { readonly session: SessionView }): JSX
         onClose={close}
       />
       {scored.length === 0 ? (
-        <p className={classes.nothing}>{t("scores.empty")}</p>
+        <p className={classes.empty}>{t("scores.empty")}</p>
       ) : (
         <div className={classes.scores}>
           {[...scored].reverse().map((one) => (

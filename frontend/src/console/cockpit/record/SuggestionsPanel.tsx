@@ -8,7 +8,7 @@ import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
-import { useMay } from "../../permissions";
+import { usePermissions } from "../../permissions";
 import { suggestionsQuery } from "../../queries";
 import { stepName } from "../../steps";
 import cockpit from "../Cockpit.module.css";
@@ -17,7 +17,7 @@ import { currentStep } from "../session/action";
 
 export function SuggestionsPanel({ session }: { readonly session: SessionView }): JSX.Element {
   const { t, language } = useTexts();
-  const may = useMay();
+  const can = usePermissions();
   const all = useQuery(suggestionsQuery(session.study_key)).data ?? [];
   const own = all.filter((one) => one.session_id === session.id);
   return (
@@ -26,9 +26,9 @@ export function SuggestionsPanel({ session }: { readonly session: SessionView })
         <Icon name="talk" size={16} />
         {t("suggest.title")}
       </h2>
-      {may("run") && <Write session={session} />}
+      {can("run") && <Write session={session} />}
       {own.length === 0 ? (
-        <p className={classes.nothing}>{t("suggest.none")}</p>
+        <p className={classes.empty}>{t("suggest.none")}</p>
       ) : (
         <ol className={classes.notes}>
           {[...own].reverse().map((one) => (

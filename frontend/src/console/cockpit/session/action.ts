@@ -102,6 +102,6 @@ export function redoable(session: SessionView): readonly Step[] {
   const { current, steps } = session;
   if (current === null) return [];
   const step = steps[current.index];
-  const begun = current.status !== "ready" || (step !== undefined && isTimed(step));
-  return steps.slice(0, begun ? current.index + 1 : current.index);
+  const hasStarted = current.status !== "ready" || (step !== undefined && isTimed(step));
+  return steps.slice(0, hasStarted ? current.index + 1 : current.index);
 }

@@ -60,8 +60,8 @@ const hasFigures = (news: TelemetryNews): news is TelemetryNews & Telemetry =>
  * from messages with only one.
  */
 function withErrors(news: Telemetry, before: Telemetry | undefined): Telemetry {
-  const told = Object.keys(news.joint_error_deg ?? {}).length > 0;
-  if (told || before?.joint_error_deg === undefined || before.phase_id !== news.phase_id) {
+  const hasErrors = Object.keys(news.joint_error_deg ?? {}).length > 0;
+  if (hasErrors || before?.joint_error_deg === undefined || before.phase_id !== news.phase_id) {
     return news;
   }
   return { ...news, joint_error_deg: before.joint_error_deg };

@@ -11,7 +11,7 @@ import type {
 } from "@shared/api/types";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { useEffect, useMemo, useState } from "react";
-import { lookAgain } from "../../account";
+import { checkSignIn } from "../../account";
 import type { Key } from "../../i18n";
 import { sessionQuery } from "../../queries";
 import type { Storage } from "../alarms/alarms";
@@ -59,13 +59,13 @@ export function useSession(id: string) {
         onState: (state) => {
           setFeed(state);
           // A feed does not say why it ended: the sign-in may have been ended elsewhere.
-          if (state === "lost") void lookAgain(queries);
+          if (state === "lost") void checkSignIn(queries);
         },
         on: {
           session: (data) => accept(data as SessionView),
           telemetry: (data) => store.put(data as TelemetryNews),
           storage: (data) =>
-            setStorage({ news: data as StorageNews, heardAt: new Date().toISOString() }),
+            setStorage({ news: data as StorageNews, receivedAt: new Date().toISOString() }),
           background: (data) => setFailing(data as readonly FailingNews[]),
         },
       }),
@@ -101,8 +101,8 @@ export function useSession(id: string) {
   /**
    * Send a command that was prepared on `seen`, with reasons that have changed the version since.
    */
-  const sendAnew = async (seen: SessionView, order: Command): Promise<void> => {
-    const done = await orderAnew(sessions, seen, order);
+  const resend = async (seen: SessionView, order: Command): Promise<void> => {
+    const done = await resendOnLatestVersion(sessions, seen, order);
     if (done.overtaken) return overtake({ view: seen, command: order }, done.view);
     setOvertaken(null);
     accept(done.view);
@@ -115,14 +115,14 @@ export function useSession(id: string) {
     failing,
     feed,
     send,
-    sendAnew,
+    sendAnew: resend,
     sending: command.isPending,
     stopping: stop.isPending,
     error:
       [stop, command]
-        .filter(({ variables }) => !isOutlived(variables, query.data))
+        .filter(({ variables }) => !isOutdated(variables, query.data))
         .map(({ error }) => error)
-        .find((error) => error !== null && !isTold(error)) ?? null,
+        .find((error) => error !== null && !isShownElsewhere(error)) ?? null,
     overtaken,
     dismiss: () => {
       command.reset();
@@ -133,12 +133,13 @@ export function useSession(id: string) {
 }
 
 /** Errors that the page shows elsewhere. */
-const isTold = (error: unknown): boolean => isApiError(error, "stale") || isUnauthorised(error);
+const isShownElsewhere = (error: unknown): boolean =>
+  isApiError(error, "stale") || isUnauthorised(error);
 
 /**
  * Whether the session has moved on since a command was sent: its failure is then no longer shown.
  */
-export function isOutlived(
+export function isOutdated(
   sent: { readonly view: SessionView } | undefined,
   now: SessionView | undefined,
 ): boolean {
@@ -163,30 +164,30 @@ function newer(known: SessionView | undefined, view: SessionView): SessionView {
  * nothing that the command depends on. So it is resent on the newest version for as long as the
  * session's status is the one for which the command was prepared.
  */
-interface Ordered {
+interface Resent {
   readonly view: SessionView;
   /** Another operator was first: the status has changed, and nothing was sent. */
   readonly overtaken: boolean;
 }
 
 /** The most attempts: few operators write notes, and each writes one at a time. */
-const MOST_TIMES = 20;
+const MAX_ATTEMPTS = 20;
 
 /**
  * Resend a command on the latest version; throws other refusals, and `stale` if notes never stop.
  */
-export async function orderAnew(
+export async function resendOnLatestVersion(
   api: Pick<typeof sessions, "get" | "command">,
   seen: SessionView,
   order: Command,
-): Promise<Ordered> {
+): Promise<Resent> {
   for (let time = 1; ; time += 1) {
     const fresh = await api.get(seen.id);
     if (fresh.status !== seen.status) return { view: fresh, overtaken: true };
     try {
       return { view: await api.command(seen.id, fresh.version, order), overtaken: false };
     } catch (error) {
-      if (!isApiError(error, "stale") || time === MOST_TIMES) throw error;
+      if (!isApiError(error, "stale") || time === MAX_ATTEMPTS) throw error;
     }
   }
 }

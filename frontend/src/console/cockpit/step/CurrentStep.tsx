@@ -227,7 +227,7 @@ function Exceptions({ session, onAsk }: CurrentStepProps): JSX.Element | null {
 function PauseReason({ live }: { readonly live: ReturnType<typeof useSession> }): JSX.Element {
   const { t } = useTexts();
   return (
-    <div className={classes.why}>
+    <div className={classes.hint}>
       <span>{t("pause.why")}</span>
       {COMMON_REASONS.pause.map((key) => (
         <Button

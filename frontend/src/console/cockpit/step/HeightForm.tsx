@@ -19,7 +19,7 @@ const TALLEST_CM = 230;
  * Shoes and posture account for a few centimetres; a larger difference is a mistake, or another
  * person's avatar.
  */
-const MUCH_CM = 10;
+const MAX_DIFFERENCE_CM = 10;
 
 interface HeightFormProps {
   readonly session: SessionView;
@@ -38,16 +38,16 @@ export function HeightForm(props: HeightFormProps): JSX.Element {
   const stated = typed ?? heightIn(answers.data ?? []) ?? "";
   const [matched, setMatched] = useState<number | string>("");
   // The two heights that were questioned: after a change they are questioned again.
-  const [asking, setAsking] = useState("");
+  const [confirmedPair, setConfirmedPair] = useState("");
   const valid = isHeight(stated) && isHeight(matched);
   const difference = valid ? Math.abs(Number(stated) - Number(matched)) : 0;
   const pair = `${stated} ${matched}`;
-  const doubtful = difference > MUCH_CM;
-  const asked = doubtful && asking === pair;
+  const doubtful = difference > MAX_DIFFERENCE_CM;
+  const mustConfirm = doubtful && confirmedPair === pair;
   const save = () => {
     if (!isHeight(stated) || !isHeight(matched)) return;
-    if (doubtful && !asked) {
-      setAsking(pair);
+    if (doubtful && !mustConfirm) {
+      setConfirmedPair(pair);
       return;
     }
     const height_m = {
@@ -93,7 +93,7 @@ export function HeightForm(props: HeightFormProps): JSX.Element {
           onChange={setMatched}
         />
       </div>
-      {asked && (
+      {mustConfirm && (
         <div className={classes.doubt}>
           <Notice tone="warn" title={t("height.differs")}>
             {t("height.differs.body", { difference: number(difference, language, 1) })}
@@ -110,7 +110,7 @@ export function HeightForm(props: HeightFormProps): JSX.Element {
           leftSection={<Icon name="check" />}
           rightSection={<Key name={t("keys.enter")} />}
         >
-          {t(asked ? "height.differs.save" : "do.complete.height")}
+          {t(mustConfirm ? "height.differs.save" : "do.complete.height")}
         </Button>
         {exceptions}
       </div>
@@ -120,8 +120,8 @@ export function HeightForm(props: HeightFormProps): JSX.Element {
 
 /** The height from a form of this session, in centimetres. */
 function heightIn(forms: readonly StoredAnswers[]): number | null {
-  const said = forms.map((form) => form.answers.height_cm).filter(isHeight);
-  return said.at(-1) ?? null;
+  const heights = forms.map((form) => form.answers.height_cm).filter(isHeight);
+  return heights.at(-1) ?? null;
 }
 
 const isHeight = (value: unknown): value is number =>

@@ -8,7 +8,7 @@ import { timeOfDay } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import type { JSX } from "react";
 import { useTexts } from "../../i18n";
-import { useMay } from "../../permissions";
+import { usePermissions } from "../../permissions";
 import type { Reasoned } from "../session/action";
 import classes from "./HeldCard.module.css";
 
@@ -20,7 +20,7 @@ interface HeldCardProps {
 /** A stop rule was met. */
 export function HeldCard({ held, onAsk }: HeldCardProps): JSX.Element {
   const { t } = useTexts();
-  const may = useMay();
+  const can = usePermissions();
   const values = { score: held.score, instrument: held.instrument, limit: held.stop_at };
   return (
     <section className={classes.card} role="alert">
@@ -28,9 +28,9 @@ export function HeldCard({ held, onAsk }: HeldCardProps): JSX.Element {
         <Icon name="alert" size={36} />
         {t("held.title")}
       </h2>
-      <p className={classes.why}>{t(held.is_rise ? "held.rise" : "held.score", values)}</p>
+      <p className={classes.reason}>{t(held.is_rise ? "held.rise" : "held.score", values)}</p>
       <p>{t("held.body")}</p>
-      {may("run") && (
+      {can("run") && (
         <div className={classes.actions}>
           <Button
             size="lg"
@@ -60,7 +60,7 @@ interface RefusedCardProps {
 /** The participant does not want to take part: nothing continues before somebody has decided. */
 export function RefusedCard({ refusal, onAsk }: RefusedCardProps): JSX.Element {
   const { t, language } = useTexts();
-  const may = useMay();
+  const can = usePermissions();
   return (
     <section className={classes.card} role="alert">
       <h2 className={classes.title}>
@@ -68,12 +68,12 @@ export function RefusedCard({ refusal, onAsk }: RefusedCardProps): JSX.Element {
         {t("refused.title")}
       </h2>
       {refusal.at !== null && (
-        <p className={classes.why}>
+        <p className={classes.reason}>
           {t("refused.at", { time: timeOfDay(refusal.at, language), number: refusal.step + 1 })}
         </p>
       )}
       <p>{t("refused.body")}</p>
-      {may("run") && (
+      {can("run") && (
         <div className={classes.actions}>
           <Button
             size="lg"

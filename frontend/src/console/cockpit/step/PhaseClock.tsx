@@ -54,7 +54,7 @@ export function PhaseClock({ session, store }: PhaseClockProps): JSX.Element | n
         </div>
       </div>
       <Progress active={active} report={report} label={t("clock.progress")} />
-      <div className={classes.honest} role="status">
+      <div className={classes.stateNote} role="status">
         {warning !== null && (
           <>
             <Icon name="alert" size={16} />

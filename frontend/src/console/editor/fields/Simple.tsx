@@ -37,7 +37,7 @@ export function WordsField({
   const { reveal } = useForm();
   const { hint } = useLabels();
   const field = useCommitted(shown(value), set);
-  const known = useKnown(path);
+  const known = useExistingKeys(path);
   const common = {
     label,
     description: hint(String(path.at(-1))),
@@ -68,7 +68,7 @@ export function WordsField({
 }
 
 /** The keys that exist elsewhere in the file or in the library, for fields that refer to one. */
-function useKnown(path: Path): readonly string[] | null {
+function useExistingKeys(path: Path): readonly string[] | null {
   const { tree, instruments } = useForm();
   switch (path.at(-1)) {
     case "text":

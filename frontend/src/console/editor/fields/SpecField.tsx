@@ -300,7 +300,7 @@ function Tool({ icon, label, off, onClick }: ToolProps): JSX.Element {
       disabled={off}
       onClick={onClick}
     >
-      <span className={icon === "up" ? classes.turned : undefined}>
+      <span className={icon === "up" ? classes.rotated : undefined}>
         <Icon name={icon === "up" ? "down" : icon} size={16} />
       </span>
     </ActionIcon>
@@ -312,9 +312,9 @@ function useName(item: Json): string {
   const labels = useLabels();
   if (!isObject(item)) return isList(item) ? item.map(String).join(" → ") : String(item);
   const word = item.step ?? item.limb;
-  const beside = item.instrument ?? item.key ?? item.number;
-  const said = typeof word === "string" ? labels.value(word) : "";
-  return [said, beside === undefined ? "" : String(beside)]
+  const identifier = item.instrument ?? item.key ?? item.number;
+  const label = typeof word === "string" ? labels.value(word) : "";
+  return [label, identifier === undefined ? "" : String(identifier)]
     .filter((part) => part !== "")
     .join(" · ");
 }

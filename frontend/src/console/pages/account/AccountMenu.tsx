@@ -29,7 +29,7 @@ export function AccountMenu({ account }: { readonly account: Account }): JSX.Ele
           </Button>
         </Menu.Target>
         <Menu.Dropdown>
-          <div className={classes.who}>
+          <div className={classes.accountButton}>
             <span className={classes.name}>{account.username}</span>
             <RoleBadge role={account.role} />
             <span>{t(`role.${account.role}.may`)}</span>

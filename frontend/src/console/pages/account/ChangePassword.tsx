@@ -34,7 +34,7 @@ function PasswordForm({ account, onClose }: Omit<ChangePasswordProps, "opened">)
   const { t } = useTexts();
   const [current, setCurrent] = useState("");
   const [typed, setTyped] = useState(NOTHING_TYPED);
-  const good = isGood(checkPassword(typed.password, typed.again, account.username));
+  const good = isGood(checkPassword(typed.password, typed.repeated, account.username));
   const change = useMutation({
     mutationFn: () => people.changePassword(current, typed.password),
     onSuccess: () => {

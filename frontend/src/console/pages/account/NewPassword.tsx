@@ -7,18 +7,18 @@ import { useTexts } from "../../i18n";
 import classes from "./NewPassword.module.css";
 import {
   checkPassword,
-  LEAST_DIFFERENT,
-  LEAST_LENGTH,
-  MOST_LENGTH,
+  MAX_LENGTH,
+  MIN_DIFFERENT,
+  MIN_LENGTH,
   type PasswordChecks,
 } from "./passwordRule";
 
 interface Typed {
   readonly password: string;
-  readonly again: string;
+  readonly repeated: string;
 }
 
-export const NOTHING_TYPED: Typed = { password: "", again: "" };
+export const NOTHING_TYPED: Typed = { password: "", repeated: "" };
 
 interface NewPasswordProps {
   readonly label: string;
@@ -31,7 +31,7 @@ interface NewPasswordProps {
 export function NewPassword(props: NewPasswordProps): JSX.Element {
   const { label, username, value, error, onChange } = props;
   const { t } = useTexts();
-  const field = { autoComplete: "new-password", maxLength: MOST_LENGTH, required: true } as const;
+  const field = { autoComplete: "new-password", maxLength: MAX_LENGTH, required: true } as const;
   return (
     <Stack gap="sm">
       <PasswordInput
@@ -46,10 +46,10 @@ export function NewPassword(props: NewPasswordProps): JSX.Element {
         {...field}
         label={t("password.again")}
         withAsterisk={false}
-        value={value.again}
-        onChange={(event) => onChange({ ...value, again: event.currentTarget.value })}
+        value={value.repeated}
+        onChange={(event) => onChange({ ...value, repeated: event.currentTarget.value })}
       />
-      <Rule checks={checkPassword(value.password, value.again, username.trim())} />
+      <Rule checks={checkPassword(value.password, value.repeated, username.trim())} />
     </Stack>
   );
 }
@@ -57,8 +57,8 @@ export function NewPassword(props: NewPasswordProps): JSX.Element {
 function Rule({ checks }: { readonly checks: PasswordChecks }): JSX.Element {
   const { t } = useTexts();
   const lines = [
-    ["length", LEAST_LENGTH],
-    ["different", LEAST_DIFFERENT],
+    ["length", MIN_LENGTH],
+    ["different", MIN_DIFFERENT],
     ["name", 0],
     ["same", 0],
   ] as const;
@@ -101,10 +101,10 @@ const NONE: FieldErrors = { username: null, password: null, other: null };
 export function fieldErrors(error: unknown): FieldErrors {
   if (error === null) return NONE;
   if (!isApiError(error, "invalid_input")) return { ...NONE, other: error };
-  const said = sentence(error);
+  const message = sentence(error);
   return typeof error.value === "string"
-    ? { ...NONE, username: said }
-    : { ...NONE, password: said };
+    ? { ...NONE, username: message }
+    : { ...NONE, password: message };
 }
 
 const sentence = ({ message, valid, remedy }: ApiError): string => {

@@ -1,7 +1,7 @@
 /** Check that the page's password rule is the one that the server enforces. */
 import { readFileSync } from "node:fs";
 import { describe, expect, it } from "vitest";
-import { checkPassword, isGood, LEAST_DIFFERENT, LEAST_LENGTH, MOST_LENGTH } from "./passwordRule";
+import { checkPassword, isGood, MAX_LENGTH, MIN_DIFFERENT, MIN_LENGTH } from "./passwordRule";
 
 const SERVER = readFileSync(
   new URL("../../../../../app/features/people/accounts/passwords.py", import.meta.url),
@@ -11,7 +11,7 @@ const limit = (name: string) => Number(new RegExp(`^${name} = (\\d+)$`, "m").exe
 
 describe("the rule for passwords", () => {
   it("has the server's limits", () => {
-    expect([LEAST_LENGTH, MOST_LENGTH, LEAST_DIFFERENT]).toEqual([
+    expect([MIN_LENGTH, MAX_LENGTH, MIN_DIFFERENT]).toEqual([
       limit("MIN_LENGTH"),
       limit("MAX_LENGTH"),
       limit("MIN_DIFFERENT"),

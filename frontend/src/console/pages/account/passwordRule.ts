@@ -1,8 +1,8 @@
 /** The server's rule for passwords, checked during typing; the server's decision is final. */
 
-export const LEAST_LENGTH = 12;
-export const MOST_LENGTH = 200;
-export const LEAST_DIFFERENT = 5;
+export const MIN_LENGTH = 12;
+export const MAX_LENGTH = 200;
+export const MIN_DIFFERENT = 5;
 const PROGRAM = "reembody";
 
 export interface PasswordChecks {
@@ -15,10 +15,10 @@ export interface PasswordChecks {
 export function checkPassword(password: string, again: string, username: string): PasswordChecks {
   const small = password.toLowerCase();
   const mostly = (name: string): boolean =>
-    small.includes(name.toLowerCase()) && password.length < LEAST_LENGTH + name.length;
+    small.includes(name.toLowerCase()) && password.length < MIN_LENGTH + name.length;
   return {
-    length: [...password].length >= LEAST_LENGTH,
-    different: new Set(small).size >= LEAST_DIFFERENT,
+    length: [...password].length >= MIN_LENGTH,
+    different: new Set(small).size >= MIN_DIFFERENT,
     name: password !== "" && !mostly(PROGRAM) && !(username !== "" && mostly(username)),
     same: password !== "" && password === again,
   };

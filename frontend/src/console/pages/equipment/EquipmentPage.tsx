@@ -6,7 +6,7 @@ import { Icon } from "@shared/ui/Icon";
 import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { useTexts } from "../../i18n";
-import { useMay } from "../../permissions";
+import { usePermissions } from "../../permissions";
 import { calibrationsQuery } from "../../queries";
 import { EmptyState } from "../../ui/EmptyState";
 import { Loaded } from "../../ui/Loaded";
@@ -19,7 +19,7 @@ export function EquipmentPage(): JSX.Element {
   const { t } = useTexts();
   useTitle(t("equipment.title"));
   const [adding, dialog] = useDisclosure();
-  const mayWrite = useMay()("design");
+  const mayWrite = usePermissions()("design");
   const add = mayWrite ? (
     <Button leftSection={<Icon name="add" size={18} />} onClick={dialog.open}>
       {t("equipment.add")}

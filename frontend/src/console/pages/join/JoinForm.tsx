@@ -6,7 +6,7 @@ import { dateTime } from "@shared/format";
 import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { navigate } from "wouter/use-hash-location";
-import { begin } from "../../account";
+import { startSession } from "../../account";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
 import { fieldErrors, NewPassword, NOTHING_TYPED } from "../account/NewPassword";
@@ -16,22 +16,22 @@ import classes from "./Join.module.css";
 
 interface JoinFormProps {
   readonly token: string;
-  readonly look: InvitationLook;
+  readonly invitation: InvitationLook;
   /** What to show if the link has been used meanwhile. */
   readonly onRefused: (error: unknown) => JSX.Element;
 }
 
-export function JoinForm({ token, look, onRefused }: JoinFormProps): JSX.Element {
+export function JoinForm({ token, invitation, onRefused }: JoinFormProps): JSX.Element {
   const { t } = useTexts();
   const queries = useQueryClient();
   const [username, setUsername] = useState("");
   const [typed, setTyped] = useState(NOTHING_TYPED);
-  const good = isGood(checkPassword(typed.password, typed.again, username.trim()));
+  const good = isGood(checkPassword(typed.password, typed.repeated, username.trim()));
   const accept = useMutation({
     mutationFn: () => invitations.accept(token, username.trim(), typed.password),
     onSuccess: ({ account }) => {
       navigate("/", { replace: true });
-      begin(queries, account);
+      startSession(queries, account);
     },
   });
   if (isApiError(accept.error, "gone")) return onRefused(accept.error);
@@ -44,7 +44,7 @@ export function JoinForm({ token, look, onRefused }: JoinFormProps): JSX.Element
       }}
     >
       <Stack>
-        <Offer look={look} />
+        <Offer look={invitation} />
         <TextInput
           label={t("invited.username")}
           description={t("invited.username.hint")}

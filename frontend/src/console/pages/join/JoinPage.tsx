@@ -11,7 +11,7 @@ import { signOut } from "../../account";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
 import { useTitle } from "../../ui/page";
-import { Front } from "../Front";
+import { SignedOutFrame } from "../SignedOutFrame";
 import classes from "./Join.module.css";
 import { JoinForm } from "./JoinForm";
 
@@ -24,11 +24,11 @@ export function JoinPage({ token, account }: JoinPageProps): JSX.Element {
   const { t } = useTexts();
   useTitle(t("invited.title"));
   return (
-    <Front title={t("invited.title")}>
+    <SignedOutFrame title={t("invited.title")}>
       <div className={classes.body}>
         {account === null ? <Invitation token={token} /> : <SignedIn account={account} />}
       </div>
-    </Front>
+    </SignedOutFrame>
   );
 }
 
@@ -67,7 +67,11 @@ function Invitation({ token }: { readonly token: string }): JSX.Element {
   if (query.isError) return <Refused error={query.error} onRetry={() => void query.refetch()} />;
   if (query.data === undefined) return <Loader />;
   return (
-    <JoinForm token={token} look={query.data} onRefused={(error) => <Refused error={error} />} />
+    <JoinForm
+      token={token}
+      invitation={query.data}
+      onRefused={(error) => <Refused error={error} />}
+    />
   );
 }
 

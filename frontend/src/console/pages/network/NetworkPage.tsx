@@ -62,7 +62,7 @@ function Addresses({ network }: { readonly network: Network }): JSX.Element {
       <Title order={2} mb="md">
         {t("network.addresses")}
       </Title>
-      <div className={classes.beside}>
+      <div className={classes.sideBySide}>
         <dl className={classes.list}>
           {network.addresses.map(({ url }) => (
             <div key={url}>
@@ -114,10 +114,10 @@ function Cable({ cable }: { readonly cable: Network["cable"] }): JSX.Element {
   );
 }
 
-type Shown = NonNullable<Network["certificate"]>;
+type CertificateView = NonNullable<Network["certificate"]>;
 
 /** The fingerprint to compare with a device's screen before trusting it, and its expiry date. */
-function Certificate({ certificate }: { readonly certificate: Shown }): JSX.Element {
+function Certificate({ certificate }: { readonly certificate: CertificateView }): JSX.Element {
   const { t } = useTexts();
   const own = certificate.source === "files";
   return (
@@ -147,7 +147,7 @@ function Certificate({ certificate }: { readonly certificate: Shown }): JSX.Elem
   );
 }
 
-function Expiry({ certificate }: { readonly certificate: Shown }): JSX.Element {
+function Expiry({ certificate }: { readonly certificate: CertificateView }): JSX.Element {
   const { t, language } = useTexts();
   const date = day(certificate.expires_at, language);
   return (
@@ -170,7 +170,7 @@ function FirstTime({ help }: { readonly help: NonNullable<Network["help"]> }): J
       <Title order={2} mb="md">
         {t("network.first")}
       </Title>
-      <div className={classes.beside}>
+      <div className={classes.sideBySide}>
         <div>
           <p className={classes.text}>{t("network.first.body")}</p>
           <Copyable text={help.url} />

@@ -3,7 +3,7 @@ import { Button, Group, Stack, Text } from "@mantine/core";
 import { type Person, people } from "@shared/api/people";
 import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
-import { lookAgain } from "../../account";
+import { checkSignIn } from "../../account";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
 import { peopleQuery } from "../../queries";
@@ -24,12 +24,12 @@ export function Access({ person, isSelf }: AccessProps): JSX.Element {
 }
 
 /** Run an action and reload the accounts and one's own sign-in, which it may have changed. */
-function useAct(act: () => Promise<unknown>) {
+function useAccountAction(act: () => Promise<unknown>) {
   const queries = useQueryClient();
   return useMutation({
     mutationFn: act,
     onSuccess: async () => {
-      await lookAgain(queries);
+      await checkSignIn(queries);
       await queries.invalidateQueries({ queryKey: peopleQuery.queryKey });
     },
   });
@@ -37,7 +37,7 @@ function useAct(act: () => Promise<unknown>) {
 
 function EndLogins({ person, isSelf }: AccessProps): JSX.Element {
   const { t } = useTexts();
-  const end = useAct(() => people.endLogins(person.id));
+  const end = useAccountAction(() => people.endLogins(person.id));
   return (
     <section>
       <Text size="sm" c="dimmed" mb={8}>
@@ -62,7 +62,7 @@ function EndLogins({ person, isSelf }: AccessProps): JSX.Element {
 function Close({ person }: { readonly person: Person }): JSX.Element {
   const { t } = useTexts();
   const [sure, setSure] = useState(false);
-  const close = useAct(() => people.change(person.id, { closed: true }));
+  const close = useAccountAction(() => people.change(person.id, { closed: true }));
   const name = person.username;
   if (!sure) {
     return (
@@ -74,7 +74,7 @@ function Close({ person }: { readonly person: Person }): JSX.Element {
     );
   }
   return (
-    <section className={classes.sure} aria-live="polite">
+    <section className={classes.confirm} aria-live="polite">
       <strong>{t("people.close.title", { name })}</strong>
       <Text size="sm">{t("people.close.body", { name })}</Text>
       {close.isError && <Failure error={close.error} />}
@@ -92,7 +92,7 @@ function Close({ person }: { readonly person: Person }): JSX.Element {
 
 function Reopen({ person }: { readonly person: Person }): JSX.Element {
   const { t } = useTexts();
-  const reopen = useAct(() => people.change(person.id, { closed: false }));
+  const reopen = useAccountAction(() => people.change(person.id, { closed: false }));
   return (
     <section>
       <Text size="sm" c="dimmed" mb={8}>

@@ -25,7 +25,7 @@ export function AuditTab(): JSX.Element {
       <div className={classes.filters}>
         <Filters filter={filter} onChange={setFilter} />
         <Button
-          className={classes.push ?? ""}
+          className={classes.spacer ?? ""}
           variant="default"
           leftSection={<Icon name="link" size={17} />}
           loading={check.isPending}

@@ -96,7 +96,7 @@ function Row({ invitation }: { readonly invitation: Invitation }): JSX.Element {
       <Table.Td className={classes.nowrap ?? ""}>
         {dateTime(invitation.expires_at, language)}
       </Table.Td>
-      <Table.Td className={classes.doing ?? ""}>
+      <Table.Td className={classes.rowActions ?? ""}>
         {status === "open" && <Revoke invitation={invitation} />}
       </Table.Td>
     </Table.Tr>

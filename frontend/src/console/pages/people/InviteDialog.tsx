@@ -43,7 +43,7 @@ export function InviteButton(): JSX.Element {
         {made === null ? (
           <InviteForm onMade={setMade} />
         ) : (
-          <InviteLink made={made} onDone={close} />
+          <InviteLink invited={made} onDone={close} />
         )}
       </Modal>
     </>
@@ -61,9 +61,9 @@ function InviteForm({ onMade }: { readonly onMade: (made: Invited) => void }): J
   const [hours, setHours] = useState("72");
   const make = useMutation({
     mutationFn: () => invitations.make({ role, studies, note: note.trim(), hours: Number(hours) }),
-    onSuccess: (made) => {
+    onSuccess: (created) => {
       void queries.invalidateQueries({ queryKey: invitationsQuery.queryKey });
-      onMade(made);
+      onMade(created);
     },
   });
   return (
@@ -108,29 +108,29 @@ function InviteForm({ onMade }: { readonly onMade: (made: Invited) => void }): J
 }
 
 interface InviteLinkProps {
-  readonly made: Invited;
+  readonly invited: Invited;
   readonly onDone: () => void;
 }
 
 /** The link of a new invitation, which cannot be shown a second time, not even by the server. */
-function InviteLink({ made, onDone }: InviteLinkProps): JSX.Element {
+function InviteLink({ invited, onDone }: InviteLinkProps): JSX.Element {
   const { t, language } = useTexts();
   return (
     <Stack>
       <Group gap="sm">
-        <RoleBadge role={made.role} />
-        <span>{made.note}</span>
+        <RoleBadge role={invited.role} />
+        <span>{invited.note}</span>
       </Group>
       <Group align="end" wrap="nowrap">
         <TextInput
           label={t("invite.link")}
           readOnly
           data-autofocus
-          value={made.url}
+          value={invited.url}
           onFocus={(event) => event.currentTarget.select()}
           style={{ flex: 1 }}
         />
-        <CopyButton value={made.url}>
+        <CopyButton value={invited.url}>
           {({ copied, copy }) => (
             <Button
               variant={copied ? "light" : "filled"}
@@ -143,9 +143,9 @@ function InviteLink({ made, onDone }: InviteLinkProps): JSX.Element {
         </CopyButton>
       </Group>
       <Notice tone="warn" icon="key">
-        {t("invite.once", { date: dateTime(made.expires_at, language) })}
+        {t("invite.once", { date: dateTime(invited.expires_at, language) })}
       </Notice>
-      {made.only_here && <Notice tone="warn">{t("invite.loopback")}</Notice>}
+      {invited.only_here && <Notice tone="warn">{t("invite.loopback")}</Notice>}
       <Group justify="flex-end">
         <Button variant="default" onClick={onDone}>
           {t("invite.done")}

@@ -67,9 +67,9 @@ function Row({ person, isSelf, onEdit }: RowProps): JSX.Element {
     <Table.Tr className={closed === null ? "" : (classes.closed ?? "")}>
       <Table.Td>
         <strong className={classes.name}>{person.username}</strong>
-        {isSelf && <span className={classes.you}>{t("people.you")}</span>}
+        {isSelf && <span className={classes.ownAccount}>{t("people.you")}</span>}
         {closed !== null && (
-          <span className={classes.closedSince}>
+          <span className={classes.deactivated}>
             <Icon name="lock" size={14} />
             {t("people.closed", { date: day(closed, language) })}
           </span>
@@ -92,7 +92,7 @@ function Row({ person, isSelf, onEdit }: RowProps): JSX.Element {
           ? t("people.logins.none")
           : t("people.logins.count", { count: person.logins })}
       </Table.Td>
-      <Table.Td className={classes.doing ?? ""}>
+      <Table.Td className={classes.rowActions ?? ""}>
         <Button
           size="xs"
           variant="default"

@@ -3,7 +3,7 @@ import type { AuditEntry, Role } from "@shared/api/people";
 import type { Translate } from "@shared/i18n/i18n";
 import type { Key } from "../../i18n";
 
-type Say = Translate<Key>;
+type TranslateEntry = Translate<Key>;
 
 /**
  * The name of an actor: `account:ada` is ada; a device or the command line is called by its kind.
@@ -14,7 +14,7 @@ export const actorName = (actor: string): string =>
 export const subjectName = (subject: string): string => subject.slice(subject.indexOf(":") + 1);
 
 /** What was done; more than one sentence if one action changed several things. */
-export function sentences(entry: AuditEntry, t: Say): readonly string[] {
+export function sentences(entry: AuditEntry, t: TranslateEntry): readonly string[] {
   const subject = subjectName(entry.subject);
   const details = entry.details as Readonly<Record<string, unknown>>;
   if (entry.action === "account.changed") return accountChanges(details, subject, t);
@@ -104,21 +104,21 @@ export const KINDS = [
 function accountChanges(
   { role, studies, closed }: Readonly<Record<string, unknown>>,
   subject: string,
-  t: Say,
+  t: TranslateEntry,
 ): readonly string[] {
-  const said: string[] = [];
-  if (role != null) said.push(t("act.account.role", { subject, role: roleName(role, t) }));
-  if (studies === null) said.push(t("act.account.allStudies", { subject }));
+  const changes: string[] = [];
+  if (role != null) changes.push(t("act.account.role", { subject, role: roleName(role, t) }));
+  if (studies === null) changes.push(t("act.account.allStudies", { subject }));
   if (Array.isArray(studies)) {
-    said.push(
+    changes.push(
       studies.length === 0
         ? t("act.account.noStudies", { subject })
         : t("act.account.studies", { subject, studies: list(studies) }),
     );
   }
-  if (closed === true) said.push(t("act.account.closed", { subject }));
-  if (closed === false) said.push(t("act.account.reopened", { subject }));
-  return said.length === 0 ? [t("act.account.changed", { subject })] : said;
+  if (closed === true) changes.push(t("act.account.closed", { subject }));
+  if (closed === false) changes.push(t("act.account.reopened", { subject }));
+  return changes.length === 0 ? [t("act.account.changed", { subject })] : changes;
 }
 
 const ROLE_KEYS: Readonly<Record<Role, Key>> = {
@@ -128,14 +128,14 @@ const ROLE_KEYS: Readonly<Record<Role, Key>> = {
   analyst: "role.analyst",
 };
 
-function roleName(role: unknown, t: Say): string {
+function roleName(role: unknown, t: TranslateEntry): string {
   const key = ROLE_KEYS[role as Role];
   return key === undefined ? String(role) : t(key);
 }
 
 const list = (values: readonly unknown[]): string => values.map(String).join(", ");
 
-const texts = (details: Readonly<Record<string, unknown>>, t: Say) =>
+const texts = (details: Readonly<Record<string, unknown>>, t: TranslateEntry) =>
   Object.fromEntries(
     Object.entries(details).map(([name, value]) => [
       name,

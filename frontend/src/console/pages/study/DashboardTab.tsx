@@ -5,10 +5,10 @@
  */
 import { Title } from "@mantine/core";
 import {
-  type Asked,
-  askedOf,
   type Dashboard,
   type FigureGroup,
+  type Filter,
+  filterFrom,
   searchOf,
 } from "@shared/api/analysis";
 import type { StudyDetail } from "@shared/api/types";
@@ -31,18 +31,18 @@ const AFTERWARDS = ["embodiment", "answers", "tasks", "movement", "quality"] as 
 
 export function DashboardTab({ study }: { readonly study: StudyDetail }): JSX.Element {
   const { t } = useTexts();
-  const [asked, ask] = useAsked();
-  const query = useQuery(dashboardQuery(study.key, asked, FIRST));
+  const [filter, setFilter] = useFilter();
+  const query = useQuery(dashboardQuery(study.key, filter, FIRST));
   const waiting = useIsFetching({ queryKey: ["studies", study.key, "dashboard"] }) > 0;
   return (
     <>
       <div className={page.toolbar}>
         <KindFilter
-          kind={asked.kind}
-          onChange={(kind) => ask({ ...askedOf(new URLSearchParams()), kind })}
+          kind={filter.kind}
+          onChange={(kind) => setFilter({ ...filterFrom(new URLSearchParams()), kind })}
         />
         {query.data !== undefined && (
-          <span className={page.push}>
+          <span className={page.spacer}>
             {t("dashboard.sessions", {
               count: query.data.n_completed - query.data.n_not_valid,
             })}
@@ -55,9 +55,9 @@ export function DashboardTab({ study }: { readonly study: StudyDetail }): JSX.El
       <Loaded query={query}>
         {(dashboard) => (
           <>
-            <FilterBar asked={asked} choices={dashboard.choices} onChange={ask} />
+            <FilterBar filter={filter} choices={dashboard.choices} onChange={setFilter} />
             <Banners dashboard={dashboard} />
-            <Groups studyKey={study.key} asked={asked} groups={[FIRST, ...AFTERWARDS]} turn />
+            <Groups studyKey={study.key} filter={filter} groups={[FIRST, ...AFTERWARDS]} enabled />
           </>
         )}
       </Loaded>
@@ -89,18 +89,18 @@ function Banners({ dashboard }: { readonly dashboard: Dashboard }): JSX.Element 
 
 interface GroupsProps {
   readonly studyKey: string;
-  readonly asked: Asked;
+  readonly filter: Filter;
   readonly groups: readonly FigureGroup[];
   /** Whether the groups above have loaded, so that these may be requested. */
-  readonly turn: boolean;
+  readonly enabled: boolean;
 }
 
 /** The first of some groups of figures, followed by the others. */
-function Groups({ studyKey, asked, groups, turn }: GroupsProps): JSX.Element {
+function Groups({ studyKey, filter, groups, enabled }: GroupsProps): JSX.Element {
   const { t } = useTexts();
   const [group = FIRST, ...others] = groups;
-  const query = useQuery({ ...dashboardQuery(studyKey, asked, group), enabled: turn });
-  const there = turn && !query.isPending && !query.isPlaceholderData;
+  const query = useQuery({ ...dashboardQuery(studyKey, filter, group), enabled });
+  const hasLoaded = enabled && !query.isPending && !query.isPlaceholderData;
   return (
     <>
       <section className={classes.group}>
@@ -112,7 +112,7 @@ function Groups({ studyKey, asked, groups, turn }: GroupsProps): JSX.Element {
         </Loaded>
       </section>
       {others.length > 0 && (
-        <Groups studyKey={studyKey} asked={asked} groups={others} turn={there} />
+        <Groups studyKey={studyKey} filter={filter} groups={others} enabled={hasLoaded} />
       )}
     </>
   );
@@ -127,11 +127,11 @@ function Figures({ studyKey, dashboard }: FiguresProps): JSX.Element {
   const { t } = useTexts();
   // What is shown, which right after a choice is not yet what is requested.
   const { kind, filter, figures } = dashboard;
-  const drawn: Asked = {
-    ...askedOf(new URLSearchParams({ kind })),
+  const drawn: Filter = {
+    ...filterFrom(new URLSearchParams({ kind })),
     ...filter,
     participant: filter.participant ?? [],
-  } as Asked;
+  } as Filter;
   if (figures.length === 0) {
     return (
       <EmptyState icon="chart" title={t("dashboard.empty.title")}>
@@ -142,7 +142,7 @@ function Figures({ studyKey, dashboard }: FiguresProps): JSX.Element {
   return (
     <div className={classes.figures}>
       {figures.map((entry) => (
-        <FigureCard key={entry.key} studyKey={studyKey} entry={entry} asked={drawn} />
+        <FigureCard key={entry.key} studyKey={studyKey} entry={entry} filter={drawn} />
       ))}
     </div>
   );
@@ -153,7 +153,7 @@ function Figures({ studyKey, dashboard }: FiguresProps): JSX.Element {
  *
  * It is stored before the `#` of the page's route, and removed when the page is left.
  */
-function useAsked(): readonly [Asked, (next: Asked) => void] {
+function useFilter(): readonly [Filter, (next: Filter) => void] {
   const [place, navigate] = useLocation();
   const search = useSearch();
   useEffect(() => {
@@ -164,6 +164,7 @@ function useAsked(): readonly [Asked, (next: Asked) => void] {
     };
   }, []);
   // Replace the address: going back leaves the page instead of undoing a filter.
-  const ask = (next: Asked): void => navigate(`${place}?${searchOf(next)}`, { replace: true });
-  return [askedOf(new URLSearchParams(search)), ask];
+  const setFilter = (next: Filter): void =>
+    navigate(`${place}?${searchOf(next)}`, { replace: true });
+  return [filterFrom(new URLSearchParams(search)), setFilter];
 }

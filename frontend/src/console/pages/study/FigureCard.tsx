@@ -2,7 +2,7 @@
 import { Figure } from "@charts/Figure";
 import { savePicture } from "@charts/print";
 import { Button, Title } from "@mantine/core";
-import { type Asked, analysis, type FigureEntry } from "@shared/api/analysis";
+import { analysis, type FigureEntry, type Filter } from "@shared/api/analysis";
 import { Icon } from "@shared/ui/Icon";
 import type { JSX } from "react";
 import { Failure } from "../../errors";
@@ -13,12 +13,12 @@ import { useDownload } from "./useDownload";
 interface FigureCardProps {
   readonly studyKey: string;
   readonly entry: FigureEntry;
-  readonly asked: Asked;
+  readonly filter: Filter;
 }
 
-export function FigureCard({ studyKey, entry, asked }: FigureCardProps): JSX.Element {
+export function FigureCard({ studyKey, entry, filter }: FigureCardProps): JSX.Element {
   const { t } = useTexts();
-  const watermark = asked.kind === "simulated" ? t("simulated.watermark") : null;
+  const watermark = filter.kind === "simulated" ? t("simulated.watermark") : null;
   const { title, caption, figure } = entry;
   return (
     <figure className={entry.wide ? `${classes.figure} ${classes.wide}` : classes.figure}>
@@ -39,8 +39,8 @@ export function FigureCard({ studyKey, entry, asked }: FigureCardProps): JSX.Ele
       {figure !== null && (
         <SaveRow
           label={t("figures.save", { title })}
-          name={`${studyKey}_${entry.key}_${asked.kind}`}
-          rowsUrl={analysis.rowsUrl(studyKey, entry.key, asked)}
+          name={`${studyKey}_${entry.key}_${filter.kind}`}
+          rowsUrl={analysis.rowsUrl(studyKey, entry.key, filter)}
           onPicture={(format, name) =>
             savePicture(figure, { title, caption, watermark }, entry.wide, format, name)
           }

@@ -1,27 +1,27 @@
 /** The filters of the dashboard in a row of fields; every choice is part of the page's address. */
 import { Button, MultiSelect, SegmentedControl, Select, TextInput } from "@mantine/core";
-import { type Asked, askedOf, type FilterChoices } from "@shared/api/analysis";
+import { type Filter, type FilterChoices, filterFrom } from "@shared/api/analysis";
 import type { JSX } from "react";
 import { useTexts } from "../../i18n";
 import classes from "./DashboardTab.module.css";
 
 interface FilterBarProps {
-  readonly asked: Asked;
+  readonly filter: Filter;
   readonly choices: FilterChoices;
-  readonly onChange: (asked: Asked) => void;
+  readonly onChange: (filter: Filter) => void;
 }
 
-export function FilterBar({ asked, choices, onChange }: FilterBarProps): JSX.Element {
+export function FilterBar({ filter, choices, onChange }: FilterBarProps): JSX.Element {
   const { t } = useTexts();
-  const change = (part: Partial<Asked>): void => onChange({ ...asked, ...part });
-  const none: Asked = { ...askedOf(new URLSearchParams()), kind: asked.kind };
+  const change = (part: Partial<Filter>): void => onChange({ ...filter, ...part });
+  const none: Filter = { ...filterFrom(new URLSearchParams()), kind: filter.kind };
   return (
     <fieldset className={classes.filters} aria-label={t("figures.filter")}>
       <MultiSelect
         label={t("figures.participants")}
-        placeholder={asked.participant.length === 0 ? t("figures.participants.all") : ""}
-        data={[...new Set([...choices.participants, ...asked.participant])]}
-        value={[...asked.participant]}
+        placeholder={filter.participant.length === 0 ? t("figures.participants.all") : ""}
+        data={[...new Set([...choices.participants, ...filter.participant])]}
+        value={[...filter.participant]}
         onChange={(participant) => change({ participant })}
         className={classes.people ?? ""}
         limit={100}
@@ -33,7 +33,7 @@ export function FilterBar({ asked, choices, onChange }: FilterBarProps): JSX.Ele
         label={t("figures.order")}
         placeholder={t("figures.order.all")}
         data={choices.orders.map((value) => ({ value, label: value.replaceAll(" ", " → ") }))}
-        value={asked.order}
+        value={filter.order}
         onChange={(order) => change({ order })}
         clearable
         size="xs"
@@ -46,7 +46,7 @@ export function FilterBar({ asked, choices, onChange }: FilterBarProps): JSX.Ele
             value,
             label: t(`figures.limb.${value}`),
           }))}
-          value={asked.limb}
+          value={filter.limb}
           onChange={(limb) => change({ limb: limb === "hand" || limb === "foot" ? limb : null })}
           className={classes.short ?? ""}
           clearable
@@ -58,7 +58,7 @@ export function FilterBar({ asked, choices, onChange }: FilterBarProps): JSX.Ele
           key={name}
           type="date"
           label={t(`figures.${name}`)}
-          value={asked[name] ?? ""}
+          value={filter[name] ?? ""}
           min={choices.first_day ?? ""}
           max={choices.last_day ?? ""}
           onChange={({ currentTarget }) => change({ [name]: currentTarget.value || null })}
@@ -70,7 +70,7 @@ export function FilterBar({ asked, choices, onChange }: FilterBarProps): JSX.Ele
         <SegmentedControl
           aria-label={t("figures.rows")}
           size="xs"
-          value={asked.rows}
+          value={filter.rows}
           onChange={(rows) => change({ rows: rows === "all" ? "all" : "valid" })}
           data={(["valid", "all"] as const).map((value) => ({
             value,

@@ -20,7 +20,7 @@ export function LedgerTab({ study }: { readonly study: StudyDetail }): JSX.Eleme
     <>
       <div className={page.toolbar}>
         <KindFilter kind={kind} onChange={setKind} />
-        <div className={`${classes.legend} ${page.push}`}>
+        <div className={`${classes.legend} ${page.spacer}`}>
           {(["free", "open", "completed"] as const).map((state) => (
             <span key={state}>
               <SlotMark state={state} />

@@ -6,13 +6,13 @@ import { Notice } from "@shared/ui/Notice";
 import { type JSX, useState } from "react";
 import { Link } from "wouter";
 import { useTexts } from "../../i18n";
-import { useMay } from "../../permissions";
+import { usePermissions } from "../../permissions";
 import { ImportDialog } from "../ImportDialog";
 import classes from "./ProtocolTab.module.css";
 
 export function ProtocolTab({ study }: { readonly study: StudyDetail }): JSX.Element {
   const { t } = useTexts();
-  const may = useMay();
+  const can = usePermissions();
   const [importing, setImporting] = useState(false);
   return (
     <>
@@ -33,7 +33,7 @@ export function ProtocolTab({ study }: { readonly study: StudyDetail }): JSX.Ele
                 </Button>
               )}
             </CopyButton>
-            {may("design") && (
+            {can("design") && (
               <>
                 <Button
                   size="xs"

@@ -8,7 +8,7 @@ import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Link, useLocation } from "wouter";
 import { useTexts } from "../../i18n";
-import { useMay } from "../../permissions";
+import { usePermissions } from "../../permissions";
 import { sessionsQuery } from "../../queries";
 import { TryIt } from "../../tour/TryIt";
 import { KindBadge, StatusBadge } from "../../ui/badges";
@@ -22,7 +22,7 @@ import page from "./StudyPage.module.css";
 
 export function SessionsTab({ study }: { readonly study: StudyDetail }): JSX.Element {
   const { t } = useTexts();
-  const may = useMay();
+  const can = usePermissions();
   const [kind, setKind] = useState<Kind | "all">("all");
   const [joining, setJoining] = useState(false);
   return (
@@ -45,7 +45,7 @@ export function SessionsTab({ study }: { readonly study: StudyDetail }): JSX.Ele
               title={t("sessions.empty.title")}
               action={
                 <>
-                  {may("run") && (
+                  {can("run") && (
                     <Button
                       leftSection={<Icon name="add" size={18} />}
                       onClick={() => setJoining(true)}

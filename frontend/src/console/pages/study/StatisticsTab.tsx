@@ -24,7 +24,7 @@ export function StatisticsTab({ study }: { readonly study: StudyDetail }): JSX.E
       <div className={page.toolbar}>
         <KindFilter kind={kind} onChange={setKind} />
         {query.data !== undefined && (
-          <span className={page.push}>
+          <span className={page.spacer}>
             {t("dashboard.sessions", {
               count: query.data.n_completed - query.data.n_not_valid,
             })}

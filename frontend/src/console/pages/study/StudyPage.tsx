@@ -10,12 +10,12 @@ import { type JSX, useState } from "react";
 import { Link, useLocation } from "wouter";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
-import { type Act, useMay } from "../../permissions";
+import { type Permission, usePermissions } from "../../permissions";
 import { PreregistrationTab } from "../../preregistration/PreregistrationTab";
 import { studyQuery } from "../../queries";
 import { Loaded } from "../../ui/Loaded";
 import { useTitle } from "../../ui/page";
-import { NotForRole } from "../NotForRole";
+import { NoPermission } from "../NoPermission";
 import { DashboardTab } from "./DashboardTab";
 import { ExportTab } from "./ExportTab";
 import { LedgerTab } from "./LedgerTab";
@@ -73,7 +73,7 @@ const CONTENT: Readonly<Record<Tab, (props: { study: StudyDetail }) => JSX.Eleme
 };
 
 /** The permission required for a tab; all others are for everybody. */
-const NEEDS: Readonly<Partial<Record<Tab, Act>>> = {
+const NEEDS: Readonly<Partial<Record<Tab, Permission>>> = {
   participants: "rights",
   dashboard: "compare",
   statistics: "compare",
@@ -106,12 +106,12 @@ export function StudyPage({ studyKey, tab }: StudyPageProps): JSX.Element {
 function Study({ study, tab }: { readonly study: StudyDetail; readonly tab: Tab }): JSX.Element {
   const { t } = useTexts();
   const [, navigate] = useLocation();
-  const may = useMay();
+  const can = usePermissions();
   const isTheirs = (name: Tab): boolean => {
     const act = NEEDS[name];
-    return act === undefined || may(act);
+    return act === undefined || can(act);
   };
-  const Content = isTheirs(tab) ? CONTENT[tab] : NotForRole;
+  const Content = isTheirs(tab) ? CONTENT[tab] : NoPermission;
   return (
     <>
       <Head study={study} />
@@ -142,7 +142,7 @@ function Study({ study, tab }: { readonly study: StudyDetail; readonly tab: Tab 
 function Head({ study }: { readonly study: StudyDetail }): JSX.Element {
   const { t, language } = useTexts();
   const [joining, setJoining] = useState(false);
-  const may = useMay();
+  const can = usePermissions();
   const title = study.protocol === null ? study.title : inLanguage(study.protocol.title, language);
   useTitle(title);
   return (
@@ -158,7 +158,7 @@ function Head({ study }: { readonly study: StudyDetail }): JSX.Element {
           </span>
         </div>
       </div>
-      {may("run") && (
+      {can("run") && (
         <Button
           leftSection={<Icon name="add" size={18} />}
           disabled={study.archived_at !== null}
@@ -175,7 +175,7 @@ function Head({ study }: { readonly study: StudyDetail }): JSX.Element {
 /** A notice that a study is archived, with a button that restores it. */
 function Archived({ studyKey }: { readonly studyKey: string }): JSX.Element {
   const { t } = useTexts();
-  const may = useMay();
+  const can = usePermissions();
   const queries = useQueryClient();
   const restore = useMutation({
     mutationFn: () => versions.restore(studyKey),
@@ -189,7 +189,7 @@ function Archived({ studyKey }: { readonly studyKey: string }): JSX.Element {
         icon="lock"
         title={t("versions.archived")}
         actions={
-          may("design") && (
+          can("design") && (
             <Button
               size="xs"
               variant="default"

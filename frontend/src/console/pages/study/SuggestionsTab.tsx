@@ -10,7 +10,7 @@ import { type JSX, useState } from "react";
 import { Link } from "wouter";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
-import { useMay } from "../../permissions";
+import { usePermissions } from "../../permissions";
 import { suggestionsQuery } from "../../queries";
 import { EmptyState } from "../../ui/EmptyState";
 import { Loaded } from "../../ui/Loaded";
@@ -19,8 +19,8 @@ import classes from "./SuggestionsTab.module.css";
 export function SuggestionsTab({ study }: { readonly study: StudyDetail }): JSX.Element {
   const { t } = useTexts();
   const [writing, dialog] = useDisclosure();
-  const may = useMay();
-  const add = may("run") ? (
+  const can = usePermissions();
+  const add = can("run") ? (
     <Button variant="default" leftSection={<Icon name="add" size={18} />} onClick={dialog.open}>
       {t("suggest.add")}
     </Button>
@@ -78,7 +78,7 @@ interface ItemProps {
 
 function Item({ one, study }: ItemProps): JSX.Element {
   const { t, language } = useTexts();
-  const may = useMay();
+  const can = usePermissions();
   const status =
     one.adopted_in === null
       ? t(`suggestions.${one.status}`)
@@ -92,7 +92,7 @@ function Item({ one, study }: ItemProps): JSX.Element {
       <div>
         <div className={classes.about}>{one.about_title ?? t("suggestions.whole")}</div>
         <p className={classes.body}>{one.body}</p>
-        <div className={classes.by}>
+        <div className={classes.author}>
           {t("suggestions.by", {
             who: one.by.replace("account:", ""),
             when: dateTime(one.at, language),
@@ -107,7 +107,7 @@ function Item({ one, study }: ItemProps): JSX.Element {
           )}
         </div>
       </div>
-      {one.status === "open" && may("design") && <Decide one={one} study={study} />}
+      {one.status === "open" && can("design") && <Decide one={one} study={study} />}
     </li>
   );
 }

@@ -12,7 +12,7 @@ import { Link, useLocation } from "wouter";
 import { DiffView } from "../../editor/DiffView";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
-import { useMay } from "../../permissions";
+import { usePermissions } from "../../permissions";
 import { versionDiffQuery } from "../../queries";
 import { Loaded } from "../../ui/Loaded";
 import page from "./StudyPage.module.css";
@@ -20,13 +20,13 @@ import classes from "./VersionsTab.module.css";
 
 export function VersionsTab({ study }: { readonly study: StudyDetail }): JSX.Element {
   const { t, language } = useTexts();
-  const may = useMay();
+  const can = usePermissions();
   return (
     <>
       <div className={page.toolbar}>
         <span className={classes.lead}>{t("versions.lead")}</span>
-        {may("design") && (
-          <div className={`${page.push} ${classes.actions}`}>
+        {can("design") && (
+          <div className={`${page.spacer} ${classes.actions}`}>
             <Button
               component={Link}
               href={`/studies/${study.key}/edit`}
@@ -107,10 +107,10 @@ function Duplicate({ study }: { readonly study: StudyDetail }): JSX.Element {
   const [key, setKey] = useState(`${study.key}-copy`);
   const copy = useMutation({
     mutationFn: () => versions.duplicate(study.key, key.trim()),
-    onSuccess: async (made) => {
+    onSuccess: async (created) => {
       setOpened(false);
       await queries.invalidateQueries({ queryKey: ["studies"] });
-      navigate(`/studies/${made.key}/edit`);
+      navigate(`/studies/${created.key}/edit`);
     },
   });
   const close = () => {

@@ -6,12 +6,12 @@ import { Channel, type Ending } from "./channel";
 const ADDRESS = { url: "ws://test", token: "TOKEN" };
 let socket: FakeSocket;
 let channel: Channel;
-let heard: string[];
+let received: string[];
 let ending: Ending | null;
 
 beforeEach(() => {
   vi.useFakeTimers();
-  heard = [];
+  received = [];
   ending = null;
   const make = (_url: string, protocols: string[]) => {
     socket = new FakeSocket(protocols, () => undefined);
@@ -21,8 +21,8 @@ beforeEach(() => {
     ADDRESS,
     DEFAULT_LIMITS,
     make,
-    () => heard.push("open"),
-    (text) => heard.push(text),
+    () => received.push("open"),
+    (text) => received.push(text),
   );
   void channel.ended.then((how) => {
     ending = how;
@@ -61,7 +61,7 @@ describe("a channel", () => {
     expect(ending).toEqual({ code: 4401, reason: "replaced" });
     socket.hears("late");
     await vi.advanceTimersByTimeAsync(0);
-    expect([heard, channel.isOpen]).toEqual([["open"], false]);
+    expect([received, channel.isOpen]).toEqual([["open"], false]);
   });
 
   it("does not wait for the closing handshake of a dead network", async () => {

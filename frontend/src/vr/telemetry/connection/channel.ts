@@ -44,8 +44,8 @@ export class Channel {
     this.#socket = make(address.url, [SUBPROTOCOL, `bearer.${address.token}`]);
     this.#socket.binaryType = "arraybuffer";
     this.#socket.onopen = () => this.#isOpen && onOpen();
-    this.#socket.onmessage = ({ data }) => this.#heard(data);
-    this.#socket.onclose = ({ code, reason }) => this.#over({ code, reason });
+    this.#socket.onmessage = ({ data }) => this.#receive(data);
+    this.#socket.onclose = ({ code, reason }) => this.#finish({ code, reason });
     this.#watch(limits.openTimeoutS);
   }
 
@@ -66,7 +66,7 @@ export class Channel {
   }
 
   close(code: number, reason = ""): void {
-    this.#over({ code, reason });
+    this.#finish({ code, reason });
   }
 
   /**
@@ -75,16 +75,16 @@ export class Channel {
    */
   #watch(silenceS: number): void {
     clearTimeout(this.#watchdog);
-    this.#watchdog = setTimeout(() => this.#over(BROKEN), silenceS * 1000);
+    this.#watchdog = setTimeout(() => this.#finish(BROKEN), silenceS * 1000);
   }
 
-  #heard(data: unknown): void {
+  #receive(data: unknown): void {
     if (!this.#isOpen) return;
     this.#watch(this.#limits.silenceS);
     if (typeof data === "string") this.#onText(data);
   }
 
-  #over(ending: Ending): void {
+  #finish(ending: Ending): void {
     if (!this.#isOpen) return;
     this.#isOpen = false;
     clearTimeout(this.#watchdog);

@@ -78,7 +78,7 @@ export class Connection {
    */
   close(): void {
     this.#isClosed = true;
-    this.#conversation?.announcer.tell();
+    this.#conversation?.announcer.announce();
     this.#channel?.close(1000);
     this.#endPause();
   }
@@ -97,7 +97,7 @@ export class Connection {
         limits,
         makeSocket,
         () => channel.send(this.#hello),
-        (text) => this.#take(channel, text),
+        (text) => this.#receive(channel, text),
       );
     } catch (error) {
       this.#fail({ code: "address", message: String(error), remedy: "Check address and token." });
@@ -119,7 +119,7 @@ export class Connection {
     return textOf({ type: "hello", protocol: PROTOCOL_VERSION, client: name, epoch: this.epoch });
   }
 
-  #take(channel: Channel, text: string): void {
+  #receive(channel: Channel, text: string): void {
     // Read first, because it is part of a clock reading.
     const receivedS = this.#parts.clock();
     let message: ServerMessage | null;

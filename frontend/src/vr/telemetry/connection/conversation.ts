@@ -4,9 +4,9 @@ import type { Journal } from "../journal/journal";
 import { JournalLost } from "../journal/reader";
 import type { Limits } from "../limits";
 import type { StreamPosition } from "../wire/fromServer";
-import { Announcer } from "./announcing";
+import { Announcer } from "./announcer";
 import type { Channel } from "./channel";
-import { Prober } from "./probing";
+import { Prober } from "./clockProbe";
 
 export interface Parts {
   readonly journal: Journal;
@@ -68,7 +68,7 @@ export class Conversation {
       } catch (error) {
         if (error instanceof JournalLost) this.#parts.onFailure(lostHere(error));
         // A disk that cannot be read now may be readable in a moment.
-        else await new Promise((resolve) => setTimeout(resolve, READ_AGAIN_MS));
+        else await new Promise((resolve) => setTimeout(resolve, READ_RETRY_MS));
       }
     }
   }
@@ -83,7 +83,7 @@ export class Conversation {
   }
 }
 
-const READ_AGAIN_MS = 500;
+const READ_RETRY_MS = 500;
 
 const lostHere = ({ message }: JournalLost): Failure => ({
   code: "journal_lost",

@@ -5,7 +5,15 @@
  *     front [ block | block | block ][ tail ] end        places count up from the front to the end
  *              on disk                 in memory
  */
-import { type Block, type End, type Entry, type Held, keyOf, Positions, sizeOf } from "./entries";
+import {
+  type Block,
+  type End,
+  type Entry,
+  keyOf,
+  Positions,
+  type StoredJournal,
+  sizeOf,
+} from "./entries";
 
 export class Contents {
   readonly stored = new Positions();
@@ -17,7 +25,7 @@ export class Contents {
   #tailBytes = 0;
   #diskBytes = 0;
 
-  constructor(held: Held) {
+  constructor(held: StoredJournal) {
     this.#blocks = [...held.blocks];
     for (const block of held.blocks) {
       this.#diskBytes += block.bytes;
@@ -98,10 +106,12 @@ export class Contents {
    * stays until that one is removed; sending it again would do no harm. `exceptTail`: the tail is
    * being written.
    */
-  letGo(exceptTail: boolean): void {
-    const kept = this.#blocks.findIndex((block) => !block.ends.every((end) => this.#covers(end)));
-    const gone = this.#blocks.splice(0, kept < 0 ? this.#blocks.length : kept);
-    for (const block of gone) this.#diskBytes -= block.bytes;
+  removeStored(exceptTail: boolean): void {
+    const firstKept = this.#blocks.findIndex(
+      (block) => !block.ends.every((end) => this.#covers(end)),
+    );
+    const removed = this.#blocks.splice(0, firstKept < 0 ? this.#blocks.length : firstKept);
+    for (const block of removed) this.#diskBytes -= block.bytes;
     if (this.#blocks.length > 0 || exceptTail) return;
     const first = this.#tail.findIndex((entry) => !this.#covers(entry));
     this.#cutTail(first < 0 ? this.#tail.length : first);

@@ -42,7 +42,7 @@ export interface Run {
 }
 
 /** What a journal finds on disk when it is opened. */
-export interface Held {
+export interface StoredJournal {
   readonly sessionId: string | null;
   readonly blocks: readonly Block[];
   readonly runs: readonly Run[];
@@ -64,7 +64,7 @@ export interface Change {
 
 /** The storage of blocks. */
 export interface BlockStore {
-  load(): Promise<Held>;
+  load(): Promise<StoredJournal>;
   write(change: Change): Promise<void>;
   /** The entries of the blocks at these places, null for a missing block. */
   read(places: readonly number[]): Promise<readonly (readonly Entry[] | null)[]>;

@@ -28,10 +28,10 @@ describe("blocks in IndexedDB", () => {
     const added = blocks(3);
     await store.write({ ...NONE, sessionId: "s", added, runs: [RUN] });
     store.close();
-    const again = await IndexedDbBlocks.open(name, "relaxed");
-    const held = { sessionId: "s", runs: [RUN], blocks: added.map(({ block }) => block) };
-    expect(await again.load()).toEqual(held);
-    expect(await again.read([1, 2])).toEqual(added.slice(1).map(({ entries }) => entries));
+    const reopened = await IndexedDbBlocks.open(name, "relaxed");
+    const stored = { sessionId: "s", runs: [RUN], blocks: added.map(({ block }) => block) };
+    expect(await reopened.load()).toEqual(stored);
+    expect(await reopened.read([1, 2])).toEqual(added.slice(1).map(({ entries }) => entries));
   });
 
   it("are deleted below a place, and then reported as missing", async () => {

@@ -1,6 +1,6 @@
 /** Blocks in IndexedDB: one database per journal. Works in pages and in workers. */
 import { type DBSchema, deleteDB, type IDBPDatabase, type IDBPTransaction, openDB } from "idb";
-import type { Block, BlockStore, Change, Entry, Held, Run } from "./entries";
+import type { Block, BlockStore, Change, Entry, Run, StoredJournal } from "./entries";
 
 interface Tables extends DBSchema {
   about: { key: "sessionId"; value: string };
@@ -35,7 +35,7 @@ export class IndexedDbBlocks implements BlockStore {
     return blocks;
   }
 
-  async load(): Promise<Held> {
+  async load(): Promise<StoredJournal> {
     const database = this.#database ?? (await this.#open());
     const transaction = database.transaction(["about", "runs", "blocks"]);
     const [sessionId, runs, blocks] = await Promise.all([
@@ -53,7 +53,7 @@ export class IndexedDbBlocks implements BlockStore {
   async write(change: Change): Promise<void> {
     const transaction = this.#writing(this.#database ?? (await this.#open()));
     try {
-      ask(transaction, change);
+      issueRequests(transaction, change);
       transaction.commit();
       await transaction.done;
     } catch (error) {
@@ -108,14 +108,14 @@ export class IndexedDbBlocks implements BlockStore {
 
 type Writing = IDBPTransaction<Tables, typeof ALL, "readwrite">;
 
-function ask(transaction: Writing, change: Change): void {
+function issueRequests(transaction: Writing, change: Change): void {
   const [blocks, entries] = [transaction.objectStore("blocks"), transaction.objectStore("entries")];
-  const gone = IDBKeyRange.upperBound(change.forgetBelow, true);
+  const deletedRange = IDBKeyRange.upperBound(change.forgetBelow, true);
   // A request that fails aborts the transaction, which reports the error.
   const quietly = (request: Promise<unknown>) => void request.catch(() => undefined);
   quietly(transaction.objectStore("about").put(change.sessionId, "sessionId"));
-  quietly(blocks.delete(gone));
-  quietly(entries.delete(gone));
+  quietly(blocks.delete(deletedRange));
+  quietly(entries.delete(deletedRange));
   for (const run of change.runs) quietly(transaction.objectStore("runs").put(run));
   for (const { block, entries: held } of change.added) {
     quietly(blocks.put(block));

@@ -64,11 +64,11 @@ describe("a journal", () => {
     const [journal, store] = await filled(entry("target", 6), entry("reports", 1));
     journal.note({ epoch: 1, produced: { target: 6, reports: 1 } });
     await journal.flush();
-    const again = await opened(store);
-    again.add(entry("target", 6, { epoch: 2 }));
-    expect(await toSend(again)).toEqual(["target/1/6", "reports/1/1", "target/2/6"]);
-    expect(again.sessionId).toBe(SESSION);
-    expect(again.runs).toEqual([{ epoch: 1, produced: { target: 6, reports: 1 } }]);
+    const reopened = await opened(store);
+    reopened.add(entry("target", 6, { epoch: 2 }));
+    expect(await toSend(reopened)).toEqual(["target/1/6", "reports/1/1", "target/2/6"]);
+    expect(reopened.sessionId).toBe(SESSION);
+    expect(reopened.runs).toEqual([{ epoch: 1, produced: { target: 6, reports: 1 } }]);
   });
 
   it("does not mix sessions, and forgets a session that has nothing left", async () => {

@@ -10,7 +10,7 @@
 import type { Limits } from "../limits";
 import type { StreamPosition } from "../wire/fromServer";
 import { Contents } from "./contents";
-import { type BlockStore, type Entry, type Held, packed, type Run } from "./entries";
+import { type BlockStore, type Entry, packed, type Run, type StoredJournal } from "./entries";
 import { Reader } from "./reader";
 
 export interface JournalParts {
@@ -36,7 +36,7 @@ export class Journal {
   #measuredBytes: number | null = null;
   #writing: Promise<void> | null = null;
 
-  private constructor(held: Held, parts: JournalParts) {
+  private constructor(held: StoredJournal, parts: JournalParts) {
     this.#parts = parts;
     this.#sessionId = held.sessionId;
     this.#contents = new Contents(held);
@@ -121,7 +121,7 @@ export class Journal {
 
   acknowledge(positions: readonly StreamPosition[]): void {
     this.#contents.stored.advance(positions);
-    this.#contents.letGo(this.#writing !== null);
+    this.#contents.removeStored(this.#writing !== null);
     this.onChange();
   }
 
@@ -129,7 +129,7 @@ export class Journal {
   async tidy(): Promise<void> {
     this.#writing ??= this.#write().finally(() => {
       this.#writing = null;
-      this.#contents.letGo(false);
+      this.#contents.removeStored(false);
       this.onChange();
     });
     await this.#writing;

@@ -11,7 +11,7 @@ interface Said {
 
 export class FakeServer {
   /** Messages received from clients, other than batches, in the order of arrival. */
-  readonly heard: Said[] = [];
+  readonly received: Said[] = [];
   /** Stored seqs as `stream/epoch/seq`, in the order of arrival. */
   readonly stored: string[] = [];
   readonly sockets: FakeSocket[] = [];
@@ -30,7 +30,7 @@ export class FakeServer {
   refusal: { code: number; error: object } | null = null;
 
   readonly makeSocket = (_url: string, protocols: string[]): WebSocket => {
-    const socket = new FakeSocket(protocols, (data) => this.#take(socket, data));
+    const socket = new FakeSocket(protocols, (data) => this.#receive(socket, data));
     this.sockets.push(socket);
     queueMicrotask(() => (this.isUp ? socket.opens() : socket.breaks()));
     return socket as unknown as WebSocket;
@@ -59,7 +59,7 @@ export class FakeServer {
   }
 
   of(type: string): readonly Said[] {
-    return this.heard.filter((message) => message.type === type);
+    return this.received.filter((message) => message.type === type);
   }
 
   get #positions(): Welcome["positions"] {
@@ -69,14 +69,14 @@ export class FakeServer {
     });
   }
 
-  #take(socket: FakeSocket, data: string | Uint8Array<ArrayBuffer>): void {
+  #receive(socket: FakeSocket, data: string | Uint8Array<ArrayBuffer>): void {
     if (typeof data !== "string") {
       const { stream, epoch, seqFirst, timesS } = decodeBatch(data);
       this.#store(stream, epoch, seqFirst, timesS.length);
       return;
     }
     const message = JSON.parse(data) as Said;
-    this.heard.push(message);
+    this.received.push(message);
     if (message.type === "hello") this.#greet(socket, message);
     else if (message.type === "report") this.#store("reports", message.epoch, message.seq, 1);
     else if (message.type === "probe" && this.answersProbes) {

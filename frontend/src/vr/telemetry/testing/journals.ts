@@ -1,5 +1,5 @@
 /** Journals on a fake disk, with messages of a few bytes. */
-import type { Block, BlockStore, Change, Entry, Held, Run } from "../journal/entries";
+import type { Block, BlockStore, Change, Entry, Run, StoredJournal } from "../journal/entries";
 import { Journal } from "../journal/journal";
 import { DEFAULT_LIMITS, type Limits } from "../limits";
 
@@ -58,7 +58,7 @@ export class MemoryBlocks implements BlockStore {
   unreadable: Error | null = null;
   failedReads = 0;
 
-  async load(): Promise<Held> {
+  async load(): Promise<StoredJournal> {
     return {
       sessionId: this.sessionId,
       blocks: [...this.blocks.values()],

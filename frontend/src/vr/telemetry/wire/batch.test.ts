@@ -61,8 +61,8 @@ describe("a batch", () => {
     ["phase_id 1.5", { phaseId: 1.5 }],
     ["seq -1", { seqFirst: -1 }],
     ["seq 9007199254740992", { seqFirst: 2 ** 53 }],
-  ])("that the server could not use is rejected: %s", (said, changed) => {
-    expect(() => encodeBatch(batchOf(2, changed))).toThrow(said);
+  ])("that the server could not use is rejected: %s", (title, changed) => {
+    expect(() => encodeBatch(batchOf(2, changed))).toThrow(title);
   });
 });
 

@@ -90,12 +90,12 @@ const Produced = v.strictObject({
 /** How much the client has produced in each stream: its next seqs. */
 export type Counts = v.InferOutput<typeof Produced>["streams"];
 
-const Said = v.variant("type", [Hello, Report, Probe, Produced]);
-type Said = v.InferOutput<typeof Said>;
+const ClientMessage = v.variant("type", [Hello, Report, Probe, Produced]);
+type ClientMessage = v.InferOutput<typeof ClientMessage>;
 
 /** The text of a message; throws MalformedMessage if the server would reject it. */
-export function textOf(message: Said): string {
-  return JSON.stringify(narrowed(Said, message));
+export function textOf(message: ClientMessage): string {
+  return JSON.stringify(narrowed(ClientMessage, message));
 }
 
 /**

@@ -135,7 +135,7 @@ export type ServerMessage = v.InferOutput<Schemas[keyof Schemas]>;
  * missing.
  */
 export function serverMessage(text: string): ServerMessage | null {
-  const value = parsed(withDigitsKept(text));
+  const value = parsed(quoteNanoseconds(text));
   const type = narrowed(v.object({ type: v.string() }), value).type;
   if (!isKnown(type)) return null;
   return narrowed(SCHEMAS[type], value);
@@ -155,7 +155,7 @@ const isKnown = (type: string): type is keyof Schemas => Object.hasOwn(SCHEMAS, 
  * Quote nanoseconds in the text: those since a machine's start exceed a double's precision after
  * 104 days.
  */
-function withDigitsKept(text: string): string {
+function quoteNanoseconds(text: string): string {
   if (!text.includes('"server_received_ns"')) return text;
   return text.replace(/("server_(?:received|sent)_ns"\s*:\s*)(\d+)/g, '$1"$2"');
 }

@@ -100,12 +100,14 @@ describe("a message of the vectors", () => {
       serverSentNs: answered.server_sent_ns,
       clientReceivedS: Number(message.client_received_s),
     };
-    const told = probedText(
+    const written = probedText(
       Number(message.client_sent_s),
       message.client_received_s === null ? null : reading,
     );
-    expect(JSON.parse(told)).toEqual(message);
-    expect([...told.matchAll(NANOSECONDS)].map(([, , ns]) => ns)).toEqual(Object.values(answered));
+    expect(JSON.parse(written)).toEqual(message);
+    expect([...written.matchAll(NANOSECONDS)].map(([, , ns]) => ns)).toEqual(
+      Object.values(answered),
+    );
   });
 
   it.each<MessageVector>(vectorFile("messages_from_server").messages)(

@@ -53,7 +53,7 @@ export function Actions({ participant, studyKey, ...props }: ActionsProps): JSX.
           {t("rights.access")}
         </Button>
         <Correct participant={participant} onCorrect={props.onCorrect} />
-        <EndIt running={running} participant={participant} onErase={props.onErase} />
+        <EndSession running={running} participant={participant} onErase={props.onErase} />
       </Group>
       {state.phase === "failed" && <Failure error={state.error} />}
     </>
@@ -104,7 +104,7 @@ interface EndItProps {
 }
 
 /** Erasing waits for the end of a running session, so ending it is offered instead. */
-function EndIt({ running, participant, onErase }: EndItProps): JSX.Element {
+function EndSession({ running, participant, onErase }: EndItProps): JSX.Element {
   const { t } = useTexts();
   const [, navigate] = useLocation();
   if (running !== undefined) {

@@ -41,9 +41,9 @@ export function ParticipantsTab({ study }: { readonly study: StudyDetail }): JSX
       </div>
       <Loaded query={query}>
         {(everybody) => {
-          const wanted = search.trim().toLowerCase();
-          const shown = everybody.filter(({ code }) => code.toLowerCase().includes(wanted));
-          if (shown.length === 0) return <Nobody searching={everybody.length > 0} />;
+          const searched = search.trim().toLowerCase();
+          const shown = everybody.filter(({ code }) => code.toLowerCase().includes(searched));
+          if (shown.length === 0) return <NoParticipants searching={everybody.length > 0} />;
           return (
             <ParticipantTable
               studyKey={study.key}
@@ -70,7 +70,7 @@ export function ParticipantsTab({ study }: { readonly study: StudyDetail }): JSX
   );
 }
 
-function Nobody({ searching }: { readonly searching: boolean }): JSX.Element {
+function NoParticipants({ searching }: { readonly searching: boolean }): JSX.Element {
   const { t } = useTexts();
   return searching ? (
     <EmptyState icon="people" title={t("rights.none")}>

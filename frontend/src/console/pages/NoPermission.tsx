@@ -4,27 +4,27 @@ import type { JSX, ReactNode } from "react";
 import { Link } from "wouter";
 import { useAccount } from "../account";
 import { useTexts } from "../i18n";
-import { type Act, useMay } from "../permissions";
+import { type Permission, usePermissions } from "../permissions";
 import { EmptyState } from "../ui/EmptyState";
 import { useTitle } from "../ui/page";
 
 interface OnlyProps {
-  readonly act: Act;
+  readonly permission: Permission;
   readonly children: ReactNode;
 }
 
 /** Show a page to accounts with the permission, and a calm explanation to others. */
-export function Only({ act, children }: OnlyProps): JSX.Element {
-  const may = useMay();
-  if (may(act)) return <>{children}</>;
+export function RequirePermission({ permission, children }: OnlyProps): JSX.Element {
+  const can = usePermissions();
+  if (can(permission)) return <>{children}</>;
   return (
     <div style={{ maxWidth: 1240, margin: "0 auto", padding: "28px 24px" }}>
-      <NotForRole />
+      <NoPermission />
     </div>
   );
 }
 
-export function NotForRole(): JSX.Element {
+export function NoPermission(): JSX.Element {
   const { t } = useTexts();
   const account = useAccount().data;
   return (
@@ -43,7 +43,7 @@ export function NotForRole(): JSX.Element {
   );
 }
 
-export function NothingHere(): JSX.Element {
+export function PageNotFound(): JSX.Element {
   const { t } = useTexts();
   useTitle(t("nowhere.title"));
   return (

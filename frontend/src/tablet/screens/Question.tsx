@@ -17,15 +17,15 @@ export function useQuestion(state: TabletState) {
     mutationFn: tablet.question,
     onSuccess: (answer) => queries.setQueryData(STATE_KEY, answer),
   });
-  return { asked: state.question_asked, call };
+  return { isAsked: state.question_asked, call };
 }
 
 /** The state of the question: whether the experimenter knows, or has to be spoken to. */
 export function QuestionNotice({ question }: { readonly question: Question }): JSX.Element | null {
   const { t } = useTexts();
-  const { asked, call } = question;
+  const { isAsked, call } = question;
   if (call.isError) return <Notice tone="warn" icon="talk" title={t("help.failed")} />;
-  if (!asked) return null;
+  if (!isAsked) return null;
   return (
     <Notice
       tone="info"
@@ -47,22 +47,22 @@ export function QuestionNotice({ question }: { readonly question: Question }): J
   );
 }
 
-interface AskingProps {
+interface QuestionButtonsProps {
   readonly question: Question;
   /** Missing if there is nothing to refuse. */
   readonly onRefuse?: (() => void) | undefined;
 }
 
-export function Asking({ question, onRefuse }: AskingProps): JSX.Element {
+export function QuestionButtons({ question, onRefuse }: QuestionButtonsProps): JSX.Element {
   const { t } = useTexts();
-  const { asked, call } = question;
+  const { isAsked, call } = question;
   return (
     <div>
       <Button
         variant="subtle"
         color="gray"
         size="sm"
-        disabled={asked}
+        disabled={isAsked}
         loading={call.isPending}
         onClick={() => call.mutate(true)}
       >

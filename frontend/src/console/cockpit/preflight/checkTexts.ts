@@ -16,8 +16,8 @@ const DIGITS: Readonly<Partial<Record<NonNullable<Check["unit"]>, number>>> = { 
 export function amountOf(value: number, unit: Check["unit"], language: string): string {
   if (unit == null) return number(value, language, 1);
   const symbol = SYMBOLS[unit];
-  const told = number(value, language, DIGITS[unit] ?? 0);
-  return symbol === undefined ? told : `${told} ${symbol}`;
+  const formatted = number(value, language, DIGITS[unit] ?? 0);
+  return symbol === undefined ? formatted : `${formatted} ${symbol}`;
 }
 
 /** The values to fill into the text of a result. */
@@ -47,7 +47,7 @@ const SOON_MS = 3000;
 const LATER_MS = 20_000;
 
 /** When to refresh the list automatically, ms; false if no check can improve without action. */
-export function againAfter(checks: readonly Check[]): number | false {
+export function refetchIntervalFor(checks: readonly Check[]): number | false {
   const open = checks.filter(({ status }) => status === "wait" || status === "fail");
   if (open.length === 0) return false;
   return open.some(isMendedInSeconds) ? SOON_MS : LATER_MS;

@@ -12,19 +12,19 @@ export class Announcer {
   readonly #send: (text: string) => void;
   readonly #journal: Journal;
   readonly #ticking: ReturnType<typeof setInterval>;
-  readonly #told = new Map<string, number>();
+  readonly #announced = new Map<string, number>();
 
   constructor(send: (text: string) => void, journal: Journal, limits: Limits) {
     this.#send = send;
     this.#journal = journal;
-    this.tell();
-    this.#ticking = setInterval(() => this.tell(), limits.producedEveryS * 1000);
+    this.announce();
+    this.#ticking = setInterval(() => this.announce(), limits.producedEveryS * 1000);
   }
 
   /** Announce what has changed since the last time; the first time, everything. */
-  tell(): void {
+  announce(): void {
     for (const run of this.#journal.runs) {
-      const streams = this.#news(run);
+      const streams = this.#changes(run);
       if (Object.keys(streams).length === 0) continue;
       this.#send(textOf({ type: "produced", epoch: run.epoch, streams }));
     }
@@ -34,14 +34,14 @@ export class Announcer {
     clearInterval(this.#ticking);
   }
 
-  #news({ epoch, produced }: Run): Counts {
+  #changes({ epoch, produced }: Run): Counts {
     const streams: Counts = {};
     for (const stream of STREAMS) {
       const count = produced[stream] ?? 0;
       const key = keyOf({ stream, epoch });
-      if (count === (this.#told.get(key) ?? 0)) continue;
+      if (count === (this.#announced.get(key) ?? 0)) continue;
       streams[stream] = count;
-      this.#told.set(key, count);
+      this.#announced.set(key, count);
     }
     return streams;
   }

@@ -10,7 +10,7 @@ interface FrontProps {
   readonly children: ReactNode;
 }
 
-export function Front({ title, children }: FrontProps): JSX.Element {
+export function SignedOutFrame({ title, children }: FrontProps): JSX.Element {
   const { t } = useTexts();
   return (
     <main className={classes.page}>

@@ -6,14 +6,14 @@ import { type Key, useTexts } from "../i18n";
 import classes from "./JointMap.module.css";
 import type { BodyMap } from "./jointMapEdit";
 
-const AT_ONCE = 24;
+const MAX_SHOWN = 24;
 
-interface LeftOverProps {
+interface UnassignedJointsProps {
   readonly present: BodyMap;
   readonly view: JointMapView;
 }
 
-export function LeftOver({ present, view }: LeftOverProps): JSX.Element {
+export function UnassignedJoints({ present, view }: UnassignedJointsProps): JSX.Element {
   const { t } = useTexts();
   const used = new Set(Object.values(present));
   const body = view.body_joints.filter((joint) => present[joint] === undefined);
@@ -39,7 +39,7 @@ export function LeftOver({ present, view }: LeftOverProps): JSX.Element {
         </Title>
         {rig.length === 0 ? (
           <p className={classes.none}>{t("map.left.rig.none")}</p>
-        ) : rig.length <= AT_ONCE ? (
+        ) : rig.length <= MAX_SHOWN ? (
           <Chips names={rig} />
         ) : (
           <details>

@@ -4,19 +4,19 @@ import { BLOCK_COLOURS } from "@shared/stage/figure";
 import { type Seconds, seconds } from "@shared/units";
 import { type CSSProperties, type JSX, memo, useEffect, useRef } from "react";
 import { type Key, useTexts } from "../i18n";
-import { type Happening, latestAt, type Touch, toneOf } from "./happened";
+import { latestEventAt, type ReplayEvent, type Touch, toneOf } from "./events";
 import classes from "./Replay.module.css";
 
 interface HappenedProps {
-  readonly all: readonly Happening[];
+  readonly all: readonly ReplayEvent[];
   readonly time: Seconds;
   readonly onSeek: (time: Seconds) => void;
 }
 
-export function Happened({ all, time, onSeek }: HappenedProps): JSX.Element {
+export function EventList({ all, time, onSeek }: HappenedProps): JSX.Element {
   const { t } = useTexts();
   const list = useRef<HTMLOListElement>(null);
-  const at = latestAt(all, time);
+  const at = latestEventAt(all, time);
   // Scroll only the list, never the page.
   useEffect(() => {
     const box = list.current;
@@ -40,7 +40,7 @@ export function Happened({ all, time, onSeek }: HappenedProps): JSX.Element {
 const ROW_PX = 34;
 
 interface RowProps {
-  readonly one: Happening;
+  readonly one: ReplayEvent;
   readonly current: boolean;
   readonly onSeek: (time: Seconds) => void;
 }
@@ -83,7 +83,7 @@ interface Words {
   readonly detail: string;
 }
 
-function useWords(one: Happening): Words {
+function useWords(one: ReplayEvent): Words {
   const { t, language } = useTexts();
   switch (one.kind) {
     case "clock": {

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { givenOf, lengthOf, missingOf, UNSIGNED } from "./signed";
+import { consentToSend, lengthOf, missingOf, UNSIGNED } from "./consentToSend";
 
 const text = "I agree.";
 const drawn = {
@@ -27,7 +27,7 @@ describe("a consent", () => {
     const typed = { ...signed, types: true, name: " A. Person " };
     expect(missingOf(drawn, { ...typed, name: " " })).toBe("name");
     expect(missingOf(drawn, typed)).toBeNull();
-    expect(givenOf(drawn, typed, 3)).toEqual({
+    expect(consentToSend(drawn, typed, 3)).toEqual({
       step_index: 3,
       ticked: [0],
       name: "A. Person",
@@ -38,7 +38,7 @@ describe("a consent", () => {
   it("without a signature needs only its statements, and sends no name", () => {
     const plain = { signature: "none", statements: drawn.statements } as const;
     expect(missingOf(plain, signed)).toBeNull();
-    expect(givenOf(plain, { ...signed, name: "x" }, 0)).toMatchObject({
+    expect(consentToSend(plain, { ...signed, name: "x" }, 0)).toMatchObject({
       name: null,
       signature: null,
     });

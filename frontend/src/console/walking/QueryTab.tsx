@@ -7,7 +7,7 @@ import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { Loaded } from "../ui/Loaded";
 import { DurationPanel } from "./DurationPanel";
-import { changedPath, isWay, NO_PATH } from "./drawnPath";
+import { changedPath, isCompletePath, NO_PATH } from "./drawnPath";
 import { NoModel } from "./NoModel";
 import { PathPanel } from "./PathPanel";
 import { modelsQuery, predictionQuery, sceneQuery, scenesQuery } from "./queries";
@@ -18,20 +18,22 @@ export const SEED = 1;
 const COUNT = 500;
 const SHOWN = 24;
 
-export function AskTab(): JSX.Element {
+export function QueryTab(): JSX.Element {
   const scenes = useQuery(scenesQuery);
   return (
     <Loaded query={useQuery(modelsQuery)}>
       {(models) => {
         const ready = models.filter(({ state }) => state === "ready");
         if (ready.length === 0) return <NoModel models={models} />;
-        return <Loaded query={scenes}>{(all) => <Asking models={ready} scenes={all} />}</Loaded>;
+        return (
+          <Loaded query={scenes}>{(all) => <ModelQuery models={ready} scenes={all} />}</Loaded>
+        );
       }}
     </Loaded>
   );
 }
 
-interface AskingProps {
+interface ModelQueryProps {
   readonly models: readonly ModelListed[];
   readonly scenes: readonly SceneListed[];
 }
@@ -42,7 +44,7 @@ interface Settings {
   readonly seed: number;
 }
 
-function Asking({ models, scenes }: AskingProps): JSX.Element {
+function ModelQuery({ models, scenes }: ModelQueryProps): JSX.Element {
   const { t } = useTexts();
   const [modelId, setModelId] = useState(models[0]?.id ?? "");
   const [sceneKey, setSceneKey] = useState(scenes.find(({ shipped }) => shipped)?.key ?? "");
@@ -61,10 +63,10 @@ function Asking({ models, scenes }: AskingProps): JSX.Element {
       seed: settings.seed,
       shown: SHOWN,
     }),
-    enabled: model !== undefined && isWay(path.points),
+    enabled: model !== undefined && isCompletePath(path.points),
   });
   // The previous answer stays while the next is computed, but not for another path.
-  const found = isWay(path.points) && !query.isError ? query.data : undefined;
+  const found = isCompletePath(path.points) && !query.isError ? query.data : undefined;
   return (
     <div className={classes.ask}>
       <div className={classes.column}>
@@ -109,7 +111,7 @@ function Asking({ models, scenes }: AskingProps): JSX.Element {
         <Answer
           model={model}
           prediction={found}
-          error={query.isError && isWay(path.points) ? query.error : null}
+          error={query.isError && isCompletePath(path.points) ? query.error : null}
           busy={query.isFetching}
         />
       </div>

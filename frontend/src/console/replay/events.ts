@@ -35,12 +35,12 @@ interface Note extends At {
   readonly by: string;
 }
 
-export type Happening = Touch | Done | Clock | Note;
+export type ReplayEvent = Touch | Done | Clock | Note;
 
 /**
  * All events in order of time; body parts that touch the same surface simultaneously are one touch.
  */
-export function happenings(replay: Replay): readonly Happening[] {
+export function eventsOf(replay: Replay): readonly ReplayEvent[] {
   const clock = replay.moments.map(
     ({ what, t_s, cause }, at): Clock => ({
       kind: "clock",
@@ -123,7 +123,7 @@ export const toneOf = ({
         : "touched";
 
 /** A shorter touch is shown with this duration, seconds. */
-const LEAST = 0.15;
+const MIN_DURATION_S = 0.15;
 
 /**
  * The tones of the blocks at a moment: panels stay good until the task is completed, everything
@@ -141,7 +141,7 @@ export function tonesAt(
   for (const { surface, surface_kind, effect, begin_s, end_s } of contacts) {
     if (begin_s > time) continue;
     const tone = toneOf({ surfaceKind: surface_kind, effect });
-    const on = time <= Math.max(end_s, begin_s + LEAST);
+    const on = time <= Math.max(end_s, begin_s + MIN_DURATION_S);
     if (tone === "good" ? begin_s > since : on && tones.get(surface) !== "good") {
       tones.set(surface, tone);
     }
@@ -150,7 +150,7 @@ export function tonesAt(
 }
 
 /** The last event up to a time; -1 before the first. */
-export function latestAt(all: readonly At[], time: number): number {
+export function latestEventAt(all: readonly At[], time: number): number {
   let low = 0;
   let high = all.length;
   while (low < high) {
@@ -163,11 +163,11 @@ export function latestAt(all: readonly At[], time: number): number {
 
 /** The time to jump to: the nearest event before or after; null if there is none. */
 export function jumpFrom(all: readonly At[], time: number, way: -1 | 1): number | null {
-  const apart = 0.02;
+  const EPSILON_S = 0.02;
   const found =
     way > 0
-      ? all.find((one) => one.time > time + apart)
-      : all.findLast((one) => one.time < time - apart);
+      ? all.find((one) => one.time > time + EPSILON_S)
+      : all.findLast((one) => one.time < time - EPSILON_S);
   return found?.time ?? null;
 }
 

@@ -42,7 +42,7 @@ describe("a page that restarts", () => {
     await produce(first, 5);
     await killed(first);
     bed.server.isUp = true;
-    bed.server.heard.length = 0;
+    bed.server.received.length = 0;
     const second = await bed.opened(disk, { producedEveryS: 0.2 });
     await new Promise((resolve) => setTimeout(resolve, 10));
     const streams = { target: 30, actual: 30, reports: 1 };

@@ -6,28 +6,32 @@ import type { JSX } from "react";
 import { useTexts } from "../i18n";
 import { statureOf } from "./avatars";
 
-export function Verdict({ verification }: { readonly verification: Verification }): JSX.Element {
+export function VerificationSummary({
+  verification,
+}: {
+  readonly verification: Verification;
+}): JSX.Element {
   const { t, language } = useTexts();
   const { source, avatars } = verification;
-  const wanted = liftsOf(source);
+  const sourceLifts = liftsOf(source);
   if ([source, ...avatars].every(({ steps }) => steps.length === 0)) {
     return <Notice tone="warn" title={t("verify.noStep")} remedy={t("verify.noStep.body")} />;
   }
   if (!verification.lifts_agree) {
-    const told = avatars
+    const differing = avatars
       .filter((avatar) => !avatar.lifts_agree)
       .map((avatar) =>
         t("verify.differ.one", {
           avatar: t("capture.avatar.cm", { value: number(statureOf(avatar.name), language) }),
           ...liftsOf(avatar),
-          wantedLeft: wanted.left,
-          wantedRight: wanted.right,
+          wantedLeft: sourceLifts.left,
+          wantedRight: sourceLifts.right,
         }),
       );
     return (
       <Notice
         tone="warn"
-        title={t("verify.differ", { told: told.join(", ") })}
+        title={t("verify.differ", { told: differing.join(", ") })}
         remedy={t("verify.differ.remedy")}
       />
     );
@@ -37,7 +41,7 @@ export function Verdict({ verification }: { readonly verification: Verification 
     <Notice
       tone="info"
       icon="check"
-      title={t("verify.agree", wanted)}
+      title={t("verify.agree", sourceLifts)}
       {...(apart_s === null
         ? {}
         : {

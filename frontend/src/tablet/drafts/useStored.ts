@@ -4,26 +4,26 @@ import type { ApiError } from "@shared/api/request";
 import type { Administration, Answer, Submission, TabletState } from "@shared/api/types";
 import type { FormDraft } from "@shared/forms/draft";
 import { useCallback, useEffect, useRef, useState } from "react";
-import { type Signing, UNSIGNED } from "../screens/signed";
+import { type Signing, UNSIGNED } from "../screens/consentToSend";
 import { deliver } from "./deliver";
-import { DraftStore, type Kept } from "./store";
+import { DraftStore, type StoredForm } from "./store";
 
 export const drafts = new DraftStore();
 
 export type FormPhase =
   | { readonly name: "opening" }
-  | { readonly name: "filling"; readonly kept: Kept; readonly refused: ApiError | null }
+  | { readonly name: "filling"; readonly kept: StoredForm; readonly refused: ApiError | null }
   | { readonly name: "sending"; readonly offline: boolean }
   | { readonly name: "held"; readonly error: ApiError }
   | { readonly name: "done" };
 
 const RETRY_MS = 3000;
 
-interface KeptForm {
+interface StoredFormHandle {
   readonly phase: FormPhase;
-  readonly keep: (draft: FormDraft) => void;
+  readonly storeDraft: (draft: FormDraft) => void;
   /** Try once more to send a held form to the server. */
-  readonly again: () => void;
+  readonly retry: () => void;
   readonly send: (answers: Readonly<Record<string, Answer>>, draft: FormDraft) => void;
 }
 
@@ -31,27 +31,27 @@ interface KeptForm {
  * Keep a form's draft on disk and deliver it; `onSettled` is called when the screen may have
  * changed: stored, superseded or unpaired.
  */
-export function useKeptForm(
+export function useStoredForm(
   sessionId: string,
   administration: Administration,
   language: string,
   onSettled: () => void,
-): KeptForm {
+): StoredFormHandle {
   const [phase, setPhase] = useState<FormPhase>({ name: "opening" });
-  const retry = useRef<ReturnType<typeof setTimeout>>(undefined);
-  const kept = useRef<Kept | null>(null);
+  const timer = useRef<ReturnType<typeof setTimeout>>(undefined);
+  const kept = useRef<StoredForm | null>(null);
   const settled = useRef(onSettled);
   useEffect(() => {
     settled.current = onSettled;
   });
 
   const attempt = useCallback(async (id: string, submission: Submission) => {
-    clearTimeout(retry.current);
+    clearTimeout(timer.current);
     const delivery = await deliver(drafts, id, submission, tablet.submit);
     switch (delivery.kind) {
       case "later":
         setPhase({ name: "sending", offline: true });
-        retry.current = setTimeout(() => void attempt(id, submission), RETRY_MS);
+        timer.current = setTimeout(() => void attempt(id, submission), RETRY_MS);
         return;
       case "held":
         setPhase({ name: "held", error: delivery.error });
@@ -71,9 +71,9 @@ export function useKeptForm(
   }, []);
 
   useEffect(() => {
-    let gone = false;
+    let cancelled = false;
     void drafts.open(sessionId, administration.key, new Date()).then((opened) => {
-      if (gone) return;
+      if (cancelled) return;
       kept.current = opened;
       if (opened.queued === null) setPhase({ name: "filling", kept: opened, refused: null });
       else {
@@ -82,12 +82,12 @@ export function useKeptForm(
       }
     });
     return () => {
-      gone = true;
-      clearTimeout(retry.current);
+      cancelled = true;
+      clearTimeout(timer.current);
     };
   }, [sessionId, administration.key, attempt]);
 
-  const keep = (draft: FormDraft) => {
+  const storeDraft = (draft: FormDraft) => {
     if (kept.current === null) return;
     kept.current = { ...kept.current, draft };
     void drafts.keep(kept.current.id, draft);
@@ -100,17 +100,17 @@ export function useKeptForm(
     const submission = submissionOf(opened, administration, language, answers, draft);
     void drafts.queue(opened.id, submission).then((queued) => attempt(opened.id, queued));
   };
-  const again = () => {
+  const retry = () => {
     setPhase({ name: "sending", offline: false });
     void drafts.open(sessionId, administration.key, new Date()).then(({ id, queued }) => {
       if (queued !== null) void attempt(id, queued);
     });
   };
-  return { phase, keep, send, again };
+  return { phase, storeDraft, send, retry };
 }
 
 function submissionOf(
-  kept: Kept,
+  kept: StoredForm,
   administration: Administration,
   language: string,
   answers: Readonly<Record<string, Answer>>,
@@ -130,10 +130,10 @@ function submissionOf(
 }
 
 /** A signature changes many times a second, so it is stored after a pause. */
-const KEEP_AFTER_MS = 150;
+const STORE_AFTER_MS = 150;
 
 /** An unfinished consent: its statements and signature, restored after a restart of the browser. */
-export function useKeptSigning(
+export function useStoredSigning(
   state: TabletState,
 ): readonly [signing: Signing, change: (signing: Signing) => void] {
   const [signing, setSigning] = useState<Signing>(UNSIGNED);
@@ -150,7 +150,7 @@ export function useKeptSigning(
     touched.current = true;
     setSigning(next);
     clearTimeout(timer.current);
-    timer.current = setTimeout(() => void drafts.keepSigning(state, next), KEEP_AFTER_MS);
+    timer.current = setTimeout(() => void drafts.keepSigning(state, next), STORE_AFTER_MS);
   };
   return [signing, change];
 }

@@ -17,15 +17,21 @@ const SHORTEST = 60;
 export type Missing = "statements" | "name" | "signature";
 
 export function missingOf(form: ConsentForm, signing: Signing): Missing | null {
-  const wanted = form.statements.map((one, at) => (one.optional ? -1 : at)).filter((at) => at >= 0);
-  if (wanted.some((at) => !signing.ticked.includes(at))) return "statements";
+  const required = form.statements
+    .map((one, at) => (one.optional ? -1 : at))
+    .filter((at) => at >= 0);
+  if (required.some((at) => !signing.ticked.includes(at))) return "statements";
   if (form.signature === "none") return null;
   const types = form.signature === "typed" || signing.types;
   if (types) return signing.name.trim() === "" ? "name" : null;
   return lengthOf(signing.path) < SHORTEST ? "signature" : null;
 }
 
-export function givenOf(form: ConsentForm, signing: Signing, stepIndex: number): ConsentGiven {
+export function consentToSend(
+  form: ConsentForm,
+  signing: Signing,
+  stepIndex: number,
+): ConsentGiven {
   const types = form.signature === "typed" || (form.signature === "drawn" && signing.types);
   return {
     step_index: stepIndex,

@@ -35,7 +35,7 @@ export function Waiting({ state }: { readonly state: TabletState }): JSX.Element
 }
 
 /** A stop rule holds the session: calm words, no reason, and nothing to press. */
-export function Held(): JSX.Element {
+export function OnHold(): JSX.Element {
   const { t } = useTexts();
   return (
     <div className={classes.calm} role="status">
@@ -58,22 +58,22 @@ interface RefusedProps {
  */
 export function Refused({ connected, refusal }: RefusedProps): JSX.Element {
   const { t } = useTexts();
-  const { waiting, failed, say } = refusal;
+  const { waiting, failed, setRefused } = refusal;
   const stuck = failed || !connected;
   // Refused on this tablet, but the experimenter has not been notified yet.
-  const told = waiting?.refused !== true ? "told" : stuck ? "untold" : "telling";
+  const key = waiting?.refused !== true ? "told" : stuck ? "untold" : "telling";
   return (
     <div className={classes.calm} role="status">
       <Mark size={64} />
       <h1 className={classes.calmTitle}>{t("refused.title")}</h1>
       <p className={classes.calmText}>
-        {t(`refused.${told}`)} {t("refused.free")}
+        {t(`refused.${key}`)} {t("refused.free")}
       </p>
       <Button
         variant="subtle"
         color="gray"
         loading={waiting !== null && !stuck}
-        onClick={() => say(false)}
+        onClick={() => setRefused(false)}
       >
         {t("refused.takeBack")}
       </Button>

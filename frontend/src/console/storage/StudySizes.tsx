@@ -8,7 +8,7 @@ import { KindBadge } from "../ui/badges";
 import { roughly } from "./figures";
 import classes from "./Storage.module.css";
 
-export function StudyRooms({ studies }: { readonly studies: readonly StudyRoom[] }): JSX.Element {
+export function StudySizes({ studies }: { readonly studies: readonly StudyRoom[] }): JSX.Element {
   const { t } = useTexts();
   if (studies.length === 0) return <p className={classes.soft}>{t("storage.studies.none")}</p>;
   return (

@@ -1,6 +1,6 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { DEFAULT_LIMITS } from "../limits";
-import { Prober } from "./probing";
+import { Prober } from "./clockProbe";
 
 let sent: Record<string, unknown>[];
 let nowS: number;

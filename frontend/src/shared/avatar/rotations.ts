@@ -85,7 +85,7 @@ export function rotationBetween(current: Quaternion, goal: Quaternion): Vector {
 }
 
 /** `current` rotated by a rotation vector in the world. */
-export function turned(current: Quaternion, by: Vector): Quaternion {
+export function rotated(current: Quaternion, by: Vector): Quaternion {
   const [x, y, z] = by;
   const angle = Math.sqrt(x * x + y * y + z * z);
   const half = angle > TINY ? Math.sin(angle / 2) / angle : 0.5;
