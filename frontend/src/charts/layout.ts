@@ -1,5 +1,11 @@
 /** How a figure from the server is styled for this page; its content stays unchanged. */
 
+/** A figure as Plotly's JSON. */
+export interface PlotlyFigure {
+  readonly data: readonly Readonly<Record<string, unknown>>[];
+  readonly layout: Readonly<Record<string, unknown>>;
+}
+
 /** The page's colours for a figure. */
 export interface Palette {
   readonly ink: string;

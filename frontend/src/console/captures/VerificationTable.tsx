@@ -8,7 +8,7 @@ import {
   type Verification,
   type Walker,
 } from "@shared/api/captures";
-import { number } from "@shared/format";
+import { decimals, number } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import type { JSX, ReactNode } from "react";
 import { Failure } from "../errors";
@@ -79,10 +79,12 @@ interface BodyRowProps {
 function BodyRow({ walker, avatar, children }: BodyRowProps): JSX.Element {
   const { t, language } = useTexts();
   const metres = (value: number | null | undefined) =>
-    value == null ? "–" : fixed(value, language, 3);
+    value == null ? "–" : decimals(value, language, 3);
   const ratio = (value: number | null | undefined) =>
     value == null ? null : (
-      <span className={classes.sub}>{t("verify.ratio", { value: fixed(value, language, 3) })}</span>
+      <span className={classes.sub}>
+        {t("verify.ratio", { value: decimals(value, language, 3) })}
+      </span>
     );
   const start = (side: "left" | "right") =>
     metres(walker.toe_paths.find((path) => path.side === side)?.start_height_m);
@@ -94,7 +96,7 @@ function BodyRow({ walker, avatar, children }: BodyRowProps): JSX.Element {
           : t("capture.avatar.cm", { value: number(statureOf(avatar.name), language) })}
       </Table.Th>
       <Table.Td>{metres(walker.leg_length_m)}</Table.Td>
-      <Table.Td>{avatar === null ? "1" : fixed(avatar.leg_ratio, language, 3)}</Table.Td>
+      <Table.Td>{avatar === null ? "1" : decimals(avatar.leg_ratio, language, 3)}</Table.Td>
       <Table.Td>
         {metres(walker.mean_step_length_m)}
         {ratio(avatar?.length_ratio)}
@@ -208,9 +210,3 @@ function meanContact({ steps }: Walker, side: "left" | "right"): number | null {
   const heights = steps.filter((one) => one.side === side).map((one) => one.contact_height_m);
   return heights.length === 0 ? null : heights.reduce((sum, one) => sum + one, 0) / heights.length;
 }
-
-const fixed = (value: number, language: string, digits: number): string =>
-  new Intl.NumberFormat(language, {
-    minimumFractionDigits: digits,
-    maximumFractionDigits: digits,
-  }).format(value);

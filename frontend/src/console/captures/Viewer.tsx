@@ -7,7 +7,7 @@ import {
   LEFT_COLOUR,
   RIGHT_COLOUR,
 } from "@shared/stage/figure";
-import legend from "@shared/stage/Legend.module.css";
+import { Legend } from "@shared/stage/Legend";
 import { durationOf } from "@shared/stage/motion";
 import { hasGaps } from "@shared/stage/placing";
 import { Stage, type StageHandle } from "@shared/stage/Stage";
@@ -15,7 +15,7 @@ import { Transport } from "@shared/stage/Transport";
 import { usePlayback } from "@shared/stage/usePlayback";
 import { Icon } from "@shared/ui/Icon";
 import { seconds } from "@shared/units";
-import { type CSSProperties, type JSX, type RefObject, useMemo, useRef, useState } from "react";
+import { type JSX, type RefObject, useMemo, useRef, useState } from "react";
 import { useTexts } from "../i18n";
 import { useStageTexts, useTransportTexts } from "./useStageTexts";
 import classes from "./Viewer.module.css";
@@ -55,7 +55,7 @@ export function Viewer({ figures, title }: ViewerProps): JSX.Element {
           label={t("capture.picture", { title, what })}
           texts={stageTexts}
         />
-        <Legend figures={figures} />
+        <StageLegend figures={figures} />
       </div>
       {motion !== undefined && (
         <Transport motion={motion} playback={playback} texts={transportTexts} />
@@ -120,7 +120,7 @@ export function CameraBar({ mode, hasEyes, stage, onMode }: CameraBarProps): JSX
   );
 }
 
-function Legend({ figures }: { readonly figures: readonly Figure[] }): JSX.Element | null {
+function StageLegend({ figures }: { readonly figures: readonly Figure[] }): JSX.Element | null {
   const { t } = useTexts();
   const hasSides = figures.some(({ roles }) => roles !== undefined && roles.left.size > 0);
   const unseen = useMemo(() => figures.some(({ motion }) => hasGaps(motion)), [figures]);
@@ -137,13 +137,5 @@ function Legend({ figures }: { readonly figures: readonly Figure[] }): JSX.Eleme
       : []),
   ];
   if (entries.length === 0) return null;
-  return (
-    <ul className={legend.legend}>
-      {entries.map(({ name, colour }) => (
-        <li key={name} style={{ "--mark": colour } as CSSProperties}>
-          {name}
-        </li>
-      ))}
-    </ul>
-  );
+  return <Legend entries={entries} />;
 }

@@ -1,5 +1,5 @@
 /** The stage's texts in the console's languages. */
-import { number } from "@shared/format";
+import { decimals, number } from "@shared/format";
 import type { StageTexts } from "@shared/stage/Stage";
 import type { TransportTexts } from "@shared/stage/Transport";
 import { useTexts } from "../i18n";
@@ -18,10 +18,6 @@ export function useStageTexts(): StageTexts {
 
 export function useTransportTexts(): TransportTexts {
   const { t, language } = useTexts();
-  const time = new Intl.NumberFormat(language, {
-    minimumFractionDigits: 2,
-    maximumFractionDigits: 2,
-  });
   return {
     play: t("stage.play"),
     pause: t("stage.pause"),
@@ -31,7 +27,10 @@ export function useTransportTexts(): TransportTexts {
     speed: t("stage.speed"),
     loop: t("stage.loop"),
     time: (now, duration) =>
-      t("stage.time", { time: time.format(now), duration: time.format(duration) }),
+      t("stage.time", {
+        time: decimals(now, language, 2),
+        duration: decimals(duration, language, 2),
+      }),
     frame: (frame, last) => t("stage.frame", { frame, last }),
     gaps: t("stage.gaps"),
     unseen: (names) => {

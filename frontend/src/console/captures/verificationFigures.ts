@@ -1,5 +1,5 @@
 /** The verification as figures, with a unit on every axis. The source is grey and dashed. */
-import { COLORWAY } from "@charts/layout";
+import { COLORWAY, type PlotlyFigure } from "@charts/layout";
 import type { Verification, Walker } from "@shared/api/captures";
 import { LEFT_COLOUR, RIGHT_COLOUR } from "@shared/stage/figure";
 
@@ -17,11 +17,6 @@ export interface FigureWords {
   readonly lift: (side: string, from: number, to: number) => string;
 }
 
-interface Figure {
-  readonly data: readonly Readonly<Record<string, unknown>>[];
-  readonly layout: Readonly<Record<string, unknown>>;
-}
-
 const SOURCE_COLOUR = "#7d8b8b";
 const SIDES = ["left", "right"] as const;
 type Side = (typeof SIDES)[number];
@@ -29,7 +24,7 @@ const COLOURS: Readonly<Record<Side, string>> = { left: LEFT_COLOUR, right: RIGH
 const DASHES: Readonly<Record<Side, string>> = { left: "solid", right: "dash" };
 
 /** Figure 8 of the paper: hip, knee and ankle of both legs over time, one above the other. */
-export function anglesFigure(verification: Verification, words: FigureWords): Figure {
+export function anglesFigure(verification: Verification, words: FigureWords): PlotlyFigure {
   const joints = [
     { key: "hip_deg", axis: "y", domain: [0.71, 1] },
     { key: "knee_deg", axis: "y2", domain: [0.355, 0.645] },
@@ -58,7 +53,7 @@ export function anglesFigure(verification: Verification, words: FigureWords): Fi
 }
 
 /** Figure 9 of the paper: the path of the toe joint, the left foot next to the right. */
-export function toeFigure(verification: Verification, words: FigureWords): Figure {
+export function toeFigure(verification: Verification, words: FigureWords): PlotlyFigure {
   const bodies = [verification.source, ...verification.avatars];
   const data = bodies.flatMap((body, index) =>
     body.toe_paths.map((path) => ({
@@ -93,7 +88,7 @@ const lineOf = (index: number) =>
 const LANE = 0.17;
 
 /** When each foot is off the ground: a row for each body, the left foot above its line. */
-export function liftsFigure(verification: Verification, words: FigureWords): Figure {
+export function liftsFigure(verification: Verification, words: FigureWords): PlotlyFigure {
   const bodies: readonly Walker[] = [verification.source, ...verification.avatars];
   const data = SIDES.map((side) => {
     const lifts = bodies.flatMap((body, row) =>

@@ -1,4 +1,5 @@
 /** The cockpit's header: participant, study, order, and whether this page is up to date. */
+
 import { ActionIcon, Button, Tooltip } from "@mantine/core";
 import type { FeedState } from "@shared/api/live";
 import type { SessionView } from "@shared/api/types";
@@ -11,6 +12,7 @@ import { isOver } from "../steps";
 import { KindBadge, StatusBadge } from "../ui/badges";
 import { Order } from "../ui/Order";
 import classes from "./Cockpit.module.css";
+import { ConnectionMark } from "./ConnectionMark";
 import { Reveal } from "./Reveal";
 
 interface HeaderProps {
@@ -124,13 +126,7 @@ function Feed({ state, ended }: FeedProps): JSX.Element | null {
   if (ended && shown !== "lost") return null;
   return (
     <span className={`${classes.feed} ${shown === "lost" ? classes.feedLost : ""}`} role="status">
-      <svg width="10" height="10" viewBox="0 0 10 10" aria-hidden="true">
-        {shown === "live" ? (
-          <circle cx="5" cy="5" r="4.5" fill="var(--accent)" />
-        ) : (
-          <path d="M5 1 9.5 9.2H.5Z" fill="none" stroke="currentColor" strokeWidth="1.4" />
-        )}
-      </svg>
+      <ConnectionMark connected={shown === "live"} />
       {t(`feed.${shown}`)}
     </span>
   );

@@ -1,5 +1,6 @@
 /** The account's exports: request, delete, and download those that are ready. */
 import { type Export, type ExportWish, exports } from "@shared/api/housekeeping";
+import { saveFile } from "@shared/saveFile";
 import { type UseQueryResult, useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { useEffect, useSyncExternalStore } from "react";
 import { exportsQuery } from "../queries";
@@ -51,7 +52,7 @@ export function useAutomaticDownloads(list: readonly Export[] | undefined): void
       else if (one.state === "failed") removeRequest(id);
       else if (one.state === "ready") {
         removeRequest(id);
-        save(one);
+        saveFile(exports.fileUrl(one.id), one.file_name);
         // It counts as fetched once the server has noticed the download.
         setTimeout(() => void queries.invalidateQueries({ queryKey: exportsQuery.queryKey }), 1000);
       }
@@ -59,15 +60,12 @@ export function useAutomaticDownloads(list: readonly Export[] | undefined): void
   }, [list, requested, queries]);
 }
 
-function save(one: Export): void {
-  const link = document.createElement("a");
-  link.href = exports.fileUrl(one.id);
-  link.download = one.file_name;
-  link.click();
-}
-
 const KEY = "reembody.downloads.wanted";
 
+/**
+ * The list of downloads, and the exports that this tab has requested: each is downloaded as soon as
+ * it is ready. They are remembered when the page is reloaded, and other tabs do not fetch them too.
+ */
 interface Desk {
   readonly opened: boolean;
   /** Exports that were requested here and are not downloaded yet. */
@@ -89,10 +87,6 @@ function change(next: Partial<Desk>): void {
   for (const listener of listeners) listener();
 }
 
-/**
- * The exports that this tab has requested: each is downloaded as soon as it is ready. They are
- * remembered when the page is reloaded, and other tabs do not fetch them too.
- */
 export const openDownloads = (): void => change({ opened: true });
 export const closeDownloads = (): void => change({ opened: false, hasVanished: false });
 const addRequest = (id: string): void =>

@@ -1,8 +1,10 @@
 /** The current error of each joint: a small body, and the largest errors by name. */
 import type { JointErrors } from "@shared/api/replays";
+import { decimals } from "@shared/format";
 import type { Seconds } from "@shared/units";
 import type { JSX } from "react";
 import { BODY, placeOnBody } from "../captures/bodyJoints";
+import { FULL_SCALE_DEG } from "../cockpit/live3d/heat";
 import { useTexts } from "../i18n";
 import classes from "./Replay.module.css";
 
@@ -11,8 +13,6 @@ interface ErrorMapProps {
   readonly time: Seconds;
 }
 
-/** The error that is drawn largest, degrees. */
-const FULL_DEG = 60;
 const SHOWN = 5;
 
 export function ErrorMap({ errors, time }: ErrorMapProps): JSX.Element {
@@ -26,7 +26,7 @@ export function ErrorMap({ errors, time }: ErrorMapProps): JSX.Element {
         <span className={`${classes.soft} numbers`}>
           {all === null
             ? t("replay.errors.none")
-            : t("replay.errors.overall", { degrees: number1(all, language) })}
+            : t("replay.errors.overall", { degrees: decimals(all, language, 1) })}
         </span>
       </h2>
       <div className={classes.errorParts}>
@@ -35,7 +35,7 @@ export function ErrorMap({ errors, time }: ErrorMapProps): JSX.Element {
           {largest(now, SHOWN).map(({ joint, degrees }) => (
             <li key={joint}>
               <span>{joint.replace(/([a-z])([A-Z])/g, "$1 $2")}</span>
-              <span className={classes.worstValue}>{number1(degrees ?? 0, language)}°</span>
+              <span className={classes.worstValue}>{decimals(degrees ?? 0, language, 1)}°</span>
               <span
                 className={classes.worstBar}
                 style={{ width: `${shareOf(degrees) * 100}%` }}
@@ -49,12 +49,7 @@ export function ErrorMap({ errors, time }: ErrorMapProps): JSX.Element {
   );
 }
 
-const number1 = (value: number, language: string): string =>
-  new Intl.NumberFormat(language, {
-    minimumFractionDigits: 1,
-    maximumFractionDigits: 1,
-  }).format(value);
-const shareOf = (degrees: number | null): number => Math.min(1, (degrees ?? 0) / FULL_DEG);
+const shareOf = (degrees: number | null): number => Math.min(1, (degrees ?? 0) / FULL_SCALE_DEG);
 
 function Body({
   errors,

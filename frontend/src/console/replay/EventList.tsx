@@ -1,5 +1,5 @@
 /** All events in order; the list follows the time, and each entry leads to its moment. */
-import { number } from "@shared/format";
+import { decimals, number } from "@shared/format";
 import { BLOCK_COLOURS } from "@shared/stage/figure";
 import { type Seconds, seconds } from "@shared/units";
 import { type CSSProperties, type JSX, memo, useEffect, useRef } from "react";
@@ -61,7 +61,7 @@ const Row = memo(function Row({ one, current, onSeek }: RowProps): JSX.Element {
         style={{ "--tone": colour } as CSSProperties}
         onClick={() => onSeek(seconds(one.time))}
       >
-        <span className={`${classes.when} numbers`}>{number1(one.time, language)}</span>
+        <span className={`${classes.when} numbers`}>{decimals(one.time, language, 1)}</span>
         <span className={classes.dot} aria-hidden="true" />
         <span className={classes.what}>
           {title}
@@ -71,12 +71,6 @@ const Row = memo(function Row({ one, current, onSeek }: RowProps): JSX.Element {
     </li>
   );
 });
-
-const number1 = (value: number, language: string): string =>
-  new Intl.NumberFormat(language, {
-    minimumFractionDigits: 1,
-    maximumFractionDigits: 1,
-  }).format(value);
 
 interface Words {
   readonly title: string;

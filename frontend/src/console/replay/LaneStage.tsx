@@ -1,11 +1,11 @@
 /** One phase in 3-D; its boxes light up as they were touched. */
 import { Center, Loader } from "@mantine/core";
 import { type BlockTones, type CameraMode, LEFT_COLOUR, RIGHT_COLOUR } from "@shared/stage/figure";
-import legend from "@shared/stage/Legend.module.css";
+import { Legend } from "@shared/stage/Legend";
 import { durationOf } from "@shared/stage/motion";
 import { Stage, type StageHandle } from "@shared/stage/Stage";
 import { type Seconds, seconds } from "@shared/units";
-import { type CSSProperties, type JSX, type Ref, useRef } from "react";
+import { type JSX, type Ref, useRef } from "react";
 import { useStageTexts } from "../captures/useStageTexts";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
@@ -57,7 +57,7 @@ export function LaneStage(props: LaneStageProps): JSX.Element {
             texts={texts}
           />
           {isGap && <span className={classes.gap}>{t("replay.nothing")}</span>}
-          <Legend ghost={figures.length > 1} />
+          <StageLegend ghost={figures.length > 1} />
         </div>
       )}
     </section>
@@ -83,22 +83,14 @@ function NoFigure({ lane }: { readonly lane: Lane }): JSX.Element {
   );
 }
 
-function Legend({ ghost }: { readonly ghost: boolean }): JSX.Element {
+function StageLegend({ ghost }: { readonly ghost: boolean }): JSX.Element {
   const { t } = useTexts();
   const entries = [
     { name: t("replay.legend.left"), colour: LEFT_COLOUR },
     { name: t("replay.legend.right"), colour: RIGHT_COLOUR },
     ...(ghost ? [{ name: t("replay.legend.participant"), colour: "var(--line-strong)" }] : []),
   ];
-  return (
-    <ul className={legend.legend}>
-      {entries.map(({ name, colour }) => (
-        <li key={name} style={{ "--mark": colour } as CSSProperties}>
-          {name}
-        </li>
-      ))}
-    </ul>
-  );
+  return <Legend entries={entries} />;
 }
 
 /** Return the same map while its content is the same, so that nothing is redrawn needlessly. */

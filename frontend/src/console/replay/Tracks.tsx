@@ -1,4 +1,5 @@
 /** The scrubber, and below it the events of the whole phase, on the same scale. */
+import { number } from "@shared/format";
 import { BLOCK_COLOURS, type BlockTone } from "@shared/stage/figure";
 import { type Seconds, seconds } from "@shared/units";
 import { type CSSProperties, type JSX, memo, type PointerEvent } from "react";
@@ -18,7 +19,6 @@ const STEP_S = 0.05;
 
 export function Tracks({ lanes, duration, time, onSeek }: TracksProps): JSX.Element {
   const { t, language } = useTexts();
-  const number = new Intl.NumberFormat(language, { maximumFractionDigits: 1 });
   const replay = lanes[0]?.replay;
   const isGap = lanes[0]?.movement?.gaps.some(([a, b]) => a < time && time < b) ?? false;
   const state = isGap ? "gap" : replay && isActive(replay, time) ? "active" : "standing";
@@ -35,8 +35,8 @@ export function Tracks({ lanes, duration, time, onSeek }: TracksProps): JSX.Elem
         className={classes.scrubber}
         aria-label={t("replay.scrubber")}
         aria-valuetext={t("replay.scrubber.value", {
-          time: number.format(time),
-          duration: number.format(duration),
+          time: number(time, language, 1),
+          duration: number(duration, language, 1),
           state: t(`replay.state.${state}`),
         })}
         min={0}

@@ -1,5 +1,7 @@
 /** Play, jump, speed, and the three times of the current moment. */
+
 import { ActionIcon, CopyButton, SegmentedControl, Tooltip } from "@mantine/core";
+import { decimals } from "@shared/format";
 import { Press } from "@shared/stage/Transport";
 import type { Playback } from "@shared/stage/usePlayback";
 import { Icon } from "@shared/ui/Icon";
@@ -88,10 +90,7 @@ interface TimesProps {
 function Times({ lane, time, duration }: TimesProps): JSX.Element {
   const { t, language } = useTexts();
   const { replay } = lane;
-  const digits = new Intl.NumberFormat(language, {
-    minimumFractionDigits: 2,
-    maximumFractionDigits: 2,
-  });
+  const hundredths = (value: number) => decimals(value, language, 2);
   const wall = wallAt(replay, time);
   const clock = new Intl.DateTimeFormat(language === "en" ? "en-GB" : language, {
     hour: "2-digit",
@@ -100,8 +99,8 @@ function Times({ lane, time, duration }: TimesProps): JSX.Element {
     fractionalSecondDigits: 1,
   });
   const times = [
-    ["phase", `${digits.format(time)} / ${digits.format(duration)} s`],
-    ["active", `${digits.format(activeAt(replay, time))} s`],
+    ["phase", `${hundredths(time)} / ${hundredths(duration)} s`],
+    ["active", `${hundredths(activeAt(replay, time))} s`],
     ["wall", wall === null ? t("replay.time.unknown") : clock.format(wall)],
   ] as const;
   return (

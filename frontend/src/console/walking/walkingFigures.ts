@@ -1,11 +1,6 @@
 /** Predicted durations and slices of maps as figures, with a unit on every axis. */
-import { COLORWAY } from "@charts/layout";
+import { COLORWAY, type PlotlyFigure } from "@charts/layout";
 import type { Prediction, Slice, WalkCensus } from "@shared/api/walking";
-
-interface Figure {
-  readonly data: readonly Readonly<Record<string, unknown>>[];
-  readonly layout: Readonly<Record<string, unknown>>;
-}
 
 export interface DurationWords {
   readonly time: string;
@@ -33,7 +28,7 @@ export function durationFigure(
   prediction: Prediction,
   words: DurationWords,
   way: "histogram" | "ecdf",
-): Figure {
+): PlotlyFigure {
   const { durations_s: durations, quantiles_s: q } = prediction;
   const drawn = way === "histogram" ? histogram(durations, words) : ecdf(durations, words);
   const top = way === "histogram" ? Math.max(...(drawn.y as number[])) * 1.06 : 100;
@@ -137,7 +132,7 @@ interface SliceWords {
 }
 
 /** A heat map of suitability, overlaid with the parameters that the models choose. */
-export function sliceFigure(slice: Slice, prediction: Prediction, words: SliceWords): Figure {
+export function sliceFigure(slice: Slice, prediction: Prediction, words: SliceWords): PlotlyFigure {
   const names = slice.order;
   const [across, along] = [names.indexOf(slice.x.name), names.indexOf(slice.y.name)];
   const mark = (name: string, vectors: readonly (readonly number[])[], symbol: string) => ({

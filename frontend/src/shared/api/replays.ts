@@ -1,5 +1,5 @@
 /** Requests for the replay of a phase: its events and its movement. */
-import { MotionError, type PointMotion } from "../stage/motion";
+import { MotionError, type PointMotion, splitMovement } from "../stage/motion";
 import { answer, errorFromBody, server, Unreachable } from "./request";
 import type { components } from "./schema";
 
@@ -58,6 +58,11 @@ export const replays = {
   },
 };
 
+const numbersOfBody = ({ frames, names }: Header): number => frames * names.length * 3;
+
+const countOf = (header: Header): number =>
+  header.bodies.length * numbersOfBody(header) + header.error_frames * header.error_joints.length;
+
 /**
  * Decode the server's format: the header's length, the header as JSON, then as little-endian
  * float32 the positions of each body, followed by the joint errors.
@@ -65,20 +70,8 @@ export const replays = {
  * Throws MotionError if the bytes do not match the header.
  */
 export function decodeMovement(bytes: ArrayBuffer): ReplayMovement {
-  if (bytes.byteLength < 4) throw new MotionError(`${bytes.byteLength} bytes hold no movement.`);
-  const length = new DataView(bytes).getUint32(0, true);
-  if (4 + length > bytes.byteLength) {
-    throw new MotionError(`The header should have ${length} bytes; the answer has fewer.`);
-  }
-  const header = JSON.parse(new TextDecoder().decode(new Uint8Array(bytes, 4, length))) as Header;
-  const ofBody = header.frames * header.names.length * 3;
-  const ofErrors = header.error_frames * header.error_joints.length;
-  const expected = header.bodies.length * ofBody + ofErrors;
-  const actual = (bytes.byteLength - 4 - length) / 4;
-  if (actual !== expected) {
-    throw new MotionError(`Expected ${expected} numbers after the header, got ${actual}.`);
-  }
-  const all = new Float32Array(bytes, 4 + length, expected);
+  const { header, numbers: all } = splitMovement(bytes, countOf);
+  const ofBody = numbersOfBody(header);
   const body = (name: string): PointMotion | null => {
     const at = header.bodies.indexOf(name);
     if (at < 0) return null;

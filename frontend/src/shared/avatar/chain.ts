@@ -5,10 +5,10 @@
  * is used.
  */
 import type { DoubleBuffer, MjData, MjModel } from "@mujoco/mujoco";
+import { length, minus, type Quaternion, type Vector } from "../rotations";
 import { GOAL_PARTS, IkError } from "./goals";
 import type { Trunk } from "./hips";
 import type { Mujoco } from "./mujoco";
-import { length, minus, type Quaternion, type Vector } from "./rotations";
 
 interface Hinge {
   readonly name: string;

@@ -16,7 +16,7 @@ import {
   rotate,
   times,
   type Vector,
-} from "./rotations";
+} from "../rotations";
 
 const RIGHT: Vector = [1, 0, 0];
 const UP: Vector = [0, 1, 0];

@@ -6,12 +6,6 @@
  * check that both give the same angles for the same model and goals.
  */
 import type { MjModel } from "@mujoco/mujoco";
-import { boundedStep } from "./boundedStep";
-import { Chain, vectorAt } from "./chain";
-import { type Goals, rowsOf } from "./goals";
-import { estimatedHips, type Place } from "./hips";
-import { gram, transposedTimes } from "./linear";
-import type { Mujoco } from "./mujoco";
 import {
   length,
   minus,
@@ -20,7 +14,13 @@ import {
   rotated,
   rotationBetween,
   type Vector,
-} from "./rotations";
+} from "../rotations";
+import { boundedStep } from "./boundedStep";
+import { Chain, vectorAt } from "./chain";
+import { type Goals, rowsOf } from "./goals";
+import { estimatedHips, type Place } from "./hips";
+import { gram, transposedTimes } from "./linear";
+import type { Mujoco } from "./mujoco";
 
 export interface Solution {
   /** The angle of every hinge, in the model's order; see `axisNames`. */

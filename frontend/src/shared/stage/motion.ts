@@ -41,17 +41,7 @@ interface Header {
  * Throws MotionError if the bytes do not match the header.
  */
 export function decodeMotion(bytes: ArrayBuffer): PointMotion {
-  if (bytes.byteLength < 4) throw new MotionError(`${bytes.byteLength} bytes hold no movement.`);
-  const length = new DataView(bytes).getUint32(0, true);
-  if (4 + length > bytes.byteLength) {
-    throw new MotionError(`The header should have ${length} bytes; the answer has fewer.`);
-  }
-  const header = headerOf(new Uint8Array(bytes, 4, length));
-  const expected = header.frames * header.names.length * 3;
-  const actual = (bytes.byteLength - 4 - length) / 4;
-  if (actual !== expected) {
-    throw new MotionError(`Expected ${expected} numbers after the header, got ${actual}.`);
-  }
+  const { header, numbers } = splitMovement(bytes, countOf);
   return {
     kind: header.kind,
     names: header.names,
@@ -59,11 +49,32 @@ export function decodeMotion(bytes: ArrayBuffer): PointMotion {
     frames: header.frames,
     rateHz: header.rate_hz,
     recordedRateHz: header.recorded_rate_hz,
-    positions: numbers(bytes, 4 + length, expected),
+    positions: numbers,
   };
 }
 
-function headerOf(bytes: Uint8Array): Header {
+const countOf = ({ frames, names }: Header): number => frames * names.length * 3;
+
+/** Split a movement in the server's format into its header and the numbers that it announces. */
+export function splitMovement<Header>(
+  bytes: ArrayBuffer,
+  countOf: (header: Header) => number,
+): { readonly header: Header; readonly numbers: Float32Array } {
+  if (bytes.byteLength < 4) throw new MotionError(`${bytes.byteLength} bytes hold no movement.`);
+  const length = new DataView(bytes).getUint32(0, true);
+  if (4 + length > bytes.byteLength) {
+    throw new MotionError(`The header should have ${length} bytes; the answer has fewer.`);
+  }
+  const header = headerOf<Header>(new Uint8Array(bytes, 4, length));
+  const expected = countOf(header);
+  const actual = (bytes.byteLength - 4 - length) / 4;
+  if (actual !== expected) {
+    throw new MotionError(`Expected ${expected} numbers after the header, got ${actual}.`);
+  }
+  return { header, numbers: numbersFrom(bytes, 4 + length, expected) };
+}
+
+function headerOf<Header>(bytes: Uint8Array): Header {
   try {
     return JSON.parse(new TextDecoder().decode(bytes)) as Header;
   } catch (cause) {
@@ -71,7 +82,7 @@ function headerOf(bytes: Uint8Array): Header {
   }
 }
 
-function numbers(bytes: ArrayBuffer, from: number, count: number): Float32Array {
+function numbersFrom(bytes: ArrayBuffer, from: number, count: number): Float32Array {
   if (from % 4 === 0 && isLittleEndian()) return new Float32Array(bytes, from, count);
   const view = new DataView(bytes, from);
   return Float32Array.from({ length: count }, (_, index) => view.getFloat32(4 * index, true));

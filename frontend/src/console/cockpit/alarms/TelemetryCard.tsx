@@ -5,6 +5,7 @@ import { Icon } from "@shared/ui/Icon";
 import type { JSX } from "react";
 import { useTexts } from "../../i18n";
 import cockpit from "../Cockpit.module.css";
+import { FULL_SCALE_DEG } from "../live3d/heat";
 import classes from "../Panels.module.css";
 import { type TelemetryStore, useTelemetry } from "../session/telemetryStore";
 
@@ -48,9 +49,6 @@ export function TelemetryCard({ session, store }: TelemetryCardProps): JSX.Eleme
     </section>
   );
 }
-
-/** The scale of the bars: a larger joint error is drawn as a full bar. */
-const FULL_SCALE_DEG = 60;
 
 function JointErrors({ errors }: { readonly errors: Readonly<Record<string, number | null>> }) {
   const { t, language } = useTexts();

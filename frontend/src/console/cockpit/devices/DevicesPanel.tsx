@@ -1,4 +1,5 @@
 /** Tablet and headset: whether they are connected, and how to pair them. */
+
 import { ActionIcon, Button } from "@mantine/core";
 import { sessions } from "@shared/api/endpoints";
 import type { Device, PairedDevice, SessionView } from "@shared/api/types";
@@ -9,6 +10,7 @@ import { type JSX, useEffect, useState } from "react";
 import { useTexts } from "../../i18n";
 import { Key } from "../../ui/Key";
 import cockpit from "../Cockpit.module.css";
+import { ConnectionMark } from "../ConnectionMark";
 import classes from "../Panels.module.css";
 import { isBusy } from "../session/keys";
 import { PairingDialog } from "./PairingDialog";
@@ -125,18 +127,6 @@ function Paired({ sessionId, device, onPair }: PairedProps): JSX.Element {
         </Button>
       )}
     </div>
-  );
-}
-
-function ConnectionMark({ connected }: { readonly connected: boolean }): JSX.Element {
-  return (
-    <svg width="10" height="10" viewBox="0 0 10 10" aria-hidden="true">
-      {connected ? (
-        <circle cx="5" cy="5" r="4.5" fill="var(--accent)" />
-      ) : (
-        <path d="M5 1 9.5 9.2H.5Z" fill="none" stroke="currentColor" strokeWidth="1.4" />
-      )}
-    </svg>
   );
 }
 

@@ -3,7 +3,7 @@
  * vision.
  */
 
-/** Larger errors have the same colour. */
+/** The end of every scale of joint errors, degrees: larger errors are shown like this one. */
 export const FULL_SCALE_DEG = 60;
 
 const STOPS = ["#7d4be0", "#b0429f", "#dc5b6b", "#f48849", "#fcce25"] as const;

@@ -2,6 +2,7 @@
  * Forward kinematics: positions from local rotations, as in `app/science/skeleton/kinematics.py`.
  */
 import type { PoseSetup } from "@shared/api/poses";
+import { multiply, type Quaternion, rotate, type Vector } from "@shared/rotations";
 
 export interface Placed {
   /** x, y, z of every joint, metres in the world. Overwritten by `place`. */
@@ -25,11 +26,7 @@ export function place(setup: PoseSetup, values: Float32Array, into: Placed): voi
       rotations.set([w, x, y, z], 4 * joint);
       return;
     }
-    const [pw = 1, px = 0, py = 0, pz = 0] = rotations.subarray(4 * parent, 4 * parent + 4);
-    rotations[4 * joint] = pw * w - px * x - py * y - pz * z;
-    rotations[4 * joint + 1] = pw * x + px * w + py * z - pz * y;
-    rotations[4 * joint + 2] = pw * y - px * z + py * w + pz * x;
-    rotations[4 * joint + 3] = pw * z + px * y - py * x + pz * w;
+    rotations.set(multiply(rotationOf(rotations, parent), [w, x, y, z]), 4 * joint);
     const offset = rotateToWorld(rotations, parent, setup.offsets_m[joint] ?? [0, 0, 0]);
     for (let axis = 0; axis < 3; axis++) {
       positions[3 * joint + axis] = (positions[3 * parent + axis] ?? 0) + (offset[axis] ?? 0);
@@ -37,16 +34,13 @@ export function place(setup: PoseSetup, values: Float32Array, into: Placed): voi
   });
 }
 
-type Vector = readonly [x: number, y: number, z: number];
-
 /** Rotate a vector from a joint's own frame into the world. */
-export function rotateToWorld(turns: Float32Array, joint: number, [x, y, z]: Vector): Vector {
-  const [w = 1, a = 0, b = 0, c = 0] = turns.subarray(4 * joint, 4 * joint + 4);
-  // v + 2 u x (u x v + w v)
-  const tx = 2 * (b * z - c * y);
-  const ty = 2 * (c * x - a * z);
-  const tz = 2 * (a * y - b * x);
-  return [x + w * tx + b * tz - c * ty, y + w * ty + c * tx - a * tz, z + w * tz + a * ty - b * tx];
+export const rotateToWorld = (rotations: Float32Array, joint: number, vector: Vector): Vector =>
+  rotate(rotationOf(rotations, joint), vector);
+
+function rotationOf(rotations: Float32Array, joint: number): Quaternion {
+  const [w = 1, x = 0, y = 0, z = 0] = rotations.subarray(4 * joint, 4 * joint + 4);
+  return [w, x, y, z];
 }
 
 /** The rest pose, standing on the floor: a body's proportions before it moves. */

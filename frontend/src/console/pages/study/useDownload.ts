@@ -1,5 +1,6 @@
 /** A download that shows its progress and can be cancelled. */
 import { errorFromBody, Unreachable } from "@shared/api/request";
+import { saveFile } from "@shared/saveFile";
 import { useRef, useState } from "react";
 
 export type DownloadState =
@@ -58,10 +59,8 @@ async function receive(
 }
 
 function save(blob: Blob, name: string): void {
-  const link = document.createElement("a");
-  link.href = URL.createObjectURL(blob);
-  link.download = name;
-  link.click();
+  const address = URL.createObjectURL(blob);
+  saveFile(address, name);
   // The browser reads the file after the click; revoking the URL immediately would cut it off.
-  setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
+  setTimeout(() => URL.revokeObjectURL(address), 60_000);
 }
