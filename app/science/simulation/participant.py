@@ -105,7 +105,9 @@ class SimulatedParticipant:
         """
         before = time_s if self._time_s is None else self._time_s
         if not before <= time_s < float("inf"):
-            raise SimulationError(f"Time went from {before} s to {time_s} s: poses go in order.")
+            raise SimulationError(
+                f"Time went from {before} s to {time_s} s: request poses in order of time."
+            )
         # After a pause the springs must not advance through the whole gap in one step.
         step_s = min(time_s - before, _LONGEST_FRAME_S)
         self._time_s = time_s

@@ -26,7 +26,7 @@ _BEARING_SHARE = 0.65
 
 @dataclass(frozen=True)
 class ReachPlan:
-    """Goals of the hips and of the shoulders' lean, (x, z) in metres, and the time to get there."""
+    """The goals of hips and shoulder lean for a reach, (x, z) in metres, and the time needed."""
 
     hips_m: tuple[float, float]
     lean_m: tuple[float, float]

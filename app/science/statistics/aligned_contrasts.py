@@ -108,6 +108,6 @@ def _checked_axes(
     chosen = tuple(sorted(set(axes)))
     if not chosen or chosen[0] < 1 or chosen[-1] >= cells.ndim:
         raise StatisticsError(
-            f"Axes {tuple(axes)}; valid are axes of factors, 1 to {cells.ndim - 1}."
+            f"The axes {tuple(axes)} are not valid; give axes of factors, 1 to {cells.ndim - 1}."
         )
     return chosen

@@ -19,8 +19,8 @@ def complete_blocks(values: npt.ArrayLike, *, least: int = 2) -> FloatArray:
     blocks = np.asarray(values, dtype=np.float64)
     if blocks.ndim != 2:
         raise StatisticsError(
-            f"Blocks of shape {blocks.shape} were given; give one row a subject and one column a"
-            " level."
+            f"Blocks of shape {blocks.shape} were given; give one row per subject and one column"
+            " per level."
         )
     n, k = blocks.shape
     if n < least or k < 2:

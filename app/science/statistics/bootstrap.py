@@ -71,7 +71,7 @@ def bootstrap_interval(
     if rows.ndim < 1 or rows.shape[0] < 2:
         raise TooFewData(f"Data of shape {rows.shape}: at least 2 subjects are needed.")
     if not 0.0 < confidence < 1.0:
-        raise StatisticsError(f"Confidence {confidence}; give a share between 0 and 1.")
+        raise StatisticsError(f"The confidence is {confidence}; give a number between 0 and 1.")
     n = rows.shape[0]
     estimate = float(statistic(rows[np.newaxis])[0])
     if not math.isfinite(estimate):

@@ -75,7 +75,7 @@ def _interval(
     column: FloatArray, widened: float, confidence: float, kind: Literal["between", "within"]
 ) -> MeanInterval:
     if not 0.0 < confidence < 1.0:
-        raise StatisticsError(f"Confidence {confidence}; give a share between 0 and 1.")
+        raise StatisticsError(f"The confidence is {confidence}; give a number between 0 and 1.")
     n, mean = column.size, float(column.mean())
     sd = math.sqrt(widened) * float(column.std(ddof=1))
     reach = float(stdtrit(n - 1, 0.5 + 0.5 * confidence)) * sd / math.sqrt(n)

@@ -104,7 +104,7 @@ def directional(
     Raises StatisticsError for a direction other than rises or falls, TooFewData.
     """
     if predicted not in ("rises", "falls"):
-        raise StatisticsError(f"Direction {predicted!r}; valid: rises, falls.")
+        raise StatisticsError(f"The direction {predicted!r} is unknown; valid: rises, falls.")
     table = np.asarray(values, dtype=np.float64)
     rows, left_out = complete_rows(table)
     # A fall is a rise along the reversed levels.

@@ -71,7 +71,7 @@ def rm_anova_power(n: int, expected: Expected) -> float:
 def subjects_needed(power: float, expected: Expected) -> int:
     """Return the smallest n with at least this power, 0 to 1; raises StatisticsError beyond 1e5."""
     if not 0.0 < power < 1.0:
-        raise StatisticsError(f"Power {power}; give a share between 0 and 1.")
+        raise StatisticsError(f"The power is {power}; give a number between 0 and 1.")
     low, high = 1, 2
     while rm_anova_power(high, expected) < power:
         if high >= _MOST_SUBJECTS:

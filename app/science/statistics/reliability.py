@@ -64,7 +64,7 @@ def cronbach_alpha(answers: npt.ArrayLike, *, confidence: float = 0.95) -> Cronb
     """
     rows, left_out = complete_answers(answers)
     if not 0.0 < confidence < 1.0:
-        raise StatisticsError(f"Confidence {confidence}; give a share between 0 and 1.")
+        raise StatisticsError(f"The confidence is {confidence}; give a number between 0 and 1.")
     n, k = rows.shape
     covariance = np.cov(rows, rowvar=False)
     alpha = _alpha(covariance)

@@ -65,7 +65,9 @@ def checked_cells(values: npt.ArrayLike) -> FloatArray:
     """
     cells = np.asarray(values, dtype=np.float64)
     if cells.ndim < 2:
-        raise StatisticsError(f"Shape {cells.shape}: give subjects first, then an axis a factor.")
+        raise StatisticsError(
+            f"Shape {cells.shape}: give subjects first, then one axis per factor."
+        )
     if min(cells.shape) < 2:
         raise TooFewData(
             f"Shape {cells.shape}: at least 2 complete subjects and 2 levels of each factor are"

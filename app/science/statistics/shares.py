@@ -24,7 +24,7 @@ def share_of_maximum(scores: npt.ArrayLike, maximum: float) -> FloatArray:
     """
     values = np.asarray(scores, dtype=np.float64)
     if not (np.isfinite(maximum) and maximum > 0.0):
-        raise StatisticsError(f"A maximum of {maximum}; it must be positive.")
+        raise StatisticsError(f"The maximum is {maximum}; it must be positive.")
     if values.size and not np.all(np.isnan(values) | (np.abs(values) <= maximum)):
         worst = float(values.flat[np.nanargmax(np.abs(values))])
         raise StatisticsError(

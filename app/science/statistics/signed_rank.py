@@ -117,9 +117,11 @@ def signed_rank(
 
 def _check_words(alternative: str, zeros: str) -> None:
     if alternative not in _ALTERNATIVES:
-        raise StatisticsError(f"Alternative {alternative!r}; valid: {', '.join(_ALTERNATIVES)}.")
+        raise StatisticsError(
+            f"Unknown alternative {alternative!r}; valid: {', '.join(_ALTERNATIVES)}."
+        )
     if zeros not in _ZERO_RULES:
-        raise StatisticsError(f"Rule for zeros {zeros!r}; valid: {', '.join(_ZERO_RULES)}.")
+        raise StatisticsError(f"Unknown rule for zeros {zeros!r}; valid: {', '.join(_ZERO_RULES)}.")
 
 
 def _pairs(x: npt.ArrayLike, y: npt.ArrayLike) -> tuple[FloatArray, FloatArray, int]:

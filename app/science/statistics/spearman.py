@@ -57,7 +57,7 @@ def spearman(x: npt.ArrayLike, y: npt.ArrayLike, *, confidence: float = 0.95) ->
             f"Values of shapes {first.shape} and {second.shape} do not pair up; give two of (n,)."
         )
     if not 0.0 < confidence < 1.0:
-        raise StatisticsError(f"Confidence {confidence}; give a share between 0 and 1.")
+        raise StatisticsError(f"The confidence is {confidence}; give a number between 0 and 1.")
     paired = ~(np.isnan(first) | np.isnan(second))
     n = int(paired.sum())
     if n < _LEAST:

@@ -171,7 +171,7 @@ def _check_lengths(
     subjects: Sequence[str], within: Mapping[str, Sequence[str]], measure: Sequence[object]
 ) -> None:
     if not within:
-        raise StatisticsError("No within-subject factor was named; name one at least.")
+        raise StatisticsError("No within-subject factor was named; name at least one.")
     lengths = {len(subjects), len(measure), *(len(column) for column in within.values())}
     if len(lengths) != 1:
         raise StatisticsError(f"The columns have {sorted(lengths)} rows; give all the same number.")

@@ -104,7 +104,7 @@ def _check_sides(limb: Limb, sides: tuple[Side, ...]) -> None:
     names = ", ".join(valid)
     for side in sides:
         if side not in valid:
-            raise LayoutError(f"A {limb} box has no side {side.value!r}. Use some of: {names}.")
+            raise LayoutError(f"A {limb} box has no side {side.value!r}. Valid sides: {names}.")
     if len(set(sides)) != len(sides):
         given = ", ".join(sides)
         raise LayoutError(f"Sides are named twice: {given}. Name each of {names} at most once.")

@@ -140,7 +140,7 @@ def test_vector_layouts_are_mirror_images_of_themselves() -> None:
         ),
         ({"target": BlockSpec((-0.2, 1.2, -0.5), (0.1, 0.1, 0.1))}, "Box 2 and the target overlap"),
         ({"target": BlockSpec((0.0, 1.6, -0.5), (0.1, 0.0, 0.1))}, "The target has size_m"),
-        ({"sides": (Side.FRONT,)}, "no side 'front'. Use some of: left, right, top, bottom"),
+        ({"sides": (Side.FRONT,)}, "no side 'front'. Valid sides: left, right, top, bottom"),
         ({"sides": (Side.LEFT, Side.LEFT)}, "named twice"),
         ({"sides": (Side.FRONT_RIM,)}, "at least one wall"),
         ({"sides": (Side.TOP, Side.FRONT_RIM), "wall_thickness_m": 0.3}, "overlap|no deeper"),

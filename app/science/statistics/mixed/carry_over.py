@@ -161,7 +161,7 @@ def _conditions_by_period(
         if placed.setdefault((who, at), str(condition)) != str(condition):
             raise ModelError(
                 f"Participant {who} has the conditions {placed[who, at]} and {condition} in period "
-                f"{at}; a period has one."
+                f"{at}; give one per period."
             )
     if {at for _, at in placed} != set(range(1, max(periods) + 1)) or max(periods) == 1:
         raise ModelError("Periods must count from 1 without a gap, and there must be two or more.")

@@ -197,7 +197,7 @@ def _effects(names: Sequence[str], found: Found) -> tuple[CumulativeEffect, ...]
 
 def _levels(given: IntArray, scale: Sequence[int] | None) -> list[int]:
     if given.ndim != 1 or given.dtype.kind not in "iu":
-        raise ModelError("Answers must be whole numbers in one row, without missing ones.")
+        raise ModelError("Answers must be a one-dimensional array of whole numbers, none missing.")
     levels: list[int] = np.unique(given).tolist()
     invalid = [level for level in levels if scale is not None and level not in scale]
     if invalid:
@@ -216,7 +216,7 @@ def _check(answers: int, rows: int, codes: IntArray, nodes: int) -> None:
     if codes.max() + 1 < _FEWEST_PARTICIPANTS:
         raise ModelError(f"{codes.max() + 1} participants are too few; give three or more.")
     if not 1 <= nodes <= _MOST_NODES:
-        raise ModelError(f"{nodes} quadrature nodes; valid are 1 to {_MOST_NODES}.")
+        raise ModelError(f"The number of quadrature nodes is {nodes}; valid: 1 to {_MOST_NODES}.")
 
 
 def _about(unused: list[int]) -> tuple[str, ...]:

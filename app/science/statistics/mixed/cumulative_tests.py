@@ -103,7 +103,7 @@ def cumulative_term_tests(
     """
     unknown = [term for term in terms if term not in design.terms]
     if unknown:
-        raise ModelError(f"There is no term {unknown[0]}; there are {', '.join(design.terms)}.")
+        raise ModelError(f"There is no term {unknown[0]}; valid: {', '.join(design.terms)}.")
     found = []
     for term in terms or design.terms:
         large = _without_products_of(design, term)

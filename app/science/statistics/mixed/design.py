@@ -53,7 +53,7 @@ class Design:
             if one.name == name:
                 return one
         valid = ", ".join(one.name for one in self.factors)
-        raise ModelError(f"There is no factor {name} in the model; there are {valid}.")
+        raise ModelError(f"There is no factor {name} in the model; valid: {valid}.")
 
 
 def build_design(
@@ -110,7 +110,7 @@ def term_contrasts(design: Design, term: str) -> FloatArray:
         ModelError: there is no such term.
     """
     if term not in design.terms:
-        raise ModelError(f"There is no term {term}; there are {', '.join(design.terms)}.")
+        raise ModelError(f"There is no term {term}; valid: {', '.join(design.terms)}.")
     for one in design.covariates:
         if one.name == term:
             columns = [_part(one.name, part) for part in one.parts]
@@ -161,7 +161,7 @@ def pairs_of(design: Design, factor: str, against: str = "") -> list[tuple[str, 
     if not against:
         return list(combinations(levels, 2))
     if against not in levels:
-        raise ModelError(f"{factor} has no level {against}; it has {', '.join(levels)}.")
+        raise ModelError(f"{factor} has no level {against}; valid: {', '.join(levels)}.")
     return [(level, against) for level in levels if level != against]
 
 
@@ -180,7 +180,7 @@ def _columns(design: Design, codes: list[IntArray], rows: int) -> tuple[FloatArr
     for term in (*((one.name,) for one in design.factors), *design.interactions):
         unknown = [name for name in term if name not in named]
         if unknown:
-            raise ModelError(f"{unknown[0]} is not a factor; there are {', '.join(named)}.")
+            raise ModelError(f"{unknown[0]} is not a factor; valid: {', '.join(named)}.")
         block, labels = np.ones((rows, 1)), [""]
         for name in term:
             one, code = named[name]

@@ -134,5 +134,5 @@ def _check(y: FloatArray, codes: IntArray, design: Design) -> None:
         )
     if len(y) <= design.matrix.shape[1]:
         raise ModelError(
-            f"{len(y)} observations are too few: there must be more than coefficients."
+            f"{len(y)} observations are too few for {design.matrix.shape[1]} coefficients."
         )
