@@ -77,7 +77,7 @@ def prepare_connection(dbapi_connection: DBAPIConnection, _record: ConnectionPoo
 
 
 class SqliteBegin:
-    """Open the transactions of an engine, and remember whether another program held the lock."""
+    """Opens the transactions of an engine, and remembers whether another program held the lock."""
 
     def __init__(self) -> None:
         self._locked = False
@@ -182,7 +182,7 @@ class WriteObserver(Protocol):
 
 @dataclass(eq=False)
 class CommitCount:
-    """How many transactions of this process have changed something.
+    """The number of transactions of this process that have changed something.
 
     `copied` is the value of `number` up to which SQLite's log was completely copied into the
     database file; `copying` is held by the one thread that copies it.

@@ -18,7 +18,7 @@ NEVER_EMPTY = ("data_dir", "database_url")
 
 
 class Settings(BaseSettings):
-    """Frozen settings, read from `REEMBODY_*` variables and overridden by arguments.
+    """The installation's frozen settings, from `REEMBODY_*` variables, overridden by arguments.
 
     `database_url` empty means the embedded SQLite database in `data_dir`. `admin_password` is for
     scripts; without it the first start makes a random one and prints it once. When less than

@@ -66,7 +66,7 @@ LOCAL_ENDINGS = (".local", ".localhost", ".lan", ".home.arpa", ".internal")
 
 
 class Guards:
-    """ASGI middleware around the whole application."""
+    """The ASGI middleware that checks every request to the application."""
 
     def __init__(
         self,

@@ -29,7 +29,7 @@ _NOT_BUILT = """<!doctype html><html lang="en"><meta charset="utf-8"><title>Reem
 
 
 class Assets(StaticFiles):
-    """Files whose names contain a hash of the content, so that browsers may cache them.
+    """The static files whose names contain a hash of the content, so that browsers may cache them.
 
     A file is compressed once and stays in memory: about a megabyte for all pages together.
     """

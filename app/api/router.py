@@ -48,7 +48,7 @@ from app.platform.dependencies import API_PREFIX, Context
 
 
 class Health(BaseModel):
-    """Whether the server and its database respond, and whether the record can be written.
+    """The server's health: whether its database responds and the record can be written.
 
     `status` is degraded while something in the background fails, as listed in `failing`; failures
     of storage are reported only in `storage`. `low_disk`: little space is left in the data folder.

@@ -19,7 +19,7 @@ LOG_EVERY_S, DRAWN_EVERY_S = 5.0, 0.2
 
 
 class Activity:
-    """Show what a command is doing, for the duration of the block.
+    """A progress display that shows what a command is doing, for the duration of the block.
 
     with Activity("backing up: opening the database") as activity:
         activity.now("backing up: copying")

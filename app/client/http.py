@@ -33,7 +33,7 @@ class ServerRefusedError(RuntimeError):
 
 
 class UnreachableError(RuntimeError):
-    """No server responds at the address."""
+    """The request got no response from any server at the address."""
 
 
 async def call(client: AsyncClient, method: str, path: str, body: Json | None = None) -> Any:

@@ -29,7 +29,7 @@ class Entry:
 
 @dataclass
 class Journal:
-    """Unacknowledged messages, oldest first, each at its place: 0, 1, 2, ... since the start.
+    """A bounded list of unacknowledged messages, each at its place: 0, 1, 2, ... since the start.
 
     An acknowledged message after an unacknowledged one stays until that one leaves, so that
     removing messages takes time proportional to their number only; resending it would do no harm.
@@ -70,7 +70,7 @@ class Journal:
 
     @property
     def produced(self) -> dict[tuple[str, int], int]:
-        """The next seq that the client will produce for every (stream, epoch)."""
+        """The next seq of the client in every (stream, epoch)."""
         return dict(self._produced)
 
     def produced_up_to(self, stream: str, epoch: int, next_seq: int) -> None:

@@ -79,7 +79,7 @@ class Reach:
 
 @dataclass
 class Network:
-    """The newest reach; it is replaced as a whole, so any thread may read it."""
+    """Holds the newest reach, which is replaced as a whole, so any thread may read it."""
 
     reach: Reach = field(default_factory=Reach)
 

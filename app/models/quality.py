@@ -35,7 +35,7 @@ class PhaseLatency(Base):
 
 
 class PhaseQuality(Base):
-    """Counts of the problems in the samples of one stream in one phase.
+    """The number of problems of each kind in the samples of one stream in one phase.
 
     Times in s of the client's clock; `frozen_joints` names joints whose values did not change at
     all while others moved.

@@ -75,7 +75,7 @@ class SessionEvent(Base):
 
 
 class SessionContent(Base):
-    """Texts and personal data that an event refers to; erasure empties `body` and `salt`."""
+    """A text or personal data that an event refers to; erasure empties `body` and `salt`."""
 
     __tablename__ = "session_contents"
 

@@ -19,7 +19,7 @@ from app.models.types import Id, UtcDateTime, UtcTime
 
 
 class TelemetryStream(Base):
-    """How much of a stream of one client run (epoch) is stored: all of `seq < next_seq`.
+    """A stream of one client run (epoch), of which all of `seq < next_seq` is stored.
 
     `produced` is the next seq that the client has reported: what lies between is still in its
     journal, or was lost with it. `phase_id` and `active_s` are those of the newest stored frame:
@@ -57,7 +57,7 @@ class TelemetryBatch(Base):
 
 
 class TelemetryChunk(Base):
-    """About a second of one stream in compressed columns, lossless; never spans two phases."""
+    """About one second of a stream in compressed columns, lossless; it never spans two phases."""
 
     __tablename__ = "telemetry_chunks"
     __table_args__ = (Index("ix_telemetry_chunks_phase", "session_id", "phase_id", "stream"),)

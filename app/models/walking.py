@@ -23,7 +23,7 @@ class WalkingScene(Base):
 
 
 class WalkSetRow(Base):
-    """Walks to fit models to: people's tracks, stored as a text table, or synthetic walkers.
+    """A set of walks to fit models to: people's tracks, stored as a table, or synthetic walkers.
 
     `origin` is where they come from and how they are read, `summary` their figures; both follow the
     schemas of the feature. `content_hash` is null for synthetic walkers, which are reproduced from

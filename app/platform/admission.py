@@ -66,7 +66,7 @@ class Admission:
     _checking: CapacityLimiter = field(default_factory=lambda: CapacityLimiter(CHECKING_THREADS))
 
     async def knows(self, tokens: tuple[str, ...]) -> bool:
-        """Return whether one of the tokens is a valid login or pairing."""
+        """Return whether one of the tokens belongs to a valid login or pairing."""
         for token in tokens[:4]:
             if len(token) == _TOKEN_LENGTH and await self._is_valid(token):
                 return True

@@ -135,7 +135,10 @@ class Background:
         loop.set_exception_handler(ended)
 
     def watched(self, name: str, done: "Future[Any]") -> None:
-        """Record the outcome of a queue's task under `name`; a callback of its future."""
+        """Record the outcome of a queue's task under `name`.
+
+        To be called when its future is done.
+        """
         if done.cancelled():
             return
         error = done.exception()

@@ -33,7 +33,7 @@ def network_of(address: str | None) -> str:
 
 @dataclass
 class RateLimiter:
-    """At most `limit` attempts per `window_s` for each key."""
+    """Limits each key to `limit` attempts per `window_s`."""
 
     limit: int
     window_s: float

@@ -36,7 +36,7 @@ class Failure:
 
 
 class StorageState(BaseModel):
-    """Whether storage works; `reason` and `remedy` are set while it fails.
+    """The state of storage; `reason` and `remedy` are set while it fails.
 
     `low_disk` warns before it fails.
     """

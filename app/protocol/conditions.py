@@ -68,7 +68,7 @@ Conditions = Annotated[tuple[Condition, ...], Field(min_length=1), AfterValidato
 
 
 class Orders(Strict):
-    """Counterbalancing: the orders, how often each is used, and what happens when all are used.
+    """The counterbalancing: the orders, how often each is used, and what follows when all are used.
 
     `design`: "all_permutations" (n! orders), "williams" (n orders for an even number of conditions,
     2n for an odd one: each condition equally often at each position, each ordered pair of

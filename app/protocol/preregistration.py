@@ -1,4 +1,4 @@
-"""What a study declares before data are collected: one primary test, and the exclusions.
+"""The preregistration of a study: one primary test, and the exclusions, declared in advance.
 
 It is part of the study's content, so it is hashed, versioned and frozen with the rest: the hash in
 a registry identifies exactly this text. Everything that is not declared is exploratory.

@@ -26,7 +26,7 @@ class Statement(Strict):
 
 
 class ConsentStep(Strict):
-    """The participant reads the consent text and agrees; otherwise the session ends.
+    """A step in which the participant reads the consent text and agrees, or the session ends.
 
     `signature`: "none" is a button, "typed" a name, "drawn" a signature by finger, pen or mouse
     (participants who cannot draw type their name). `statements`: each has its own tick box.
@@ -45,7 +45,7 @@ class ConsentStep(Strict):
 
 
 class FormStep(Strict):
-    """The participant fills in an instrument."""
+    """A step in which the participant fills in an instrument."""
 
     step: Literal["form"]
     instrument: Key
@@ -53,7 +53,7 @@ class FormStep(Strict):
 
 
 class InstructionsStep(Strict):
-    """The participant reads a text and can ask questions."""
+    """A step in which the participant reads a text and can ask questions."""
 
     step: Literal["instructions"]
     text: Key
@@ -61,7 +61,7 @@ class InstructionsStep(Strict):
 
 
 class HeightStep(Strict):
-    """The avatar is matched to the participant's height.
+    """A step in which the avatar is matched to the participant's height.
 
     The stated and matched values are stored.
     """
@@ -72,7 +72,7 @@ class HeightStep(Strict):
 
 
 class MaterialiseStep(Strict):
-    """The participant stands inside the local avatar in T-pose and presses the grip buttons."""
+    """A step in which the participant stands inside the avatar in T-pose and presses the grips."""
 
     step: Literal["materialise"]
     text: Key | None = None
@@ -80,7 +80,7 @@ class MaterialiseStep(Strict):
 
 
 class FreeRoamStep(Strict):
-    """The participant gets used to the body for a while, with a separate latency."""
+    """A step in which the participant gets used to the body for a while, with its own latency."""
 
     step: Literal["free_roam"]
     duration_s: Duration
@@ -110,7 +110,7 @@ class PracticeStep(Strict):
 
 
 class DebriefStep(Strict):
-    """The purpose of the study is explained to the participant."""
+    """A step in which the purpose of the study is explained to the participant."""
 
     step: Literal["debrief"]
     text: Key

@@ -43,7 +43,7 @@ Language = Annotated[
 
 
 class Blinding(Strict):
-    """Who must not know the condition. Participants never learn it.
+    """The blinding of a study: who must not know the condition. Participants never learn it.
 
     `operator`: conditions and orders are then hidden from operators permanently, and from everybody
     else until the session that holds the slot is completed.
@@ -53,7 +53,7 @@ class Blinding(Strict):
 
 
 class LatencySettings(Strict):
-    """How the added latency acts on the remote avatar.
+    """The settings of how the added latency acts on the remote avatar.
 
     `undelayed_parts`: parts whose target is never delayed; in the thesis the hips, which helps
     balance. Nothing is ever buffered at 0 ms. `bypass_at_zero` specified that in older files: it is

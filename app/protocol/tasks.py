@@ -63,10 +63,11 @@ class FootBox(Strict):
 
 
 class HandTask(Strict):
-    """Touch each back panel with the writing hand, then the target; then in the reverse order.
+    """The hand task: touch each back panel, then the target; then in the reverse order.
 
-    `sides`: which walls (and "front_rim") exist and turn red when touched. `direction`: the side on
-    which the first order starts; "by_hand" means that of the writing hand.
+    Touches with the writing hand count. `sides`: which walls (and "front_rim") exist and turn red
+    when touched. `direction`: the side on which the first order starts; "by_hand" means that of the
+    writing hand.
     """
 
     boxes: Annotated[tuple[HandBox, ...], Field(min_length=1, max_length=_MAX_BOXES)]
@@ -98,10 +99,11 @@ class HandTask(Strict):
 
 
 class FootTask(Strict):
-    """Step into each box, then onto the target bar; walk back to the start square and continue.
+    """The foot task: step into each box, then onto the target bar.
 
-    The boxes are `base_length_m` times `length_factor` long: the factor was added after expert
-    feedback (Karas 2020, chapter 7.2), and is separate so that both numbers stay visible.
+    Then the participant walks back to the start square and continues. The boxes are `base_length_m`
+    times `length_factor` long: the factor was added after expert feedback (Karas 2020, chapter
+    7.2), and is separate so that both numbers stay visible.
     """
 
     boxes: Annotated[tuple[FootBox, ...], Field(min_length=1, max_length=_MAX_BOXES)]

@@ -1,4 +1,4 @@
-"""When a completed session counts as valid: what must be complete, as declared by the study.
+"""The rules by which a completed session counts as valid, as declared by the study.
 
 A study without `valid_when` counts every session that was neither aborted nor withdrawn. With it, a
 completed session must satisfy all rules; one that does not keeps its data, is marked as not valid
@@ -59,7 +59,7 @@ class PhaseRule(Strict):
 
 
 class LatencyRule(Strict):
-    """Requirements on the achieved latency of the avatar, in the phases that are listed.
+    """The requirements on the avatar's achieved latency, in the phases that are listed.
 
     `reported`: it could be measured. `tolerance_ms`: if it was measured, it differs from the set
     latency by no more than this. A body that is moved by physics adds its own lag.

@@ -28,7 +28,7 @@ INTERRUPTION_TEXTS = {
 
 @dataclass(frozen=True)
 class Interruption:
-    """What the operator does once, half-way through a phase: repeat it, or record a withdrawal.
+    """An interruption by the operator half-way through a phase: a repetition or a withdrawal.
 
     `phase`: its number in the visit, from 1; practice and free movement count.
     """

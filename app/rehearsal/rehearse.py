@@ -43,7 +43,7 @@ _MOVED = re.compile(r"^avatar: delayed_copy[ \t]*$", re.MULTILINE)
 
 @dataclass(frozen=True)
 class RehearsalPlan:
-    """What to rehearse. `token` None logs in with `password`. `speed` 1 is real time.
+    """The plan of a rehearsal. `token` None logs in with `password`. `speed` 1 is real time.
 
     `physics`: use a physics avatar, in a copy of the study if that has another one. `redo`: the
     phase that is repeated half-way through; `withdraw_during`: the one in which the participant
@@ -79,7 +79,7 @@ class RehearsalPlan:
 
 @dataclass(frozen=True)
 class Visit:
-    """What a study specifies for each visit: the number of timed phases and their total time in s.
+    """The length of a study's visit: the number of timed phases, and their total time in s.
 
     `physics`: whether it has a physics avatar; assumed if the caller may not see the protocol.
     """
@@ -91,7 +91,7 @@ class Visit:
 
 @dataclass(frozen=True)
 class RehearsalReport:
-    """What was sent, and what the server reports as stored.
+    """The result of a rehearsal: what was sent, and what the server reports as stored.
 
     `status`: how the session ended; somebody else may have aborted it. The latency of phases is
     None if the caller must not know it.
@@ -274,7 +274,7 @@ async def report_of(cast: Cast, plan: RehearsalPlan, duration_s: float) -> Rehea
 
 
 class NoVariantError(ValueError):
-    """No variant of the study with a physics avatar can be made; says why."""
+    """The study cannot be copied with a physics avatar; the message says why."""
 
 
 async def physics_variant(http: AsyncClient, study: str) -> str:

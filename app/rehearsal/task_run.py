@@ -56,7 +56,7 @@ class BoxRun(TimedRun):
 
     @property
     def ends_early(self) -> bool:
-        """Whether as many tasks are completed as a practice requires."""
+        """Whether a practice has as many completed tasks as it requires."""
         required = self.order.until_completions
         done = self._completed_before + self._reported_completions
         return required is not None and self.clock_runs and done >= required

@@ -95,7 +95,7 @@ class ContactReport(Message):
 
 
 class CompletionReport(Message):
-    """A completed task."""
+    """Reports a completed task of a phase."""
 
     kind: Literal["completion"] = "completion"
     phase_id: Count
@@ -123,7 +123,7 @@ class Report(Message):
 
 
 class Probe(Message):
-    """Request for the server's clock reading."""
+    """A request for the server's clock reading."""
 
     type: Literal["probe"] = "probe"
     client_sent_s: Seconds
@@ -163,7 +163,7 @@ CLIENT_MESSAGE: TypeAdapter[ClientMessages] = TypeAdapter(ClientMessage)
 
 
 class StreamPosition(Message):
-    """All frames of a stream with `seq < next_seq` are on disk."""
+    """A position in a stream, before which everything (`seq < next_seq`) is on disk."""
 
     stream: str
     epoch: int
@@ -193,7 +193,7 @@ class PhaseOrder(Message):
 
 
 class ParticipantInfo(Message):
-    """What the task needs to know about the participant; null until it was answered."""
+    """The facts about the participant that the task needs; null until they were answered."""
 
     handedness: str | None = None
     footedness: str | None = None
@@ -233,7 +233,7 @@ class Welcome(Message):
 
 
 class Ack(Message):
-    """Acknowledges that the frames up to these positions are on disk."""
+    """Acknowledges that everything before these positions is on disk."""
 
     type: Literal["ack"] = "ack"
     positions: tuple[StreamPosition, ...]

@@ -20,7 +20,7 @@ FRAMES_AT_ONCE = 2048
 
 @dataclass(frozen=True)
 class FrameFlags:
-    """Flags of n frames, each (n,).
+    """The flags of n frames, each (n,).
 
     `non_finite`: any value is not finite. `non_unit`: any rotation is not of unit length.
     """

@@ -23,7 +23,7 @@ class BvhError(ValueError):
 
 @dataclass(frozen=True)
 class BvhLimits:
-    """Largest sizes of a text that are accepted; real captures stay far below."""
+    """The largest sizes of a text that are accepted; real captures stay far below."""
 
     characters: int = 200_000_000
     joints: int = 512

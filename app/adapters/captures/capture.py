@@ -51,7 +51,7 @@ class Conventions:
 
 @dataclass(frozen=True)
 class Reading:
-    """What a user specifies about a file, because the file does not, or does so wrongly.
+    """A user's instructions on how to read a file, where it does not say so or is wrong.
 
     Attributes:
         metres_per_unit: length of the file's unit; None to use the file's or a plausible one.
@@ -66,7 +66,7 @@ class Reading:
 
 @dataclass(frozen=True)
 class Limits:
-    """Largest sizes of a file that are accepted; real captures stay far below."""
+    """The largest sizes of a file that are accepted; real captures stay far below."""
 
     bytes: int = 256_000_000
     tracks: int = 2_000

@@ -19,7 +19,7 @@ _LONGEST_S = 1e7
 
 @dataclass(frozen=True, eq=False)
 class SampleTimes:
-    """Which rows to keep, their times, and what was repaired.
+    """The samples of a log: which rows to keep, their times, and what was repaired.
 
     Attributes:
         kept: (N,) indices of the rows whose time is later than that of the row before.

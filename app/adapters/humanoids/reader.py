@@ -24,7 +24,7 @@ MapSource = Literal["vrm", "names"]
 
 @dataclass(frozen=True)
 class Limits:
-    """Largest sizes of a file that are accepted; real models stay far below."""
+    """The largest sizes of a file that are accepted; real models stay far below."""
 
     bytes: int = 256_000_000
     vertices: int = 2_000_000

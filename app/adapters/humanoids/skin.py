@@ -30,7 +30,10 @@ _AT_ONCE = 65_536
 
 @dataclass(frozen=True, eq=False)
 class SkinnedVertices:
-    """(V, 3) positions in the world, and (V,) the node that moves each vertex most."""
+    """The vertices of a skin at rest.
+
+    They have (V, 3) positions in the world, and (V,) the node that moves each vertex most.
+    """
 
     places_m: FloatArray
     nodes: IndexArray

@@ -34,7 +34,7 @@ _RATE = re.compile(r"frame\s*rate\D*([0-9]+(?:\.[0-9]+)?)", re.IGNORECASE | re.A
 
 @dataclass(frozen=True)
 class TrackReading:
-    """What a user specifies about a table because the table does not.
+    """A user's instructions on how to read a table, where it does not say so.
 
     Attributes:
         rate_hz: frame rate, if time is a frame number.

@@ -20,7 +20,7 @@ _MANY = 30
 
 
 def as_text(done: Analysis) -> str:
-    """Format the result for people, rounded; --json has every digit."""
+    """Format the result for people, with rounded figures; --json has every digit."""
     order, cells = done.order, done.cells
     factors = " x ".join(
         f"{name} ({', '.join(levels)})"

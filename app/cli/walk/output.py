@@ -77,7 +77,7 @@ def reading_text(options: SuitabilityOptions) -> str:
 
 
 def sample_json(done: Sampled) -> dict[str, object]:
-    """Return draws for scripts."""
+    """Return the draws of `walk sample` for scripts."""
     prediction = done.prediction
     return {
         "length_m": done.path.length_m,
@@ -93,7 +93,7 @@ def sample_json(done: Sampled) -> dict[str, object]:
 
 
 def sample_text(done: Sampled) -> str:
-    """Format draws for people."""
+    """Format the draws of `walk sample` for people."""
     found, names = done.prediction, _parameters(done.fit)
     count = len(found.durations_s)
     lines = [
@@ -113,7 +113,7 @@ def sample_text(done: Sampled) -> str:
 
 
 def evaluation_json(fit: FittedWalking, result: Evaluation) -> dict[str, object]:
-    """Return scores for scripts."""
+    """Return the scores of `walk evaluate` for scripts."""
     models = {
         name: {
             "crps_s": outcome.mean_crps_s,
@@ -136,7 +136,7 @@ def evaluation_json(fit: FittedWalking, result: Evaluation) -> dict[str, object]
 
 
 def evaluation_text(fit: FittedWalking, result: Evaluation) -> str:
-    """Format scores for people."""
+    """Format the scores of `walk evaluate` for people."""
     lines = [
         (
             f"{len(result.truth_s)} walks of {len(set(result.subjects))} people, model fitted on"

@@ -100,7 +100,7 @@ class Fitted:
 
 @dataclass(frozen=True, eq=False)
 class Sampled:
-    """Draws from a model."""
+    """The result of drawing from a model: the draws, with the path and the options."""
 
     order: SampleOrder
     fit: FittedWalking

@@ -59,7 +59,7 @@ class Unfinished:
 
 
 class ReceivingProtocol(HttpToolsProtocol):
-    """uvicorn's HTTP protocol with deadlines for receiving requests."""
+    """The HTTP protocol of uvicorn, with deadlines for receiving requests."""
 
     def __init__(
         self,

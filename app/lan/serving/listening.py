@@ -26,7 +26,7 @@ MOST_OPEN_FILES = 8192
 
 @dataclass(frozen=True)
 class Door:
-    """Bound sockets and the application behind them; `tls` None means plain http."""
+    """A listener: bound sockets and the application behind them; `tls` None means plain http."""
 
     sockets: tuple[socket.socket, ...]
     config: uvicorn.Config

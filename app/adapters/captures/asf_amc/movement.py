@@ -19,7 +19,10 @@ from app.science.rotations import FloatArray, conjugate, identity, multiply
 
 @dataclass(frozen=True)
 class Rows:
-    """Values (N, channels) of each moving bone, and whether each frame had its line (N,)."""
+    """The rows of an AMC.
+
+    They are the values (N, channels) of each moving bone, and whether each frame had its line (N,).
+    """
 
     values: dict[str, FloatArray]
     present: dict[str, BoolArray]

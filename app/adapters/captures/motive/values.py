@@ -16,7 +16,7 @@ _ORDERS = frozenset({"XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"})
 
 @dataclass(frozen=True, eq=False)
 class TakeValues:
-    """N rows of T tracks.
+    """The values of T tracks in the N rows of a take.
 
     Attributes:
         lines: (N,) line of each row.

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Device:
-    """How to install the certificate on one kind of device.
+    """The steps for installing the certificate on one kind of device.
 
     `marks` occur in the user agent of its browsers.
     """
