@@ -45,8 +45,8 @@ def versions_of_instrument(db: Session, key: str) -> list[InstrumentVersion]:
         .order_by(InstrumentVersion.created_at, InstrumentVersion.id)
     ).all()
     if not rows:
-        known = sorted(newest_instruments(db))
-        raise NotFound(f"there is no instrument {key!r}", value=key, valid=known)
+        keys = sorted(newest_instruments(db))
+        raise NotFound(f"there is no instrument {key!r}", value=key, valid=keys)
     return list(rows)
 
 
@@ -61,14 +61,14 @@ def checked_instrument(text: str) -> LoadedInstrument:
 def save_instrument(db: Session, text: str, now: datetime) -> InstrumentVersion:
     """Store an instrument file as a version, or return the version with the same content."""
     loaded = checked_instrument(text)
-    known = db.scalar(
+    existing = db.scalar(
         select(InstrumentVersion).where(
             InstrumentVersion.key == loaded.instrument.key,
             InstrumentVersion.content_hash == loaded.content_hash,
         )
     )
-    if known is not None:
-        return known
+    if existing is not None:
+        return existing
     row = InstrumentVersion(
         key=loaded.instrument.key,
         content_hash=loaded.content_hash,

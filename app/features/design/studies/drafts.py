@@ -120,9 +120,9 @@ def check(db: Session, text: str) -> CheckResult:
 
 def edit(text: str, changes: Sequence[ChangeRequest]) -> str:
     """Return the text after the changes; raise InvalidConfig if it cannot be parsed or changed."""
-    wanted = [Change(tuple(one.path), one.action, one.value, one.to) for one in changes]
+    parsed_changes = [Change(tuple(one.path), one.action, one.value, one.to) for one in changes]
     try:
-        return edit_text(text, wanted)
+        return edit_text(text, parsed_changes)
     except ConfigError as error:
         raise invalid_config("study", error) from error
 
@@ -163,9 +163,9 @@ def _row(
                 value=request.sequence_index,
                 valid=f"0 to {len(orders) - 1}",
             )
-        wanted = orders[request.sequence_index]
+        sequence = orders[request.sequence_index]
         block = ledger_block(protocol, 0)
-        return next((at, row) for at, row in enumerate(block) if row.sequence == wanted)
+        return next((at, row) for at, row in enumerate(block) if row.sequence == sequence)
     slot = request.slot or 0
     return slot, ledger_block(protocol, slot // len(orders))[slot % len(orders)]
 

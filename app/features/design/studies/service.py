@@ -50,9 +50,9 @@ def instrument_for(db: Session, version: StudyVersion, key: str) -> InstrumentVe
     It is cached for the duration of the transaction, because versions are never edited.
     """
     content_hash = version.instruments.get(key)
-    known = db.info.get(("instrument", key, content_hash))
-    if isinstance(known, InstrumentVersion):
-        return known
+    cached = db.info.get(("instrument", key, content_hash))
+    if isinstance(cached, InstrumentVersion):
+        return cached
     row = db.scalar(
         select(InstrumentVersion).where(
             InstrumentVersion.key == key, InstrumentVersion.content_hash == content_hash
@@ -133,8 +133,8 @@ def study_by_key(db: Session, key: str) -> Study:
     """Return the study with this key; raise NotFound if there is none."""
     study = db.scalar(select(Study).where(Study.key == key))
     if study is None:
-        known = list(db.scalars(select(Study.key).order_by(Study.key)))
-        raise NotFound(f"there is no study {key!r}", value=key, valid=known)
+        keys = list(db.scalars(select(Study.key).order_by(Study.key)))
+        raise NotFound(f"there is no study {key!r}", value=key, valid=keys)
     return study
 
 

@@ -42,10 +42,10 @@ def get_avatars(db: Reading, caller: SignedIn) -> list[AvatarSummary]:
 
 
 @router.post("", status_code=201)
-def post_avatar(wish: NewAvatar, db: Writing, context: Context, caller: SignedIn) -> AvatarView:
+def post_avatar(request: NewAvatar, db: Writing, context: Context, caller: SignedIn) -> AvatarView:
     """Save an avatar configuration under a new key."""
-    create_avatar(db, caller.actor, wish, context.clock.utc_now())
-    return avatar_view(db, caller, wish.key)
+    create_avatar(db, caller.actor, request, context.clock.utc_now())
+    return avatar_view(db, caller, request.key)
 
 
 @router.post("/check")
@@ -62,10 +62,10 @@ def get_avatar(key: str, db: Reading, caller: SignedIn) -> AvatarView:
 
 @router.post("/{key}/versions", status_code=201)
 def post_avatar_version(
-    key: str, wish: NewAvatarVersion, db: Writing, context: Context, caller: SignedIn
+    key: str, request: NewAvatarVersion, db: Writing, context: Context, caller: SignedIn
 ) -> AvatarView:
     """Append a version to an avatar, unless its content is that of the newest version."""
-    add_avatar_version(db, caller.actor, key, wish, context.clock.utc_now())
+    add_avatar_version(db, caller.actor, key, request, context.clock.utc_now())
     return avatar_view(db, caller, key)
 
 

@@ -38,7 +38,7 @@ _PRODUCT = "system"
 def create_avatar(
     db: Session,
     actor: str,
-    wish: NewAvatar,
+    request: NewAvatar,
     now: datetime,
     *,
     report: Mapping[str, Any] | None = None,
@@ -47,16 +47,18 @@ def create_avatar(
 
     Raises Conflict if the key is taken, InvalidConfig with every problem of the configuration.
     """
-    content = checked(db, wish.configuration)
-    if db.get(Avatar, wish.key) is not None:
+    content = checked(db, request.configuration)
+    if db.get(Avatar, request.key) is not None:
         raise Conflict(
-            f"there is an avatar {wish.key!r} already",
-            value=wish.key,
+            f"there is an avatar {request.key!r} already",
+            value=request.key,
             remedy="Save a version of it, or give the new one another key.",
         )
-    db.add(Avatar(key=wish.key, title=wish.title, by=actor, at=now))
+    db.add(Avatar(key=request.key, title=request.title, by=actor, at=now))
     db.flush()
-    row = _append(db, wish.key, 1, content, wish.origin, wish.note, actor, now, report=report)
+    row = _append(
+        db, request.key, 1, content, request.origin, request.note, actor, now, report=report
+    )
     _note(db, actor, row, "avatar.created", now)
     return row
 
@@ -65,7 +67,7 @@ def add_avatar_version(
     db: Session,
     actor: str,
     key: str,
-    wish: NewAvatarVersion,
+    request: NewAvatarVersion,
     now: datetime,
     *,
     report: Mapping[str, Any] | None = None,
@@ -74,20 +76,20 @@ def add_avatar_version(
 
     Raises StaleVersion if somebody saved a version meanwhile, InvalidConfig, NotFound.
     """
-    content = checked(db, wish.configuration)
+    content = checked(db, request.configuration)
     avatar = avatar_by_key(db, key, lock=True)
     newest = newest_version(db, avatar)
     if newest.content_hash == content.content_hash:
         return newest
-    if wish.based_on != newest.number:
+    if request.based_on != newest.number:
         raise StaleVersion(
             "somebody else has changed this avatar meanwhile",
-            value=wish.based_on,
+            value=request.based_on,
             valid=newest.number,
             remedy="Check the current version, then decide. Nothing was saved.",
         )
     number = newest.number + 1
-    row = _append(db, key, number, content, wish.origin, wish.note, actor, now, report=report)
+    row = _append(db, key, number, content, request.origin, request.note, actor, now, report=report)
     _note(db, actor, row, "avatar.version", now)
     return row
 
@@ -114,8 +116,8 @@ def avatar_by_key(db: Session, key: str, *, lock: bool = False) -> Avatar:
     query = select(Avatar).where(Avatar.key == key)
     avatar = db.scalar(query.with_for_update() if lock else query)
     if avatar is None:
-        known = list(db.scalars(select(Avatar.key).order_by(Avatar.key)))
-        raise NotFound(f"there is no avatar {key!r}", value=key, valid=known)
+        keys = list(db.scalars(select(Avatar.key).order_by(Avatar.key)))
+        raise NotFound(f"there is no avatar {key!r}", value=key, valid=keys)
     return avatar
 
 

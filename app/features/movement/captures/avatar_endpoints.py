@@ -49,10 +49,10 @@ def get_joint_map(capture_id: str, db: Reading, _: SignedIn) -> JointMapView:
 
 @router.put("/{capture_id}/joint-map")
 def put_joint_map(
-    capture_id: str, wish: JointMapWish, db: Writing, context: Context, caller: SignedIn
+    capture_id: str, request: JointMapWish, db: Writing, context: Context, caller: SignedIn
 ) -> JointMapView:
     """Save a joint map for every capture of this skeleton, as a new version."""
-    save_map(db, context, caller, capture_id, wish)
+    save_map(db, context, caller, capture_id, request)
     return joint_map_view(db, capture_id)
 
 

@@ -56,10 +56,10 @@ async def post_capture(
     If a second file is needed (an AMC needs its ASF), it follows in the same body: its name is
     `companion`, and `companion_bytes` is its size in bytes.
     """
-    wish = UploadOptions(
+    options = UploadOptions(
         name, companion, companion_bytes, ReadingChoice(metres_per_unit=metres_per_unit, up=up)
     )
-    capture_id, new = await add_capture(context, caller, wish, request.stream())
+    capture_id, new = await add_capture(context, caller, options, request.stream())
     if not new:
         response.status_code = 200
     return await run_in_threadpool(_view, context, capture_id)
@@ -84,10 +84,10 @@ def get_capture(capture_id: str, db: Reading, _: SignedIn) -> CaptureView:
 
 @router.patch("/{capture_id}")
 async def patch_capture(
-    capture_id: str, wish: CaptureChange, context: Context, caller: SignedIn
+    capture_id: str, change: CaptureChange, context: Context, caller: SignedIn
 ) -> CaptureView:
     """Change the title, or parse the file again with other conventions."""
-    await change_capture(context, caller, capture_id, wish)
+    await change_capture(context, caller, capture_id, change)
     return await run_in_threadpool(_view, context, capture_id)
 
 

@@ -55,8 +55,8 @@ class CurrentMap:
     def joint_map(self) -> dict[str, str]:
         """Return body joint -> joint of the skeleton, in the order of the body's joints."""
         chosen = self.saved.joint_map if self.saved is not None and self.saved.chosen else None
-        told = dict(self.proposal.joint_map) if chosen is None else chosen
-        return {joint: str(told[joint]) for joint in JOINT_NAMES if joint in told}
+        mapping = dict(self.proposal.joint_map) if chosen is None else chosen
+        return {joint: str(mapping[joint]) for joint in JOINT_NAMES if joint in mapping}
 
     @property
     def problems(self) -> tuple[tuple[str, str], ...]:
@@ -97,7 +97,9 @@ def mapped_capture(context: AppContext, capture_id: str) -> Mapped:
                 "the joint map of this skeleton cannot be used yet",
                 value=row.title,
                 remedy="Complete the joint map, then try again.",
-                details=[{"path": joint, "message": told} for joint, told in current.problems],
+                details=[
+                    {"path": joint, "message": problem} for joint, problem in current.problems
+                ],
             )
         return Mapped(store_of(context), source_of(row), tuple(current.joint_map.items()))
 
@@ -131,7 +133,7 @@ def joint_map_view(db: Session, capture_id: str) -> JointMapView:
 
 
 def save_map(
-    db: Session, context: AppContext, caller: Caller, capture_id: str, wish: JointMapWish
+    db: Session, context: AppContext, caller: Caller, capture_id: str, request: JointMapWish
 ) -> None:
     """Save a map as a new version.
 
@@ -141,16 +143,16 @@ def save_map(
     capture = capture_by_id(db, capture_id)
     current = current_map(db, capture)
     try:
-        check_joint_map(current.rig, wish.joint_map)
+        check_joint_map(current.rig, request.joint_map)
     except JointMapError as error:
         raise InvalidInput(
             "the joint map does not fit the skeleton",
-            value=wish.joint_map,
+            value=request.joint_map,
             valid={"body_joints": JOINT_NAMES, "joints": current.rig.names},
             remedy="Correct the joints named below; nothing was saved.",
-            details=[{"path": joint, "message": told} for joint, told in error.problems],
+            details=[{"path": joint, "message": problem} for joint, problem in error.problems],
         ) from None
-    _append(db, context, caller, capture, current, wish, action="capture.mapped")
+    _append(db, context, caller, capture, current, request, action="capture.mapped")
 
 
 def reset_map(
@@ -169,15 +171,15 @@ def _append(
     caller: Caller,
     capture: CaptureRow,
     current: CurrentMap,
-    wish: JointMapWish,
+    request: JointMapWish,
     *,
     action: str,
 ) -> None:
     newest = 0 if current.saved is None else current.saved.version
-    if wish.version != newest:
+    if request.version != newest:
         raise StaleVersion(
             "somebody else has changed the joint map of this skeleton meanwhile",
-            value=wish.version,
+            value=request.version,
             valid=newest,
             remedy="Look at it as it is now, then decide.",
         )
@@ -188,8 +190,8 @@ def _append(
             fingerprint=fingerprint,
             version=newest + 1,
             # A map without the hips cannot be saved, so an empty one means the proposal.
-            chosen=bool(wish.joint_map),
-            joint_map=wish.joint_map,
+            chosen=bool(request.joint_map),
+            joint_map=request.joint_map,
             by=caller.actor,
             at=now,
         )

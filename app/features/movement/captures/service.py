@@ -59,20 +59,20 @@ def source_of_capture(
 
 
 async def add_capture(
-    context: AppContext, caller: Caller, wish: UploadOptions, body: AsyncIterator[bytes]
+    context: AppContext, caller: Caller, request: UploadOptions, body: AsyncIterator[bytes]
 ) -> tuple[str, bool]:
     """Parse and store an upload; return the capture's id, and whether it is new.
 
     Raises InvalidInput if it cannot be parsed; nothing is stored then.
     """
-    if (wish.companion is None) != (wish.companion_bytes is None):
+    if (request.companion is None) != (request.companion_bytes is None):
         raise InvalidInput(
             "a companion needs its name and its size",
-            value=wish.companion or wish.companion_bytes,
+            value=request.companion or request.companion_bytes,
             valid="both of companion and companion_bytes, or neither",
         )
-    async with uploaded(context, body, wish.companion_bytes) as files:
-        source = _source(wish, files)
+    async with uploaded(context, body, request.companion_bytes) as files:
+        source = _source(request, files)
         existing_id = await run_sync(_id_of, context, source.identity)
         if existing_id is not None:
             return existing_id, False
@@ -80,19 +80,19 @@ async def add_capture(
         max_bytes = context.settings.max_capture_bytes
         inspected = await context.part(Workbench).run(inspect_upload, max_bytes, source, paths)
         async with context.database.writing_async() as db:
-            return await run_sync(_store, db, context, caller, wish, source, files, inspected)
+            return await run_sync(_store, db, context, caller, request, source, files, inspected)
 
 
 async def change_capture(
-    context: AppContext, caller: Caller, capture_id: str, wish: CaptureChange
+    context: AppContext, caller: Caller, capture_id: str, request: CaptureChange
 ) -> None:
     """Change the title or the conventions; raise NotFound or InvalidInput."""
     inspected: Inspected | None = None
-    if wish.reading is not None:
-        source = await run_sync(source_of_capture, context, capture_id, wish.reading)
+    if request.reading is not None:
+        source = await run_sync(source_of_capture, context, capture_id, request.reading)
         inspected = await context.part(Workbench).run(inspect_stored, store_of(context), source)
     async with context.database.writing_async() as db:
-        await run_sync(_change, db, context, caller, capture_id, wish, inspected)
+        await run_sync(_change, db, context, caller, capture_id, request, inspected)
 
 
 def remove_capture(db: Session, context: AppContext, caller: Caller, capture_id: str) -> None:
@@ -106,14 +106,14 @@ def remove_capture(db: Session, context: AppContext, caller: Caller, capture_id:
     _record(db, context, caller, row, action="capture.removed")
 
 
-def _source(wish: UploadOptions, files: tuple[Uploaded, ...]) -> Source:
+def _source(request: UploadOptions, files: tuple[Uploaded, ...]) -> Source:
     return Source(
-        name=wish.name,
+        name=request.name,
         hash=files[0].hash,
-        companion_name=wish.companion,
+        companion_name=request.companion,
         companion_hash=files[1].hash if len(files) > 1 else None,
-        metres_per_unit=wish.reading.metres_per_unit,
-        up=wish.reading.up,
+        metres_per_unit=request.reading.metres_per_unit,
+        up=request.reading.up,
     )
 
 
@@ -126,7 +126,7 @@ def _store(
     db: Session,
     context: AppContext,
     caller: Caller,
-    wish: UploadOptions,
+    request: UploadOptions,
     source: Source,
     files: tuple[Uploaded, ...],
     inspected: Inspected,
@@ -136,12 +136,12 @@ def _store(
     values = {
         "id": new_id(),
         "identity": source.identity,
-        "title": wish.name,
-        "file_name": wish.name,
+        "title": request.name,
+        "file_name": request.name,
         "content_hash": source.hash,
         "companion_name": source.companion_name,
         "companion_hash": source.companion_hash,
-        "reading": wish.reading.model_dump(),
+        "reading": request.reading.model_dump(),
         "by": caller.actor,
         "at": context.clock.utc_now(),
         **_columns(inspected),
@@ -160,14 +160,14 @@ def _change(
     context: AppContext,
     caller: Caller,
     capture_id: str,
-    wish: CaptureChange,
+    request: CaptureChange,
     inspected: Inspected | None,
 ) -> None:
     row = capture_by_id(db, capture_id, lock=True)
-    if wish.title is not None:
-        row.title = wish.title
-    if wish.reading is not None and inspected is not None:
-        row.reading = wish.reading.model_dump()
+    if request.title is not None:
+        row.title = request.title
+    if request.reading is not None and inspected is not None:
+        row.reading = request.reading.model_dump()
         for name, value in _columns(inspected).items():
             setattr(row, name, value)
     db.flush()

@@ -46,9 +46,9 @@ def get_scenes(db: Reading, _: SignedIn) -> list[SceneListed]:
 
 
 @router.post("/scenes", status_code=201)
-def post_scene(wish: NewScene, db: Writing, context: Context, caller: SignedIn) -> SceneView:
+def post_scene(request: NewScene, db: Writing, context: Context, caller: SignedIn) -> SceneView:
     """Store a scene file; every problem of it is reported with its line."""
-    return add_scene(db, context, caller, wish)
+    return add_scene(db, context, caller, request)
 
 
 @router.get("/scenes/{scene_key}")
@@ -90,9 +90,9 @@ def get_walk_sets(db: Reading, _: SignedIn) -> list[WalkSetView]:
 
 
 @router.post("/walk-sets", status_code=201)
-async def post_walk_set(wish: NewWalkSet, context: Context, caller: SignedIn) -> WalkSetView:
+async def post_walk_set(request: NewWalkSet, context: Context, caller: SignedIn) -> WalkSetView:
     """Create a set of walks: synthetic ones, which are marked as such, or from captures."""
-    return await add_walk_set(context, caller, wish)
+    return await add_walk_set(context, caller, request)
 
 
 @router.post("/walk-sets/tracks", status_code=201, openapi_extra=BODY)

@@ -48,9 +48,9 @@ def get_models(db: Reading, context: Context, _: SignedIn) -> list[ModelListed]:
 
 
 @router.post("/models", status_code=201)
-async def post_model(wish: NewModel, context: Context, caller: SignedIn) -> ModelView:
+async def post_model(request: NewModel, context: Context, caller: SignedIn) -> ModelView:
     """Start fitting a model; the response is immediate, and the model shows the progress."""
-    model_id = await write(context, lambda db: order_model(db, context, caller, wish))
+    model_id = await write(context, lambda db: order_model(db, context, caller, request))
     return await run_in_threadpool(begin_fit, context, model_id)
 
 
@@ -96,9 +96,9 @@ def get_model_file(model_id: str, context: Context, _: SignedIn) -> StreamingRes
 
 
 @router.post("/paths")
-async def post_path(wish: PathAsked, context: Context, _: SignedIn) -> PathView:
+async def post_path(request: PathAsked, context: Context, _: SignedIn) -> PathView:
     """Return the shortest path between two points, or check that a drawn one avoids obstacles."""
-    question = await run_in_threadpool(_question, context, wish)
+    question = await run_in_threadpool(_question, context, request)
     points = await context.part(Bench).run_cached(plan_path, question)
     length_m = sum(dist(a, b) for a, b in pairwise(points))
     return PathView(points_m=points, length_m=length_m)
@@ -106,11 +106,11 @@ async def post_path(wish: PathAsked, context: Context, _: SignedIn) -> PathView:
 
 @router.post("/models/{model_id}/prediction")
 async def post_prediction(
-    model_id: str, wish: PredictionAsked, context: Context, _: SignedIn
+    model_id: str, request: PredictionAsked, context: Context, _: SignedIn
 ) -> PredictionView:
     """Predict how long people take on a path: a distribution, and walks drawn from it."""
     content_hash = await run_in_threadpool(_content, context, model_id)
-    question = await run_in_threadpool(_question, context, wish)
+    question = await run_in_threadpool(_question, context, request)
     found = await context.part(Bench).run_cached(
         predict_walk, store_of(context), content_hash, question
     )
@@ -118,10 +118,14 @@ async def post_prediction(
 
 
 @router.post("/models/{model_id}/slice")
-async def post_slice(model_id: str, wish: SliceAsked, context: Context, _: SignedIn) -> SliceView:
+async def post_slice(
+    model_id: str, request: SliceAsked, context: Context, _: SignedIn
+) -> SliceView:
     """Return how suitable steering parameters are for a walk: a slice of the map."""
     content_hash = await run_in_threadpool(_content, context, model_id)
-    question = SliceQuestion(tuple(sorted(wish.dependencies.items())), wish.held, wish.value)
+    question = SliceQuestion(
+        tuple(sorted(request.dependencies.items())), request.held, request.value
+    )
     found = await context.part(Bench).run_cached(
         slice_of, store_of(context), content_hash, question
     )
@@ -138,11 +142,11 @@ def _view(context: AppContext, model_id: str) -> ModelView:
         return model_view(db, context, model_id)
 
 
-def _question(context: AppContext, wish: PathAsked) -> Question:
+def _question(context: AppContext, request: PathAsked) -> Question:
     with context.database.reading() as db:
-        scene = None if wish.scene is None else scene_text(db, wish.scene)
-    points = tuple((float(x), float(y)) for x, y in wish.points_m)
-    if not isinstance(wish, PredictionAsked):
-        return Question(scene, points, wish.planned, None, 1, 0, 0)
-    drawn = (wish.stature_m, wish.count, wish.seed, wish.shown)
-    return Question(scene, points, wish.planned, *drawn)
+        scene = None if request.scene is None else scene_text(db, request.scene)
+    points = tuple((float(x), float(y)) for x, y in request.points_m)
+    if not isinstance(request, PredictionAsked):
+        return Question(scene, points, request.planned, None, 1, 0, 0)
+    drawn = (request.stature_m, request.count, request.seed, request.shown)
+    return Question(scene, points, request.planned, *drawn)

@@ -64,10 +64,10 @@ def scene_view(db: Session, key: str) -> SceneView:
     return _view(load_scene(row.text), row.text, row)
 
 
-def add_scene(db: Session, context: AppContext, caller: Caller, wish: NewScene) -> SceneView:
+def add_scene(db: Session, context: AppContext, caller: Caller, request: NewScene) -> SceneView:
     """Store a scene file; raise InvalidConfig with every problem, Conflict if the key is in use."""
     try:
-        scene = load_scene(wish.text)
+        scene = load_scene(request.text)
     except ConfigError as error:
         raise invalid_config("scene", error) from error
     if scene.name in _shipped() or db.get(WalkingScene, scene.name) is not None:
@@ -79,15 +79,15 @@ def add_scene(db: Session, context: AppContext, caller: Caller, wish: NewScene) 
     row = WalkingScene(
         key=scene.name,
         title=scene.title or scene.name,
-        text=wish.text,
-        content_hash=_hash(wish.text),
+        text=request.text,
+        content_hash=_hash(request.text),
         by=caller.actor,
         at=context.clock.utc_now(),
     )
     db.add(row)
     db.flush()
     _record(db, context, caller, row, "walking.scene_added")
-    return _view(scene, wish.text, row)
+    return _view(scene, request.text, row)
 
 
 def remove_scene(db: Session, context: AppContext, caller: Caller, key: str) -> None:

@@ -70,10 +70,10 @@ def model_view(db: Session, context: AppContext, model_id: str) -> ModelView:
     )
 
 
-def order_model(db: Session, context: AppContext, caller: Caller, wish: NewModel) -> str:
+def order_model(db: Session, context: AppContext, caller: Caller, request: NewModel) -> str:
     """Store the order of a model and return its id; `begin_fit` starts it after the commit."""
-    walks = walk_set_by_id(db, wish.walk_set_id)
-    scene = None if wish.scene is None else scene_view(db, wish.scene)
+    walks = walk_set_by_id(db, request.walk_set_id)
+    scene = None if request.scene is None else scene_view(db, request.scene)
     if scene is not None and walks.origin["kind"] == "population":
         raise Conflict(
             "synthetic walkers are planned in the scene that they were made for",
@@ -82,7 +82,7 @@ def order_model(db: Session, context: AppContext, caller: Caller, wish: NewModel
         )
     row = WalkingModelRow(
         id=new_id(),
-        title=wish.title,
+        title=request.title,
         kind=walks.kind,
         state="fitting",
         walk_set_id=walks.id,
@@ -90,7 +90,7 @@ def order_model(db: Session, context: AppContext, caller: Caller, wish: NewModel
         scene=None
         if scene is None
         else {"key": scene.key, "title": scene.title, "content_hash": scene.content_hash},
-        options=wish.options.model_dump(mode="json"),
+        options=request.options.model_dump(mode="json"),
         by=caller.actor,
         at=context.clock.utc_now(),
     )

@@ -75,24 +75,24 @@ def walk_set_list(db: Session) -> list[WalkSetView]:
 
 
 async def add_table(
-    context: AppContext, caller: Caller, wish: Table, body: AsyncIterator[bytes]
+    context: AppContext, caller: Caller, request: Table, body: AsyncIterator[bytes]
 ) -> WalkSetView:
     """Store a table of tracks; raise InvalidInput with the line that cannot be parsed."""
     async with uploaded(context, body, None) as (file,):
-        source = tracks_source(wish.origin, wish.kind, file.hash)
+        source = tracks_source(request.origin, request.kind, file.hash)
         found = await context.part(Bench).run(inspected_tracks, source, file.path)
-        row = _row(context, caller, wish.title, wish.kind, wish.origin, file.hash)
+        row = _row(context, caller, request.title, request.kind, request.origin, file.hash)
         row.summary = WalksSummary.model_validate(found).model_dump(mode="json")
         return await _stored(context, caller, row, _storing(file.hash, file.path))
 
 
-async def add_walk_set(context: AppContext, caller: Caller, wish: NewWalkSet) -> WalkSetView:
+async def add_walk_set(context: AppContext, caller: Caller, request: NewWalkSet) -> WalkSetView:
     """Synthesise walks, or cut them from captures; raise InvalidInput or NotFound."""
-    if isinstance(wish.origin, CapturesOrigin):
-        return await _add_captured(context, caller, wish.title, wish.origin)
-    source = await run_sync(population_source, context, wish.origin)
+    if isinstance(request.origin, CapturesOrigin):
+        return await _add_captured(context, caller, request.title, request.origin)
+    source = await run_sync(population_source, context, request.origin)
     found = await context.part(Bench).run(inspected_population, source)
-    row = _row(context, caller, wish.title, "synthetic", wish.origin, None)
+    row = _row(context, caller, request.title, "synthetic", request.origin, None)
     row.summary = WalksSummary.model_validate(found).model_dump(mode="json")
     return await _stored(context, caller, row, lambda _: None)
 

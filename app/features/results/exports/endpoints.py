@@ -57,17 +57,17 @@ def get_export(
 
 @router.post("/studies/{key}/exports", status_code=202)
 def post_export(
-    key: str, wish: ExportWish, db: Reading, context: Context, caller: SignedIn
+    key: str, request: ExportWish, db: Reading, context: Context, caller: SignedIn
 ) -> ExportView:
     """Start an export of sessions of one kind, or of one session, as a ZIP of CSV files."""
     study = study_by_key(db, key)
-    what = wish.kind if wish.session_id is None else _code_of(db, study.id, wish)
+    what = request.kind if request.session_id is None else _code_of(db, study.id, request)
     now = context.clock.utc_now()
     job = Job(
         owner=caller.account_id,
         study_key=study.key,
-        kind=wish.kind,
-        session_id=wish.session_id,
+        kind=request.kind,
+        session_id=request.session_id,
         file_name=archive_name(study.key, what, now.date()),
         asked_at=now,
         folder=context.part(ExportDesk).folder,
@@ -114,12 +114,12 @@ async def get_export_file(export_id: str, context: Context, caller: SignedIn) ->
     )
 
 
-def _code_of(db: Session, study_id: str, wish: ExportWish) -> str:
+def _code_of(db: Session, study_id: str, request: ExportWish) -> str:
     """Return the participant's code of the requested session; raise NotFound if it is not there."""
-    session = session_by_id(db, wish.session_id or "")
-    if session.study_id != study_id or session.kind != wish.kind:
+    session = session_by_id(db, request.session_id or "")
+    if session.study_id != study_id or session.kind != request.kind:
         # The same message as for a session that never existed.
-        raise NotFound("there is no such session", value=wish.session_id)
+        raise NotFound("there is no such session", value=request.session_id)
     participant = db.get_one(Participant, session.participant_id)
     return participant.code
 

@@ -51,10 +51,10 @@ class Wall(NamedTuple):
         server's
         wall clock was set, which the probes account for and `latest` does not.
         """
-        known = timedelta(milliseconds=self.uncertainty_ms or 0.0)
-        if self.utc is None or not known < self.utc - latest <= MOST_UNEVEN:
+        uncertainty = timedelta(milliseconds=self.uncertainty_ms or 0.0)
+        if self.utc is None or not uncertainty < self.utc - latest <= MOST_UNEVEN:
             return self
-        return Wall(latest, (self.utc - latest + known) / timedelta(milliseconds=1))
+        return Wall(latest, (self.utc - latest + uncertainty) / timedelta(milliseconds=1))
 
 
 @dataclass(frozen=True)
@@ -118,9 +118,9 @@ class PhaseClock:
 
         Between two runs, the earlier run's clock is continued.
         """
-        known = [run for run in self.runs if run.begin_utc is not None]
+        placed_runs = [run for run in self.runs if run.begin_utc is not None]
         found = None
-        for run in known:
+        for run in placed_runs:
             since_s = (moment - (run.begin_utc or moment)).total_seconds() * self.time_scale
             if found is None or since_s >= 0.0:
                 found = run.begin_s + since_s

@@ -58,11 +58,11 @@ def replayable(db: Session, caller: Caller, session_id: str, phase_id: int) -> R
         )
     phase = db.get(Phase, (session_id, phase_id))
     if phase is None:
-        known = select(Phase.phase_id).where(Phase.session_id == session_id)
+        phase_ids = select(Phase.phase_id).where(Phase.session_id == session_id)
         raise NotFound(
             f"this session has no phase {phase_id}",
             value=phase_id,
-            valid=list(db.scalars(known.order_by(Phase.phase_id))),
+            valid=list(db.scalars(phase_ids.order_by(Phase.phase_id))),
             remedy="Choose a phase on the session's page.",
         )
     if phase.status not in OVER:

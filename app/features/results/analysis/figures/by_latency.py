@@ -79,8 +79,8 @@ LATENCY = Across("latency_ms", "added latency (ms)", "ms")
 def per_participant(frame: pd.DataFrame, value: str, across: str = LATENCY.column) -> pd.DataFrame:
     """Return the mean of the column `value` per participant, limb and latency."""
     keys = ["participant_code", "limb", across]
-    known = frame.dropna(subset=[*keys, value])
-    return known.groupby(keys)[value].mean().rename("value").reset_index()
+    complete = frame.dropna(subset=[*keys, value])
+    return complete.groupby(keys)[value].mean().rename("value").reset_index()
 
 
 def latency_figure(

@@ -95,11 +95,11 @@ def _band(own: pd.DataFrame, latency: float, place: int) -> go.Scatter:
 
     Where steps are missing, the band has a gap.
     """
-    known = own.dropna(subset=["ci95_low_deg", "ci95_high_deg"])
+    complete = own.dropna(subset=["ci95_low_deg", "ci95_high_deg"])
     x: list[float | None] = []
     y: list[float | None] = []
-    unbroken = known["begin_active_s"].ne(known["end_active_s"].shift()).cumsum()
-    for _, part in known.groupby(unbroken):
+    unbroken = complete["begin_active_s"].ne(complete["end_active_s"].shift()).cumsum()
+    for _, part in complete.groupby(unbroken):
         edge = [part["begin_active_s"].iloc[0], *_middles(part), part["end_active_s"].iloc[-1]]
         low, high = (
             [values[0], *values, values[-1]]

@@ -130,11 +130,11 @@ def left_out(material: Material) -> list[str]:
     """Return the sessions that are in no test, each with the reason."""
     sessions = material.sessions
     out = sessions[(sessions["status"] != "completed") | ~sessions["valid"]]
-    known = {"planned": "not started", "active": "still open"}
+    status_texts = {"planned": "not started", "active": "still open"}
     lines = [
         f"{code}: not valid ({why})"
         if status == "completed"
-        else f"{code}: {known.get(status, status)}"
+        else f"{code}: {status_texts.get(status, status)}"
         for code, status, why in zip(
             out["participant_code"], out["status"], out["reasons_not_valid"], strict=True
         )
@@ -201,8 +201,8 @@ def _measure(
     maximum: float | None = None,
     predicted: Direction | None = None,
 ) -> Iterator[Measure]:
-    known = rows.dropna(subset=["value", "limb", "latency_ms", "block"])
-    if known.empty:
+    complete = rows.dropna(subset=["value", "limb", "latency_ms", "block"])
+    if complete.empty:
         return
     places = ["participant_code", "limb", "latency_ms", "block"]
     yield Measure(
@@ -210,8 +210,8 @@ def _measure(
         title=title_and_unit[0],
         unit=title_and_unit[1],
         about=about,
-        values=per_participant(known, "value"),
-        places=known.groupby(places)["value"].mean().reset_index(),
+        values=per_participant(complete, "value"),
+        places=complete.groupby(places)["value"].mean().reset_index(),
         continuous=continuous,
         maximum=maximum,
         predicted=predicted,
