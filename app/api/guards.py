@@ -262,7 +262,7 @@ def _too_large(size: int, limit: int) -> TooLarge:
         f"this is too large: {_readable(size)}; at most {_readable(limit)} are accepted",
         value=size,
         valid=f"at most {limit} bytes",
-        remedy="Choose a smaller file, or send less at once.",
+        remedy="Choose a smaller file, or send less in one request.",
     )
 
 

@@ -87,7 +87,7 @@ def _more_than_one_name(file: Path, found: os.stat_result) -> Conflict:
     rest = f"find DISK -xdev -inum {found.st_ino}" if other is None else f"rm {other}"
     how = "find the other names" if other is None else "remove the other name"
     return Conflict(
-        f"{file} has {found.st_nlink} names (hard links){also}. SQLite keeps its log beside the "
+        f"{file} has {found.st_nlink} names (hard links){also}. SQLite keeps its log next to the "
         "name by which it is opened, so work under two names loses what was stored and damages the "
         "database; nothing was changed",
         value=str(file) if other is None else [str(file), str(other)],

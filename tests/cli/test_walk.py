@@ -143,7 +143,7 @@ def test_walks_that_are_none_are_refused(lab: Path) -> None:
     bad.write_text("subject,time_s,x_m,y_m\n7,0,0,0\n7,0.1,nan,0\n7,0.2,0,1\n")
     assert "line 3" in _fit(lab, bad)
     bad.write_text("subject,time_s,x_m,y_m\n7,0,0,0\n7,0.1,0,0\n7,0.2,0,0.01\n")
-    assert "nobody walks" in _fit(lab, bad)
+    assert "contains no walk" in _fit(lab, bad)
     assert "one subject, '0'" in _fit(lab, *sorted(lab.glob("walker-0-*.csv")))
     assert "gone.csv" in _fit(lab, lab / "gone.csv")
 

@@ -163,8 +163,8 @@ def _sample(line: str, number: int, layout: _Layout) -> tuple[str, tuple[float, 
             value = math.nan
         if not math.isfinite(value):
             raise CaptureError(
-                f"column {column + 1} holds {cells[column].strip()!r}, not a finite number: leave"
-                " out rows in which a person was not seen.",
+                f"column {column + 1} contains {cells[column].strip()!r}, not a finite number:"
+                " leave out rows in which a person was not seen.",
                 line=number,
             )
         values.append(value)

@@ -131,7 +131,7 @@ def _repeated(rows: list[_Row], keys: list[tuple[str, ...]]) -> int:
                 shown = content if len(content) <= _SHOWN else content[:_SHOWN] + " ..."
                 raise UnusableTable(
                     f"Line {row.line} repeats line {seen[cells]} in every column ({shown}). Remove"
-                    " one, or add a column that tells the two observations apart."
+                    " one, or add a column that distinguishes the two observations."
                 )
             repeated += 1
         seen.setdefault(cells, row.line)

@@ -15,7 +15,7 @@ _LEGEND = (
     "Holm: over the pairs of one table. r: matched rank-biserial, positive if the first is larger.",
     "CI: 95 %, bootstrap over subjects (BCa), seed {seed}.",
 )
-_NARROW = "With few subjects it is too narrow: at a dozen it holds the truth about 9 times in 10."
+_NARROW = "With few subjects it is too narrow: with a dozen, about 90 % contain the true value."
 _MANY = 30
 
 

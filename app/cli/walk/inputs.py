@@ -98,7 +98,7 @@ def read_walks(files: Sequence[Path], people: People) -> list[Walk]:
         found = [walk for track in _tracks(path, people) for walk in walks_of(track)]
         if not found:
             raise ValueError(
-                f"{path}: nobody walks in it; a walk leads 0.25 m or farther from where it begins."
+                f"{path}: it contains no walk; a walk ends 0.25 m or farther from its start."
             )
         walks += found
     return walks

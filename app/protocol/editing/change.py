@@ -30,7 +30,7 @@ def applied(tree: Plain, change: Change) -> Plain:
     """Return the changed tree, leaving `tree` unmodified; raise ConfigError if it is impossible."""
     after = copy.deepcopy(tree)
     if not change.path:
-        raise _refusal(change, "The whole file cannot be changed at once.")
+        raise _refusal(change, "The whole file cannot be changed in one step.")
     *parents, last = change.path
     node = after
     for depth, part in enumerate(parents):

@@ -52,8 +52,8 @@ def test_people_are_kept_apart() -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("t,x,y\n0,0,0\n0.5,nan,0\n", "line 3: column 2 holds 'nan'"),
-        ("t,x,y\n0,0,0\n0.5,,0\n", "line 3: column 2 holds ''"),
+        ("t,x,y\n0,0,0\n0.5,nan,0\n", "line 3: column 2 contains 'nan'"),
+        ("t,x,y\n0,0,0\n0.5,,0\n", "line 3: column 2 contains ''"),
         ("t,x,y\n0,0,0\n0.5,1\n", "line 3: the row has 2 columns"),
         ("t,x\n0,0\n", "no column y"),
         ("x,y\n0,0\n", "no column of time"),

@@ -101,7 +101,7 @@ def _bone_row(
             line=line.number,
         )
     if frame == 0:
-        raise CaptureError("a row stands before the first frame number.", line=line.number)
+        raise CaptureError("there is a row before the first frame number.", line=line.number)
     count = len(bone.channels)
     if len(words) != count:
         raise CaptureError(

@@ -114,6 +114,6 @@ def _skeleton_file(name: str, reading: Reading) -> tuple[str, bytes]:
             f" {subject}.asf: give the one it was made with."
         )
     raise CaptureError(
-        f"{name} holds turns only, the bones they turn are in the ASF of the same person: give"
+        f"{name} contains rotations only; their bones are in the ASF of the same person: give"
         f" {subject}.asf with it."
     )

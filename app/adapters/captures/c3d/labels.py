@@ -54,7 +54,7 @@ def _without_prefix(names: list[str]) -> tuple[list[str], str]:
         return names, ""
     if len(subjects) > 1 and _repeat(bare):
         listed = ", ".join(sorted(subjects)[:5])
-        return names, f"The file holds several subjects ({listed}), so markers keep their prefixes."
+        return names, f"The file has several subjects ({listed}), so markers keep their prefixes."
     return bare, ""
 
 

@@ -58,7 +58,7 @@ def layout(data: bytes, parameters: Parameters, limits: Limits) -> Layout:
         raise CaptureError(f"the frames should begin at byte {start} of {len(data)}: damaged.")
     frames, notes = _frames(parameters, first, last, (len(data) - start) // frame_bytes)
     if frames * points * 4 > limits.values:
-        raise CaptureError(f"{frames} frames of {points} markers are too many to read at once.")
+        raise CaptureError(f"{frames} frames of {points} markers are too many to read.")
     return Layout(processor, points, frames, scale, start, frame_bytes, rate, notes)
 
 

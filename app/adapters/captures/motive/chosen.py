@@ -78,7 +78,7 @@ def _markers(placed: Sequence[Track], line: int) -> Chosen:
     markers = [t for t in placed if t.kind.lower() == "marker"] or list(placed)
     labelled = [t for t in markers if not t.name.lower().startswith("unlabeled")] or markers
     if not labelled:
-        raise CaptureError("no column set holds a whole place of anything.", line=line)
+        raise CaptureError("no columns contain a complete position.", line=line)
     short = [marker.name.rpartition(":")[2] for marker in labelled]
     names = short if len(set(short)) == len(short) else [marker.name for marker in labelled]
     return Chosen("markers", tuple(labelled), _numbered(names))

@@ -99,7 +99,7 @@ def _tracks(above: list[_Row], axes: list[str], line: int, limits: Limits) -> tu
             tracks.append(open_track)
         _columns(open_track, what)[axis] = column
     if not tracks:
-        raise CaptureError("no column holds a position or rotation.", line=line)
+        raise CaptureError("no column contains a position or rotation.", line=line)
     return tuple(tracks)
 
 
