@@ -12,7 +12,7 @@ from app.features.record.alarms import open_rows
 from app.features.record.doubts import doubts_of
 from app.features.record.headset.service import welcome
 from app.features.record.receipts import receipt_of
-from app.features.record.telemetry import Summariser, take_epoch
+from app.features.record.telemetry import Summariser, assign_epoch
 from app.features.record.telemetry.summaries import SUMMARIES
 from app.features.results.analysis.tables import phases_table
 from app.models import TelemetryStream
@@ -113,7 +113,7 @@ def test_a_run_of_the_highest_number_locks_nobody_out(site: Site) -> None:
         hello = Hello(protocol=1, client="liar", epoch=MAX_EPOCH)
         assert welcome(db, session_id, hello, now).epoch == MAX_EPOCH
         db.add(stream_row(session_id, MAX_EPOCH, now))
-        epochs = [take_epoch(db, session_id, now) for _ in range(3)]
+        epochs = [assign_epoch(db, session_id, now) for _ in range(3)]
     assert epochs == [1, 2, 3]
     with site.context.database.reading() as db:
         assert {one.kind for one in doubts_of(db, session_id)} == {"epoch", "observed"}

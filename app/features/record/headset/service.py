@@ -23,10 +23,10 @@ from app.features.record.sessions import (
     state_of,
 )
 from app.features.record.telemetry import (
+    assign_epoch,
     certain_active_s,
+    is_assigned_epoch,
     positions_of,
-    take_epoch,
-    was_given,
 )
 from app.models import Completion, StudySession, StudyVersion, Submission
 from app.platform.access import session_by_id
@@ -52,13 +52,13 @@ def welcome(db: Session, session_id: str, hello: Hello, now: datetime) -> Welcom
     require_capture(db, session_id)
     _require_avatar(session, hello)
     protocol = protocol_of(referenced_row(db, StudyVersion, session.study_version_id))
-    if hello.epoch is not None and not was_given(db, session_id, hello.epoch):
+    if hello.epoch is not None and not is_assigned_epoch(db, session_id, hello.epoch):
         message = f"a headset claims epoch {hello.epoch}, which the server did not assign"
         record_impossible(db, session_id, message, now)
     return Welcome(
         protocol=PROTOCOL_VERSION,
         session_id=session.id,
-        epoch=hello.epoch or take_epoch(db, session_id, now),
+        epoch=hello.epoch or assign_epoch(db, session_id, now),
         time_scale=session.time_scale,
         language=session.language,
         avatar=session.avatar,

@@ -23,7 +23,7 @@ from app.features.record.questionnaires.schemas import (
     Receipt,
     SubmissionRequest,
 )
-from app.features.record.questionnaires.stop_rules import judge, tell
+from app.features.record.questionnaires.stop_rules import judge, update_alarms
 from app.features.record.sessions import (
     KeepRefusedForm,
     SubmitForm,
@@ -122,11 +122,11 @@ def submit(
     """
     require_capture_of(db, session)
     hash_ = request_hash(request)
-    known = _stored(db, session, request)
-    if known is not None:
-        if known.idempotency_key == request.idempotency_key and known.request_hash == hash_:
-            return Receipt(receipt_id=known.id, stored_at=known.submitted_at, duplicate=True)
-        keep_refused(db, context, session, request, stands=known, actor=actor)
+    stored = _stored(db, session, request)
+    if stored is not None:
+        if stored.idempotency_key == request.idempotency_key and stored.request_hash == hash_:
+            return Receipt(receipt_id=stored.id, stored_at=stored.submitted_at, duplicate=True)
+        store_rejected(db, context, session, request, stored=stored, actor=actor)
     due = due_form(db, session)
     if due is None or due.key != request.administration:
         raise NotNow(
@@ -147,7 +147,7 @@ def submit(
         _score_rows(id_, instrument, request.answers),
     )
     judgement = judge(db, session, instrument.key)
-    tell(db, session, judgement, now)
+    update_alarms(db, session, judgement, now)
     digest = hashlib.sha256(f"{salt}{canonical(request.answers)}".encode()).hexdigest()
     command = SubmitForm(
         step=due.step.index, submission_id=id_, content_hash=digest, rules_met=judgement.met
@@ -158,12 +158,12 @@ def submit(
 
 
 def _stored(db: Session, session: StudySession, request: SubmissionRequest) -> Submission | None:
-    wanted = {
+    parameters = {
         "session_id": session.id,
         "idempotency_key": request.idempotency_key,
         "administration": request.administration,
     }
-    return db.scalar(_STORED, wanted)
+    return db.scalar(_STORED, parameters)
 
 
 def _store(db: Session, submission: Row, answers: list[Row], scores: list[Row]) -> None:
@@ -237,9 +237,9 @@ def check_answers(
     ]
     if problems:
         raise InvalidInput(
-            f"{len(problems)} answer{'s do' if len(problems) != 1 else ' does'} not fit",
+            f"{len(problems)} answer{'s are' if len(problems) != 1 else ' is'} invalid",
             value=[problem.item for problem in problems],
-            remedy="Mend the answers named below; nothing was stored.",
+            remedy="Correct the answers listed below; nothing was stored.",
             details=[
                 {
                     "item": problem.item,
@@ -259,7 +259,7 @@ def check_answers(
         )
     if request.language not in instrument.languages:
         raise InvalidInput(
-            f"the form is not written in {request.language!r}",
+            f"the form does not exist in {request.language!r}",
             value=request.language,
             valid=list(instrument.languages),
         )
@@ -271,13 +271,13 @@ def request_hash(request: SubmissionRequest) -> str:
     return hashlib.sha256(covered.encode()).hexdigest()
 
 
-def keep_refused(
+def store_rejected(
     db: Session,
     context: AppContext,
     session: StudySession,
     request: SubmissionRequest,
     *,
-    stands: Submission,
+    stored: Submission,
     actor: str,
 ) -> NoReturn:
     """Reject answers that differ from the stored ones, but store them separately, once.
@@ -285,7 +285,7 @@ def keep_refused(
     Raises RecordedConflict, with which this transaction is committed.
     """
     hash_ = request_hash(request)
-    if hash_ not in (stands.request_hash, *_known(db, session)):
+    if hash_ not in (stored.request_hash, *_rejected_hashes(db, session)):
         body = {
             "request_hash": hash_,
             "idempotency_key": request.idempotency_key,
@@ -296,16 +296,16 @@ def keep_refused(
         content = store_content(
             db, session_id=session.id, kind=CONTENT, body=body, by=actor, now=now
         )
-        kept = KeepRefusedForm(submission_id=stands.id, content=content)
-        apply_command(db, context, session, kept, actor=actor)
+        command = KeepRefusedForm(submission_id=stored.id, content=content)
+        apply_command(db, context, session, command, actor=actor)
     raise RecordedConflict(
-        "other answers to this form are stored already",
+        "different answers to this form are already stored",
         value=request.administration,
-        remedy="The first answers stand; these were kept beside them. The experimenter can open "
+        remedy="The first answers apply; these were stored separately. The experimenter can open "
         "the form again.",
     )
 
 
-def _known(db: Session, session: StudySession) -> set[str]:
+def _rejected_hashes(db: Session, session: StudySession) -> set[str]:
     bodies = [content_body(row) for row in contents_of(db, session.id, CONTENT)]
     return {str(body["request_hash"]) for body in bodies if isinstance(body, dict)}

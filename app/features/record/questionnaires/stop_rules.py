@@ -53,16 +53,16 @@ def judge(db: Session, session: StudySession, instrument: str) -> Judgement:
     return Judgement(levels, met)
 
 
-def tell(db: Session, session: StudySession, judgement: Judgement, now: datetime) -> None:
+def update_alarms(db: Session, session: StudySession, judgement: Judgement, now: datetime) -> None:
     """Raise the alarms that follow from the levels, and clear warnings that no longer apply."""
     rules = _rules(db, session)
     if not rules:
         return
-    told = {row.code for row in open_rows(db, session.id)}
+    raised = {row.code for row in open_rows(db, session.id)}
     for code, level in ((NEAR, "near"), (UNKNOWN, "unknown")):
         at = [at for at, one in enumerate(judgement.levels) if one == level]
-        if bool(at) != (code in told):
-            message = _message(code, rules[at[0]]) if at else "a later form is fine"
+        if bool(at) != (code in raised):
+            message = _message(code, rules[at[0]]) if at else "a later form is below the limit"
             state: Literal["raised", "cleared"] = "raised" if at else "cleared"
             store_change(db, session.id, Change(state, Condition(code, message), now))
     if judgement.met:
@@ -104,12 +104,12 @@ def _level(stored: Sequence[Scored], rule: StopRule) -> Level:
 
 def _newest(stored: Sequence[Scored], instrument: str, administration: str = "") -> Scored | None:
     """Return the latest form of an instrument whose administration key has this prefix."""
-    wanted = (
+    matching = (
         form
         for form in stored
         if form.instrument == instrument and form.administration.startswith(administration)
     )
-    return next(wanted, None)
+    return next(matching, None)
 
 
 def _newest_first(

@@ -103,9 +103,9 @@ def correct_answer(
     previous = before[item]
     if previous == (number if text is None else text):
         raise InvalidInput(
-            f"the answer to {item!r} is this one already",
+            f"this is already the answer to {item!r}",
             value=value,
-            remedy="Give the value that it should have.",
+            remedy="Enter the value that it should have.",
         )
     row = AnswerCorrection(
         submission_id=submission.id,

@@ -28,7 +28,7 @@ _COMMANDS = {
 }
 _COUNTED = tuple(kind for kind in COUNTED_KINDS if kind in BOX_KINDS)
 Found = tuple[int, float, float, int]
-"""Number, time, duration (s, client clock) and touches out of order of a completion."""
+"""A completion: its number, time and duration (s, client clock), and contacts out of order."""
 
 
 @dataclass(frozen=True)
@@ -118,22 +118,22 @@ def _commands_by_epoch(db: Session, phase: Phase) -> list[tuple[int, list[Comman
         kind = _COMMANDS.get(payload["what"])
         if payload["phase_id"] == phase.phase_id and kind is not None:
             commands.setdefault(epoch, []).append(Command(kind, payload["t_s"]))
-    return [(epoch, _from_the_start(told)) for epoch, told in commands.items()]
+    return [(epoch, _from_the_start(reported)) for epoch, reported in commands.items()]
 
 
-def _from_the_start(told: list[Command]) -> list[Command]:
+def _from_the_start(reported: list[Command]) -> list[Command]:
     """Make the commands of an epoch begin with a start.
 
     An epoch that took over began with a stopped clock, and continues at its first resume.
     """
-    if told[0].kind is CommandKind.START:
-        return told
-    resumed = [command for command in told if command.kind is CommandKind.RESUME]
+    if reported[0].kind is CommandKind.START:
+        return reported
+    resumed = [command for command in reported if command.kind is CommandKind.RESUME]
     if not resumed:
         return []
     taken_over = Command(CommandKind.START, resumed[0].time_s)
-    at = told.index(resumed[0])
-    return [taken_over, replace(taken_over, kind=CommandKind.PAUSE), *told[at:]]
+    at = reported.index(resumed[0])
+    return [taken_over, replace(taken_over, kind=CommandKind.PAUSE), *reported[at:]]
 
 
 def _intervals(db: Session, phase: Phase, epoch: int) -> list[ContactInterval]:

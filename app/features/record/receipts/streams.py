@@ -51,10 +51,10 @@ class _Count:
 
     def timed(self, times_s: NDArray[np.float64]) -> None:
         """Count those of the next frames' times that run backwards or are invalid."""
-        told_s = np.where(np.abs(times_s) <= MAX_TIME_S, times_s, np.nan)
-        newest_s = np.fmax.accumulate(np.concatenate(([self.newest_s], told_s)))
+        valid_s = np.where(np.abs(times_s) <= MAX_TIME_S, times_s, np.nan)
+        newest_s = np.fmax.accumulate(np.concatenate(([self.newest_s], valid_s)))
         # A comparison with NaN is false, so an invalid time is counted, too.
-        self.backwards += int((~(newest_s[:-1] < told_s)).sum())
+        self.backwards += int((~(newest_s[:-1] < valid_s)).sum())
         self.newest_s = float(newest_s[-1])
 
     def found(self, seq_first: int, count: int, *, readable: bool = True) -> None:

@@ -77,6 +77,6 @@ def require_capture_of(db: Session, session: StudySession) -> None:
 def refusal() -> Withdrawn:
     """Return the error for a device that sends data to a closed session."""
     return Withdrawn(
-        "the participant has withdrawn: nothing more is stored of this session",
-        remedy="Stop recording, and discard what this device still keeps of it.",
+        "the participant has withdrawn: nothing more of this session is stored",
+        remedy="Stop recording, and discard what this device still has of it.",
     )

@@ -56,28 +56,28 @@ class ConsentDesk:
 
     def from_tablet(self, step: Step, given: ConsentGiven) -> ContentRef:
         """Store the participant's consent; raises InvalidInput if something required is missing."""
-        wanted = _wanted(step)
-        _check_ticks(wanted, given.ticked)
-        if wanted.signature == "typed" and given.name is None:
+        required = _requirements(step)
+        _check_ticks(required, given.ticked)
+        if required.signature == "typed" and given.name is None:
             raise _missing("name", "the participant's name", "Ask the participant to type it.")
-        if wanted.signature == "drawn" and given.signature is None and given.name is None:
+        if required.signature == "drawn" and given.signature is None and given.name is None:
             raise _missing(
                 "signature",
                 "a drawn signature, or a typed name instead",
                 "Ask the participant to sign, or to type their name.",
             )
-        signed = wanted.signature != "none"
+        signed = required.signature != "none"
         return self._store(
             step,
             mode="tablet",
             ticked=sorted(set(given.ticked)),
             name=given.name if signed else None,
-            signature=given.signature if wanted.signature == "drawn" else None,
+            signature=given.signature if required.signature == "drawn" else None,
         )
 
     def from_operator(self, step: Step, paper: PaperConsent | None) -> ContentRef:
         """Store a consent on paper, the only kind that an operator can enter."""
-        _wanted(step)
+        _requirements(step)
         if paper is None:
             raise InvalidInput(
                 "consent is the participant's own to give",
@@ -96,7 +96,9 @@ class ConsentDesk:
             "study_version": version.number,
             "content_hash": version.content_hash,
             "step_index": step.index,
-            "text_hash": sha256_of(_words(protocol_of(version), step, self.session.language)),
+            "text_hash": sha256_of(
+                _consent_text(protocol_of(version), step, self.session.language)
+            ),
             "language": self.session.language,
             "mode": mode,
             "ticked": ticked,
@@ -127,7 +129,7 @@ def _record(db: Session, session: StudySession, rows: Sequence[SessionContent]) 
     language = str(body.get("language", session.language))
     consents = [step for step in plan if step.consent is not None]
     step = next((one for one in consents if one.index == body.get("step_index")), consents[0])
-    text, wanted = _words(protocol, step, language), _wanted(step)
+    text, required = _consent_text(protocol, step, language), _requirements(step)
     ticked = body.get("ticked")
     return ConsentRecord(
         session_id=session.id,
@@ -148,9 +150,9 @@ def _record(db: Session, session: StudySession, rows: Sequence[SessionContent]) 
                 optional=one.optional,
                 ticked=None if ticked is None else at in ticked,
             )
-            for at, one in enumerate(wanted.statements)
+            for at, one in enumerate(required.statements)
         ],
-        signature_wanted=wanted.signature,
+        signature_wanted=required.signature,
         name=body.get("name"),
         signature=body.get("signature"),
         mode=body.get("mode", "operator"),
@@ -162,28 +164,28 @@ def _record(db: Session, session: StudySession, rows: Sequence[SessionContent]) 
     )
 
 
-def _wanted(step: Step) -> ConsentStep:
+def _requirements(step: Step) -> ConsentStep:
     if step.consent is None:
         raise InvalidInput(
-            "this step is no consent",
+            "this step is not a consent",
             value=step.key,
             valid="a step of kind consent",
-            remedy="Look at the current step.",
+            remedy="Check the current step.",
         )
     return step.consent
 
 
-def _check_ticks(wanted: ConsentStep, ticked: Sequence[int]) -> None:
-    unknown = [at for at in ticked if at >= len(wanted.statements)]
+def _check_ticks(required: ConsentStep, ticked: Sequence[int]) -> None:
+    unknown = [at for at in ticked if at >= len(required.statements)]
     missing = [
-        at for at, one in enumerate(wanted.statements) if not one.optional and at not in ticked
+        at for at, one in enumerate(required.statements) if not one.optional and at not in ticked
     ]
     if unknown or missing:
         raise InvalidInput(
-            "a statement that is wanted is not ticked" if missing else "there is no such statement",
+            "a required statement is not ticked" if missing else "there is no such statement",
             value=sorted(ticked),
-            valid=[at for at, one in enumerate(wanted.statements) if not one.optional],
-            remedy="Everything that is not optional has to be ticked before it goes on.",
+            valid=[at for at, one in enumerate(required.statements) if not one.optional],
+            remedy="Every statement that is not optional must be ticked to continue.",
         )
 
 
@@ -191,7 +193,7 @@ def _missing(field: str, valid: str, remedy: str) -> InvalidInput:
     return InvalidInput(f"the {field} is missing", value=None, valid=valid, remedy=remedy)
 
 
-def _words(protocol: StudyProtocol, step: Step, language: str) -> str:
+def _consent_text(protocol: StudyProtocol, step: Step, language: str) -> str:
     return "" if step.text is None else _in(protocol.texts[step.text], language)
 
 

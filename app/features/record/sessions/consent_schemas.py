@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
 SIGNATURE_WIDTH, SIGNATURE_HEIGHT = 600, 200
-"""The surface that is signed on; a path's coordinates are on it, origin at the top left."""
+"""The size of the signing surface, whose coordinates a path uses; the origin is the top left."""
 _STROKE = r"M\d{1,3}(\.\d)? \d{1,3}(\.\d)?(L\d{1,3}(\.\d)? \d{1,3}(\.\d)?)*"
 
 SignaturePath = Annotated[

@@ -19,8 +19,8 @@ from app.features.record.sessions.engine import Event, event_from_json, event_to
 from app.models import SessionEvent
 
 FIRST_HASH = "0" * 64
-TELLS_CONDITION = frozenset({"latency_ms"})
-"""Fields of events that say what the session's condition is."""
+CONDITION_FIELDS = frozenset({"latency_ms"})
+"""Fields of events that reveal the session's condition."""
 _APPENDED = insert(SessionEvent)
 _HASH_AT = select(SessionEvent.hash).where(
     SessionEvent.session_id == bindparam("session_id"), SessionEvent.seq == bindparam("seq")
@@ -102,7 +102,7 @@ def verify_chain(rows: Sequence[SessionEvent], *, version: int | None = None) ->
 
 def without_condition(payload: Mapping[str, Any]) -> dict[str, Any]:
     """Return an event's payload without the fields that reveal the session's condition."""
-    return {name: value for name, value in payload.items() if name not in TELLS_CONDITION}
+    return {name: value for name, value in payload.items() if name not in CONDITION_FIELDS}
 
 
 def canonical(value: object) -> str:

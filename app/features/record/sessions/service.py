@@ -179,7 +179,7 @@ def _check_join(protocol: StudyProtocol, kind: str, language: str, time_scale: f
         )
     if time_scale != 1.0 and kind != "simulated":
         raise InvalidInput(
-            "only simulated sessions may run faster than life",
+            "only simulated sessions may run at another speed than real time",
             value=time_scale,
             valid=1.0,
             remedy="Leave time_scale out, or make the session simulated.",
@@ -268,9 +268,9 @@ def _stale(db: Session, session: StudySession, expected_version: int) -> StaleVe
         for row in since
     ]
     return StaleVersion(
-        "the session has changed since this page was drawn",
+        "the session has changed since this page was loaded",
         value=expected_version,
         valid=session.version,
-        remedy="Look at what changed, then decide again. Nothing was done.",
+        remedy="Review what changed, then decide again. Nothing was done.",
         details=details,
     )

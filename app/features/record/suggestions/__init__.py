@@ -1,1 +1,1 @@
-"""What experts advise about a study, and what became of it."""
+"""Suggestions of experts about a study, and the decisions on them."""

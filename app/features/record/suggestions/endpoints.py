@@ -1,4 +1,4 @@
-"""Suggestions over HTTP."""
+"""HTTP endpoints for suggestions."""
 
 from fastapi import APIRouter
 
@@ -17,7 +17,7 @@ router = APIRouter(tags=["suggestions"])
 
 @router.get("/studies/{key}/suggestions")
 def get_suggestions(key: str, db: Reading, _: SignedIn) -> list[SuggestionView]:
-    """Every suggestion for a study, newest version first."""
+    """Return all suggestions for a study, those for the newest version first."""
     return suggestions_of(db, key)
 
 
@@ -25,7 +25,7 @@ def get_suggestions(key: str, db: Reading, _: SignedIn) -> list[SuggestionView]:
 def post_suggestion(
     key: str, wish: NewSuggestion, db: Writing, context: Context, caller: SignedIn
 ) -> SuggestionView:
-    """Advise about a version of a study, or about one of its steps."""
+    """Add a suggestion about a version of a study, or about one of its steps."""
     return add_suggestion(db, key, wish, by=caller.actor, now=context.clock.utc_now())
 
 
@@ -33,7 +33,7 @@ def post_suggestion(
 def post_decision(
     suggestion_id: str, decision: Decision, db: Writing, context: Context, caller: SignedIn
 ) -> SuggestionView:
-    """Adopt or decline a suggestion; this is done once."""
+    """Adopt or decline a suggestion; the decision is final."""
     return decide_suggestion(
         db, suggestion_id, decision, by=caller.actor, now=context.clock.utc_now()
     )

@@ -1,4 +1,4 @@
-"""Suggestions: written at a step of a version, decided once, never changed otherwise."""
+"""Suggestions: written about a step of a study version, decided once, otherwise never changed."""
 
 from datetime import datetime
 from typing import Annotated, Literal
@@ -18,9 +18,10 @@ Status = Literal["open", "adopted", "declined"]
 
 
 class NewSuggestion(BaseModel):
-    """Advice about a version of a study; `about` is a step's key, or empty for the whole.
+    """A suggestion about a version of a study.
 
-    With a `session_id` the version is that session's, so `version` may be left out.
+    `about` is a step's key, or empty for the whole study. With a `session_id`, the version is that
+    of the session, so `version` may be left out.
     """
 
     model_config = ConfigDict(extra="forbid")
@@ -32,7 +33,7 @@ class NewSuggestion(BaseModel):
 
 
 class Decision(BaseModel):
-    """What becomes of a suggestion; `adopted_in` is the number of the version that has it."""
+    """The decision on a suggestion; `adopted_in` is the number of the version that contains it."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -41,7 +42,7 @@ class Decision(BaseModel):
 
 
 class SuggestionView(BaseModel):
-    """A suggestion with its fate. `about_title`: the name of the step in the study's words."""
+    """A suggestion with the decision on it. `about_title`: the step's title in the study."""
 
     id: str
     version: int
@@ -61,19 +62,19 @@ class SuggestionView(BaseModel):
 def add_suggestion(
     db: Session, key: str, wish: NewSuggestion, *, by: str, now: datetime
 ) -> SuggestionView:
-    """Store advice about a version of a study.
+    """Store a suggestion about a version of a study.
 
-    Raises NotFound for an unknown study or session, InvalidInput for an unknown version or step,
-    and where the session is another study's.
+    Raises NotFound for an unknown study or session, or a session of another study, and InvalidInput
+    for an unknown version or step.
     """
     study = study_by_key(db, key)
     version = _version(db, study, wish)
-    known = _titles(version)
-    if wish.about and wish.about not in known:
+    titles = _titles(version)
+    if wish.about and wish.about not in titles:
         raise InvalidInput(
             f"version {version.number} has no step {wish.about!r}",
             value=wish.about,
-            valid=sorted(known),
+            valid=sorted(titles),
             remedy="Name a step by its key, or leave it empty for the whole study.",
         )
     row = Suggestion(
@@ -92,7 +93,7 @@ def add_suggestion(
 
 
 def suggestions_of(db: Session, key: str) -> list[SuggestionView]:
-    """Every suggestion for a study: newest version first, within it in the order written."""
+    """Return all suggestions for a study: newest version first, then in the order written."""
     study = study_by_key(db, key)
     rows = db.scalars(
         select(Suggestion)
@@ -106,15 +107,18 @@ def suggestions_of(db: Session, key: str) -> list[SuggestionView]:
 def decide_suggestion(
     db: Session, suggestion_id: str, decision: Decision, *, by: str, now: datetime
 ) -> SuggestionView:
-    """Adopt or decline, once. Raises NotFound, InvalidInput, and Conflict where it was decided."""
+    """Adopt or decline a suggestion.
+
+    Raises NotFound, InvalidInput, or Conflict if it was already decided.
+    """
     row = db.get(Suggestion, suggestion_id, with_for_update=True)
     if row is None:
         raise NotFound("there is no such suggestion", value=suggestion_id)
     if row.status != "open":
         raise Conflict(
-            f"the suggestion was {row.status} already",
+            f"the suggestion was already {row.status}",
             value=row.status,
-            remedy="Write a new suggestion if it should be thought over.",
+            remedy="Write a new suggestion if it should be reconsidered.",
         )
     row.status, row.decided_by, row.decided_at = decision.status, by, now
     row.adopted_in = _adopted_in(db, row, decision)
@@ -123,7 +127,7 @@ def decide_suggestion(
 
 
 def _adopted_in(db: Session, row: Suggestion, decision: Decision) -> int | None:
-    """A version that exists, later than the one that the advice is about."""
+    """Return the adopting version, which must be later than the one the suggestion is about."""
     if decision.adopted_in is None:
         return None
     about = referenced_row(db, StudyVersion, row.study_version_id)
@@ -134,7 +138,7 @@ def _adopted_in(db: Session, row: Suggestion, decision: Decision) -> int | None:
             f"version {decision.adopted_in} cannot have adopted it",
             value=decision.adopted_in,
             valid=later if decision.status == "adopted" else None,
-            remedy=f"Name a version behind {about.number}, or none while it is still to come.",
+            remedy=f"Name a version after {about.number}, or none if it does not exist yet.",
         )
     return decision.adopted_in
 
@@ -183,7 +187,7 @@ def _steps(version: StudyVersion) -> tuple[Step, ...]:
 
 
 def _titles(version: StudyVersion) -> dict[str, str]:
-    """The steps of a version by key; every order has the same keys."""
+    """Return the titles of a version's steps by key; every order has the same keys."""
     return {
         step.key: step.title.get("en") or next(iter(step.title.values()))
         for step in _steps(version)

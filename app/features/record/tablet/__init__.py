@@ -1,1 +1,1 @@
-"""The tablet: what it shows, what it sends."""
+"""The participant's tablet: the screens it shows, and what it sends."""

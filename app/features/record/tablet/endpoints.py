@@ -1,4 +1,4 @@
-"""The tablet over HTTP: its cookie opens its own session and nothing else."""
+"""HTTP endpoints for tablets, whose cookie gives access to their own session only."""
 
 import asyncio
 from collections.abc import AsyncIterator
@@ -49,7 +49,7 @@ from app.platform.tokens import device_of_token, read_cookie
 from app.protocol import STEP_KINDS, Step
 
 calls = APIRouter(tags=["sessions"])
-"""The console's side of a call."""
+"""Endpoints with which the console answers a participant's call."""
 router = APIRouter(prefix="/tablet", tags=["tablet"])
 HEARTBEAT_S = 10.0
 _READ_KINDS = tuple(
@@ -60,17 +60,17 @@ _READ_KINDS = tuple(
 
 @router.get("/state", response_model=TabletState)
 def get_state(request: Request, context: Context) -> Response:
-    """What to show now."""
+    """Return what the tablet should show now."""
     with context.database.reading() as db:
         tablet = tablet_in(db, request, context)
         state = tablet_state(db, session_by_id(db, tablet.session_id))
-    # Written out here, once: the event loop would check it again first.
+    # Serialised here, because otherwise the event loop would first validate it a second time.
     return Response(state.model_dump_json(), media_type="application/json")
 
 
 @router.get("/paired", response_model=TabletPaired)
 def get_paired(request: Request, context: Context) -> TabletPaired:
-    """The same for a tablet that does not know whether it is paired; that it is not is no error."""
+    """Return what the tablet should show; null (and not an error) if the tablet is not paired."""
     token = read_cookie(request, TABLET_COOKIE) or bearer_token(request)
     with context.database.reading() as db:
         try:
@@ -85,7 +85,7 @@ def get_paired(request: Request, context: Context) -> TabletPaired:
 def put_language(
     choice: LanguageChoice, db: Writing, context: Context, tablet: PairedTablet
 ) -> TabletState:
-    """Go on in another language of the study."""
+    """Switch the session to another language of the study."""
     session = session_by_id(db, tablet.session_id, lock=True)
     valid = protocol_of(referenced_row(db, StudyVersion, session.study_version_id)).languages
     if choice.language not in valid:
@@ -101,7 +101,7 @@ def put_language(
 
 @router.put("/help")
 def put_help(wish: HelpWish, db: Writing, context: Context, tablet: PairedTablet) -> TabletState:
-    """Call the experimenter, or take the call back; doing so twice does no harm."""
+    """Call the experimenter, or cancel the call; repeating the request changes nothing."""
     session = session_by_id(db, tablet.session_id, lock=True)
     if may_ask(state_of(session)):
         note_help(db, context, session, "asked" if wish.asked else "taken_back")
@@ -112,7 +112,7 @@ def put_help(wish: HelpWish, db: Writing, context: Context, tablet: PairedTablet
 def put_question(
     wish: HelpWish, db: Writing, context: Context, tablet: PairedTablet
 ) -> TabletState:
-    """Ask the experimenter about the text on the screen, or take the question back."""
+    """Tell the experimenter of a question about the text on the screen, or cancel it."""
     session = session_by_id(db, tablet.session_id, lock=True)
     if may_ask(state_of(session)):
         command = AskQuestion() if wish.asked else CloseQuestion(outcome="taken_back")
@@ -124,10 +124,10 @@ def put_question(
 def put_refusal(
     wish: RefusalWish, db: Writing, context: Context, tablet: PairedTablet
 ) -> TabletState:
-    """Refuse to take part, or take the refusal back; each wish counts once, however often it comes.
+    """Refuse to take part, or take the refusal back; a repeated `wish_id` changes nothing.
 
-    Until the operator has decided, nobody can go on with the session. Raises NotNow where the
-    session is over.
+    Until the operator has decided, the session cannot continue. Raises NotNow if the session has
+    ended.
     """
     session = session_by_id(db, tablet.session_id, lock=True)
     command = (
@@ -145,7 +145,7 @@ def put_refusal(
 def post_consent(
     given: ConsentGiven, db: Writing, context: Context, tablet: PairedTablet
 ) -> TabletState:
-    """A consent with what the study asks for; sending it twice does no harm."""
+    """Store the participant's consent and complete the step; repeating this changes nothing."""
     session = session_by_id(db, tablet.session_id, lock=True)
     step = _own_step(db, session, given.step_index, ("consent",))
     _complete(db, context, session, step, f"tablet:{tablet.id}", given)
@@ -156,7 +156,7 @@ def post_consent(
 def post_acknowledge(
     request: Acknowledgement, db: Writing, context: Context, tablet: PairedTablet
 ) -> TabletState:
-    """Consent given, or instructions read; sending it twice does no harm."""
+    """Complete a step that was read on the tablet; repeating the request changes nothing."""
     session = session_by_id(db, tablet.session_id, lock=True)
     step = _own_step(db, session, request.step_index, _READ_KINDS)
     given = ConsentGiven(step_index=step.index) if step.kind == "consent" else None
@@ -165,12 +165,12 @@ def post_acknowledge(
 
 
 def _own_step(db: Session, session: StudySession, index: int, kinds: tuple[str, ...]) -> Step:
-    """The step that a tablet wants to complete; raises InvalidInput where it is not its own."""
+    """Return the step to complete; raises InvalidInput if the tablet may not complete it."""
     plan = plan_of(db, session)
     step = plan[index] if index < len(plan) else None
     if step is None or step.kind not in kinds:
         raise InvalidInput(
-            "this step is not the tablet's to complete",
+            "this step cannot be completed on the tablet",
             value=index,
             valid=[one.index for one in plan if one.kind in kinds],
             remedy="Wait for the experimenter.",
@@ -186,7 +186,7 @@ def _complete(
     actor: str,
     given: ConsentGiven | None,
 ) -> None:
-    """Complete the step, once, with the record of a consent."""
+    """Complete a step once, and store the consent if one was given."""
     if state_of(session).steps[step.index].status in ("done", "skipped"):
         return
     desk = ConsentDesk(db, context, session, actor)
@@ -200,10 +200,10 @@ def _complete(
 async def post_submission(
     request: Request, form: SubmissionRequest, context: Context, _: PairedTablet
 ) -> Receipt:
-    """Store a filled-in form; the same form under the same key may come any number of times."""
+    """Store a filled-in form; it can be resent any number of times under the same key."""
 
     def store(db: Session) -> Receipt:
-        # Asked again: it may have been unpaired while the form waited for its turn.
+        # Check again: the tablet may have been unpaired while the form waited for the transaction.
         tablet = tablet_in(db, request, context)
         session = session_by_id(db, tablet.session_id, lock=True)
         return submit(db, context, session, form, mode="tablet", actor=f"tablet:{tablet.id}")
@@ -213,7 +213,7 @@ async def post_submission(
 
 @router.get("/live", response_class=EventSourceResponse)
 async def get_live(context: Context, tablet: PairedTablet) -> AsyncIterator[ServerSentEvent]:
-    """The screen, again at every change; ends when the tablet is unpaired."""
+    """Stream the tablet's screen at every change; ends when the tablet is unpaired."""
     with context.hub.subscribe(tablet.session_id) as subscription:
         event = await asyncio.to_thread(_seen, context, tablet.id)
         while event is not None:
@@ -225,7 +225,7 @@ async def get_live(context: Context, tablet: PairedTablet) -> AsyncIterator[Serv
 
 
 def _seen(context: AppContext, device_id: str) -> ServerSentEvent | None:
-    """Note that the tablet is there, and draw its screen; None once it was unpaired."""
+    """Record that the tablet is connected, and return its screen; None if it was unpaired."""
     with context.database.reading() as db:
         device = db.get(Device, device_id)
         if device is None or device.revoked_at is not None:
@@ -237,8 +237,10 @@ def _seen(context: AppContext, device_id: str) -> ServerSentEvent | None:
 
 @calls.post("/sessions/{session_id}/help/answered", status_code=204)
 def post_help_answered(session_id: str, db: Writing, context: Context, caller: SignedIn) -> None:
-    """Say that somebody went to the participant, who called or had a question; the tablet says so,
-    too."""
+    """Record that somebody went to the participant, who called or had a question.
+
+    The tablet then shows that, too.
+    """
     session = session_by_id(db, session_id, lock=True)
     note_help(db, context, session, "answered")
     if may_ask(state_of(session)):

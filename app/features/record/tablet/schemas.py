@@ -1,4 +1,4 @@
-"""The tablet's screens."""
+"""Request and response models of the tablet endpoints."""
 
 from typing import Literal
 
@@ -11,14 +11,13 @@ Screen = Literal["waiting", "held", "refused", "consent", "instructions", "form"
 
 
 class TabletState(BaseModel):
-    """What the tablet shows now; `next` says what comes next, in the participant's language.
+    """What the tablet shows now; `next` is the title of the next step in the chosen language.
 
-    `held`: the participant waits for the experimenter, and nothing on the tablet goes on.
-    `refused`: the participant does not want to take part and the experimenter knows; `is_refused`
-    says so also where the session has ended since.
-    `is_own_text`: `text` belongs to the step, so its title stands above it; else it is the study's
-    waiting text.
-    `help_asked`, `question_asked`: the experimenter was called and has not come yet.
+    `held`: the participant waits for the experimenter, and the tablet cannot continue. `refused`:
+    the participant refuses to take part and the experimenter knows; `is_refused` is also true if
+    the session has ended since. `is_own_text`: `text` belongs to the step, so the step's title is
+    shown above it; otherwise it is the study's waiting text. `help_asked`, `question_asked`: the
+    experimenter was called and has not come yet.
     """
 
     session_id: str
@@ -40,7 +39,7 @@ class TabletState(BaseModel):
 
 
 class Acknowledgement(BaseModel):
-    """Consent given or instructions read."""
+    """A request to complete a step that was read on the tablet."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -48,7 +47,7 @@ class Acknowledgement(BaseModel):
 
 
 class LanguageChoice(BaseModel):
-    """The language to go on in."""
+    """A request to switch to another language."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -56,7 +55,7 @@ class LanguageChoice(BaseModel):
 
 
 class HelpWish(BaseModel):
-    """Whether the experimenter is wanted, for any reason or to answer a question."""
+    """Whether the participant is calling the experimenter, for any reason or with a question."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -66,7 +65,8 @@ class HelpWish(BaseModel):
 class RefusalWish(BaseModel):
     """Whether the participant refuses the consent of a step, or takes the refusal back.
 
-    `wish_id` is made at the press: the same wish may come any number of times, also late.
+    `wish_id` is generated when the button is pressed, so the request can be resent any number of
+    times, even late.
     """
 
     model_config = ConfigDict(extra="forbid")
@@ -77,6 +77,6 @@ class RefusalWish(BaseModel):
 
 
 class TabletPaired(BaseModel):
-    """What the tablet that asks is to show; null where it is not paired."""
+    """What the requesting tablet should show; null if it is not paired."""
 
     state: TabletState | None

@@ -1,9 +1,9 @@
-"""Which screen a tablet shows, and how its participant calls the experimenter.
+"""Determine which screen a tablet shows, and record the participant's calls for the experimenter.
 
-The screen tells of its own session's current step and nothing about the condition. A call is an
-alarm of the session: it is on record with its times, no page can miss it, and it stands until
-somebody answers it, the participant takes it back or the session ends. A question about a text and
-a refused consent are alarms too, which the session's engine raises: they are events of its log.
+The screen shows only its own session's current step and reveals nothing about the condition. A call
+is an alarm of the session: it is recorded with its times, every page shows it, and it stays open
+until somebody answers it, the participant cancels it or the session ends. A question about a text
+and a refused consent are alarms too, which the session's engine raises: they are events of its log.
 """
 
 from collections.abc import Mapping, Sequence
@@ -36,7 +36,7 @@ _CALL_WORDS = {
 
 
 def tablet_state(db: Session, session: StudySession) -> TabletState:
-    """The screen of this session's tablet."""
+    """Return what the tablet of this session should show."""
     protocol = protocol_of_session(db, session)
     plan, state = plan_of(db, session), state_of(session)
     step = None if state.current is None else plan[state.current]
@@ -76,7 +76,7 @@ def _screen(step: Step | None, state: SessionState, *, ended: bool) -> Screen:
 
 
 def _own_text(step: Step | None, screen: Screen) -> Step | None:
-    """The step whose text is read; None where it has none, or nobody is to read it now."""
+    """Return the step whose text is shown; None if it has no text or none should be read now."""
     nothing = step is None or step.text is None or screen in ("held", "refused", "finished")
     return None if nothing else step
 
@@ -89,9 +89,9 @@ def _words(
     language: str,
     screen: Screen,
 ) -> str | None:
-    """The text of the step, or the study's calm waiting text; the tablet's own when held."""
+    """Return the text of the step or the study's waiting text; None if the tablet has its own."""
     if screen == "finished" and state.refused_consent is None:
-        # Debriefing is the last thing a participant reads; who refused was part of nothing.
+        # The debriefing is shown at the end, but not to participants who refused to take part.
         own = next((late for late in reversed(plan) if late.kind == "debrief"), None)
     if own is not None and own.text is not None:
         return _text(protocol.texts[own.text], language)
@@ -113,7 +113,7 @@ def _text(text: Mapping[str, str], language: str) -> str:
 
 
 def may_ask(state: SessionState) -> bool:
-    """A session that has not ended has somebody who comes."""
+    """Return whether the participant can still call the experimenter: until the session ends."""
     return state.status not in _OVER
 
 
@@ -123,7 +123,7 @@ def note_help(
     session: StudySession,
     what: Literal["asked", "taken_back", "answered"],
 ) -> None:
-    """Put a call, its end or its answer on record; what changes nothing is not recorded."""
+    """Record a call, its cancellation or its answer; one that changes nothing is not recorded."""
     change: Literal["raised", "cleared"] = "raised" if what == "asked" else "cleared"
     if store_change(
         db,

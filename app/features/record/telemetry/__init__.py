@@ -1,4 +1,4 @@
-"""Movement in, movement out."""
+"""Telemetry: store the headset's movement and reports, read them back, and summarise phases."""
 
 from app.features.record.telemetry.encoding import DamagedChunkError, Frames
 from app.features.record.telemetry.fold import Folder
@@ -13,10 +13,10 @@ from app.features.record.telemetry.live import LiveTelemetry, live_telemetry
 from app.features.record.telemetry.movement import hinges_of
 from app.features.record.telemetry.positions import (
     Outcome,
+    assign_epoch,
     certain_active_s,
+    is_assigned_epoch,
     positions_of,
-    take_epoch,
-    was_given,
 )
 from app.features.record.telemetry.recovery import stop_running_clocks
 from app.features.record.telemetry.summaries import Summariser
@@ -44,16 +44,16 @@ __all__ = [
     "ProbeContent",
     "Summariser",
     "TelemetryWriter",
+    "assign_epoch",
     "certain_active_s",
     "concatenate",
     "decode_piece",
     "epochs_of",
     "hinges_of",
+    "is_assigned_epoch",
     "iter_frames",
     "iter_pieces",
     "live_telemetry",
     "positions_of",
     "stop_running_clocks",
-    "take_epoch",
-    "was_given",
 ]

@@ -1,14 +1,14 @@
-"""Moving SQLite's write-ahead log into the database file, away from the commits.
+"""Checkpoint SQLite's write-ahead log into the database file, separately from the commits.
 
-SQLite does this by itself, inside whichever commit makes the log long: that commit, and all the
-acknowledgements behind it, then wait for two more flushes. So the server's connections leave it to
-this class. It copies beside the writers (PASSIVE waits for nobody, and nobody waits for it), then
-takes the writing turn for the little that came meanwhile: the next commit begins the log anew.
+SQLite does this automatically, inside whichever commit makes the log long: that commit, and all
+acknowledgements after it, then wait for two more flushes. So the server's connections leave it to
+this class. It copies concurrently with the writers (PASSIVE blocks nobody and waits for nobody),
+then takes the write lock for the little that was added meanwhile: the next commit restarts the log.
 
-A copy never starts on a log that is copied already: SQLite before 3.51.3 may damage the database if
-a commit begins the log anew at that very moment. So it is asked first, within the writing turn,
-whether anything was committed since the last complete copy; then the log holds something to copy
-until this class has copied it.
+A copy never starts on a log that is already copied: SQLite before 3.51.3 may damage the database if
+a commit restarts the log at that very moment. So it is first checked, under the write lock, whether
+anything was committed since the last complete copy; if so, the log contains something to copy until
+this class has copied it.
 """
 
 import time
@@ -22,14 +22,14 @@ EVERY_S = 2.0
 
 @dataclass
 class Checkpointer:
-    """Call `turn` from one thread, now and then."""
+    """Checkpoint the write-ahead log at intervals; call `turn` repeatedly from a single thread."""
 
     database: Database
     monotonic_s: Callable[[], float] = time.monotonic
     _next_s: float = 0.0
 
     def turn(self) -> None:
-        """Copy what has been written, if it is time to."""
+        """Copy what has been committed to the database file, if a checkpoint is due."""
         if not self.database.is_sqlite or self.monotonic_s() < self._next_s:
             return
         self._next_s = self.monotonic_s() + EVERY_S
@@ -45,11 +45,11 @@ class Checkpointer:
                     commits.copied = commits.number
 
     def _copy(self) -> bool:
-        """Copy without waiting for anybody; whether nothing is left to copy."""
+        """Copy without blocking anybody; return whether nothing is left to copy."""
         connection = self.database.engine.raw_connection()
         try:
             cursor = connection.cursor()
-            # Not through the engine's own execution: it would open a transaction first.
+            # The engine's own execution would open a transaction first.
             cursor.execute("PRAGMA wal_checkpoint(PASSIVE)")
             busy, pages, copied = cursor.fetchone() or (0, 0, 0)
             return not busy and pages == copied

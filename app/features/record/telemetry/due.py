@@ -1,7 +1,7 @@
-"""The batches that are due, put together into chunks of about a second.
+"""Combine the batches that are due into chunks of about a second.
 
-A stream is due when its oldest batch has waited a little over a second. So the work of many
-sessions spreads over time instead of coming in one burst a second.
+A stream is due when its oldest batch has waited a little over a second. So the work for many
+sessions is spread over time instead of coming in one burst per second.
 """
 
 import logging
@@ -21,17 +21,17 @@ log = logging.getLogger(__name__)
 CHUNK_S = 1.0
 DUE_AFTER = timedelta(seconds=1.2)
 QUIET_AFTER = timedelta(seconds=3)
-"""A stream that has been quiet for so long gets its last, shorter chunk."""
+"""After this long without a batch, the rest of a stream is put into a shorter chunk."""
 STREAMS_PER_TURN = 20
 BATCHES_PER_STREAM = 150
 BATCHES = cast("Table", TelemetryBatch.__table__)
 KEY = ("session_id", "stream", "epoch")
 Chunks = list[dict[str, Any]]
-"""Rows of the table of chunks, each with `batches`: how many of them it stands for."""
+"""Rows of the table of chunks, each with `batches`: how many batches it replaces."""
 
 
 class Waiting(NamedTuple):
-    """A batch as it lies in its table, with its decoded content."""
+    """A stored batch that is not in a chunk yet, with its decoded content."""
 
     received_at: datetime
     phase_id: int
@@ -41,17 +41,17 @@ class Waiting(NamedTuple):
 
     @property
     def seq_end(self) -> int:
-        """One past its last seq."""
+        """Return one past the batch's last seq."""
         return self.seq_first + self.frame_count
 
 
 def due_chunks(db: Session, now: datetime) -> Chunks:
-    """The chunks of up to a turn's worth of streams."""
+    """Return the chunks that are due, of up to `STREAMS_PER_TURN` streams."""
     return [chunk for key in _due(db, now) for chunk in _sound_chunks(db, key, now)]
 
 
 def _due(db: Session, now: datetime) -> list[dict[str, Any]]:
-    """The streams with a full chunk, or with a rest that nothing may follow."""
+    """Return the keys of the streams whose oldest batch has waited long enough."""
     key = [BATCHES.c[name] for name in KEY]
     query = (
         select(*key)
@@ -64,7 +64,10 @@ def _due(db: Session, now: datetime) -> list[dict[str, Any]]:
 
 
 def _sound_chunks(db: Session, key: dict[str, Any], now: datetime) -> list[dict[str, Any]]:
-    """The chunks of a stream; none, if a batch of it can no longer be read: it stays as it is."""
+    """Return the due chunks of a stream; none if one of its batches is damaged.
+
+    The batches of such a stream stay as they are.
+    """
     try:
         return _chunks_of(db, key, now)
     except MalformedBatchError as error:
@@ -88,12 +91,12 @@ def _chunks_of(db: Session, key: dict[str, Any], now: datetime) -> list[dict[str
     waiting = [Waiting(*row[:4], decode_batch(row[4])) for row in rows]
     pieces = list(_cut(waiting))
     if pieces and pieces[-1][-1].received_at >= now - QUIET_AFTER:
-        pieces.pop()  # more of this chunk is still to come
+        pieces.pop()  # more batches of this chunk are still to come
     return [{**key, **_chunk(piece)} for piece in pieces]
 
 
 def _cut(waiting: Sequence[Waiting]) -> Iterator[list[Waiting]]:
-    """Runs of one phase without a hole, each about a second long."""
+    """Group batches of one phase without a gap, each group about a second long."""
     pending: list[Waiting] = []
     for one in waiting:
         if pending and not _belongs(pending, one):
@@ -116,7 +119,7 @@ def _chunk(piece: Sequence[Waiting]) -> dict[str, Any]:
     times_s = np.concatenate([one.batch.times_s for one in piece])
     flags = np.concatenate([one.batch.flags for one in piece])
     values = np.concatenate([one.batch.values for one in piece])
-    # Broken times stay in the data; the index spans the others.
+    # Invalid times stay in the data, but are left out of the index.
     finite_s = times_s[np.isfinite(times_s)]
     return {
         "batches": len(piece),

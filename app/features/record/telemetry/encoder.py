@@ -1,7 +1,7 @@
-"""Compression in a process of its own, which reads the batches itself and hands back chunks.
+"""Compress chunks in a separate process, which reads the batches itself and returns the chunks.
 
-In a thread it would hold up the event loop and the writer, at every array it touches: they share
-one interpreter. The process never writes, and ends with the server, however that ends.
+In a thread, compression would delay the event loop and the writer, since they share one
+interpreter. The process never writes to the database, and ends with the server, however that ends.
 """
 
 import contextlib
@@ -22,32 +22,32 @@ from app.database import make_engine
 from app.features.record.telemetry.due import Chunks, due_chunks
 
 NICENESS = 5
-"""The server goes first where both want the processor: chunks can wait, acknowledgements not."""
+"""The process has a lower priority than the server: chunks can wait, acknowledgements cannot."""
 ENDS_WITHIN_S = 10.0
 
 
 class EncoderError(RuntimeError):
-    """The process has died, or could not do what it was asked; asked again it is started anew."""
+    """The process has died or its request failed; the next request starts a new process."""
 
 
 @dataclass
 class Encoder:
-    """The process for the database at `url`, begun when it is first asked for something."""
+    """The encoding process for the database at `url`, started on the first request."""
 
     url: str
     _context: SpawnContext = field(default_factory=lambda: multiprocessing.get_context("spawn"))
     _process: SpawnProcess | None = None
     _line: "Connection[Any, Any] | None" = None
-    # On a slow machine a server may stop while the process is still being started.
+    # On a slow machine, a server may be stopped while the process is still starting.
     _changing: threading.RLock = field(default_factory=threading.RLock)
 
     @property
     def pid(self) -> int | None:
-        """The process, if there is one."""
+        """Return the id of the process, or None if it is not running."""
         return None if self._process is None else self._process.pid
 
     def due_chunks(self, now: datetime) -> Chunks:
-        """What is due at `now`, as `due_chunks` of the module `due`; raises EncoderError."""
+        """Return the chunks that are due at `now` (see the module `due`); raises EncoderError."""
         line = self.begin()
         try:
             line.send(now)
@@ -61,7 +61,7 @@ class Encoder:
         return chunks
 
     def end(self) -> None:
-        """Let it go; it may be asked again."""
+        """End the process; a later request starts a new one."""
         with self._changing:
             if self._line is not None:
                 self._line.close()
@@ -73,7 +73,7 @@ class Encoder:
             self._line = self._process = None
 
     def begin(self) -> "Connection[Any, Any]":
-        """Start the process, unless it runs: where movement is to come, before there is any."""
+        """Start the process if it is not running, for example before movement is expected."""
         with self._changing:
             if self._line is not None:
                 return self._line
@@ -82,19 +82,20 @@ class Encoder:
                 target=serve, args=(theirs, self.url), name="telemetry-encoder", daemon=True
             )
             process.start()
-            # Only the process holds the other end now, so each notices the death of the other.
+            # Only the process has the other end open now, so each side notices the death of the
+            # other.
             theirs.close()
             self._process, self._line = process, ours
             return ours
 
 
 def serve(line: "Connection[Any, Any]", url: str) -> None:
-    """Answer questions until the other end is closed."""
-    # Ctrl-C reaches every process of a terminal; when to end is for the server to say.
+    """Answer requests until the other end of the pipe is closed; runs in the encoding process."""
+    # Ctrl-C reaches every process of a terminal, but the server decides when this one ends.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if hasattr(os, "nice"):
         os.nice(NICENESS)
-    # With a file, a connection for each question: it may be another file by the next.
+    # A database file may be replaced between two requests, so each opens its own connection.
     engine = make_engine(url, pooled=make_url(url).get_backend_name() != "sqlite")
     with contextlib.suppress(EOFError, OSError):
         while True:

@@ -1,4 +1,4 @@
-"""Chunks as compressed columns, bit for bit what came.
+"""Encode frames as compressed chunks without loss of a single bit, and decode them.
 
 A chunk names its encoding, and every encoding that was ever written can be read: `encodings` has a
 module for each. New chunks are written in `ENCODING`, described in docs/telemetry-encoding.md.
@@ -27,7 +27,8 @@ class Frames:
     """Consecutive frames of a stream.
 
     `seq` (n,), `times_s` (n,) client monotonic s, `flags` (n,) bits, `values` (n, 91) as on the
-    wire: root position (m, world), then 22 local rotations w, x, y, z.
+    wire:
+    root position (m, world), then 22 local rotations w, x, y, z.
     """
 
     seq: NDArray[np.int64]
@@ -40,14 +41,14 @@ class Frames:
 
     @property
     def rotations(self) -> NDArray[np.float64]:
-        """Local rotations (n, 22, 4), w x y z."""
-        with np.errstate(invalid="ignore"):  # a signalling NaN is allowed to be there
+        """Return the local rotations (n, 22, 4), w x y z."""
+        with np.errstate(invalid="ignore"):  # the values may contain signalling NaNs
             joints = (self.values.shape[1] - 3) // 4
             return self.values[:, 3:].reshape(len(self), joints, 4).astype(np.float64)
 
     @property
     def active(self) -> NDArray[np.bool_]:
-        """Frames (n,) during which the phase's clock ran."""
+        """Return which frames (n,) were recorded while the phase's clock ran."""
         return (self.flags & 1).astype(np.bool_)
 
 
@@ -61,16 +62,16 @@ def encode_frames(
 def decode_frames(
     data: bytes, *, encoding: str, seq_first: int, frame_count: int, values_per_frame: int
 ) -> Frames:
-    """The frames of a chunk.
+    """Decode the frames of a chunk.
 
     Raises:
-        DamagedChunkError: the bytes are not what was written, or of another chunk.
-        ValueError: an encoding this version does not know.
+        DamagedChunkError: the bytes are damaged, or belong to another chunk.
+        ValueError: the encoding is unknown to this version.
     """
     decode = _DECODERS.get(encoding)
     if decode is None:
-        known = ", ".join(repr(name) for name in _DECODERS)
-        raise ValueError(f"unknown encoding {encoding!r}; this version reads {known}")
+        names = ", ".join(repr(name) for name in _DECODERS)
+        raise ValueError(f"unknown encoding {encoding!r}; this version reads {names}")
     columns = decode(data, frame_count, values_per_frame)
     return Frames(
         seq=np.arange(seq_first, seq_first + frame_count),

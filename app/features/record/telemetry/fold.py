@@ -1,6 +1,6 @@
-"""Folding batches into chunks of about a second, stream by stream, as each becomes due.
+"""Fold batches into chunks of about a second, stream by stream, as they become due.
 
-A reader merges both, so it never matters when this runs.
+Readers merge chunks and batches, so it never matters when this runs.
 """
 
 import logging
@@ -23,20 +23,20 @@ from app.rows import insert_rows
 log = logging.getLogger(__name__)
 TURN_S = 0.2
 ATTEMPTS = 3
-"""An erasure between reading and writing changes the batches; reading anew then is enough."""
+"""An erasure between reading and writing changes the batches; reading them again is enough."""
 FOLDER = "telemetry-folder"
 CHUNKS = cast("Table", TelemetryChunk.__table__)
 
 
 class BatchesChanged(RuntimeError):
-    """What was to be folded is not what is stored any more."""
+    """The stored batches have changed since they were read to be folded."""
 
 
 @dataclass
 class Folder(Part):
-    """Folds in the background. `start` once, `stop` at the end.
+    """Fold batches into chunks in a background thread, from `start` until `stop`.
 
-    Chunks are made by the `encoder`; without one, here.
+    Chunks are encoded by the `encoder` process, or in this thread if there is none.
     """
 
     context: AppContext
@@ -46,15 +46,15 @@ class Folder(Part):
 
     @classmethod
     def of(cls, context: AppContext) -> Self:
-        """The folder of a server, which encodes in a process of its own."""
+        """Create the folder of a server, which encodes in a separate process."""
         return cls(context, Encoder(context.settings.resolved_database_url))
 
     def start(self) -> None:
-        """Begin to fold."""
+        """Start the background thread."""
         self._thread = self.context.background.thread(FOLDER, self._run)
 
     def stop(self) -> None:
-        """End after the turn under way."""
+        """Stop after the current turn."""
         self._stop.set()
         if self._thread is not None:
             self._thread.join(timeout=10.0)
@@ -71,24 +71,24 @@ class Folder(Part):
                 if self.encoder is not None and self.context.hub.any_headset_connected:
                     self.encoder.begin()
                 self.context.background.recovered(FOLDER)
-            except Exception as error:  # the next turn tries again; nothing is lost meanwhile
-                # Where storage is at fault, its own health says so.
+            except Exception as error:  # the next turn retries; nothing is lost in the meantime
+                # If the storage is the cause, the storage monitor reports it.
                 trouble = explain(error)
                 if trouble is None:
-                    log.exception("batches could not be folded; they stay as they are")
+                    log.exception("batches could not be folded into chunks; they stay as they are")
                     self.context.background.failed(FOLDER, error)
                 else:
-                    log.error("batches could not be folded and stay: %s", trouble.message)
+                    log.error("batches could not be folded into chunks: %s", trouble.message)
                 self._stop.wait(1.0)
 
     def fold_once(self) -> int:
-        """Fold the streams that are due, up to a turn's worth; how many batches that were.
+        """Fold up to one turn's worth of due streams, and return the number of batches folded.
 
-        Raises BatchesChanged where they change at every attempt.
+        Raises BatchesChanged if they change at every attempt.
         """
         now = self.context.clock.utc_now()
         for left in reversed(range(ATTEMPTS)):
-            # Compress before the writing turn: telemetry waits for it.
+            # Compress before the write transaction, which telemetry waits for.
             chunks = self._due_chunks(now)
             if not chunks:
                 break
@@ -120,9 +120,10 @@ _DELETE = delete(BATCHES).where(
 
 
 def _replace(db: Session, chunks: Chunks) -> None:
-    """Store chunks and delete the batches they hold; nothing, if these are no longer there.
+    """Store chunks and delete the batches they contain.
 
-    A session may have been erased or a backup restored since they were read.
+    Raises BatchesChanged if these have gone, as a session may have been erased or a backup restored
+    since they were read.
     """
     columns = CHUNKS.c.keys()
     insert_rows(db, CHUNKS, [{name: chunk[name] for name in columns} for chunk in chunks])
@@ -139,4 +140,4 @@ def _replace(db: Session, chunks: Chunks) -> None:
     )
     expected = sum(chunk["batches"] for chunk in chunks)
     if deleted.rowcount != expected:
-        raise BatchesChanged(f"{deleted.rowcount} of {expected} batches were there to be folded")
+        raise BatchesChanged(f"only {deleted.rowcount} of {expected} batches to fold still exist")

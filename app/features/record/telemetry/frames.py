@@ -1,4 +1,4 @@
-"""Reading movement back: chunks and the batches not folded yet, as one run of frames."""
+"""Read movement back, merging chunks and the batches that are not folded yet."""
 
 import logging
 from collections.abc import Iterator, Sequence
@@ -17,7 +17,7 @@ log = logging.getLogger(__name__)
 
 
 def epochs_of(db: Session, session_id: str, stream: str) -> list[int]:
-    """The runs of the client that sent this stream, in order."""
+    """Return the epochs in which this stream was sent, in order."""
     query = select(TelemetryStream.epoch).where(
         TelemetryStream.session_id == session_id, TelemetryStream.stream == stream
     )
@@ -33,11 +33,11 @@ def iter_frames(
     *,
     since_s: float | None = None,
 ) -> Iterator[tuple[int, Frames]]:
-    """Pieces of about a second in seq order, each with its phase_id; of one phase or of all.
+    """Yield frames of about a second at a time in seq order, each with its phase_id.
 
-    `since_s` leaves out chunks that end before that client time. A damaged chunk is left out too,
-    so that one bad page does not take a session with it: the session's receipt counts its frames as
-    missing.
+    `phase_id` restricts them to one phase, and `since_s` leaves out chunks that end before that
+    client time. A damaged chunk is left out too, so that one bad page does not make a session
+    unreadable: the session's receipt counts its frames as missing.
     """
     for piece in iter_pieces(db, session_id, stream, epoch, phase_id, since_s=since_s):
         try:
@@ -57,9 +57,12 @@ def iter_pieces(
     *,
     since_s: float | None = None,
 ) -> Iterator[Piece]:
-    """The same, as it is stored: chunks, and batches that are not in a chunk yet."""
-    # Batches first: one that is folded between the two reads is then seen twice, never missed;
-    # seqs that were seen already are left out below.
+    """Yield the stored chunks and unfolded batches in seq order, without decoding them.
+
+    The arguments are those of `iter_frames`.
+    """
+    # Read batches first: one that is folded between the two reads is then seen twice, never missed;
+    # seqs that were already seen are skipped below.
     batches = _batches(db, session_id, stream, epoch, phase_id)
     chunk_query = (
         select(TelemetryChunk)
@@ -74,7 +77,7 @@ def iter_pieces(
         chunk_query = chunk_query.where(TelemetryChunk.phase_id == phase_id)
     if since_s is not None:
         chunk_query = chunk_query.where(TelemetryChunk.t_last_s >= since_s)
-    # Of a chunk and a batch with the same seq the chunk holds more.
+    # If a chunk and a batch begin at the same seq, the chunk comes first, as it contains more.
     chunks = db.scalars(chunk_query.execution_options(yield_per=64))
     pieces: Iterator[Piece] = merge(chunks, batches, key=lambda piece: piece.seq_first)
     next_seq = 0
@@ -85,14 +88,14 @@ def iter_pieces(
 
 
 def decode_piece(piece: Piece) -> Frames:
-    """Its frames; raises DamagedChunkError where its bytes are not what was written."""
+    """Decode a chunk or a batch; raises DamagedChunkError if its bytes are not what was written."""
     return _of_chunk(piece) if isinstance(piece, TelemetryChunk) else _of_batch(piece)
 
 
 def phase_frames(
     db: Session, session_id: str, stream: str, phase_id: int
 ) -> list[tuple[int, Frames]]:
-    """All frames of a phase, one entry for each run of the client that has any: (epoch, frames)."""
+    """Return all frames of a phase as (epoch, frames), for each epoch that has any."""
     runs = []
     for epoch in epochs_of(db, session_id, stream):
         pieces = [frames for _, frames in iter_frames(db, session_id, stream, epoch, phase_id)]
@@ -102,7 +105,7 @@ def phase_frames(
 
 
 def concatenate(pieces: Sequence[Frames]) -> Frames:
-    """Pieces in a row as one; no pieces give no frames."""
+    """Join consecutive pieces into one; an empty sequence gives no frames."""
     if not pieces:
         return Frames(
             seq=np.empty(0, np.int64),

@@ -1,8 +1,8 @@
-"""Storing messages inside the writer's transaction.
+"""Store messages within the writer's transaction.
 
-In every stream seqs are consecutive. What is stored already is acknowledged again, what overlaps is
-cut to its new part, what skips ahead is asked for again: so resending is always safe and a hole can
-never come about in silence.
+In every stream, seqs are consecutive. What is already stored is acknowledged once more, what
+overlaps is cut to its new part, and what skips ahead is requested again. So resending is always
+safe, and a gap can never arise unnoticed.
 """
 
 from collections.abc import Iterable
@@ -38,9 +38,9 @@ PROBES = cast("Table", ClockProbe.__table__)
 
 @dataclass
 class Intake:
-    """What one transaction takes in. Rows gather here and are written together by `flush`.
+    """What one transaction stores. Rows are collected here and written together by `flush`.
 
-    Whoever reads the tables within the transaction flushes first.
+    Call `flush` before reading the tables within the transaction.
     """
 
     db: Session
@@ -54,40 +54,46 @@ class Intake:
         self.positions = Positions(self.db, self.now)
 
     def flush(self) -> None:
-        """Write what has gathered."""
+        """Write the rows collected so far."""
         self.positions.flush()
         for table, rows in self._rows.items():
             insert_rows(self.db, table, rows)
         self._rows.clear()
 
     def gather(self, table: Table, row: dict[str, Any]) -> None:
-        """Insert a row with the others of its table."""
+        """Collect a row, to be inserted together with the others of its table."""
         self._rows.setdefault(table, []).append(row)
 
     def fetch_phases(self, session_ids: Iterable[str]) -> None:
-        """Read the phases of these sessions, once a transaction: none begins in it."""
-        asked = sorted(set(session_ids) - self._phases.keys())
-        if not asked:
+        """Read the phases of these sessions once per transaction, as none is prepared in it."""
+        missing = sorted(set(session_ids) - self._phases.keys())
+        if not missing:
             return
-        self._phases.update({session_id: set() for session_id in asked})
-        known = select(Phase.session_id, Phase.phase_id).where(Phase.session_id.in_(asked))
-        for session_id, phase_id in self.db.execute(known):
+        self._phases.update({session_id: set() for session_id in missing})
+        query = select(Phase.session_id, Phase.phase_id).where(Phase.session_id.in_(missing))
+        for session_id, phase_id in self.db.execute(query):
             self._phases[session_id].add(phase_id)
 
     def has_phase(self, session_id: str, phase_id: int) -> bool:
-        """Whether the session has this phase."""
+        """Return whether the session has this phase."""
         self.fetch_phases([session_id])
         return phase_id in self._phases[session_id]
 
     def store_batch(
-        self, session_id: str, header: BatchHeader, message: bytes, flags: FrameFlags, told: Outcome
+        self,
+        session_id: str,
+        header: BatchHeader,
+        message: bytes,
+        flags: FrameFlags,
+        outcome: Outcome,
     ) -> None:
-        """Store a batch as it came, with its flags counted beside it."""
+        """Store the new part of a batch as received, and count its flagged frames."""
         at = self.positions.at(session_id, header.stream, header.epoch)
         if header.seq_first > at.next_seq:
-            # Whoever sends this has made what comes before, too: it is missing until it comes.
+            # The client has also made what comes before this batch, so that is missing until it
+            # arrives.
             at.claimed(header.seq_end)
-            told.notices.append(Resend(**at.as_told.model_dump()))
+            outcome.notices.append(Resend(**at.as_message.model_dump()))
             return
         skip = at.next_seq - header.seq_first
         if skip < header.frame_count:
@@ -109,12 +115,12 @@ class Intake:
             at.frames_flagged += bad
             at.phase_id, at.active_s = header.phase_id, header.active_s
             if bad:
-                told.frames_flagged += bad
-                told.notices.append(_flag(header, flags, skip))
-        told.stored_up_to(at)
+                outcome.frames_flagged += bad
+                outcome.notices.append(_flag(header, flags, skip))
+        outcome.stored_up_to(at)
 
     def store_probe(self, session_id: str, epoch: int, probe: Probed) -> None:
-        """Keep one raw reading of the clocks."""
+        """Store a raw clock probe."""
         times = probe.model_dump(exclude={"type"})
         self.gather(
             PROBES,
@@ -128,14 +134,14 @@ class Intake:
         )
 
     def store_produced(self, session_id: str, produced: Produced) -> None:
-        """Take note of how far the client itself has come."""
+        """Record how many frames and reports the client says it has produced."""
         for stream, count in produced.streams.items():
             self.positions.at(session_id, stream, produced.epoch).claimed(count)
 
     def store_loss(self, session_id: str, cause: str) -> None:
-        """The headset is gone: a running clock stops at the last active time that is on disk.
+        """Record the loss of the headset: pause a running phase at the last active time on disk.
 
-        Where the study says `on_disconnect: continue`, the headset goes on by its journal.
+        If the study says `on_disconnect: continue`, the headset continues, using its journal.
         """
         self.flush()
         session = session_by_id(self.db, session_id, lock=True)
@@ -149,10 +155,10 @@ class Intake:
         apply_command(self.db, self.context, session, lost, actor="system")
 
     def store_alarm(self, session_id: str, change: Change) -> None:
-        """Put an alarm on the record, and let the pages draw themselves anew.
+        """Record the raising or clearing of an alarm, and make pages refresh.
 
-        A session that has ended raises none: its end has cleared them all. What cannot be true goes
-        on record all the same.
+        No alarm is raised for a session that has ended, since its end has cleared them all; except
+        for an impossible report, which is always recorded.
         """
         raised = change.state == "raised" and change.condition.code != OBSERVED
         if raised and session_by_id(self.db, session_id, lock=True).ended_at is not None:

@@ -1,9 +1,9 @@
-"""Joint error of a phase from its stored frames, over active time only: summed up, and its course.
+"""Compute the joint errors of a phase over its active time: a summary, and their course over time.
 
-Stored twice: against what the avatar was asked for at that moment (`present`, what the latency
-costs) and against the delayed command (`command`, how good the controller is). What a physics
-avatar is asked for is what its hinges can make of the participant's pose, before their limits; how
-often these took something away is stored with it. Both can be computed again at any time.
+Both are stored for two references: what the avatar was commanded at that moment (`present`: what
+the latency costs) and the delayed command (`command`: how good the controller is). A physics avatar
+is commanded what its hinges can make of the participant's pose, before their limits; how often the
+limits removed something is stored as well. Both can be recomputed at any time.
 """
 
 from collections.abc import Iterator, Sequence
@@ -28,7 +28,7 @@ Indices = NDArray[np.int64]
 def joint_error_rows(
     phase: Phase, runs: Sequence[Run]
 ) -> list[JointErrorRow | JointErrorCourseRow]:
-    """The rows of a phase in both tables; none where it has no frames."""
+    """Return the rows of a phase for both tables; none if it has no frames."""
     if not runs:
         return []
     pairs = [_counted(run) for run in runs]
@@ -44,7 +44,10 @@ def joint_error_rows(
 
 
 def _counted(run: Run) -> tuple[Indices, Indices]:
-    """The active frames of the avatar that have a partner of the same seq: (partners, frames)."""
+    """Pair the avatar's active frames with target frames of the same seq.
+
+    Returns the indices (target, actual).
+    """
     _, at_target, at_actual = np.intersect1d(
         run.target.seq, run.actual.seq, assume_unique=True, return_indices=True
     )
@@ -63,7 +66,7 @@ def _recorded(run: Run, partners: Indices, frames: Indices) -> Recorded:
 
 
 def _active_times(runs: Sequence[Run], frames: Sequence[Indices]) -> FloatArray:
-    """Active time of the phase, s, at these frames of each run; one goes on as another ended."""
+    """Return the phase's active time, s, at these frames of each epoch, continued across epochs."""
     spent_s, found = 0.0, []
     for run, own in zip(runs, frames, strict=True):
         passed_s = spent_s + active_times(run.actual.times_s, run.actual.active)

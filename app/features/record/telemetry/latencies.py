@@ -1,4 +1,4 @@
-"""The latency that a phase really had, from its stored frames."""
+"""Measure the latency that a phase actually had, from its stored frames."""
 
 from collections.abc import Sequence
 
@@ -9,31 +9,31 @@ from app.models import Phase, PhaseLatency
 from app.science.latency import HIGHEST_S, AchievedLatency, StreamPair, is_off, latency_of_runs
 
 MS_PER_S = 1000.0
-# Lags that are looked at beyond the ordered one, where that is long.
+# How far beyond the set latency the search extends if that latency is long.
 _BEYOND_S = 0.5
 
 
 def phase_latency(db: Session, session_id: str, phase_id: int) -> AchievedLatency:
-    """Measure a phase's latency again; see `app.science.achieved_latency` for what it means.
+    """Measure a phase's latency without storing it (see `app.science.latency`).
 
-    Raises NoResultFound where there is no such phase.
+    Raises NoResultFound if there is no such phase.
     """
     phase = db.get_one(Phase, (session_id, phase_id))
     return measure(phase, phase_runs(db, session_id, phase_id, history_s=history_s(phase)))
 
 
 def history_s(phase: Phase) -> float:
-    """How much of the target's movement before a phase is needed: the longest lag, and a second."""
+    """Return how much target movement before a phase is needed: the longest lag, and a second."""
     return longest_lag_s(phase) + 1.0
 
 
 def longest_lag_s(phase: Phase) -> float:
-    """The longest latency that is looked for: well beyond the ordered one."""
+    """Return the longest latency to search for, well beyond the one that is set."""
     return max(HIGHEST_S, phase.latency_ms / MS_PER_S + _BEYOND_S)
 
 
 def measure(phase: Phase, runs: Sequence[Run]) -> AchievedLatency:
-    """Measure the latency of frames that were read already."""
+    """Measure the achieved latency of a phase from frames that were already read."""
     pairs = [
         StreamPair(
             run.target.times_s,
@@ -48,7 +48,7 @@ def measure(phase: Phase, runs: Sequence[Run]) -> AchievedLatency:
 
 
 def latency_rows(phase: Phase, runs: Sequence[Run]) -> list[PhaseLatency]:
-    """The one row of a phase; there is one also where no latency could be found."""
+    """Return the latency row of a phase, which exists even if no latency could be measured."""
     achieved = measure(phase, runs)
     ordered_s = phase.latency_ms / MS_PER_S
     return [

@@ -1,4 +1,4 @@
-"""What the console shows of the movement right now, from the newest messages, before any commit."""
+"""Compute the console's live figures from the latest messages, before they are committed."""
 
 from dataclasses import dataclass, field
 from typing import Any
@@ -18,17 +18,17 @@ PERIOD_S = 0.2
 
 @dataclass
 class LiveTelemetry:
-    """Folds the messages of one connection into a few figures, at most five times a second.
+    """Summarise the messages of one connection as a few figures, at most five times a second.
 
-    Counting costs next to nothing and always goes on; figures are made only for somebody who looks.
+    Counting is cheap and always done; figures are computed only while a console is subscribed.
 
-    `hinges` of an avatar that is moved by physics: its errors are then those that are stored, from
-    what the hinges are asked for. None for a delayed copy.
+    `hinges`: those of a physics avatar, so that its live errors equal the stored ones, which are
+    relative to what the hinges are commanded. None for a delayed copy.
     """
 
     hinges: HingeReference | None = None
     _newest: dict[StreamName, Batch] = field(default_factory=dict)
-    _told_at_s: float = 0.0
+    _published_s: float = 0.0
     _frames: int = 0
     _flagged: int = 0
     _counted_until_s: float = float("nan")
@@ -38,25 +38,25 @@ class LiveTelemetry:
     _red_until_s: dict[str, float] = field(default_factory=dict)
 
     def count(self, report: Report) -> None:
-        """Take note of a completion or a side contact."""
+        """Count a completion or a side contact."""
         if isinstance(report.body, CompletionReport):
             self._completions = report.body.number
         elif isinstance(report.body, ContactReport) and report.body.surface_kind == "side":
             self._count_side(report.body)
 
     def _count_side(self, contact: ContactReport) -> None:
-        """A side that several parts touch at once turns red once."""
+        """Count a side contact; a side that several parts touch at the same time counts once."""
         side = side_unit(contact.surface) or contact.surface
         if contact.begin_active_s > self._red_until_s.get(side, -1.0):
             self._side_contacts += 1
         self._red_until_s[side] = max(self._red_until_s.get(side, -1.0), contact.end_active_s)
 
     def flagged(self, frames: int) -> None:
-        """So many frames that were stored hold something broken."""
+        """Count stored frames that contain invalid values."""
         self._flagged += frames
 
     def take(self, batch: Batch) -> None:
-        """Take note of frames."""
+        """Process a batch of frames."""
         header = batch.header
         if header.phase_id != self._phase_id:
             self._phase_id, self._completions, self._side_contacts = header.phase_id, 0, 0
@@ -66,14 +66,14 @@ class LiveTelemetry:
             self._frames += header.frame_count
 
     def figures(self, now_s: float) -> dict[str, Any] | None:
-        """The figures, when it is time to tell them again."""
-        if now_s - self._told_at_s < PERIOD_S or StreamName.ACTUAL not in self._newest:
+        """Return the figures if they are due, else None."""
+        if now_s - self._published_s < PERIOD_S or StreamName.ACTUAL not in self._newest:
             return None
-        self._told_at_s = now_s
+        self._published_s = now_s
         return self._figures()
 
     def _frame_rate(self, target: Batch | None) -> float | None:
-        """Target frames per second of the client's clock since the last figures."""
+        """Return target frames per second of the client's clock since the last figures."""
         until_s = float("nan") if target is None else float(target.times_s[-1])
         spanned_s = until_s - self._counted_until_s
         frames, self._frames, self._counted_until_s = self._frames, 0, until_s
@@ -96,10 +96,10 @@ class LiveTelemetry:
 
 
 def live_telemetry(db: Session, session_id: str) -> LiveTelemetry:
-    """For a session's connection.
+    """Create the live telemetry of a session's connection; raises NotFound.
 
-    What a physics avatar needs is loaded here, which can take a second: not on the event loop.
-    Raises NotFound where there is no such session.
+    This loads what a physics avatar needs, which can take a second, so do not call it on the event
+    loop.
     """
     hinges = hinges_of(db, session_id)
     if hinges is not None:
@@ -110,17 +110,17 @@ def live_telemetry(db: Session, session_id: str) -> LiveTelemetry:
 def _errors_deg(
     target: Batch, actual: Batch, hinges: HingeReference | None
 ) -> dict[str, float | None]:
-    """The angle between both poses at the newest seq that both have, per joint but the hips."""
+    """Return the angle between both poses at the latest common seq, per joint except the hips."""
     end = min(target.header.seq_end, actual.header.seq_end)
     first = max(target.header.seq_first, actual.header.seq_first)
     if end <= first:
         return {}
-    is_ = actual.values[end - 1 - actual.header.seq_first, 3:].reshape(-1, 4)
+    actual_q = actual.values[end - 1 - actual.header.seq_first, 3:].reshape(-1, 4)
     with np.errstate(invalid="ignore"):
-        wanted = target.values[end - 1 - target.header.seq_first, 3:].reshape(-1, 4).astype(float)
+        target_q = target.values[end - 1 - target.header.seq_first, 3:].reshape(-1, 4).astype(float)
         if hinges is not None:
-            wanted = hinges.pose(wanted)
-        cosine = np.abs(np.einsum("jk,jk->j", wanted, is_.astype(float)))
+            target_q = hinges.pose(target_q)
+        cosine = np.abs(np.einsum("jk,jk->j", target_q, actual_q.astype(float)))
         angle_deg = np.degrees(2.0 * np.arccos(np.clip(cosine, 0.0, 1.0)))
     return {
         name: _number(angle)
@@ -130,5 +130,5 @@ def _errors_deg(
 
 
 def _number(value: np.floating[Any]) -> float | None:
-    """A number for JSON; what is not finite becomes null."""
+    """Round a number for JSON; return None if it is not finite."""
     return round(float(value), 3) if np.isfinite(value) else None

@@ -1,8 +1,8 @@
-"""A phase's movement as it is summarised: what the avatar did, and what it was asked to before.
+"""Read a phase's movement for its summaries: what the avatar did, and what it was commanded.
 
-A phase has one run for each run of the client that took part in it; every run has a clock of its
-own. The actual body's frames are those of the phase. The target's begin earlier, since what the
-avatar does at the start of a phase was asked for before it.
+A phase has one `Run` for each epoch that took part in it; every epoch has its own clock. The actual
+body's frames are those of the phase. The target's begin earlier, since what the avatar does at the
+start of a phase was commanded before it.
 """
 
 import logging
@@ -33,9 +33,9 @@ log = logging.getLogger(__name__)
 
 @dataclass(frozen=True)
 class Run:
-    """Both streams of one run of the client; times in s of its clock.
+    """Both streams of one epoch of a phase; times in seconds of the epoch's clock.
 
-    `hinges` of an avatar that is moved by physics; None for a delayed copy.
+    `hinges`: those of a physics avatar; None for a delayed copy.
     """
 
     epoch: int
@@ -45,7 +45,7 @@ class Run:
 
     @cached_property
     def reference(self) -> ReferenceMotion:
-        """The pose that the avatar should reach, in each target frame."""
+        """Return the motion that the avatar should reproduce, for all target frames."""
         rotations = self.target.rotations
         if self.hinges is None:
             return ReferenceMotion(rotations)
@@ -53,7 +53,7 @@ class Run:
 
 
 def phase_runs(db: Session, session_id: str, phase_id: int, *, history_s: float) -> list[Run]:
-    """The runs of a phase, with target frames from `history_s` before its first frame on."""
+    """Return the runs of a phase, with target frames from `history_s` before its first frame."""
     hinges = hinges_of(db, session_id)
     return [
         Run(epoch, _target(db, session_id, epoch, actual, history_s), actual, hinges)
@@ -72,9 +72,9 @@ def _target(db: Session, session_id: str, epoch: int, actual: Frames, history_s:
 def _between(
     db: Session, session_id: str, epoch: int, since_s: float, until_s: float
 ) -> Iterator[Frames]:
-    """Target frames of a stretch of the client's time; pieces are whole, so that some are more."""
+    """Yield the target frames of an interval of client time, rounded up to whole pieces."""
     for piece in iter_pieces(db, session_id, StreamName.TARGET, epoch, since_s=since_s):
-        # To the end even so: PostgreSQL's cursor would stay open behind a loop that is left.
+        # Iterate to the end: leaving the loop early would leave PostgreSQL's cursor open.
         if isinstance(piece, TelemetryChunk) and piece.t_first_s > until_s:
             continue
         try:
@@ -84,16 +84,16 @@ def _between(
 
 
 def hinges_of(db: Session, session_id: str) -> HingeReference | None:
-    """The hinges as the session's configuration has them; None for a delayed copy.
+    """Return the hinges of the session's avatar configuration; None for a delayed copy.
 
-    The first one in a process loads the compiler, which takes a second: not for the event loop.
-    Raises NotFound where there is no such session.
+    The first call in a process loads the compiler, which takes a second, so do not call it on the
+    event loop. Raises NotFound if there is no such session.
     """
     content_hash = session_by_id(db, session_id).avatar_configuration_hash
     if content_hash is None:
         return None
     configuration = configuration_by_hash(db, content_hash)
     figure = figure_by_hash(db, configuration.humanoid)
-    # What a model lacks is left out of the body, whatever the configuration says about it.
+    # Leave out parts that the model lacks, even if the configuration mentions them.
     parts = [part for part in configuration.parts if figure is None or part in figure.places_m]
     return HingeReference(configuration.in_force, parts)

@@ -1,4 +1,4 @@
-"""How far each stream is stored. The writer is the only one who moves a position."""
+"""Track how far each stream is stored. Only the writer changes a position."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -15,7 +15,7 @@ from app.rows import insert_rows
 from app.wire import MAX_EPOCH, REPORT_STREAM, Message, StreamPosition
 
 Key = tuple[str, str, int]
-"""Session, stream, epoch."""
+"""Session id, stream and epoch."""
 TABLE = cast("Table", TelemetryStream.__table__)
 MOVING = ("next_seq", "produced", "frames_stored", "frames_flagged", "phase_id", "active_s")
 _MOVED = (*MOVING, "last_at")
@@ -23,9 +23,9 @@ _MOVED = (*MOVING, "last_at")
 
 @dataclass
 class Position:
-    """Where one stream stands within the writer's transaction; see `TelemetryStream`.
+    """How far one stream is stored within the writer's transaction; see `TelemetryStream`.
 
-    `age_s`: for how long the server has known of the run.
+    `age_s`: how long the server has known the epoch.
     """
 
     key: Key
@@ -39,67 +39,68 @@ class Position:
     age_s: float = 0.0
 
     def claimed(self, made: int) -> None:
-        """The client says that it has made so much.
+        """Record how many frames (or reports) the client says it has made.
 
-        What it once said stays, since what has not come by the end is missing. A count that no
-        headset can have reached is no such evidence: the next one takes its place, whatever it is.
+        The highest claim is kept, since whatever has not arrived by the end is missing. But a count
+        that no headset can have reached is not credible, so the next claim replaces it, whatever it
+        is.
         """
         if made > self.produced or exceeds_possible(self.produced, self.age_s):
             self.produced, self.is_changed = made, True
 
     def stored(self, frames: int) -> None:
-        """So many frames (or reports) more are in this transaction."""
+        """Advance the position by the frames (or reports) stored in this transaction."""
         self.next_seq += frames
         self.frames_stored += frames
         self.is_changed = True
 
     @property
-    def as_told(self) -> StreamPosition:
-        """As the client hears of it."""
+    def as_message(self) -> StreamPosition:
+        """Return the position in the form in which it is sent to the client."""
         _, stream, epoch = self.key
         return StreamPosition(stream=stream, epoch=epoch, next_seq=self.next_seq)
 
 
 @dataclass
 class Positions:
-    """The positions that one transaction moves: read with one query, written with one more.
+    """The positions that one transaction changes: read by one query, written by one more.
 
     A query and an update for every message would cost more than storing the message.
     """
 
     db: Session
     now: datetime
-    _held: dict[Key, Position] = field(default_factory=dict)
+    _positions: dict[Key, Position] = field(default_factory=dict)
     _sessions: set[str] = field(default_factory=set)
 
     def fetch(self, session_ids: Iterable[str]) -> None:
-        """Read every position of these sessions."""
-        asked = sorted(set(session_ids) - self._sessions)
-        if not asked:
+        """Read all positions of these sessions."""
+        missing = sorted(set(session_ids) - self._sessions)
+        if not missing:
             return
-        self._sessions.update(asked)
-        for row in self.db.execute(select(TABLE).where(TABLE.c.session_id.in_(asked))).mappings():
+        self._sessions.update(missing)
+        for row in self.db.execute(select(TABLE).where(TABLE.c.session_id.in_(missing))).mappings():
             key = (row["session_id"], row["stream"], row["epoch"])
             values = {name: row[name] for name in MOVING}
             age_s = (self.now - row["first_at"]).total_seconds()
-            self._held[key] = Position(key, **values, age_s=age_s)
+            self._positions[key] = Position(key, **values, age_s=age_s)
 
     def at(self, session_id: str, stream: str, epoch: int) -> Position:
-        """A stream's position, 0 at its first message."""
+        """Return a stream's position, which is 0 before its first message."""
         self.fetch([session_id])
         key = (session_id, str(stream), epoch)
-        return self._held.setdefault(key, Position(key))
+        return self._positions.setdefault(key, Position(key))
 
     def flush(self) -> None:
-        """Write what has moved, so that queries of this transaction see it."""
-        moved = [one for one in self._held.values() if one.is_changed]
+        """Write the changed positions, so that queries of this transaction see them."""
+        moved = [one for one in self._positions.values() if one.is_changed]
         if moved:
             insert_rows(self.db, TABLE, [self._row(one) for one in moved], moving=_MOVED)
         for one in moved:
             one.is_changed = False
 
     def _row(self, position: Position) -> dict[str, Any]:
-        """Its row; of one that is there already only what moves is taken."""
+        """Return the row of a position; if one exists, only its `MOVING` columns are updated."""
         session_id, stream, epoch = position.key
         key = {"session_id": session_id, "stream": stream, "epoch": epoch}
         moving = {name: getattr(position, name) for name in MOVING}
@@ -107,7 +108,7 @@ class Positions:
 
 
 def positions_of(db: Session, session_id: str) -> tuple[StreamPosition, ...]:
-    """Every stream of a session, for a client that reconnects."""
+    """Return the positions of all streams of a session, for a client that reconnects."""
     rows = db.scalars(
         select(TelemetryStream)
         .where(TelemetryStream.session_id == session_id)
@@ -118,12 +119,12 @@ def positions_of(db: Session, session_id: str) -> tuple[StreamPosition, ...]:
     )
 
 
-def take_epoch(db: Session, session_id: str, now: datetime) -> int:
-    """The number of a new run of the client; never given out twice, even if nothing is sent.
+def assign_epoch(db: Session, session_id: str, now: datetime) -> int:
+    """Assign the next epoch number; none is assigned twice, even if nothing is sent under it.
 
     The session must be locked.
     """
-    # One that the server never gave out may be as high as a client can say.
+    # A client may have used a number that the server never assigned, up to the maximum.
     taken = set(
         db.scalars(select(TelemetryStream.epoch).where(TelemetryStream.session_id == session_id))
     )
@@ -148,13 +149,13 @@ def take_epoch(db: Session, session_id: str, now: datetime) -> int:
     return epoch
 
 
-def was_given(db: Session, session_id: str, epoch: int) -> bool:
-    """Whether this number was given to a run of the session's client."""
+def is_assigned_epoch(db: Session, session_id: str, epoch: int) -> bool:
+    """Return whether the server assigned this epoch number in the session."""
     return db.get(TelemetryStream, (session_id, REPORT_STREAM, epoch)) is not None
 
 
 def certain_active_s(db: Session, session_id: str, phase_id: int) -> float:
-    """The greatest active time of a phase that is on disk."""
+    """Return the greatest active time of a phase that is on disk."""
     stored = db.scalar(
         select(func.max(TelemetryStream.active_s)).where(
             TelemetryStream.session_id == session_id, TelemetryStream.phase_id == phase_id
@@ -165,8 +166,10 @@ def certain_active_s(db: Session, session_id: str, phase_id: int) -> float:
 
 @dataclass
 class Outcome:
-    """What to tell the sender once the transaction is on disk; `messages` were stored for it,
-    `frames_flagged` frames among them hold something broken.
+    """What to send to the sender once the transaction is on disk.
+
+    `messages`: how many of its messages were stored; `frames_flagged`: how many of their frames
+    contain invalid values.
     """
 
     positions: dict[tuple[str, int], StreamPosition] = field(default_factory=dict)
@@ -176,6 +179,6 @@ class Outcome:
     frames_flagged: int = 0
 
     def stored_up_to(self, position: Position) -> None:
-        """Acknowledge a stream as far as it stands now."""
+        """Acknowledge a stream up to its current position."""
         _, stream, epoch = position.key
-        self.positions[stream, epoch] = position.as_told
+        self.positions[stream, epoch] = position.as_message

@@ -1,7 +1,7 @@
-"""What is wrong with the frames of a phase, counted over its active time, one row a stream.
+"""Compute the data quality of a phase over its active time, one row per stream.
 
-The same judgement as the one that raises alarms while the phase runs, made again from what was
-stored. Faults in pauses and on walks back are no faults of the data that are analysed.
+This repeats the checks that raise alarms while the phase runs, but on what was stored. Faults in
+pauses and on walks back do not count, because those frames are not analysed.
 """
 
 from collections.abc import Sequence
@@ -19,27 +19,27 @@ from app.science.stream_quality import StreamQuality, assess, combine
 from app.wire import MAX_TIME_S, StreamName
 
 HISTORY_S = 10.0
-"""What is known of the target before the phase: a joint may have frozen already."""
+"""How much target movement before the phase is read: a joint may have frozen before it."""
 
 
 def phase_quality(db: Session, session_id: str, phase_id: int) -> list[PhaseQuality]:
-    """Judge a phase again; the rows are not stored.
+    """Compute the quality rows of a phase without storing them.
 
-    Raises NoResultFound where there is no such phase, ValueError where a stored chunk is damaged.
+    Raises NoResultFound if there is no such phase, and ValueError if a stored chunk is damaged.
     """
     phase = db.get_one(Phase, (session_id, phase_id))
     return quality_rows(phase, phase_runs(db, session_id, phase_id, history_s=HISTORY_S))
 
 
 def quality_rows(phase: Phase, runs: Sequence[Run]) -> list[PhaseQuality]:
-    """The rows of both streams, from frames that were read already; also where there are none."""
+    """Return the rows of both streams from frames already read, even if there are no frames."""
     target = combine([_quality(run.target, _in_phase(run)) for run in runs])
     actual = combine([_quality(run.actual, run.actual.active) for run in runs])
     return [_row(phase, StreamName.TARGET, target), _row(phase, StreamName.ACTUAL, actual)]
 
 
 def _in_phase(run: Run) -> NDArray[np.bool_]:
-    """Active target frames of the phase itself: those that share seqs with the actual body's."""
+    """Select the active target frames whose seqs are in the range of the actual body's."""
     seq = run.actual.seq
     of_phase = (run.target.seq >= seq[0]) & (run.target.seq <= seq[-1])
     return np.asarray(run.target.active & of_phase)

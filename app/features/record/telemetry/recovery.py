@@ -1,4 +1,4 @@
-"""What a starting server does about sessions that were running when it died."""
+"""Recover sessions that were running when the server stopped unexpectedly."""
 
 from sqlalchemy import select
 
@@ -13,10 +13,10 @@ from app.platform.context import AppContext
 
 
 def stop_running_clocks(context: AppContext) -> int:
-    """Pause every phase whose clock ran, at the last active time on disk; how many there were.
+    """Pause every running phase at its last active time on disk; return how many there were.
 
-    A study with `on_disconnect: continue` is left alone: its headset goes on by its journal. Alarms
-    that were open are cleared; what is still wrong will be raised again.
+    Studies with `on_disconnect: continue` are left alone: their headsets continue, using their
+    journals. Open alarms are cleared; persisting problems will raise them again.
     """
     _clear_alarms(context)
     with context.database.reading() as db:
@@ -36,9 +36,9 @@ def stop_running_clocks(context: AppContext) -> int:
 
 
 def _clear_alarms(context: AppContext) -> None:
-    """Nobody has looked since the server died, so nobody knows whether they still hold.
+    """Clear the open alarms, which nothing has monitored since the server stopped.
 
-    What is known of the participant's state stays.
+    Alarms about the participant stay open.
     """
     now = context.clock.utc_now()
     with context.database.writing() as db:

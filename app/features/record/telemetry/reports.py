@@ -1,4 +1,4 @@
-"""Storing a headset's report and acting on it; one that does not fit is kept with the reason."""
+"""Store a headset's reports and act on them; a rejected report is stored with the reason."""
 
 from datetime import datetime
 from typing import Any, cast
@@ -29,11 +29,11 @@ CONTACTS = cast("Table", Contact.__table__)
 
 
 def store_report(intake: Intake, session_id: str, message: ReportMessage, outcome: Outcome) -> None:
-    """Store a report and act on it; one that does not fit is kept with the reason."""
+    """Store a report and act on it; a rejected report is stored with the reason."""
     at = intake.positions.at(session_id, REPORT_STREAM, message.epoch)
     if message.seq > at.next_seq:
         at.claimed(message.seq + 1)
-        outcome.notices.append(Resend(**at.as_told.model_dump()))
+        outcome.notices.append(Resend(**at.as_message.model_dump()))
         return
     if message.seq == at.next_seq:
         refusal = _take(intake, session_id, message, outcome)
@@ -69,18 +69,19 @@ def _row(
 def _take(
     intake: Intake, session_id: str, message: ReportMessage, outcome: Outcome
 ) -> ReembodyError | None:
-    """Do what a report says; the refusal if it does not fit."""
+    """Carry out a report; return the error if it is rejected."""
     body = message.body
     try:
         if isinstance(body, ContactReport | CompletionReport):
             _require_phase(intake, session_id, body.phase_id)
         if isinstance(body, ContactReport):
-            # By far the most frequent: it changes no state, so it is stored with the others.
+            # By far the most frequent report; it changes no state, so it is inserted with the
+            # others.
             values = body.model_dump(exclude={"kind"})
             own = {"id": new_id(), "session_id": session_id, "epoch": message.epoch}
             intake.gather(CONTACTS, {**own, **values})
         else:
-            # Acting looks at what is stored, so what came before it must be.
+            # Carrying out a report reads the tables, so earlier messages must be written first.
             intake.flush()
             with intake.db.begin_nested():
                 _act(intake, session_id, message, outcome)
@@ -96,7 +97,8 @@ def _act(intake: Intake, session_id: str, message: ReportMessage, outcome: Outco
             _act_on_phase(db, intake.context, session_id, body, outcome)
         case MaterialisedReport():
             session = session_by_id(db, session_id, lock=True)
-            # It says so itself, and by its journal also of what it did while nobody heard it.
+            # The report itself shows that a headset is connected, or was, if it comes from the
+            # journal.
             command = Materialise(by="headset", client_t_s=body.t_s, headset_connected=True)
             apply_command(db, intake.context, session, command, actor="headset")
         case CompletionReport():

@@ -1,7 +1,7 @@
-"""What is computed of a phase once its frames are on disk, in the background.
+"""Compute the summaries of a phase in the background, once its frames are on disk.
 
-The summaries of a phase are stored together, in place of older ones, and all can be computed again
-from the stored frames at any time.
+All summaries of a phase are stored together and replace older ones. They can be recomputed from the
+stored frames at any time.
 """
 
 import logging
@@ -45,12 +45,12 @@ SUMMARIES: dict[Tables, Summary] = {
     (PhaseLatency,): latency_rows,
     (PhaseQuality,): quality_rows,
 }
-"""Tables with what fills them."""
+"""The tables of summaries, with the functions that compute their rows."""
 
 
 @dataclass
 class Summariser(Part):
-    """Computes summaries in the background, one phase at a time."""
+    """Compute summaries of stored phases in the background, one phase at a time."""
 
     context: AppContext
     _pool: ThreadPoolExecutor = field(
@@ -63,11 +63,11 @@ class Summariser(Part):
         self._pool.submit(self._run, session_id, phase_id, tuple(SUMMARIES))
 
     def start(self) -> None:
-        """Queue every phase that ended without summaries, as after a crash.
+        """Queue every finished phase that has no summaries, for example after a crash.
 
-        Every phase gets rows of its streams' quality, if only to say that it has no frames: where
-        they are missing, all is. Phases of a version that computed no courses of joint errors get
-        these, too, one after the other whenever nothing else waits.
+        Every phase gets quality rows, even if it has no frames, so if they are missing, all
+        summaries are. Phases from a version that did not compute courses of joint errors get these,
+        too, one at a time while nothing else is queued.
         """
         with self.context.database.reading() as db:
             missing = _ended(db, ~_has(PhaseQuality))
@@ -77,12 +77,12 @@ class Summariser(Part):
         self._take_older()
 
     def stop(self) -> None:
-        """Finish the phase under way and end; what waits is caught up at the next start."""
+        """Finish the current phase and stop; queued phases are processed at the next start."""
         self._older.clear()
         self._pool.shutdown(wait=True, cancel_futures=True)
 
     def _take_older(self) -> None:
-        """Queue only the next: whoever ends a phase now waits for one of them, not for all."""
+        """Queue the next older phase only, so that a phase ending now waits for at most one."""
         if self._older:
             self._pool.submit(self._run_older, *self._older.popleft())
 
@@ -101,7 +101,7 @@ class Summariser(Part):
                 replace_rows(db, session_id, phase_id, rows, wanted)
                 db.flush()
                 judge_again(db, session, [one.phase_id for one in doubts_of(db, session_id)])
-            self._tell_doubts(session_id, phase_id)
+            self._report_doubts(session_id, phase_id)
         except Exception as error:
             log.exception("summaries of phase %s of %s failed", phase_id, session_id)
             if explain(error) is None:
@@ -110,25 +110,25 @@ class Summariser(Part):
             self.context.background.recovered(SUMMARIES_OF_PHASES)
             self.context.hub.publish(session_id, "session")
 
-    def _tell_doubts(self, session_id: str, phase_id: int) -> None:
-        """Let the operator know while the participant is still there: the phase can be redone."""
+    def _report_doubts(self, session_id: str, phase_id: int) -> None:
+        """Raise an alarm about a doubtful phase while the participant can still repeat it."""
         with self.context.database.reading() as db:
             doubts = [one for one in doubts_of(db, session_id) if one.phase_id == phase_id]
         if not doubts:
             return
         now = self.context.clock.utc_now()
-        words = f"phase {phase_id} does not count: {'; '.join(one.message for one in doubts)}"
-        told = Condition("doubtful", words)
+        message = f"phase {phase_id} does not count: {'; '.join(one.message for one in doubts)}"
+        condition = Condition("doubtful", message)
         with self.context.database.writing() as db:
             if session_by_id(db, session_id, lock=True).ended_at is None:
-                # An alarm is open once: one of an earlier phase makes room.
-                store_change(db, session_id, Change("cleared", told, now))
-                store_change(db, session_id, Change("raised", told, now))
+                # Only one such alarm can be open, so first clear that of an earlier phase.
+                store_change(db, session_id, Change("cleared", condition, now))
+                store_change(db, session_id, Change("raised", condition, now))
                 self.context.hub.publish_after_commit(db, session_id)
 
 
 def _ended(db: Session, condition: ColumnElement[bool]) -> list[tuple[str, int]]:
-    """The phases that ended and are like that, in order."""
+    """Return the finished phases that satisfy a condition, in order."""
     query = (
         select(Phase.session_id, Phase.phase_id)
         .where(Phase.status == "done", condition, not_erased(Phase.session_id))
@@ -138,7 +138,7 @@ def _ended(db: Session, condition: ColumnElement[bool]) -> list[tuple[str, int]]
 
 
 def _has(table: type[Row | TelemetryBatch | TelemetryChunk]) -> ColumnElement[bool]:
-    """Whether a phase has a row there."""
+    """Return the SQL condition that a phase has a row in a table."""
     own = select(table.phase_id).where(
         table.session_id == Phase.session_id, table.phase_id == Phase.phase_id
     )
@@ -146,7 +146,7 @@ def _has(table: type[Row | TelemetryBatch | TelemetryChunk]) -> ColumnElement[bo
 
 
 def _lacks_its_course() -> ColumnElement[bool]:
-    """Whether a phase has joint errors alone, and movement that their course can be told from."""
+    """Return the SQL condition that a phase has joint errors and frames, but no error course."""
     recorded = or_(_has(TelemetryChunk), _has(TelemetryBatch))
     return and_(_has(JointErrorRow), ~_has(JointErrorCourseRow), recorded)
 
@@ -154,7 +154,10 @@ def _lacks_its_course() -> ColumnElement[bool]:
 def summary_rows(
     db: Session, session_id: str, phase_id: int, wanted: Sequence[Tables] = tuple(SUMMARIES)
 ) -> list[Row]:
-    """Summaries of a phase from its stored frames, which are read once; all unless named."""
+    """Compute summaries of a phase from its stored frames, which are read once.
+
+    `wanted`: which tables to compute; all by default.
+    """
     phase = db.get_one(Phase, (session_id, phase_id))
     runs = phase_runs(db, session_id, phase_id, history_s=history_s(phase))
     return [row for tables in wanted for row in SUMMARIES[tables](phase, runs)]
@@ -167,7 +170,7 @@ def replace_rows(
     rows: Sequence[Row],
     wanted: Sequence[Tables] = tuple(SUMMARIES),
 ) -> None:
-    """Store these summaries of a phase in place of older ones."""
+    """Store these summaries of a phase, replacing older ones."""
     for table in (one for tables in wanted for one in tables):
         db.execute(delete(table).where(table.session_id == session_id, table.phase_id == phase_id))
     db.add_all(rows)

@@ -1,8 +1,8 @@
-"""One thread commits the messages of all sessions together, every 50 ms, and only then acks.
+"""Commit the messages of all sessions together, every 50 ms, and only then acknowledge them.
 
-So the number of flushes to disk does not grow with the number of headsets, and an acknowledgement
-always means "on disk". A message that cannot be stored fails its own session only; when the
-database itself cannot write, nothing is acknowledged and everything waits.
+One thread does this. So the number of flushes to disk does not grow with the number of headsets,
+and an acknowledgement always means "on disk". A message that cannot be stored fails its own session
+only; if the database itself cannot write, nothing is acknowledged and everything waits.
 """
 
 import logging
@@ -27,32 +27,32 @@ from app.wire import Batch, FrameFlags, Probed, Produced, Report, flag_batches
 log = logging.getLogger(__name__)
 RETRY_S = 0.5
 WRITER = "telemetry-writer"
-MOST_TRIES = 3
-"""How often messages are tried that end the writer itself, before their senders are refused."""
+MAX_TRIES = 3
+"""How often messages that crash the writer are tried before their senders are sent an error."""
 
 
 class Sender(Protocol):
-    """Where the answer to a message goes, from any thread."""
+    """The sender of a message, to which the result is passed; can be called from any thread."""
 
     def deliver(self, outcome: Outcome) -> None:
-        """The message is on disk."""
+        """Handle that messages of this sender are on disk."""
 
     def fail(self, error: Exception) -> None:
-        """The message cannot be stored, ever; close."""
+        """Handle that a message can never be stored; the connection must close."""
 
 
-class Nobody:
-    """The sender of what the server itself puts on record."""
+class ServerSender:
+    """The sender of what the server itself records, which ignores all results."""
 
     def deliver(self, outcome: Outcome) -> None:
-        """Nobody waits for it."""
+        """Do nothing, because nothing waits for the result."""
 
     def fail(self, error: Exception) -> None:
-        """It was logged."""
+        """Do nothing, because the error was already logged."""
 
 
 class Arrival(NamedTuple):
-    """A message of a session waiting to be stored."""
+    """A message of a session that is queued to be stored."""
 
     session_id: str
     sender: Sender
@@ -68,7 +68,7 @@ class BatchContent(NamedTuple):
 
 @dataclass(frozen=True)
 class ProbeContent:
-    """A raw clock reading."""
+    """A raw clock probe of an epoch."""
 
     epoch: int
     probe: Probed
@@ -76,14 +76,14 @@ class ProbeContent:
 
 @dataclass(frozen=True)
 class LossContent:
-    """The headset's connection broke."""
+    """The loss of a headset's connection or frames."""
 
     cause: str
 
 
 @dataclass(frozen=True)
 class AlarmContent:
-    """An alarm was raised or cleared. Nobody waits for it."""
+    """The raising or clearing of an alarm, which is not acknowledged."""
 
     change: Change
 
@@ -93,7 +93,7 @@ Content = BatchContent | Report | ProbeContent | Produced | LossContent | AlarmC
 
 @dataclass
 class TelemetryWriter(Part):
-    """The single writer of telemetry. `start` it once, `stop` it after the last connection."""
+    """The only writer of telemetry. Call `start` once, and `stop` after the last connection."""
 
     context: AppContext
     on_phase_ended: Callable[[str, int], None]
@@ -106,54 +106,56 @@ class TelemetryWriter(Part):
 
     @classmethod
     def of(cls, context: AppContext) -> Self:
-        """The writer of a server, whose phases are summarised as they end."""
+        """Create the writer of a server, which has phases summarised as they end."""
         return cls(context, context.part(Summariser).phase_ended)
 
     def start(self) -> None:
-        """Begin to commit."""
+        """Start the writer's thread."""
         self._thread = self.context.background.thread(WRITER, self._run, critical=True)
 
     def stop(self) -> None:
-        """Commit what waits and end."""
+        """Commit the queued messages and stop."""
         self._stopping = True
         self._wake.set()
         if self._thread is not None:
             self._thread.join(timeout=10.0)
 
     def submit(self, arrival: Arrival) -> None:
-        """Queue a message; its sender limits how many are in flight."""
+        """Queue a message; the sender limits how many of its messages are in flight."""
         with self._lock:
             self._waiting.append(arrival)
         self._wake.set()
 
     def _run(self) -> None:
-        begun_anew = True
+        restarted = True
         while True:
             self._wake.wait(timeout=1.0)
             self._wake.clear()
-            # Wait a little for others to join the same flush.
+            # Wait briefly, so that more messages share the same flush.
             if not self._stopping:
                 time.sleep(self.context.settings.commit_interval_s)
             with self._lock:
                 arrivals, self._waiting = self._waiting, []
             if arrivals:
                 self._store_or_keep(arrivals)
-            if arrivals or begun_anew:
+            if arrivals or restarted:
                 self.context.background.recovered(WRITER)
                 self._record_incidents()
-                begun_anew = False
+                restarted = False
             if self._stopping and not self._waiting:
                 return
 
     def _store_or_keep(self, arrivals: list[Arrival]) -> None:
-        """Where it ends by an error that nobody foresaw, nothing that waits is lost: the writer is
-        begun anew and tries the same messages again, but not for ever.
+        """Store messages; after an unexpected error, queue them again, but only a few times.
+
+        The writer is then restarted and retries the same messages, so nothing that is queued is
+        lost.
         """
         try:
             self._store_or_wait(arrivals)
         except Exception as error:
             self._tries += 1
-            if self._tries < MOST_TRIES:
+            if self._tries < MAX_TRIES:
                 with self._lock:
                     self._waiting = arrivals + self._waiting
             else:
@@ -170,7 +172,7 @@ class TelemetryWriter(Part):
             try:
                 self._store(arrivals)
             except DBAPIError:
-                # The database's observer has told of it already.
+                # The database's observer has already reported it.
                 if self._stopping:
                     return
                 time.sleep(RETRY_S)
@@ -179,17 +181,17 @@ class TelemetryWriter(Part):
                 return
 
     def _record_outages(self) -> None:
-        """Put on record, afterwards, that nothing could be stored: an alarm that came and went."""
+        """Record storage outages afterwards, each as an alarm that was raised and cleared."""
         for outage in self.context.storage.take_outages():
             condition = Condition("storage", outage.reason)
             raised = Change("raised", condition, outage.since)
             cleared = Change("cleared", condition, outage.until)
             for session_id in self.context.hub.sessions_with_headsets():
                 for change in (raised, cleared):
-                    self.submit(Arrival(session_id, Nobody(), AlarmContent(change)))
+                    self.submit(Arrival(session_id, ServerSender(), AlarmContent(change)))
 
     def _record_incidents(self) -> None:
-        """The same for what did not work in the background."""
+        """Record background failures afterwards, each as an alarm that was raised and cleared."""
         for incident in self.context.background.take_incidents():
             code = "writer_failed" if incident.name == WRITER else "background_failed"
             condition = Condition(code, f"{incident.name}: {incident.error}")
@@ -197,10 +199,10 @@ class TelemetryWriter(Part):
             cleared = Change("cleared", condition, incident.until)
             for session_id in self.context.hub.sessions_with_headsets():
                 for change in (raised, cleared):
-                    self.submit(Arrival(session_id, Nobody(), AlarmContent(change)))
+                    self.submit(Arrival(session_id, ServerSender(), AlarmContent(change)))
 
     def _store(self, arrivals: Sequence[Arrival]) -> None:
-        """Commit all together; if a message is at fault, session by session."""
+        """Commit all messages together; if a message is at fault, session by session."""
         try:
             self._commit(arrivals)
         except Exception as error:
@@ -246,13 +248,13 @@ class TelemetryWriter(Part):
 
 
 def _leave_out(arrival: Arrival, flags: Iterator[FrameFlags]) -> None:
-    """A batch that is not stored has its flags among those of the others all the same."""
+    """Skip the flags of a batch that is not stored, as they were computed for all batches."""
     if isinstance(arrival.content, BatchContent):
         next(flags)
 
 
 def _refuse(arrivals: Sequence[Arrival], closed: Collection[str]) -> None:
-    """Tell each headset that sent something for a session that takes no more data."""
+    """Notify every headset that sent something for a session that accepts no more data."""
     own = (LossContent, AlarmContent)
     senders = {
         id(one.sender): one.sender
@@ -266,7 +268,7 @@ def _refuse(arrivals: Sequence[Arrival], closed: Collection[str]) -> None:
 def _store_one(
     intake: Intake, arrival: Arrival, flags: Iterator[FrameFlags], outcome: Outcome
 ) -> None:
-    """Store a message; `flags` gives those of the batches, in their order."""
+    """Store a message; `flags` yields the flags of the batches in their order."""
     session_id = arrival.session_id
     match arrival.content:
         case BatchContent(batch, message):

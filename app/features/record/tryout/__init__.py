@@ -1,4 +1,4 @@
-"""A scripted participant in this very server, so that newcomers see a session."""
+"""Scripted participants, who go through a session on this server so that newcomers can watch."""
 
 from app.features.record.tryout.desk import TryoutDesk
 

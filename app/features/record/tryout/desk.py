@@ -1,4 +1,4 @@
-"""The tryout of this server: one at a time, marked as simulated, ended with the server."""
+"""Start and stop scripted participants: one at a time, simulated, and ended with the server."""
 
 import logging
 import threading
@@ -22,7 +22,7 @@ TryoutState = Literal["starting", "running", "done", "stopped", "failed"]
 
 
 class TryoutWish(BaseModel):
-    """In which language the scripted participant answers."""
+    """A request to start a scripted participant, with the language in which it answers."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -30,16 +30,17 @@ class TryoutWish(BaseModel):
 
 
 class TryoutTrouble(BaseModel):
-    """Why it ended early, and what to do about it."""
+    """Why a scripted participant ended early, and what to do about it."""
 
     message: str
     remedy: str
 
 
 class TryoutView(BaseModel):
-    """The newest tryout. `session_id` is there once the session is; `step` says where it is.
+    """The latest scripted participant.
 
-    `speed`: how many times faster than a person. `mine`: whether the reader began it.
+    `session_id` is null until its session is created; `step` is the step it has reached. `speed`:
+    how many times faster than a person. `mine`: whether the reader started it.
     """
 
     state: TryoutState
@@ -55,18 +56,18 @@ class TryoutView(BaseModel):
 
 log = logging.getLogger(__name__)
 SPEED = 4.0
-"""As fast as everything can still be followed: a session of a quarter of an hour takes four."""
+"""Slow enough to follow: a session of a quarter of an hour takes four minutes."""
 HOURS = 2.0
 LONGEST_STEP = 120
 BROKE_OFF = TryoutTrouble(
-    message="the scripted participant ended without a word",
-    remedy="Look at the session for how far it came, and begin again.",
+    message="the scripted participant ended unexpectedly",
+    remedy="Open the session to see how far it got, and start another one.",
 )
 
 
 @dataclass(eq=False)
 class Tryout:
-    """One of them. `token` is what its devices sign in with, revoked at the end."""
+    """A run of a scripted participant. `token` is its login token, revoked at the end."""
 
     by: Caller
     study_key: str
@@ -80,13 +81,13 @@ class Tryout:
 
     @property
     def is_on(self) -> bool:
-        """Whether its process runs."""
+        """Return whether its process is running."""
         return self.state in ("starting", "running")
 
 
 @dataclass(eq=False)
 class TryoutDesk(Part):
-    """Safe from any thread; remembers the newest tryout."""
+    """Start, stop and report the scripted participants of a server; thread-safe."""
 
     database: Database
     clock: Clock
@@ -96,7 +97,7 @@ class TryoutDesk(Part):
 
     @classmethod
     def of(cls, context: AppContext) -> Self:
-        """The tryouts of a server."""
+        """Create the instance of a server from its context."""
         return cls(context.database, context.clock)
 
     def begin(self, caller: Caller, study_key: str, language: str, url: str) -> TryoutView:
@@ -104,7 +105,7 @@ class TryoutDesk(Part):
         with self._lock:
             if self._newest is not None and self._newest.is_on:
                 raise Conflict(
-                    "a scripted participant is here already",
+                    "a scripted participant is already running",
                     value=self._newest.by.username,
                     valid="one at a time",
                     remedy="Watch that one, or stop it first.",
@@ -120,7 +121,9 @@ class TryoutDesk(Part):
                 "language": language,
             }
             tryout.performance = Performance(
-                plan, lambda news: self._heard(tryout, news), lambda: self._ended(tryout)
+                plan,
+                lambda message: self._handle_output(tryout, message),
+                lambda: self._ended(tryout),
             )
             self._newest = tryout
             try:
@@ -131,49 +134,49 @@ class TryoutDesk(Part):
                 raise NotDurable(
                     "the scripted participant could not be started",
                     value=str(error),
-                    remedy="The server's machine has no room for another process; try later.",
+                    remedy="The server cannot start another process at the moment; try later.",
                 ) from error
             return _view(tryout, caller)
 
     def newest(self, caller: Caller) -> TryoutView | None:
-        """How the newest one is doing; None where there was none since the server started."""
+        """Return the latest scripted participant, or None if the server has not started any."""
         with self._lock:
             return None if self._newest is None else _view(self._newest, caller)
 
     def call_off(self, caller: Caller) -> TryoutView:
-        """End it and its session. Raises NotFound where none is running."""
+        """Stop the scripted participant and end its session; raises NotFound if none is running."""
         with self._lock:
             tryout = self._newest
             if tryout is None or not tryout.is_on:
-                raise NotFound("no scripted participant is here", remedy="Begin another.")
+                raise NotFound("no scripted participant is running", remedy="Start another one.")
             tryout.state = "stopped"
         if tryout.performance is not None:
             tryout.performance.stop()
         return _view(tryout, caller)
 
     def stop(self) -> None:
-        """With the server."""
+        """Kill the scripted participant when the server stops."""
         with self._lock:
             tryout = self._newest
             if tryout is None or not tryout.is_on:
                 return
             tryout.state = "stopped"
-        # It could not end its session any more: nobody answers now.
+        # It can no longer end its session, because the server does not answer any more.
         if tryout.performance is not None:
             tryout.performance.kill()
 
-    def _heard(self, tryout: Tryout, news: Mapping[str, Any]) -> None:
+    def _handle_output(self, tryout: Tryout, message: Mapping[str, Any]) -> None:
         with self._lock:
             if not tryout.is_on:
                 return
-            if "session" in news:
-                tryout.session_id, tryout.state = str(news["session"]), "running"
-            if "step" in news:
-                tryout.step = str(news["step"])[:LONGEST_STEP]
-            if "done" in news:
+            if "session" in message:
+                tryout.session_id, tryout.state = str(message["session"]), "running"
+            if "step" in message:
+                tryout.step = str(message["step"])[:LONGEST_STEP]
+            if "done" in message:
                 tryout.state = "done"
-            if "error" in news:
-                self._fail(tryout, str(news["error"]))
+            if "error" in message:
+                self._fail(tryout, str(message["error"]))
 
     def _ended(self, tryout: Tryout) -> None:
         with self._lock:
@@ -186,7 +189,7 @@ class TryoutDesk(Part):
         tryout.state = "failed"
         tryout.trouble = TryoutTrouble(
             message=why,
-            remedy="Put it right and begin again; nothing of people's data was touched.",
+            remedy="Fix the cause and start another one; no data of people were changed.",
         )
 
     def _token(self, caller: Caller, now: datetime) -> str:
@@ -199,8 +202,8 @@ class TryoutDesk(Part):
             with self.database.writing() as db:
                 revoke_token(db, tryout.token, self.clock.utc_now())
         except Exception:
-            # It expires by itself; the server may be ending.
-            log.exception("the login of the scripted participant was not revoked")
+            # The token expires anyway, and the server may be stopping.
+            log.exception("the login of the scripted participant could not be revoked")
 
 
 def _view(tryout: Tryout, reader: Caller) -> TryoutView:

@@ -1,4 +1,4 @@
-"""A scripted participant, started and stopped over HTTP."""
+"""HTTP endpoints that start, show and stop a scripted participant."""
 
 from fastapi import APIRouter
 
@@ -34,22 +34,22 @@ def post_tryout(
 
 @router.get("/tryout")
 def get_tryout(context: Context, caller: SignedIn) -> TryoutView | None:
-    """How the newest one is doing; null where there was none since the server was started."""
+    """Return the latest scripted participant; null if there was none since the server started."""
     newest = context.part(TryoutDesk).newest(caller)
     return newest if newest is not None and _sees(context, caller, newest) else None
 
 
 @router.delete("/tryout")
 def delete_tryout(context: Context, caller: SignedIn) -> TryoutView:
-    """Stop the one that is running, and end its session."""
+    """Stop the scripted participant that is running, and end its session."""
     newest = context.part(TryoutDesk).newest(caller)
     if newest is None or not _sees(context, caller, newest):
-        raise NotFound("no scripted participant is here", remedy="Begin another.")
+        raise NotFound("no scripted participant is running", remedy="Start another one.")
     return context.part(TryoutDesk).call_off(caller)
 
 
 def _sees(context: AppContext, caller: Caller, tryout: TryoutView) -> bool:
-    """Whether its study is one of the caller's."""
+    """Return whether the scripted participant's study is visible to the caller."""
     with context.database.reading() as db:
         try:
             require_object(db, caller, "/api/studies/{key}", {"key": tryout.study_key})

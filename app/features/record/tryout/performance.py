@@ -1,7 +1,8 @@
-"""One rehearsal, in a process of its own that talks to this server as devices do.
+"""Run a rehearsal in a separate process, which talks to this server as devices do.
 
-It reads its plan from its input, token included, so nobody finds that among the machine's running
-commands; it ends when the input is closed, so it cannot outlive the server.
+The process reads its plan, including the token, from its standard input, so that the token does not
+appear in the machine's process list. It ends when its input is closed, so it cannot outlive the
+server.
 """
 
 import json
@@ -14,7 +15,7 @@ from dataclasses import dataclass
 from typing import Any
 
 NICENESS = 5
-"""Running sessions go first where both want the processor."""
+"""The process has a lower priority than running sessions."""
 ENDS_WITHIN_S = 6.0
 COMMAND = (sys.executable, "-m", "app.rehearsal")
 News = Callable[[Mapping[str, Any]], None]
@@ -22,7 +23,10 @@ News = Callable[[Mapping[str, Any]], None]
 
 @dataclass(eq=False)
 class Performance:
-    """The process. `heard` is told each line, `ended` once, both from a thread of its own."""
+    """The process of a rehearsal.
+
+    A thread calls `heard` with every line of its output, and `ended` once at the end.
+    """
 
     plan: Mapping[str, Any]
     heard: News
@@ -32,7 +36,7 @@ class Performance:
     _listener: threading.Thread | None = None
 
     def start(self) -> None:
-        """Begin; raises OSError where no process can be started."""
+        """Start the process; raises OSError if that is impossible."""
         self._process = subprocess.Popen(  # noqa: S603 - our own command
             self.command,
             stdin=subprocess.PIPE,
@@ -46,7 +50,7 @@ class Performance:
         self._listener.start()
 
     def stop(self) -> None:
-        """Ask it to end its session and itself; without asking where it takes too long."""
+        """Ask the process to end its session and itself; kill it if that takes too long."""
         process = self._process
         if process is None:
             return
@@ -57,7 +61,7 @@ class Performance:
             process.kill()
 
     def kill(self) -> None:
-        """End it at once, and wait until everything is told."""
+        """Kill the process immediately, and wait until its output has been processed."""
         if self._process is not None:
             self._process.kill()
         if self._listener is not None:
@@ -73,7 +77,7 @@ class Performance:
             for line in process.stdout:
                 self.heard(json.loads(line))
         except (OSError, ValueError):
-            # It broke off in the middle of a line: the end says the rest.
+            # The process ended in the middle of a line; `ended` reports that.
             pass
         finally:
             self.stop()
@@ -86,6 +90,8 @@ class Performance:
 
 
 def _environment() -> dict[str, str]:
-    """What a process needs to run at all; none of the installation's settings or secrets."""
-    kept = {name: value for name, value in os.environ.items() if not name.startswith("REEMBODY_")}
-    return {**kept, "PYTHONUNBUFFERED": "1", "OMP_NUM_THREADS": "1"}
+    """Return the process's environment, without the installation's settings and secrets."""
+    inherited = {
+        name: value for name, value in os.environ.items() if not name.startswith("REEMBODY_")
+    }
+    return {**inherited, "PYTHONUNBUFFERED": "1", "OMP_NUM_THREADS": "1"}

@@ -62,7 +62,7 @@ def test_going_back_leaves_earlier_phases_alone() -> None:
 def test_only_what_was_reached_can_be_redone(step: int) -> None:
     """A step that lies ahead, or no step at all, is refused."""
     run = Run().go_to("instructions")
-    with pytest.raises(Refused, match="lies ahead"):
+    with pytest.raises(Refused, match="has not been reached yet"):
         run.do(c.Redo(content=WORDS, step=step))
 
 

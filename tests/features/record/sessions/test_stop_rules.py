@@ -62,7 +62,7 @@ def test_a_held_session_refuses_to_go_on_and_says_what_to_do(lab: Lab) -> None:
     for kind in ("begin_phase", "complete_step", "resume", "materialise", "skip", "redo"):
         refusal = error(lab.try_command(view, kind, reason="go"), 409, "not_now")
         assert "stop rule" in refusal["message"]
-        assert "Then end the session, or go on with a reason." in refusal["remedy"]
+        assert "Then end the session, or continue with a reason." in refusal["remedy"]
     assert lab.view(view["id"])["version"] == view["version"]
 
 

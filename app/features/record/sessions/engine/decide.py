@@ -16,8 +16,7 @@ from app.features.record.sessions.engine.state import (
 from app.protocol import FORM_KINDS, TIMED_KINDS, Step, kinds_with_command
 
 GOES_ON = (c.BeginPhase, c.CompleteStep, c.Materialise, c.Redo, c.Resume, c.Skip)
-"""What moves a participant on: nothing of it is done while a stop rule or a refused consent holds
-the session."""
+"""Commands that advance the session; rejected while a stop rule or a refused consent holds it."""
 
 __all__ = ["Refused", "decide"]
 
@@ -27,9 +26,9 @@ def decide(plan: Sequence[Step], state: SessionState, command: c.Command) -> lis
 
     A rejected command changes nothing. Ending the last step also ends the session.
     """
-    beside = decide_annotation(state, command)
-    if beside is not None:
-        return beside
+    annotation = decide_annotation(state, command)
+    if annotation is not None:
+        return annotation
     if isinstance(command, c.Start):
         return _start(state)
     if state.status is not SessionStatus.ACTIVE or state.current is None:
@@ -72,10 +71,10 @@ def _report(plan: Sequence[Step], state: SessionState, command: c.Report) -> lis
 def _start(state: SessionState) -> list[e.Event]:
     if state.status is not SessionStatus.PLANNED:
         raise Refused(
-            f"the session is {state.status} already",
+            f"the session is already {state.status}",
             value=state.status,
             valid=[SessionStatus.PLANNED],
-            remedy="Look at its current step; somebody else may have started it.",
+            remedy="Check its current step; somebody else may have started it.",
         )
     return [e.SessionStarted()]
 
@@ -118,7 +117,7 @@ def _complete(step: Step, command: c.CompleteStep) -> list[e.Event]:
         )
     if step.kind == "consent" and command.content is None:
         raise Refused(
-            "consent needs a record of how it was given",
+            "a consent needs a record of how it was given",
             value=None,
             valid=["the form on the tablet", "a sheet signed on paper"],
             remedy="Let the participant agree on the tablet, or record a consent on paper.",
@@ -150,7 +149,7 @@ def _begin(step: Step, state: SessionState, command: c.BeginPhase) -> list[e.Eve
     _require_kind(step, TIMED_KINDS, "begin a phase")
     if state.phase is not None:
         raise Refused(
-            f"the phase is {state.phase.status} already",
+            f"the phase is already {state.phase.status}",
             value=state.phase.status,
             valid=["no phase under way"],
             remedy="Somebody else may have begun it.",
@@ -185,17 +184,17 @@ def _redo(plan: Sequence[Step], state: SessionState, command: c.Redo) -> list[e.
     target = current if command.step is None else command.step
     if not 0 <= target <= current:
         raise Refused(
-            f"step {target} lies ahead",
+            f"step {target} has not been reached yet",
             value=target,
             valid=list(range(current + 1)),
-            remedy="Only the current step or an earlier one can be done over.",
+            remedy="Only the current step or an earlier one can be repeated.",
         )
     if target == current and state.phase is None and plan[target].kind not in TIMED_KINDS:
         raise Refused(
             "the current step has not been done yet",
             value=target,
             valid=list(range(current)),
-            remedy="Do it, or choose an earlier step to do over.",
+            remedy="Do it, or choose an earlier step to repeat.",
         )
     voided: list[e.Event] = [
         e.PhaseVoided(phase_id=past.phase_id, cause="redo")
@@ -272,7 +271,7 @@ def _decide_refusal(
     consents = [step.index for step in reached if step.kind == "consent"]
     if command.step not in consents:
         raise Refused(
-            f"step {command.step} is no consent that the session has come to",
+            f"step {command.step} is not a consent that the session has reached",
             value=command.step,
             valid=consents,
             remedy="Tell the experimenter.",
@@ -296,10 +295,10 @@ def _retract_refusal(state: SessionState, command: c.RetractRefusal) -> list[e.E
         if command.content is None:
             return []
         raise Refused(
-            "nobody has refused consent, or the refusal was taken back already",
+            "consent was not refused, or the refusal was already taken back",
             value="not refused",
             valid=["a refused consent"],
-            remedy="Go on with the current step.",
+            remedy="Continue with the current step.",
         )
     ref = _ref(command.content) if command.content else {}
     return [e.RefusalRetracted(step=state.refused_consent, by=command.by, **ref)]
@@ -320,7 +319,7 @@ def require_not_held(state: SessionState, command: c.Command) -> None:
             "the session is held: an answer met a stop rule of the study",
             value=f"stop rule {state.held.rule + 1}",
             valid=["withdraw", "abort", "override_stop"],
-            remedy="See how the participant is. Then end the session, or go on with a reason.",
+            remedy="See how the participant is. Then end the session, or continue with a reason.",
         )
 
 
@@ -331,7 +330,7 @@ def decide_override(state: SessionState, command: c.OverrideStop) -> list[e.Even
             "no stop rule holds the session",
             value="not held",
             valid=["held by a stop rule"],
-            remedy="Somebody else may have decided already; go on with the current step.",
+            remedy="Somebody else may have decided already; continue with the current step.",
         )
     ref = command.content
     return [e.StopRuleOverridden(content_id=ref.content_id, content_hash=ref.content_hash)]

@@ -20,10 +20,10 @@ from app.features.record.sessions.engine.state import PhaseState, PhaseStatus, S
 from app.protocol import Step
 
 FRAME_TOLERANCE_S = 0.05
-"""A phase may end this much off its duration: a few frames of the slowest headset."""
+"""How far the end of a phase may be off its duration: a few frames of the slowest headset."""
 
 ASSUMED_CAUSES = ("headset_lost", "headset_silent", "server_restarted")
-"""Causes of pauses that the server assumed; the headset's own reports may tell otherwise."""
+"""Causes of pauses that the server assumed, which the headset's own reports may contradict."""
 
 _EXPECTED: dict[str, tuple[PhaseStatus, ...]] = {
     "started": (PhaseStatus.PREPARING,),
@@ -65,8 +65,8 @@ def decide_report(plan: Sequence[Step], state: SessionState, report: c.Report) -
 
 def _has_enough(step: Step, report: c.Report) -> bool:
     """Return whether a practice may end early, since it has the completions the study requires."""
-    wanted = step.until_completions
-    return wanted is not None and report.completions >= wanted
+    required = step.until_completions
+    return required is not None and report.completions >= required
 
 
 def _corrects(phase: PhaseState, report: c.Report) -> bool:

@@ -1,1 +1,1 @@
-"""How the columns of a chunk are written as bytes: one module an encoding, named by `NAME`."""
+"""The encodings of a chunk's columns as bytes: one module per encoding, named by its `NAME`."""

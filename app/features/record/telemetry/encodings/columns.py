@@ -1,8 +1,8 @@
-"""What every encoding takes and gives back, how it says that a chunk is damaged, and byte planes.
+"""What all encodings share: the columns, the error for a damaged chunk, and byte planes.
 
-Byte planes hold first the lowest byte of every number, then the next higher, and so on: high bytes
-of small numbers are zero or repeat, and beside each other they compress to nothing. Planes are
-little-endian on every machine.
+Byte planes contain first the lowest byte of every number, then the next higher one, and so on: the
+high bytes of small numbers are zero or repeat, so next to each other they compress to almost
+nothing. Planes are little-endian on every machine.
 """
 
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ Number = TypeVar("Number", bound=np.generic)
 
 
 class DamagedChunkError(ValueError):
-    """The bytes of a chunk are not what was written; says what gave it away and what to do."""
+    """The bytes of a chunk are not what was written; says how that was detected and what to do."""
 
     def __init__(self, what: str) -> None:
         super().__init__(
@@ -25,7 +25,7 @@ class DamagedChunkError(ValueError):
 
 @dataclass(frozen=True)
 class Columns:
-    """The frames of a chunk: `times_s` (n,), `flags` (n,), `values` (n, w), of any bits at all."""
+    """The frames of a chunk: `times_s` (n,), `flags` (n,), `values` (n, w), with arbitrary bits."""
 
     times_s: NDArray[np.float64]
     flags: NDArray[np.uint8]
@@ -33,13 +33,13 @@ class Columns:
 
 
 def to_planes(numbers: NDArray[Any]) -> bytes:
-    """The planes of numbers of any shape, in C order."""
+    """Return the byte planes of numbers of any shape, in C order."""
     little = np.ascontiguousarray(numbers, numbers.dtype.newbyteorder("<"))
     return little.view(np.uint8).reshape(-1, little.itemsize).T.tobytes()
 
 
 def from_planes(planes: NDArray[np.uint8], number: type[Number]) -> NDArray[Number]:
-    """The flat numbers whose planes (bytes,) these are; the inverse of `to_planes`."""
+    """Return the numbers of byte planes (bytes,) as a flat array; the inverse of `to_planes`."""
     dtype = np.dtype(number)
     together = np.ascontiguousarray(planes.reshape(dtype.itemsize, -1).T)
     return together.view(dtype.newbyteorder("<")).ravel().astype(number, copy=False)

@@ -1,4 +1,4 @@
-"""The first encoding, only read any more: columns as byte planes, compressed.
+"""The first encoding, which is now only read: columns as byte planes, compressed.
 
 "f32-columns-zstd/1": zstd over the concatenation of `times_s` f64[n], `flags` u8[n] and `values`
 transposed to f32[w][n] with the four bytes of every float split into planes.
@@ -13,7 +13,7 @@ NAME = "f32-columns-zstd/1"
 
 
 def decode(data: bytes, frame_count: int, values_per_frame: int) -> Columns:
-    """The columns of a chunk; DamagedChunkError where zstd notices, since it has no checksum."""
+    """Decode a chunk; raises DamagedChunkError if zstd detects damage (there is no checksum)."""
     n, w = frame_count, values_per_frame
     expected = 9 * n + 4 * n * w
     try:

@@ -1,22 +1,22 @@
-"""What cannot be foreseen of a chunk, compressed: see docs/telemetry-encoding.md for every byte.
+"""The current encoding: compress what cannot be predicted (see docs/telemetry-encoding.md).
 
-"f32-predicted-zstd/1" in steps, each undone by its own module:
+"f32-predicted-zstd/1" in steps, each reversed by its own module:
 
 1. of every joint's unit quaternion one component follows from the other three (`unit_quaternions`);
-2. the floats that remain become whole multiples of a unit a row (`significands`);
-3. these, the left-out components and the frame times are predicted from the frames before
-   (`differences`);
+2. the floats that remain become integer multiples of a unit per row (`significands`);
+3. these, the left-out components and the frame times are predicted from the previous frames
+   (`integers`);
 4. of every row the low bits, which are noise and would not compress, are cut off and stored as they
-   are, together with the rests of step 2 (`bit_fields`); the high bits, of the same small size in
-   all rows, go through zstd as `byte_planes`.
+   are, together with the remainders of step 2 (`integers`); the high bits, of the same small size
+   in all rows, go through zstd as byte planes.
 
     offset  type    field
-    0       u32     CRC-32 of everything behind it
+    0       u32     CRC-32 of everything after it
     4       u32     n, the number of frames
     8       u16     w, values per frame: 3 + 4 for each joint
     10      u32     length z of the zstd frame
     14      u8[z]   zstd frame of the parts below
-    14 + z  bits    low bits of all rows, then the rests of the floats
+    14 + z  bits    low bits of all rows, then the remainders of the floats
 
     u8[joints]          the component that is left out, and its sign
     u8[3 + 3 joints]    exponent of the unit of each kept column
@@ -60,14 +60,14 @@ _HEADER = struct.Struct("<IIHI")
 _CHECKED_FROM = 4
 _LOW_BITS = np.uint8(31)
 _ORDER_AT = np.uint8(5)
-# Enough for the shape of the noise to be seen by zstd, whose code is then close to the entropy.
+# Enough for zstd to model the distribution of the noise, so that its code is close to the entropy.
 _BITS_TO_COMPRESS = 4
 
 
 def encode(columns: Columns, *, level: int = LEVEL) -> bytes:
-    """Write a chunk of at least one frame of 3 + 4 x joints values; other shapes: ValueError.
+    """Encode a chunk of at least one frame of 3 + 4 x joints values; other shapes: ValueError.
 
-    `level` is how hard zstd tries; a reader need not know it.
+    `level` is the compression level of zstd; decoding does not depend on it.
     """
     n, w = columns.values.shape
     if n < 1 or w < ROOT_VALUES or (w - ROOT_VALUES) % 4:
@@ -100,7 +100,7 @@ def encode(columns: Columns, *, level: int = LEVEL) -> bytes:
 
 
 def decode(data: bytes, frame_count: int, values_per_frame: int) -> Columns:
-    """The columns of a chunk; raises DamagedChunkError when they are not what was encoded."""
+    """Decode a chunk; raises DamagedChunkError if the data are not what was encoded."""
     compressed, noise = _checked(data, frame_count, values_per_frame)
     n, w = frame_count, values_per_frame
     joints = (w - ROOT_VALUES) // 4
@@ -134,7 +134,7 @@ def _sealed(frame_count: int, values_per_frame: int, compressed: bytes, noise: b
 
 
 def _checked(data: bytes, frame_count: int, values_per_frame: int) -> tuple[bytes, bytes]:
-    """The zstd frame and the bits behind it of a chunk that is as it was written."""
+    """Verify a chunk, and return its zstd frame and the bits after it."""
     if len(data) < _HEADER.size:
         raise DamagedChunkError(f"it has {len(data)} bytes, fewer than its header")
     crc, n, w, length = _HEADER.unpack_from(data)
@@ -150,7 +150,7 @@ def _checked(data: bytes, frame_count: int, values_per_frame: int) -> tuple[byte
 
 @dataclass
 class _Parts:
-    """Takes what was compressed apart, from front to back."""
+    """Reads the decompressed parts of a chunk one after the other."""
 
     raw: bytes
     at: int = 0
@@ -166,7 +166,7 @@ class _Parts:
 
 
 def _noisy_bits(differences: NDArray[np.uint32]) -> NDArray[np.uint32]:
-    """How many low bits (rows,) of each row's differences are not worth compressing, 0 to 28."""
+    """Return how many low bits (rows,) of each row's differences are incompressible, 0 to 28."""
     lengths: NDArray[np.float64] = np.frexp(differences.astype(np.float64))[1].mean(axis=1)
     noisy: NDArray[np.uint32] = np.maximum(np.rint(lengths) - _BITS_TO_COMPRESS, 0.0).astype(
         np.uint32

@@ -1,15 +1,15 @@
-"""Whole numbers in few bits: rows as differences, and numbers of any width without gaps.
+"""Store integers in few bits: rows as differences, and bit fields of any width without gaps.
 
-The difference of order p predicts a number from the p before it: by nothing, by the last one, by a
-straight line, a parabola, a cubic. Smooth movement is best in high orders, noise in low ones. The
-first numbers of a row have fewer before them and take the order they can: number i is differenced
-min(i, p) times.
+The difference of order p predicts a number from the p numbers before it: by zero, by the last one,
+by a straight line, a parabola, a cubic. Smooth movement is best in high orders, noise in low ones.
+The first numbers of a row have fewer before them and use the highest order possible: number i is
+differenced min(i, p) times.
 
-Differences d are handed on as unsigned numbers that are small where the magnitude is (0, -1, 1, -2
-as 0, 1, 2, 3): z = (d << 1) ^ (d >> bits - 1), d = (z >> 1) ^ -(z & 1). All arithmetic is modulo
-2^bits, so that it can be undone whatever the numbers are.
+Differences d are converted to unsigned numbers that are small if the magnitude is (0, -1, 1, -2 as
+0, 1, 2, 3): z = (d << 1) ^ (d >> bits - 1), d = (z >> 1) ^ -(z & 1). All arithmetic is modulo
+2^bits, so that it can be reversed whatever the numbers are.
 
-Numbers of 0 to 32 bits each are packed one behind the other without gaps, highest bit first. The
+Numbers of 0 to 32 bits each are packed one after the other without gaps, highest bit first. The
 first number begins at the highest bit of the first byte; zeros fill the last byte.
 """
 
@@ -24,7 +24,7 @@ _LOW_WORD = np.uint64(0xFFFFFFFF)
 
 
 def best_differences(rows: NDArray[Any]) -> tuple[NDArray[np.uint8], NDArray[Any]]:
-    """The order (rows,) that makes each row smallest, and its differences as unsigned numbers.
+    """Return the order (rows,) that makes each row smallest, and its unsigned differences.
 
     `rows` (rows, n) are int32 or int64, the differences uint32 or uint64.
     """
@@ -44,7 +44,7 @@ def best_differences(rows: NDArray[Any]) -> tuple[NDArray[np.uint8], NDArray[Any
 
 
 def summed(order: NDArray[np.uint8], differences: NDArray[Any]) -> NDArray[Any]:
-    """The rows (rows, n) whose differences of these orders are given; undoes the other."""
+    """Return the rows (rows, n) with these differences: the inverse of `best_differences`."""
     one = differences.dtype.type(1)
     signed = f"i{differences.itemsize}"
     rows: NDArray[Any] = (differences >> one).view(signed) ^ -(differences & one).view(signed)
@@ -60,14 +60,14 @@ def _magnitude(differences: NDArray[Any]) -> NDArray[np.float64]:
 
 
 def pack(numbers: NDArray[np.uint32], widths: NDArray[np.int64]) -> bytes:
-    """Write `numbers` (n,), each below 2^width, with `widths` (n,) bits each."""
+    """Pack `numbers` (n,), each below 2^width, into `widths` (n,) bits each."""
     if not len(numbers):
         return b""
     ends = np.cumsum(widths)
     first = ends - widths
     total = int(ends[-1])
     word = first >> 5
-    # Each number lies in a window of two words that begins with the word of its first bit.
+    # Each number fits into a window of two words that begins with the word of its first bit.
     window = numbers.astype(np.uint64) << (64 - widths - (first & 31)).astype(np.uint64)
     count = (total + 31) // 32 + 2
     # Numbers do not overlap, so adding them up sets bits; sums below 2^32 are exact in float64.
@@ -77,11 +77,11 @@ def pack(numbers: NDArray[np.uint32], widths: NDArray[np.int64]) -> bytes:
 
 
 def unpack(data: bytes, widths: NDArray[np.int64], first_bit: int = 0) -> NDArray[np.uint32]:
-    """Read numbers (n,) of `widths` (n,) bits that begin at bit `first_bit`."""
-    # A window reaches into the next word, and an empty number at the end begins behind the last.
+    """Unpack numbers (n,) of `widths` (n,) bits that begin at bit `first_bit`."""
+    # A window extends into the next word, and a number of 0 bits at the end begins after the last.
     words = np.frombuffer(data.ljust(-(-len(data) // 4) * 4 + 8, b"\0"), ">u4").astype(np.uint64)
     windows = (words[:-1] << _WORD) | words[1:]
     first = np.cumsum(widths) - widths + first_bit
-    begun = windows[first >> 5] << (first & 31).astype(np.uint64)
-    numbers: NDArray[np.uint32] = (begun >> (64 - widths).astype(np.uint64)).astype(np.uint32)
+    aligned = windows[first >> 5] << (first & 31).astype(np.uint64)
+    numbers: NDArray[np.uint32] = (aligned >> (64 - widths).astype(np.uint64)).astype(np.uint32)
     return numbers

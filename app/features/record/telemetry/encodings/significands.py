@@ -1,15 +1,15 @@
-"""Floats as whole multiples of one unit a row, and what is finer than the unit.
+"""Split floats into integer multiples of one unit per row, and what is finer than the unit.
 
 A float32 is significand x 2^(exponent - 150), the significand 24 bits long. Differences from frame
-to frame are small only where all numbers have the same unit, so a row takes the unit of its
-greatest member, `top`, and each float is cut there:
+to frame are small only if all numbers have the same unit, so a row uses the unit of its greatest
+member, `top`, and each float is split there:
 
     coarse = significand >> (top - exponent), with the float's sign
     rest   = the bits that were shifted out
 
-The rest is as many bits as the coarse part is shorter than 24, so its length need not be stored. A
+The rest has as many bits as the coarse part is shorter than 24, so its length need not be stored. A
 float without a coarse part (zero, denormal, NaN, infinite, or 2^24 times smaller than the row's
-greatest) has coarse 0 and is kept whole, as an exception.
+greatest) has coarse 0 and is stored whole, as an exception.
 """
 
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ _EXPONENT_AT = np.uint32(23)
 
 @dataclass(frozen=True)
 class Significands:
-    """Rows of floats, cut.
+    """Rows of floats, split into coarse parts and rests.
 
     `top` (rows,) biased exponents 0 to 254; `coarse` (rows, n); `rest` (rows, n), each number of
     `rest_widths` (rows, n) bits; `exceptions` (m,) the bits of the floats with coarse 0.
@@ -40,7 +40,7 @@ class Significands:
 
 
 def cut(bits: NDArray[np.uint32]) -> Significands:
-    """Cut the floats with these `bits` (rows, n)."""
+    """Split the floats with these `bits` (rows, n)."""
     exponent = ((bits >> _EXPONENT_AT) & np.uint32(0xFF)).astype(np.int32)
     usable = (exponent > 0) & (exponent < 255)
     top = np.where(usable, exponent, 0).max(axis=1)
@@ -60,16 +60,16 @@ def cut(bits: NDArray[np.uint32]) -> Significands:
 
 
 def rest_widths(coarse: NDArray[np.int32]) -> NDArray[np.int64]:
-    """How many bits are missing from each coarse part (rows, n): 0 to 23, and 0 for a 0."""
+    """Return how many bits are missing from each coarse part (rows, n): 0 to 23, and 0 for a 0."""
     lengths = np.frexp(np.abs(coarse).astype(np.float64))[1]
     return np.where(coarse == 0, 0, _SIGNIFICAND_BITS - lengths).astype(np.int64)
 
 
 def joined(parts: Significands) -> NDArray[np.uint32]:
-    """The bits (rows, n) of the floats; the inverse of `cut`."""
+    """Return the bits (rows, n) of the floats; the inverse of `cut`."""
     shift = parts.rest_widths.astype(np.uint32)
     significand = (np.abs(parts.coarse).astype(np.uint32) << shift) | parts.rest
-    # The implied bit of the significand adds 1 to the exponent: take it off before.
+    # The implied bit of the significand adds 1 to the exponent, so subtract it first.
     exponent = parts.top[:, np.newaxis].astype(np.uint32) - shift - np.uint32(1)
     bits: NDArray[np.uint32] = (exponent << _EXPONENT_AT) + significand
     bits |= (parts.coarse < 0).astype(np.uint32) << _SIGN_AT

@@ -1,12 +1,12 @@
-"""Three numbers of a unit quaternion tell the fourth, but for its sign and its rounding.
+"""Predict one component of a unit quaternion from the other three.
 
-Of each joint the component that is greatest in most frames is left out for the chunk, and expected
-to be +-sqrt(1 - a^2 - b^2 - c^2) of the other three. What is kept of it is how many float32 steps
-it lies from there: 0 or 1 for a quaternion that was normalised, anything for one that was not.
+Of each joint, the component that is greatest in most frames is left out for the chunk, and expected
+to be +-sqrt(1 - a^2 - b^2 - c^2) of the other three. Only its distance from there is stored, in
+float32 steps: 0 or 1 for a quaternion that was normalised, anything for one that was not.
 
-The square root is taken in float64. The squares of float32 are exact there, so that neither fused
-multiplication nor the machine changes the result: the two sums, the difference, the root and the
-rounding to float32 are each rounded once, to nearest, as IEEE 754 says.
+The square root is computed in float64. The squares of float32 are exact there, so that neither
+fused multiplication nor the machine changes the result: the two sums, the difference, the root and
+the rounding to float32 are each rounded once, to nearest, as IEEE 754 prescribes.
 """
 
 from dataclasses import dataclass
@@ -21,35 +21,41 @@ _NEGATIVE = 4
 
 @dataclass(frozen=True)
 class LeftOut:
-    """`component` (joints,) left out, 0 to 3 of w, x, y, z; whether it is `negative` (joints,)."""
+    """The components left out of a chunk's quaternions.
+
+    `component` (joints,): 0 to 3 of w, x, y, z; `negative` (joints,): whether it is negative.
+    """
 
     component: NDArray[np.uint8]
     negative: NDArray[np.bool_]
 
     @property
     def rows(self) -> NDArray[np.int64]:
-        """Which columns of a frame are left out."""
+        """Return the indices of the columns that are left out."""
         return ROOT_VALUES + 4 * np.arange(len(self.component)) + self.component
 
     @property
     def kept_rows(self) -> NDArray[np.int64]:
-        """Which columns remain, in order."""
+        """Return the indices of the columns that remain, in order."""
         width = ROOT_VALUES + 4 * len(self.component)
         return np.delete(np.arange(width), self.rows)
 
     def as_bytes(self) -> bytes:
-        """One byte a joint: the component, plus 4 where it is negative."""
+        """Return one byte per joint: the component, plus 4 if it is negative."""
         return (self.component + _NEGATIVE * self.negative).astype(np.uint8).tobytes()
 
     @staticmethod
     def of_bytes(data: NDArray[np.uint8]) -> "LeftOut":
-        """Read what `as_bytes` wrote."""
+        """Parse the bytes that `as_bytes` returns."""
         return LeftOut(data & np.uint8(3), (data & np.uint8(_NEGATIVE)) != 0)
 
     def expected(self, kept: NDArray[np.uint32]) -> NDArray[np.uint32]:
-        """The bits (joints, n) to expect of the left-out, from those kept (3 + 3 joints, n)."""
+        """Return the expected bits (joints, n) of the left-out components.
+
+        `kept` (3 + 3 joints, n) are the bits of the components that remain.
+        """
         three = kept[ROOT_VALUES:].view(np.float32).reshape(len(self.component), 3, kept.shape[1])
-        with np.errstate(invalid="ignore"):  # frames may hold NaNs and infinities
+        with np.errstate(invalid="ignore"):  # frames may contain NaNs and infinities
             a, b, c = np.moveaxis(three.astype(np.float64), 1, 0)
             left = 1.0 - (a * a + b * b + c * c)
             root = np.sqrt(np.where(left > 0.0, left, 0.0)).astype(np.float32)
@@ -58,9 +64,9 @@ class LeftOut:
 
 
 def choose(bits: NDArray[np.uint32]) -> LeftOut:
-    """What to leave out of a chunk with these `bits` (3 + 4 joints, n)."""
+    """Choose which components to leave out of a chunk with these `bits` (3 + 4 joints, n)."""
     quaternions = bits[ROOT_VALUES:].reshape(-1, 4, bits.shape[1])
-    # The bits of a float without its sign are ordered as its magnitude is, NaNs included.
+    # Without the sign, the bits of floats have the same order as their magnitudes, NaNs included.
     component = (quaternions & np.uint32(0x7FFFFFFF)).mean(axis=2).argmax(axis=1)
     greatest = quaternions[np.arange(len(component)), component]
     negative = (greatest >> _SIGN_AT).mean(axis=1) > 0.5
