@@ -50,7 +50,7 @@ NAMING_CONVENTION = {
 TURN_TIMEOUT_S = 20.0
 """How long a request waits for other writers of this process before it is told to retry."""
 WRITERS = 20
-"""Most simultaneous writers on PostgreSQL: half of the threads that endpoints run on."""
+"""Maximum number of writers on PostgreSQL: half of the threads that endpoints run on."""
 Result = TypeVar("Result")
 Row = TypeVar("Row", bound="Base")
 

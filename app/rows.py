@@ -10,7 +10,7 @@ from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
 
 LARGEST = 64
-"""Most rows per SQLite statement; counts are split into powers of two to need few statements."""
+"""Maximum number of rows per SQLite statement; counts are split into powers of two."""
 Names = tuple[str, ...]
 
 

@@ -40,9 +40,9 @@ from app.platform.text import require_text_in_head, require_text_in_json
 
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 STRANGERS_BODY_BYTES = 16 * 1024
-"""Most bytes of a stranger's body; a login, pairing or invitation takes a few hundred."""
+"""Maximum size of a stranger's body; a login, pairing or invitation takes a few hundred."""
 SOCKET_COST = 10.0
-"""A stranger's socket is closed immediately, but its handshake may have included a message."""
+"""Cost of a stranger's socket: it is closed immediately, but may have sent a message."""
 DELAY_S, MOST_DELAYED = 1.0, 512
 """Delay of refused requests, and how many may be delayed; each may keep 64 KiB of its body."""
 TOO_LARGE_COST = 10.0

@@ -75,7 +75,7 @@ class Activity:
                     continue
                 self._shown = self._what
                 if self._live:
-                    sys.stderr.write(f"{ERASE_LINE}{self._said}")
+                    sys.stderr.write(f"{ERASE_LINE}{self._shown}")
                 else:
-                    sys.stderr.write(f"reembody: {self._said}\n")
+                    sys.stderr.write(f"reembody: {self._shown}\n")
                 sys.stderr.flush()

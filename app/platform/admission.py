@@ -31,7 +31,7 @@ BEARER_SUBPROTOCOL = "bearer."
 VALID_FOR_S = 60.0
 MOST_CACHED = 4096
 CHECKING_THREADS = 2
-"""Most threads that check tokens, so that a flood of invented ones leaves the others free."""
+"""Maximum number of threads that check tokens, so that a flood of them leaves others free."""
 _TOKEN_LENGTH = 43
 """The length of `secrets.token_urlsafe(32)`; other tokens cannot be valid."""
 

@@ -17,7 +17,7 @@ BEGINNING = ".beginning-"
 """The prefix of the folder in which a new database is made."""
 DATABASE_SUFFIXES = ("", "-wal", "-shm", "-journal")
 _MOST_LOOKED_AT = 2000
-"""Most files to search for another hard link."""
+"""Maximum number of files to search for another hard link."""
 _OURS = ("backups", "quarantine", "scratch", "walking", "tls", "half-made", "erasures.jsonl")
 """Our files in a folder that may contain others, apart from the database's own files."""
 _TRACES = ("backups/*.reembody", "quarantine/*", "erasures.jsonl", "erasure-unfinished")

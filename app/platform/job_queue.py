@@ -25,7 +25,7 @@ log = logging.getLogger(__name__)
 WITHIN_S = 120.0
 """The default time limit of a job."""
 WAITING = 20
-"""Most jobs that may wait; the next is refused."""
+"""Maximum number of waiting jobs; the next is refused."""
 P = ParamSpec("P")
 T = TypeVar("T")
 

@@ -12,7 +12,7 @@ from app.protocol.source import Path, Plain, Source, path_text
 from app.science.instruments import DefinitionProblem, InstrumentDefinitionError, shortened
 
 UNKNOWN_KEY = ("extra_forbidden", "unexpected_keyword_argument")
-"""Pydantic's error types for a key that a model, or a dataclass, does not have."""
+"""The error types of pydantic for a key that a model, or a dataclass, does not have."""
 
 _EXPECTED = {
     "string_type": ("text", "Write text; put it in quotes if it looks like a number."),

@@ -277,16 +277,16 @@ STEP_KINDS: Mapping[str, StepKindSpec] = MappingProxyType({one.key: one for one 
 """Every kind by its key, in the order in which kinds are listed anywhere."""
 
 TIMED_KINDS: tuple[StepKind, ...] = tuple(one.key for one in _TABLE if one.family == "timed")
-"""Steps that are phases: they run on the headset's clock and are recorded as such."""
+"""Kinds of steps that are phases: they run on the headset's clock and are recorded as such."""
 FORM_KINDS: tuple[StepKind, ...] = tuple(one.key for one in _TABLE if one.family == "form")
 COUNTED_KINDS: tuple[StepKind, ...] = tuple(one.key for one in _TABLE if one.counts)
-"""Phases that count as the study's data."""
+"""Kinds of phases that count as the study's data."""
 BOX_KINDS: tuple[StepKind, ...] = tuple(one.key for one in _TABLE if one.has_boxes)
-"""Phases in which a limb reaches for the boxes of a task."""
+"""Kinds of phases in which a limb reaches for the boxes of a task."""
 UNCOUNTED_KINDS: tuple[StepKind, ...] = tuple(
     one.key for one in _TABLE if one.family == "timed" and not one.counts
 )
-"""Phases that are recorded, but in no figure or test."""
+"""Kinds of phases that are recorded, but in no figure or test."""
 PHASES: Mapping[str, PhaseWords] = MappingProxyType(
     {str(one.key_of_phase(limb)): words for one in _TABLE for limb, words in one.phases.items()}
 )

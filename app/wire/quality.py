@@ -15,7 +15,7 @@ from app.wire.batch import BODY_JOINTS, Batch
 UNIT_TOLERANCE = 1e-3
 """A float32 unit quaternion that is the product of a few keeps its length within this of 1."""
 FRAMES_AT_ONCE = 2048
-"""Enough to make the overhead of calls negligible, few enough to keep the copies small."""
+"""Frames checked together: enough for little overhead, few enough to keep copies small."""
 
 
 @dataclass(frozen=True)

@@ -73,7 +73,7 @@ class Limits:
     """Largest number of joints, markers or bodies."""
     depth: int = 64
     values: int = 60_000_000
-    """Most numbers in memory, whatever a header claims."""
+    """Maximum number of values in memory, whatever a header claims."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,7 @@ from itertools import islice
 from app.adapters.captures.capture import CaptureError
 
 LONGEST_LINE = 2_000_000
-"""Most characters of a line; two thousand bodies with eight columns need a fifth of that."""
+"""Maximum line length in characters; two thousand bodies with eight columns need a fifth."""
 _BLOCK = 1 << 20
 
 

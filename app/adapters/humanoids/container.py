@@ -12,7 +12,7 @@ from typing import Final
 _MAGIC: Final = b"glTF"
 _JSON, _BIN = 0x4E4F534A, 0x004E4942
 _MOST_JSON_VALUES: Final = 2_000_000
-"""Most JSON values. A list of empty lists takes fifty times its size; real files have 50,000."""
+"""Maximum number of JSON values; in memory they take up to fifty times their size."""
 _AS_ONE_FILE = "Export the model as one file: glTF binary (.glb) or VRM."
 _OTHERS = {
     b"Kaydara FBX": "an FBX file",

@@ -24,7 +24,7 @@ from app.lan.network import STRANGER
 HEAD_WITHIN_S = 10.0
 BODY_WITHIN_S = 30.0
 PORTION_BYTES = 2 * 1024 * 1024
-"""Bytes per deadline of a body, which most do not exceed: requires 70 kB/s of a tablet."""
+"""Bytes of a body per deadline; requires 70 kB/s. Most bodies have one portion."""
 MOST_HEAD_BYTES = 64 * 1024
 MOST_UNFINISHED = 256
 CLOSED_WITHIN_S = 2.0
