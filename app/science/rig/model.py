@@ -90,7 +90,7 @@ class Rig:
         return tuple(child for child, parent in enumerate(self.parents) if parent == joint)
 
     def rest_world(self) -> tuple[FloatArray, FloatArray]:
-        """Return positions (J, 3) and world_from_joint (J, 4) of the rest pose; read-only."""
+        """Return the positions (J, 3) and world_from_joint (J, 4) of the rest pose, read-only."""
         return self._rest_world
 
     @cached_property
@@ -146,7 +146,7 @@ class RigMotion:
         return (self.frame_count - 1) / self.rate_hz
 
     def world(self) -> tuple[FloatArray, FloatArray]:
-        """Return positions (N, J, 3) in metres and world_from_joint rotations (N, J, 4)."""
+        """Return the positions (N, J, 3) in metres and the world_from_joint rotations (N, J, 4)."""
         return place(self.rig, self.root_positions_m, self.rotations)
 
 

@@ -69,7 +69,7 @@ def normalise(q: FloatArray) -> FloatArray:
 
 
 def is_unit(q: FloatArray, tolerance: float = 1e-3) -> npt.NDArray[np.bool_]:
-    """Return (...) whether each quaternion is finite and of unit length within `tolerance`."""
+    """Return whether each quaternion is finite and of unit length within `tolerance`, (...)."""
     norm_squared = np.einsum("...i,...i->...", q, q)
     # |norm - 1| <= tolerance without a square root; comparisons with NaN are false.
     low, high = (1.0 - tolerance) ** 2, (1.0 + tolerance) ** 2
@@ -205,7 +205,7 @@ def from_euler(order: str, angles_rad: FloatArray) -> FloatArray:
 
 
 def to_euler(order: str, q: FloatArray) -> FloatArray:
-    """Return angles (..., 3), radians, from which `from_euler` makes the same rotation.
+    """Return the Euler angles (..., 3), radians, of which `from_euler` makes the same rotation.
 
     At a gimbal lock the third angle is set to zero, as only the sum or the difference of two angles
     is determined.

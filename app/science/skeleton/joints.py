@@ -37,4 +37,4 @@ JOINT_INDEX: dict[str, int] = {name: index for index, name in enumerate(JOINT_NA
 PARENTS: tuple[int, ...] = tuple(
     -1 if parent is None else JOINT_INDEX[parent] for parent in _PARENT_OF.values()
 )
-"""Index of each joint's parent; -1 for the hips."""
+"""The index of each joint's parent; -1 for the hips."""

@@ -90,8 +90,9 @@ class Skeleton:
             the T-pose above the floor.
         ends_m: (22, 3) anatomical end of each joint's bone in the joint's frame: the next joint,
             the tip of the middle finger, the top of the head, the tip of the toes.
-        capsule_starts_m, capsule_ends_m: (22, 3) axis of each body part's capsule in its frame;
-        equal for the head, which is a sphere, and shortened by the radius at free ends.
+        capsule_starts_m: (22, 3) start of the axis of each body part's capsule in its frame.
+        capsule_ends_m: (22, 3) end of that axis; the same as the start for the head, which is a
+            sphere, and shortened by the radius at free ends.
         radii_m: (22,) capsule radii.
     """
 

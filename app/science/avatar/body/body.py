@@ -14,7 +14,7 @@ from types import MappingProxyType
 
 from app.science.avatar.body.figure import Figure
 from app.science.avatar.body.hulls import Piece
-from app.science.avatar.body.own_bones import LIKE_A_PERSONS, own_bones, sole_lift_m
+from app.science.avatar.body.own_bones import PERSON_SHAPED, own_bones, sole_lift_m
 from app.science.avatar.body.parts import FINGER_PARTS, PARENT_OF, PART_NAMES, SIDES
 from app.science.avatar.body.proportions import BodyError, Proportions, proportions
 from app.science.avatar.body.shapes import Shape, fingers_of, mitten, shapes_of
@@ -31,7 +31,9 @@ REQUIRED_PARTS: tuple[str, ...] = (
 
 @dataclass(frozen=True)
 class BodyPart:
-    """One rigid part of a body; its frame lies in its joint, parallel to the world in the T-pose.
+    """One rigid part of a body, with its connection to its parent, its bone and its shapes.
+
+    Its frame has its origin in its joint and is parallel to the world in the T-pose.
 
     Attributes:
         name: HumanBodyBones name.
@@ -171,7 +173,7 @@ def _shapes(
         carrier = _carrier_of(part, present)
         if part in FINGER_PARTS and carrier not in FINGER_PARTS:
             continue  # a finger that the model lacks
-        own = shapes_of(expected if part.endswith(LIKE_A_PERSONS) else bones, part)
+        own = shapes_of(expected if part.endswith(PERSON_SHAPED) else bones, part)
         if part.endswith("Hand") and not _has_fingers(part, present):
             own = (mitten(expected, part),)
         offset = v_subtract(places[part], places[carrier])

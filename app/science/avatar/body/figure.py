@@ -17,7 +17,7 @@ import numpy as np
 from app.science.avatar.body.hulls import Piece, piece_of
 from app.science.avatar.body.humanoid import Humanoid, HumanoidError
 from app.science.avatar.body.parts import FINGERS, PART_NAMES, SIDES
-from app.science.avatar.body.proportions import LEAST, MOST, BodyError, segment_lengths
+from app.science.avatar.body.proportions import MIN_RATIO, MAX_RATIO, BodyError, segment_lengths
 from app.science.rotations import Vector, v_scale
 
 _SHORTEST, _LONGEST = 0.3, 3.0
@@ -77,7 +77,7 @@ def figure_of(humanoid: Humanoid) -> Figure:
     """Measure a humanoid model.
 
     Raises:
-        HumanoidError: no person has its stature or one of its lengths.
+        HumanoidError: its stature, or one of its lengths, is impossible for a person.
     """
     stature = round(humanoid.stature_m, _DIGITS)
     try:
@@ -94,7 +94,7 @@ def figure_of(humanoid: Humanoid) -> Figure:
                 f" about {expected[name]:.3f} m is expected. Check the bones between which it was"
                 f" measured: {_BETWEEN[name]}."
             )
-        counted = min(max(ratio, LEAST + _JUST_INSIDE), MOST - _JUST_INSIDE) * expected[name]
+        counted = min(max(ratio, MIN_RATIO + _JUST_INSIDE), MAX_RATIO - _JUST_INSIDE) * expected[name]
         if abs(counted - length) > _JUST_INSIDE * length:
             notes.append(
                 f"The {_WORDS[name]} of {length:.3f} m is unusual; masses are computed with"
@@ -135,7 +135,7 @@ _BONES = {
 
 
 def _measured(humanoid: Humanoid) -> Iterator[tuple[str, float]]:
-    """Yield (segment, length); the length is the mean of both sides."""
+    """Yield the name and the measured length of each segment, the mean of both sides."""
     places = {part: own.place_m for part, own in humanoid.parts.items()}
     for name, (start, end) in _BONES.items():
         yield name, _mean(dist(places[f"{s}{start}"], places[f"{s}{end}"]) for s in SIDES)
@@ -152,7 +152,7 @@ def _measured(humanoid: Humanoid) -> Iterator[tuple[str, float]]:
 
 
 def _hand(humanoid: Humanoid, side: str) -> Iterator[float]:
-    """Yield the length from the wrist to the fingertips, by the skin, or else by the knuckles.
+    """Yield the length of a hand, measured on its skin, or else estimated from its middle knuckle.
 
     Yield nothing for a hand without skin and middle finger.
     """

@@ -2,7 +2,7 @@
 
 The hull of a body part may have hundreds of corners, and each costs time at every contact. So a
 piece starts with the outermost points along 26 directions; the point farthest outside is added
-repeatedly until every point is inside or at most `CLOSE_M` outside, or the piece has `MOST`
+repeatedly until every point is inside or at most `TOLERANCE_M` outside, or the piece has `MAX_CORNERS`
 corners. The outermost points along 1000 directions are considered before all others. The distance
 by which the farthest point remains outside is stored with the piece.
 
@@ -22,10 +22,10 @@ from app.science.rotations import FloatArray, Vector
 if TYPE_CHECKING:
     from scipy.spatial import ConvexHull
 
-MOST: Final = 128
-CLOSE_M: Final = 0.001
+MAX_CORNERS: Final = 128
+TOLERANCE_M: Final = 0.001
 GRID_M: Final = 1e-5
-THINNEST_M: Final = 0.001
+MIN_THICKNESS_M: Final = 0.001
 """Least thickness of a piece, as twice its volume over its surface: a thinner one is a sheet, which
 nothing can rest against."""
 _DIGITS = 5
@@ -34,7 +34,7 @@ _CANDIDATES = 1000
 
 
 def _sphere_directions(count: int) -> FloatArray:
-    """Return (count, 3) directions spread evenly over the sphere, on a golden-angle spiral."""
+    """Return directions spread evenly over the sphere, on a golden-angle spiral, (count, 3)."""
     step = np.arange(count)
     turn, height = step * np.pi * (3.0 - np.sqrt(5.0)), 1.0 - (2.0 * step + 1.0) / count
     radius = np.sqrt(1.0 - height**2)
@@ -72,7 +72,7 @@ def piece_of(points_m: FloatArray) -> Piece | None:
         return None
     try:
         outer = _hull(points)
-        if 2.0 * outer.volume < THINNEST_M * outer.area:
+        if 2.0 * outer.volume < MIN_THICKNESS_M * outer.area:
             return None
         corners = points[np.sort(outer.vertices)]
         piece = _thinned(corners)
@@ -82,16 +82,16 @@ def piece_of(points_m: FloatArray) -> Piece | None:
 
 
 def _thinned(corners: FloatArray) -> "ConvexHull":
-    if len(corners) <= MOST:
+    if len(corners) <= MAX_CORNERS:
         return _hull(corners)
     considered = corners[_outermost(corners, _SPHERE_DIRECTIONS)]
     chosen = considered[_outermost(considered, _DIRECTIONS)]
     while True:
         hull = _hull(chosen)
         heights = _heights(hull, considered)
-        if heights.max() <= CLOSE_M and considered is not corners:
+        if heights.max() <= TOLERANCE_M and considered is not corners:
             considered, heights = corners, _heights(hull, corners)
-        if heights.max() <= CLOSE_M or len(chosen) >= MOST:
+        if heights.max() <= TOLERANCE_M or len(chosen) >= MAX_CORNERS:
             return hull
         chosen = np.vstack((chosen, considered[int(np.argmax(heights))]))
 
@@ -102,7 +102,10 @@ def _outermost(points: FloatArray, directions: FloatArray) -> list[int]:
 
 
 def _heights(hull: "ConvexHull", points: FloatArray) -> FloatArray:
-    """Return (N,) the distance of each point outside its farthest face; below 0 inside the hull."""
+    """Return how far each point lies outside the hull, (N,); negative for points inside.
+
+    It is the greatest signed distance from the plane of a face.
+    """
     normals, offsets = hull.equations[:, :3], hull.equations[:, 3]
     heights: FloatArray = (points @ normals.T + offsets).max(axis=1)
     return heights

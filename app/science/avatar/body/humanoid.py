@@ -11,7 +11,8 @@ from app.science.rotations import FloatArray, Vector
 
 
 class HumanoidError(ValueError):
-    """A model is not a humanoid body: a part is missing, or its bones form no human skeleton."""
+    """A model is not a humanoid body: a part is missing, or its bones do not form a human skeleton.
+    """
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,7 +13,7 @@ from app.science.rig import Rig
 _BELOW = 0.4
 """Least distance of the feet below the hips, as a share of the distance from hips up to head."""
 _BACKWARDS = 0.01
-"""Distance of the toes behind the ankle from which feet point backwards, as a share of the
+"""Least distance of the toes behind the ankle that counts as pointing backwards, as a share of the
 stature."""
 _LISTED_BONES = 30
 
@@ -57,7 +57,7 @@ def check_standing(rig: Rig, bones: Mapping[str, int]) -> None:
 def check_feet(parts: Mapping[str, HumanoidPart], stature_m: float) -> None:
     """Check that the feet of a body in the T-pose point forward, along -z.
 
-    If they do not, left and right are swapped. Raises HumanoidError.
+    Raises HumanoidError if they point backwards, as left and right are then swapped.
     """
     distances_behind_m = []
     for side in ("Left", "Right"):

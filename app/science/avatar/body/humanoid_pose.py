@@ -3,14 +3,14 @@
 1. The **bones** must form a body, or an error names what is missing or misplaced.
 2. **Up** is y; where the head lies over the hips along another axis, the model is turned.
 3. **Size**: where no person has the stature in metres, other units are tried; where none fits, only
-the proportions are used, as a body is scaled to a person's stature anyway.
+   the proportions are used, as a body is scaled to a person's stature anyway.
 4. **T-pose** by `app.science.retargeting.t_pose`: trunk, legs and arms are aligned with their axes;
-feet, head and collar bones stay as they are, and fingers keep their pose relative to the hand. Each
-vertex moves rigidly with the bone that has the most influence on it. The model is then turned to
-face -z.
+   feet, head and collar bones stay as they are, and fingers keep their pose relative to the hand.
+   Each vertex moves rigidly with the bone that has the most influence on it. The model is then
+   turned to face -z.
 5. The **soles** are the lowest skin of the feet. The **stature** is computed from the height of the
-head's joint above them, which is .875 of the stature in `app.science.skeleton`: the top of a mesh
-may be hair, a hat or horns.
+   head's joint above them, which is .875 of the stature in `app.science.skeleton`: the top of a
+   mesh may be hair, a hat or horns.
 
 Vertices of bones that are not body parts belong to the nearest bone above that is one; those of
 bones above the hips belong to the hips.
@@ -134,7 +134,7 @@ def _in_metres(mesh: RiggedMesh, notes: list[str]) -> RiggedMesh:
 
 
 def _in_t_pose(mesh: RiggedMesh) -> tuple[FloatArray, FloatArray]:
-    """Return joints (J, 3) and vertices (V, 3) in the T-pose, facing -z."""
+    """Return the joints (J, 3) and the vertices (V, 3) in the T-pose, facing -z."""
     rig = mesh.rig
     named = {
         part: rig.names[bone] for part, bone in mesh.bones.items() if part in JOINT_NAMES
@@ -152,7 +152,7 @@ def _in_t_pose(mesh: RiggedMesh) -> tuple[FloatArray, FloatArray]:
 
 
 def _parts_of_bones(mesh: RiggedMesh) -> IndexArray:
-    """Return (J,) the index in `PART_NAMES` of the part that each bone belongs to."""
+    """Return the index in `PART_NAMES` of the part that each bone belongs to, (J,)."""
     part_of_bone = {bone: PART_NAMES.index(part) for part, bone in mesh.bones.items()}
     found = np.zeros(mesh.rig.joint_count, dtype=np.int64)  # 0 is the hips
     for bone, parent in enumerate(mesh.rig.parents):

@@ -130,7 +130,7 @@ def _plus(a: Tensor, b: Tensor, factor: float) -> Tensor:
 
 
 def _offset(mass: float, center: Vector, point: Vector) -> Tensor:
-    """Return Steiner's term: the inertia of a point mass at `center` about `point`."""
+    """Return the inertia of a point mass at `center` about `point` (parallel axis theorem)."""
     x, y, z = (c - p for c, p in zip(center, point, strict=True))
     return (
         mass * (y * y + z * z), mass * (x * x + z * z), mass * (x * x + y * y),

@@ -27,7 +27,7 @@ LAYERS: tuple[str, ...] = (
     "left_hand", "right_hand", "left_foot", "right_foot",
 )  # fmt: skip
 SCENE_BIT = 1
-"""Bit of everything that is not a body; scene geoms have it as `conaffinity`."""
+"""Bit for collisions with the scene; geoms of the scene have it as `conaffinity`."""
 
 
 def _layer(part: str) -> str:
@@ -84,7 +84,10 @@ def collision_bits(part: str, *, self_collision: bool) -> CollisionBits:
 
 
 def collide(part: str, other: str) -> bool:
-    """Return whether the layers of two body parts collide; connected parts never do."""
+    """Return whether the layers of two body parts collide.
+
+    Parts that are attached to each other never collide, whatever their layers (`excluded_pairs`).
+    """
     return frozenset((LAYER_OF[part], LAYER_OF[other])) in COLLIDING
 
 

@@ -94,7 +94,10 @@ def body_masses(body: Body, total_kg: float, *, population: Population = "averag
 
 
 class _MassDistribution:
-    """Distribute the mass of a complete body, in the world frame of the T-pose until `parts`."""
+    """Computes the inertial properties of all parts of a complete body from its segments.
+
+    It works in the world frame of the T-pose; `parts` converts the results to the parts' frames.
+    """
 
     def __init__(self, bones: Proportions, total_kg: float, population: Population) -> None:
         self._bones = bones
@@ -104,7 +107,7 @@ class _MassDistribution:
         self._parts: dict[str, Inertial] = {}
 
     def parts(self) -> dict[str, Inertial]:
-        """Return every part in its own frame."""
+        """Return the inertial properties of every part, each in the part's own frame."""
         self._trunk()
         self._head()
         for side in SIDES:
@@ -155,7 +158,7 @@ class _MassDistribution:
         )
 
     def _shoulder_share_m(self, row: Segment, low: Vector, top: Vector) -> float:
-        # Two thirds of the mass at this distance must leave something of the segment's inertia.
+        # The inertia of two thirds of the mass at this distance must be less than the segment's.
         length = top[1] - low[1]
         most = sqrt(0.6) * min(row.sagittal, row.longitudinal) * length
         return min(_SHOULDER_SHARE_AT * self._places["RightUpperArm"][0], most)

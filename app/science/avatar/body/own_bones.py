@@ -15,7 +15,7 @@ from app.science.avatar.body.proportions import Proportions
 from app.science.rotations import Vector, v_add, v_length, v_scale, v_subtract
 
 _SHORTEST_M = 1e-4
-LIKE_A_PERSONS = ("Hand", "Foot", "Toes", "Head")
+PERSON_SHAPED = ("Hand", "Foot", "Toes", "Head")
 """Parts that keep a person's simple shapes, boxes and a sphere, as no single bone defines them."""
 
 
@@ -34,12 +34,12 @@ def own_bones(bones: Proportions, figure: Figure) -> Proportions:
         if above is not None and _ends_at(part) and v_length(joints[part]) > _SHORTEST_M:
             ends[above] = joints[part]
         if part in FINGER_PARTS and part.endswith("Distal"):
-            ends[part] = _straight_on(joints[part], bones.ends_m[part])
+            ends[part] = _straight_tip(joints[part], bones.ends_m[part])
     return replace(bones, joints_m=MappingProxyType(joints), ends_m=MappingProxyType(ends))
 
 
 def sole_lift_m(part: str, bones: Proportions, places: Mapping[str, Vector]) -> Vector:
-    """Return the offset that brings a person's shape of foot or toes down or up to the floor.
+    """Return the vertical offset that puts the sole of a person's foot or toes on the floor.
 
     It is zero for all other parts.
     """
@@ -55,7 +55,7 @@ def _ends_at(part: str) -> bool:
     return "Middle" in part or not part.endswith("Proximal")
 
 
-def _straight_on(joint: Vector, end: Vector) -> Vector:
+def _straight_tip(joint: Vector, end: Vector) -> Vector:
     """Return the tip of a finger, in the direction of the preceding bone."""
     length = v_length(joint)
     return v_scale(joint, v_length(end) / length) if length > _SHORTEST_M else end

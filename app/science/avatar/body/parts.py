@@ -104,9 +104,8 @@ _TRUNK: tuple[_AxisRow, ...] = (
     ("Z", _BACK, "bend to the left"),
     ("Y", _UP, "turn to the left"),
 )
-# Three axes come close to gimbal lock where the second is near 90 degrees: first and third lie
-# along
-# each other, and tiny movements turn both far. With Y, Z, X, arms hanging at the sides are there:
+# Three axes come close to gimbal lock where the second is near 90 degrees: first and third are
+# aligned, and tiny movements turn both far. With Y, Z, X, arms hanging at the sides are there:
 # in four walks, up to all frames were within 10 degrees of it, and angles moved at up to 280 rad/s.
 # With Z, X, Y no frame is, at 8 rad/s at most (CMU 02_01, 02_06, 06_01, 12_02). Z, Y, X works
 # as well there, but locks where arms point forward, as in reaching. The hand's turn comes first, so
@@ -177,7 +176,10 @@ AXIS_NAMES: tuple[str, ...] = tuple(axis.name for axis in AXES)
 
 
 def mirrored_name(name: str) -> str:
-    """Return the same part or axis on the other side; for one of the trunk, the name itself."""
+    """Return the name of the same part or axis on the other side.
+
+    The name of a part or axis of the trunk or head is returned unchanged.
+    """
     if name.startswith("Left"):
         return f"Right{name.removeprefix('Left')}"
     return f"Left{name.removeprefix('Right')}" if name.startswith("Right") else name

@@ -18,7 +18,7 @@ from app.science.rotations import Vector, v_add
 from app.science.skeleton import JOINT_INDEX, Skeleton, SkeletonError, build_skeleton
 
 _FOOT_LENGTH, _BEHIND_THE_ANKLE = 0.152, 0.25
-LEAST, MOST = 0.7, 1.3
+MIN_RATIO, MAX_RATIO = 0.7, 1.3
 """Permitted range of a measured length, as a multiple of the one expected for the stature."""
 
 SEGMENT_NAMES: tuple[str, ...] = (
@@ -152,7 +152,7 @@ def _check(expected: Mapping[str, float], segments_m: Mapping[str, float]) -> No
             raise BodyError(
                 f"There is no segment {name!r}: give lengths only for {', '.join(SEGMENT_NAMES)}."
             )
-        low, high = LEAST * expected[name], MOST * expected[name]
+        low, high = MIN_RATIO * expected[name], MAX_RATIO * expected[name]
         if not low <= length <= high:
             raise BodyError(
                 f"A {name} of {length} m does not fit the stature: it must be between {low:.3f} and"

@@ -124,7 +124,7 @@ def _trunk(body: Proportions, part: str) -> Capsule:
 
 
 def _axis_end(body: Proportions, part: str) -> Vector:
-    """Return the end of a capsule's axis, so that its cap reaches just to the tip."""
+    """Return the end of a capsule's axis for which the cap ends at the tip of the bone."""
     x, y, z = body.ends_m[part]
     length = v_length((x, y, z))
     factor = max(length - body.radii_m[part], 0.0) / length

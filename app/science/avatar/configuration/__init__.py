@@ -11,7 +11,7 @@ from app.science.avatar.configuration.axis_settings import (
     degrees_of,
 )
 from app.science.avatar.configuration.configuration import (
-    USUAL_MASS_KG,
+    DEFAULT_MASS_KG,
     Configuration,
     Hips,
     TargetSpace,
@@ -43,7 +43,7 @@ __all__ = [
     "LIMIT_SOLREF",
     "SIMPLE",
     "TIMESTEP_S",
-    "USUAL_MASS_KG",
+    "DEFAULT_MASS_KG",
     "WALL_SOLIMP",
     "WALL_SOLREF",
     "WELD_SOLIMP",

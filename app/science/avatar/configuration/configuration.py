@@ -30,7 +30,7 @@ from app.science.avatar.configuration.model_options import ColliderKind
 Hips = Literal["carried", "welded"]
 TargetSpace = Literal["local", "world"]
 
-USUAL_MASS_KG: Final = 72.0
+DEFAULT_MASS_KG: Final = 72.0
 """Mass of the thesis's avatar (figure 6.1)."""
 MIN_MASS_KG: Final = 1.0
 MAX_MASS_KG: Final = 500.0
@@ -72,7 +72,7 @@ class Configuration:
     """
 
     axes: Mapping[str, AxisSettings]
-    total_mass_kg: float = USUAL_MASS_KG
+    total_mass_kg: float = DEFAULT_MASS_KG
     population: Population = "average"
     gravity: bool = True
     self_collision: bool = True

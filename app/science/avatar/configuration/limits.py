@@ -126,11 +126,11 @@ def _limits(part: str, letter: str) -> AxisLimits:
 ANATOMIC: Mapping[str, AxisLimits] = MappingProxyType(
     {axis.name: _limits(axis.part, axis.letter) for axis in AXES}
 )
-"""The limits of a human body, by the names of the axes."""
+"""Limits of a human body, by the names of the axes."""
 FREE: Mapping[str, AxisLimits] = MappingProxyType(
     {**ANATOMIC, "LeftLowerArmZ": _FREE_ELBOW, "RightLowerArmZ": _FREE_ELBOW}
 )
-"""The limits of a human body, but with the elbow's third axis free."""
+"""Limits of a human body, but with the elbow's third axis free."""
 
 
 def limits_of(preset: Preset) -> Mapping[str, AxisLimits]:

@@ -24,7 +24,7 @@ times the default gains, 2 ms at eight times."""
 HIPS_TARGET = "HipsTarget"
 """The mocap body that pulls welded hips; carried hips are a mocap body themselves."""
 LIMIT_SOLREF = (2.0 * TIMESTEP_S, 1.0)
-"""A limit pushes back as stiffly as two steps allow, critically damped: no rubbery joints."""
+"""Joint limits are as stiff as a time constant of two steps allows, and critically damped."""
 WALL_SOLREF = (2.0 * TIMESTEP_S, 1.0)
 WALL_SOLIMP = (0.99, 0.999, 0.001, 0.5, 2.0)
 """With `WALL_SOLREF` a hand at 2 m/s enters a wall by some 4 mm and never passes it."""
@@ -80,4 +80,4 @@ class Colliders:
 
 
 SIMPLE: Final = Colliders()
-"""Capsules and boxes for every part."""
+"""Colliders that use the simple shapes of every part."""

@@ -7,7 +7,7 @@ their equations. Free unknowns that left their bounds are then wrong, and so are
 residual b - H x draws inwards. All wrong ones switch at the same time, as long as that makes their
 number smaller than ever before, with three attempts to spare; after those only the last of them
 switches, which is slow but always terminates. The solution is unique, so it does not depend on the
-order of the switches. A moving body needs few of them; `MOST_PASSES` is a safety limit.
+order of the switches. A moving body needs few of them; `MAX_PASSES` is a safety limit.
 
 Source: block principal pivoting, Judice and Pires (1994), Computers & Operations Research 21(5),
 587-596.
@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from app.science.rotations import FloatArray
 
-MOST_PASSES = 200
+MAX_PASSES = 200
 _SPARE_ATTEMPTS = 3
 _TOLERANCE = 1e-12
 _Flags = npt.NDArray[np.bool_]
@@ -27,12 +27,18 @@ _Flags = npt.NDArray[np.bool_]
 def bounded_step(
     hessian: FloatArray, linear: FloatArray, low: FloatArray, high: FloatArray
 ) -> FloatArray:
-    """Return the solution x (n,) for H `hessian` (n, n), b `linear` (n,) and bounds (n,)."""
+    """Return the x (n,) that minimises the programme in the module docstring.
+
+    Args:
+        hessian: H, (n, n).
+        linear: b, (n,).
+        low, high: bounds, (n,).
+    """
     at_low: _Flags = np.zeros(len(linear), dtype=np.bool_)
     at_high = at_low.copy()
     step = np.asarray(np.linalg.solve(hessian, linear))
     fewest, spare = len(linear) + 1, _SPARE_ATTEMPTS
-    for _ in range(MOST_PASSES):
+    for _ in range(MAX_PASSES):
         residual = linear - hessian @ step
         free = ~(at_low | at_high)
         below, above = free & (step < low - _TOLERANCE), free & (step > high + _TOLERANCE)

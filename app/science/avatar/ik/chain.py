@@ -80,9 +80,9 @@ class Chain:
         return rotation
 
     def jacobian(self, goal: int) -> FloatArray:
-        """Return the Jacobian of a tracked part, (6, moving): velocity over angular velocity.
+        """Return the Jacobian of a tracked part in the world, (6, moving).
 
-        Both are in the world.
+        Its first three rows are linear, the others angular velocities.
         """
         linear, angular = self._jacobian
         mujoco.mj_jacBody(self.model, self.data, linear, angular, self._bodies[goal])

@@ -66,7 +66,7 @@ def rotation_between(current: Quaternion, goal: Quaternion) -> Vector:
 
 
 def turned(current: Quaternion, by: Vector) -> Quaternion:
-    """Return `current` turned by a rotation vector in the world."""
+    """Return `current` rotated by a rotation vector in the world."""
     x, y, z = by
     angle = sqrt(x * x + y * y + z * z)
     half = sin(angle / 2.0) / angle if angle > _TINY else 0.5
@@ -104,13 +104,14 @@ class Weights:
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """The pose of one frame.
+    """The pose of one frame, and how far it is from the goals.
 
     Attributes:
         angles_rad: (axes,) every hinge of the model in its order; see `axis_names`.
         hips_position_m, hips_rotation: (3,) and (4,) wxyz, world_from_hips.
-        position_errors_m, rotation_errors_rad: (6,) distance of each part from its goal, in the
-        order of `GOAL_PARTS`; NaN where it is not tracked.
+        position_errors_m: (6,) distance of each part from its goal, in the order of `GOAL_PARTS`;
+            NaN where it is not tracked.
+        rotation_errors_rad: (6,) likewise the angle between each part and its goal.
     """
 
     angles_rad: FloatArray
@@ -272,7 +273,7 @@ class InverseKinematics:
 
 
 def _rigid(arm: FloatArray) -> npt.NDArray[np.float64]:
-    """Return the (6, 6) Jacobian of a point at `arm` from the hips for movements of the hips."""
+    """Return the Jacobian (6, 6) of a point at `arm` from the hips for movements of the hips."""
     x, y, z = arm.tolist()
     matrix = np.eye(6)
     matrix[:3, 3:] = ((0.0, z, -y), (-z, 0.0, x), (y, -x, 0.0))

@@ -28,7 +28,7 @@ from typing import Final
 
 from app.science.avatar.body import FINGER_PARTS, Body, BodyMasses, body_masses, build_body
 from app.science.avatar.configuration import (
-    USUAL_MASS_KG,
+    DEFAULT_MASS_KG,
     AxisSettings,
     Configuration,
     Preset,
@@ -59,7 +59,7 @@ MAX_TORQUES_NM: Mapping[str, float] = MappingProxyType(
 def default_settings(
     body: Body, masses: BodyMasses, *, preset: Preset = "anatomic"
 ) -> dict[str, AxisSettings]:
-    """Return settings for every axis of the parts of `body`, axis name -> settings."""
+    """Return the settings of every axis of the parts of `body`, axis name -> settings."""
     limits = limits_of(preset)
     settings: dict[str, AxisSettings] = {}
     for axis, hinge in hinges_of(body, masses).items():
@@ -91,10 +91,10 @@ USUAL_STATURE_M: Final = 1.75
 
 
 def default_configuration(*, limits: Preset = "anatomic") -> Configuration:
-    """Return the configuration for every axis of the whole body.
+    """Return the configuration of the whole body that Reembody ships with.
 
-    The preset `free` lets the elbow turn about its third axis.
+    The preset `free` of the limits lets the elbow turn about its third axis.
     """
     body = build_body(USUAL_STATURE_M)
-    masses = body_masses(body, USUAL_MASS_KG)
+    masses = body_masses(body, DEFAULT_MASS_KG)
     return Configuration(default_settings(body, masses, preset=limits))

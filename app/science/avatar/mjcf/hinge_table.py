@@ -23,7 +23,9 @@ IndexArray = npt.NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class HingeTable:
-    """Indices of n hinges, in the model's order, and of bodies in the arrays of a MuJoCo model.
+    """Indices of an avatar's hinges and bodies in the arrays of its MuJoCo model.
+
+    The n hinges are in the model's order.
 
     Attributes:
         names: of the axes with a hinge.
@@ -39,8 +41,8 @@ class HingeTable:
             hips.
         mocap: row of the body whose pose is set: the hips themselves, or the body they are welded
             to.
-        root_angles, root_speeds: first index of the welded hips in `qpos` and `qvel`; None where
-        the hips are carried.
+        root_angles: first index of welded hips in `qpos`; None where the hips are carried.
+        root_speeds: first index of welded hips in `qvel`; None where the hips are carried.
     """
 
     names: tuple[str, ...]

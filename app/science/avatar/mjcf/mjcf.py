@@ -64,7 +64,7 @@ _INDENT = "  "
 def number(value: float) -> str:
     """Format a number with twelve digits.
 
-    That is more than any measurement has, and fewer than the digits in which machines may differ.
+    That is more than any measurement has, and few enough to be the same on every machine.
     """
     text = f"{value:.12g}"
     return "0" if text == "-0" else text
@@ -185,9 +185,8 @@ class _Model:
         gravity = (0.0, -9.81 if self._options.gravity else 0.0, 0.0)
         option = root.add("option", timestep=TIMESTEP_S, gravity=gravity, integrator="implicitfast")
         if self._pieces or "none" in self._colliders.kinds.values():
-            # When the model is loaded, the tree of the midphase leaves out geoms that touch
-            # nothing,
-            # so geoms whose collisions are switched on later would never be found.
+            # When the model is loaded, the tree of the midphase leaves out geoms that do not
+            # collide, so those whose collisions are switched on later would never be found.
             option.add("flag", midphase="disable")
         if self._pieces:
             assets = root.add("asset")

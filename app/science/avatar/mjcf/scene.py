@@ -41,11 +41,11 @@ FLOOR_ONLY = Scene()
 
 
 def scene_of(layouts: Iterable[TaskLayout], *, floor: bool = True) -> Scene:
-    """Return the scene of a study's tasks: a box for each surface.
+    """Return the scene of a study's tasks, with a box for each surface of the layouts.
 
-    An open box of a task has one for its panel and one for each wall. Each is named after its
-    surface (`hand/2/left`), so a contact names the surface that was touched. The start square is a
-    mark on the floor that feet stand on, not an obstacle.
+    An open box of a task becomes one box for its panel and one for each wall. Each is named after
+    its surface (`hand/2/left`), so a contact names the surface that was touched. The start square
+    is a mark on the floor that feet stand on, not an obstacle.
     """
     boxes = tuple(
         SceneBox(

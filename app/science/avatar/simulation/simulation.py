@@ -17,7 +17,7 @@ Irregular input from a tracker is handled as follows:
 - A part that is then deep inside a wall, or inside another part, is pushed out gently
   (`soft_contacts`).
 - If the simulation still fails (a state that is not finite, to which MuJoCo would respond by
-  restarting at time zero, or speeds above `WILD_RAD_S`), the angles before the frame are restored,
+  restarting at time zero, or speeds above `FAILURE_RAD_S`), the angles before the frame are restored,
   at rest and within their limits, and the clock continues.
 
 `health` counts each of these. Added latency (`switches.set_delay`) delays the motors' targets by
@@ -76,10 +76,10 @@ class Health:
 
 
 MAX_SPEED_RAD_S = 40.0
-WILD_RAD_S = 1000.0
+FAILURE_RAD_S = 1000.0
 """Norm of all speeds above which the simulation counts as failed; random poses as targets cause up
 to 500."""
-_FARTHEST = 1e5
+_FAILURE_ANGLES = 1e5
 _log = logging.getLogger(__name__)
 
 
@@ -105,7 +105,7 @@ class PhysicsAvatar:
         except ValueError as error:
             raise SimulationError(f"MuJoCo cannot load the model: {error}") from error
         self._mujoco, self._kernels = mujoco, frame_kernels
-        # By default MuJoCo writes warnings to a file in the current folder.
+        # Without this MuJoCo writes warnings to a file in the current folder.
         mujoco.set_mju_user_warning(_log.warning)
         # Failures are handled here, not by MuJoCo's reset to time zero.
         self.model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
@@ -256,7 +256,7 @@ class PhysicsAvatar:
     def _failed(self) -> bool:
         qpos, qvel = self._qpos, self._qvel
         # Comparisons with NaN are false.
-        return not (np.dot(qvel, qvel) < WILD_RAD_S**2 and np.dot(qpos, qpos) < _FARTHEST**2)
+        return not (np.dot(qvel, qvel) < FAILURE_RAD_S**2 and np.dot(qpos, qpos) < _FAILURE_ANGLES**2)
 
     def _restore(self, previous_qpos: FloatArray) -> None:
         self._restored += 1

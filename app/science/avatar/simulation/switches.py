@@ -141,7 +141,7 @@ class Switches:
             )
 
     def _shapes(self, part: str, kind: ColliderKind) -> npt.NDArray[np.bool_]:
-        """Return (ngeom,) whether each geom is a shape of this part and kind."""
+        """Return whether each geom is a shape of this part and kind, (ngeom,)."""
         if kind == "none":
             return np.zeros_like(self._is_piece)
         own: npt.NDArray[np.bool_] = self._model.geom_bodyid == self._table.bodies[part]

@@ -49,9 +49,9 @@ class SurfaceTouches:
         self._continuing: Bools = np.zeros((len(surfaces), len(JOINT_INDEX)), dtype=np.bool_)
 
     def read(self) -> tuple[Bools, Bools]:
-        """Return two bool (S, 22): the touches of the last step, and what is near enough for one.
+        """Return which parts touch which surfaces, and which are near enough to continue a touch.
 
-        A touch that has begun continues while its part is near enough.
+        Both are bool (S, 22), after the simulation's last step.
         """
         touched = np.zeros_like(self._continuing)
         if self._data.ncon:
@@ -95,7 +95,7 @@ class SurfaceTouches:
 
 
 def _joints_of_geoms(model: "mujoco.MjModel") -> npt.NDArray[np.int64]:
-    """Return (n,) the joint of the skeleton that each geom counts as; -1 for the scene's."""
+    """Return the joint of the skeleton that each geom counts as, (n,); -1 for the scene's geoms."""
     joints = np.full(model.ngeom, -1, dtype=np.int64)
     for geom in range(model.ngeom):
         part: str | None = str(model.body(int(model.geom_bodyid[geom])).name)

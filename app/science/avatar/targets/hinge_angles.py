@@ -86,7 +86,7 @@ def _three(q: Quaternion, previous_angles: Vector) -> Vector:
 
 @compiled_fused
 def _two(q: Quaternion) -> tuple[float, float, float]:
-    """Return both angles of a part with two axes, and the angle of the rotation that remains."""
+    """Return both angles of a part with two axes, and the angle between its rotation and theirs."""
     w, x, y, z = q
     total, difference = atan2(x + y, w - z), atan2(x - y, w + z)
     near = (hypot(x + y, w - z) + hypot(x - y, w + z)) / 2

@@ -33,7 +33,8 @@ from app.science.joint_error import ERROR_JOINTS, Clipping, ReferenceMotion
 from app.science.rotations import FloatArray, is_unit
 
 GAP_S = 0.25
-"""After a longer gap the previous pose does not tell in which direction a hinge turned."""
+"""Longest gap between two frames; after a longer one, hinges restart, as the direction in which they
+turned is unknown."""
 _CHUNK_FRAMES = 1024
 _LETTERS = ("X", "Y", "Z")
 
@@ -104,7 +105,7 @@ def _usable(rotations: FloatArray) -> FloatArray:
 
 
 def _gaps(times_s: FloatArray) -> npt.NDArray[np.bool_]:
-    """Return (N,) whether there is a gap before each frame."""
+    """Return whether there is a gap before each frame, (N,)."""
     with np.errstate(invalid="ignore"):
         step_s = np.diff(times_s, prepend=np.nan)
         return np.asarray(~((step_s > 0.0) & (step_s <= GAP_S)))

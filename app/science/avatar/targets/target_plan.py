@@ -19,7 +19,7 @@ _BENDS: tuple[tuple[str, str, Letter, Letter], ...] = (
 
 @dataclass(frozen=True, eq=False)
 class TargetPlan:
-    """Indices and frames of D driven parts in the order of the body.
+    """Arrays that describe D driven parts, in the order of the body, for the compiled code.
 
     Attributes:
         rows: (D,) their rows in `PART_NAMES`.
@@ -27,9 +27,10 @@ class TargetPlan:
             driven part above, upwards; padded with -1.
         columns: (D,) each part's first column in `AXIS_NAMES`.
         counts: (D,) its number of axes.
-        frames: (D, 3, 3) its axes as columns, completed right-handed to three.
+        frames: (D, 3, 3) its axes as columns, completed to three so that they are right-handed.
         hands: (D,) 1 for a right-handed frame, -1 for a left-handed one.
-        bends: (H, 2) the bone above each hinge and the hinge, as indices from 0 to D - 1.
+        bends: (H, 2) the bone above each elbow or knee, and the part below, as indices from 0 to D
+            - 1.
         bend_frames: (H, 3, 3) as columns: the axis of the bend, the one across, the bone's own.
         wrists: (W, 2) columns of the wrist's and the forearm's turn about the forearm.
     """
@@ -79,12 +80,12 @@ def plan_targets(parts: Collection[str], locked: Collection[str]) -> TargetPlan:
 
 
 def _indices(values: object) -> IndexArray:
-    found = np.array(values, dtype=np.int64)
-    return found if found.size else np.zeros((0, 2), dtype=np.int64)
+    result = np.array(values, dtype=np.int64)
+    return result if result.size else np.zeros((0, 2), dtype=np.int64)
 
 
 def _folded(driven: list[str]) -> IndexArray:
-    chains = [[part, *_not_turning(part, frozenset(driven))] for part in driven]
+    chains = [[part, *_undriven_above(part, frozenset(driven))] for part in driven]
     longest = max(len(chain) for chain in chains)
     return _indices(
         [
@@ -94,14 +95,14 @@ def _folded(driven: list[str]) -> IndexArray:
     )
 
 
-def _not_turning(part: str, driven: frozenset[str]) -> list[str]:
+def _undriven_above(part: str, driven: frozenset[str]) -> list[str]:
     """Return the undriven parts between a part and the next driven part, or the hips, above it."""
-    found: list[str] = []
+    result: list[str] = []
     above = PARENT_OF[part]
     while above is not None and above != "Hips" and above not in driven:
-        found.append(above)
+        result.append(above)
         above = PARENT_OF[above]
-    return found
+    return result
 
 
 def _frame(part: str) -> FloatArray:

@@ -78,16 +78,16 @@ class Targets:
 
     @property
     def clipped(self) -> npt.NDArray[np.bool_]:
-        """Return (..., 91) whether the limits changed an angle by more than `ROUNDING_RAD`."""
+        """Return whether the limits changed each angle by more than `ROUNDING_RAD`, (..., 91)."""
         return np.asarray(np.abs(self.unclamped_rad - self.angles_rad) > ROUNDING_RAD)
 
     def clipped_share(self) -> FloatArray:
-        """Return (91,) the share of the frames in which an axis was clipped."""
+        """Return the share of the frames in which each axis was clipped, (91,)."""
         shares: FloatArray = np.atleast_2d(self.clipped).mean(axis=0)
         return shares
 
     def velocities_rad_s(self, rate_hz: float) -> FloatArray:
-        """Return (N, 91) speeds of the clamped angles by central differences.
+        """Return the speeds of the clamped angles by central differences, (N, 91).
 
         At the ends the differences are one-sided.
         """
@@ -141,7 +141,7 @@ class TargetAngles:
         *,
         restarts: npt.NDArray[np.bool_] | None = None,
     ) -> Targets:
-        """Follow a recording from its first frame.
+        """Return the target angles of a recording, followed from its first frame.
 
         The result is bitwise the same as that of `follow` frame by frame.
 
@@ -229,7 +229,7 @@ def rotations_of(
 
 
 def joint_rotations(angles_rad: FloatArray, hips: FloatArray) -> FloatArray:
-    """Return the 22 joints' local rotations (..., 22, 4) at angles (..., 91).
+    """Return the local rotations of the 22 joints (..., 22, 4) at angles (..., 91).
 
     Args:
         angles_rad: (..., 91).

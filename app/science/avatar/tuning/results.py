@@ -9,7 +9,7 @@ from app.science.avatar.tuning.plant import Pose
 from app.science.avatar.tuning.relay import Oscillation, RelaySettings
 from app.science.avatar.tuning.step_response import StepFigures
 
-USUAL_HEURISTIC: Final = "critical"
+DEFAULT_HEURISTIC: Final = "critical"
 MAX_ATTEMPTS: Final = 10
 Phase = Literal["relay", "steps"]
 
@@ -39,7 +39,7 @@ class TuningOptions:
         TuningError: an unknown heuristic, or a number out of range.
     """
 
-    heuristic: str = USUAL_HEURISTIC
+    heuristic: str = DEFAULT_HEURISTIC
     mirror: bool = False
     attempts: int = 3
     accepted_overshoot_percent: float = 5.0

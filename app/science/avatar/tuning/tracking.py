@@ -11,7 +11,7 @@ Either way, three kinds of error are reported:
 - against the clamped target, over all samples: what the body does within its limits;
 - the same separately for the samples in contact and without contact. A body in contact is where the
   floor or its own parts hold it, and no gains would move it elsewhere. An axis counts as in contact
-  while its part, or a part attached to that, touches something, and for `AFTERWARDS_S` longer;
+  while its part, or a part attached to that, touches something, and for `CONTACT_HOLD_S` longer;
 - against the unclamped target: what the person did, including the share that the limits cut off.
 """
 
@@ -34,7 +34,7 @@ from app.science.skeleton import Movement
 if TYPE_CHECKING:
     from app.science.avatar.simulation import Contact
 
-AFTERWARDS_S: Final = 0.1
+CONTACT_HOLD_S: Final = 0.1
 """How long after a contact an axis counts as in contact: the slowest motors are back at their
 targets by then."""
 EMPTY_SPACE: Final = Scene(floor=False)
@@ -141,7 +141,7 @@ def track(
             result.state.angles_rad,
             avatar.contacts(),
         )
-    return record.tracking(skipped, round(AFTERWARDS_S * rate_hz), avatar.axis_names)
+    return record.tracking(skipped, round(CONTACT_HOLD_S * rate_hz), avatar.axis_names)
 
 
 @dataclass(frozen=True)
@@ -199,11 +199,11 @@ class _Record:
                     self._touching[frame] |= _AXES_ABOVE[part]
         self._touches.append(frozenset(f"{contact.part}, {contact.other}" for contact in touching))
 
-    def tracking(self, skipped: int, afterwards: int, names: tuple[str, ...]) -> Tracking:
+    def tracking(self, skipped: int, hold_frames: int, names: tuple[str, ...]) -> Tracking:
         columns = [AXIS_NAMES.index(name) for name in names]
         clamped = self._clamped[skipped:, columns]
         unclamped = self._unclamped[skipped:, columns]
-        touching = _extended(self._touching[:, columns], afterwards)[skipped:]
+        touching = _extended(self._touching[:, columns], hold_frames)[skipped:]
         rms = np.degrees(np.sqrt(np.mean(clamped**2, axis=0)))
         return Tracking(
             rms_deg=MappingProxyType(dict(zip(names, rms.tolist(), strict=True))),
@@ -218,7 +218,7 @@ class _Record:
 
 
 def _axes_above(part: str) -> npt.NDArray[np.bool_]:
-    """Return (91,) whether each axis lies between the hips and the end of a part."""
+    """Return whether each axis lies between the hips and the end of a part, (91,)."""
     chain: set[str | None] = set()
     above: str | None = part
     while above is not None:

@@ -4,7 +4,7 @@
 2. A rule computes gains from the oscillation (`heuristics`).
 3. The whole body gets all the gains, and the step response of each axis is tested (`evaluation`).
 4. Axes with an objection (`objection`) are retried with a weaker relay, which means lower gains.
-After the last attempt the best gains are kept and the axis is flagged with the reason.
+   After the last attempt the best gains are kept and the axis is flagged with the reason.
 5. If anything changed since an axis was tested, the whole body is tested once more.
 
 Torque limits and joint limits stay unchanged. With `mirror` only the left side is measured; both

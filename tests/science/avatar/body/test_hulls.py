@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import ConvexHull
 
-from app.science.avatar.body.hulls import CLOSE_M, MOST, Piece, piece_of
+from app.science.avatar.body.hulls import TOLERANCE_M, MAX_CORNERS, Piece, piece_of
 from app.science.rotations import FloatArray
 
 GRID_M = 1e-5
@@ -35,9 +35,9 @@ def test_a_piece_holds_its_points(seed: int, count: int, size_m: float) -> None:
     piece = piece_of(points)
     assert piece is not None
     assert outside_m(piece, points) <= piece.outside_m + 2.0 * GRID_M
-    assert len(piece.corners_m) <= MOST
-    if len(piece.corners_m) < MOST - 1:
-        assert piece.outside_m <= CLOSE_M
+    assert len(piece.corners_m) <= MAX_CORNERS
+    if len(piece.corners_m) < MAX_CORNERS - 1:
+        assert piece.outside_m <= TOLERANCE_M
 
 
 def test_a_box_is_its_corners() -> None:
