@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from app.science.rig import BodyMotion, MarkerMotion, RigMotion, place
+from app.science.rig import BodyMotion, MarkerMotion, RigMotion, to_world
 from app.science.rotations import FloatArray
 
 _BLOCK_FRAMES = 512
@@ -63,7 +63,7 @@ def _values(motion: RigMotion | MarkerMotion | BodyMotion, block: slice) -> Floa
     elif isinstance(motion, BodyMotion):
         cells = np.concatenate((motion.positions_m[block], motion.rotations[block]), axis=-1)
     else:
-        placed = place(motion.rig, motion.root_positions_m[block], motion.rotations[block])
+        placed = to_world(motion.rig, motion.root_positions_m[block], motion.rotations[block])
         cells = np.concatenate(placed, axis=-1)
     return cells.reshape(len(cells), -1)
 

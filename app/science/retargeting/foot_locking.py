@@ -26,7 +26,7 @@ from app.science.retargeting.ground import Flat, Ground
 from app.science.retargeting.joint_map import JointMap
 from app.science.retargeting.leg_reach import Reach, longest_m, reach_for
 from app.science.retargeting.legs import Leg, Legs, legs_of
-from app.science.rig import Rig, RigError, RigMotion, place, to_local
+from app.science.rig import Rig, RigError, RigMotion, to_local, to_world
 from app.science.rotations import FloatArray, multiply
 
 _FLAT = Flat()
@@ -152,7 +152,7 @@ def _reach_targets(
     motion: RigMotion, legs: Legs, targets_m: FloatArray, root_m: FloatArray
 ) -> tuple[RigMotion, FloatArray]:
     """Return the movement with the ankles at their targets, and each foot's shortfall, (2, N)."""
-    positions, world = place(motion.rig, root_m, motion.rotations)
+    positions, world = to_world(motion.rig, root_m, motion.rotations)
     right = positions[:, legs.right.thigh] - positions[:, legs.left.thigh]
     short = np.empty(targets_m.shape[:2])
     result = world.copy()

@@ -12,7 +12,7 @@ import numpy as np
 from app.science.retargeting.joint_map import JointMap
 from app.science.retargeting.reference_avatars import REFERENCE_JOINT_MAP, reference_avatar
 from app.science.retargeting.transfer import Retargeter
-from app.science.rig import RigMotion, place, to_local
+from app.science.rig import RigMotion, to_local, to_world
 from app.science.rotations import FloatArray, from_rotation_vector, identity, multiply, rotate
 from app.science.skeleton import (
     JOINT_INDEX,
@@ -50,7 +50,7 @@ def movement_in_place(source: RigMotion, joint_map: JointMap, skeleton: Skeleton
     avatar = reference_avatar(skeleton.stature_m)
     retargeter = Retargeter(source.rig, joint_map, avatar, REFERENCE_JOINT_MAP)
     moved = retargeter.batch(source)
-    _, world = place(avatar, moved.root_positions_m, moved.rotations)
+    _, world = to_world(avatar, moved.root_positions_m, moved.rotations)
     world, root = _in_place(world, moved.root_positions_m, _PATH_SMOOTHING_S * source.rate_hz)
     if not set(_LEGS) & set(retargeter.carried):
         world, root = _standing(world, root, skeleton)

@@ -31,7 +31,7 @@ from app.science.retargeting.joint_map import JointMap
 from app.science.retargeting.plan import body_of, constant_factors, plan_of
 from app.science.retargeting.proportions import ScaledBy, scale_between
 from app.science.retargeting.t_pose import t_pose
-from app.science.rig import Rig, RigError, RigMotion, place
+from app.science.rig import Rig, RigError, RigMotion, to_world
 from app.science.rotations import FloatArray, Vector
 
 _FLAT = Flat()
@@ -208,7 +208,7 @@ class Retargeter:
         """Return the avatar's hip positions, (..., 3), for frames (..., 3) and (..., A, 4)."""
         if self._avatar_hips == 0:
             return roots
-        return place(self.avatar, roots, local)[0][..., self._avatar_hips, :]
+        return to_world(self.avatar, roots, local)[0][..., self._avatar_hips, :]
 
     def _standing(self, root: FloatArray, local: FloatArray, ground: Ground) -> float:
         points = self.foot_points.places_m(root, local)

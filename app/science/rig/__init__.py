@@ -1,6 +1,6 @@
 """Model skeletons of any kind, markers and rigid bodies, and their movement."""
 
-from app.science.rig.model import BoolArray, Rig, RigError, RigMotion, place, to_local
+from app.science.rig.model import BoolArray, Rig, RigError, RigMotion, to_local, to_world
 from app.science.rig.points import BodyMotion, MarkerMotion
 
 __all__ = [
@@ -10,6 +10,6 @@ __all__ = [
     "Rig",
     "RigError",
     "RigMotion",
-    "place",
     "to_local",
+    "to_world",
 ]

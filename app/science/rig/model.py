@@ -95,7 +95,7 @@ class Rig:
 
     @cached_property
     def _rest_world(self) -> tuple[FloatArray, FloatArray]:
-        placed = place(self, self.offsets_m[0], self.rest_rotations)
+        placed = to_world(self, self.offsets_m[0], self.rest_rotations)
         for array in placed:
             array.flags.writeable = False
         return placed
@@ -147,10 +147,10 @@ class RigMotion:
 
     def world(self) -> tuple[FloatArray, FloatArray]:
         """Return the positions (N, J, 3) in metres and the world_from_joint rotations (N, J, 4)."""
-        return place(self.rig, self.root_positions_m, self.rotations)
+        return to_world(self.rig, self.root_positions_m, self.rotations)
 
 
-def place(
+def to_world(
     rig: Rig, root_positions_m: FloatArray, rotations: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Compute forward kinematics of one pose, (3,) and (J, 4), or of many, (..., 3), (..., J, 4).
@@ -170,7 +170,7 @@ def place(
 
 
 def to_local(rig: Rig, world: FloatArray) -> FloatArray:
-    """Convert world_from_joint (..., J, 4) to parent_from_joint, the inverse of `place`."""
+    """Convert world_from_joint (..., J, 4) to parent_from_joint, the inverse of `to_world`."""
     local = world.copy()
     parents = list(rig.parents[1:])
     local[..., 1:, :] = multiply(conjugate(world[..., parents, :]), world[..., 1:, :])

@@ -15,7 +15,7 @@ from app.science.retargeting.bones import Bone
 from app.science.retargeting.coordinates import from_rotator
 from app.science.retargeting.mannequin import INITIAL_DEG, MANNEQUIN_MAP, mannequin
 from app.science.retargeting.t_pose import UNREAL_LOCAL_AXES, TPose, t_pose
-from app.science.rig import place, to_local
+from app.science.rig import to_local, to_world
 from app.science.rotations import (
     FloatArray,
     conjugate,
@@ -52,7 +52,7 @@ def _aligned(
     feet = {rig.index("foot_l"), rig.index("foot_r")}
     joints = [*bones, *feet]
     for joint in sorted(joints, reverse=leaf_first):
-        world = place(rig, ORIGIN, local)[1]
+        world = to_world(rig, ORIGIN, local)[1]
         if joint in feet:
             world[joint] = rest[joint]
         else:
@@ -65,7 +65,7 @@ def _aligned(
 
 def _off_axis_deg(right: TPose, local: FloatArray) -> dict[str, float]:
     """Angle between each bone and its axis, by body joint."""
-    world = place(right.rig, ORIGIN, local)[1]
+    world = to_world(right.rig, ORIGIN, local)[1]
     return {bone.body_joint: _angle_deg(bone, world[bone.joint]) for bone in right.bones}
 
 
@@ -148,8 +148,8 @@ def test_textbook_euler_angles_put_the_head_below_the_pelvis() -> None:
     angles_deg = np.array(list(INITIAL_DEG.values()))
     textbook = from_euler("ZYX", np.radians(angles_deg)[:, ::-1])
     head = rig.index("head")
-    assert place(rig, ORIGIN, textbook)[0][head, 2] < -0.5
-    assert place(rig, ORIGIN, from_rotator(angles_deg))[0][head, 2] > 0.5
+    assert to_world(rig, ORIGIN, textbook)[0][head, 2] < -0.5
+    assert to_world(rig, ORIGIN, from_rotator(angles_deg))[0][head, 2] > 0.5
 
 
 def test_an_arccosine_loses_half_the_digits_of_single_precision() -> None:

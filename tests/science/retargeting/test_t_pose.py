@@ -10,7 +10,7 @@ from app.science.retargeting.axes import CANONICAL, UNREAL, Axes, AxesError, swi
 from app.science.retargeting.joint_map import JointMapError
 from app.science.retargeting.mannequin import MANNEQUIN_MAP, mannequin
 from app.science.retargeting.t_pose import TPose, t_pose
-from app.science.rig import Rig, place
+from app.science.rig import Rig, to_world
 from app.science.rotations import FloatArray, geodesic_angle, identity, multiply, rotate
 from tests.science.retargeting.bodies import SAME, own_body, random_body
 from tests.support.repetitions import usually
@@ -30,7 +30,7 @@ def _aligned() -> tuple[TPose, ...]:
 
 def _gaps_of_positions(pose: TPose) -> FloatArray:
     """|k - v| with k from where forward kinematics puts the joints, of bones between joints."""
-    positions, _ = place(pose.rig, pose.rig.offsets_m[0], pose.local_rotations)
+    positions, _ = to_world(pose.rig, pose.rig.offsets_m[0], pose.local_rotations)
     order = list(SAME)
     gaps = []
     for bone in pose.bones:

@@ -8,7 +8,7 @@ from app.science.retargeting.coordinates import from_rotator
 from app.science.retargeting.mannequin import MANNEQUIN_MAP, mannequin
 from app.science.retargeting.t_pose import UNREAL_LOCAL_AXES, t_pose
 from app.science.retargeting.table1 import TOLERANCE_DEG, Table1Row, check_table1
-from app.science.rig import Rig, place
+from app.science.rig import Rig, to_world
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +46,7 @@ def test_the_other_rows_side_with_the_computed_pelvis(
     rig = mannequin()
     angles = np.array([rows[name].printed for name in rig.names])
     angles[0, 1] = rows["pelvis"].computed[1] if pitch_deg is None else pitch_deg
-    places, _ = place(rig, np.zeros(3), from_rotator(angles))
+    places, _ = to_world(rig, np.zeros(3), from_rotator(angles))
     for start, end in (("pelvis", "spine_01"), ("neck_01", "head"), ("calf_l", "thigh_l")):
         bone = places[rig.index(end)] - places[rig.index(start)]
         lean = np.degrees(np.arctan2(np.linalg.norm(bone[:2]), bone[2]))

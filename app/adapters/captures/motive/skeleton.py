@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from app.adapters.captures.capture import CaptureError
 from app.adapters.captures.tables import unseen
-from app.science.rig import BoolArray, Rig, RigMotion, place, to_local
+from app.science.rig import BoolArray, Rig, RigMotion, to_local, to_world
 from app.science.rotations import FloatArray, conjugate, identity, rotate, slerp
 
 _NOTICEABLE_M = 1e-3
@@ -84,7 +84,7 @@ def _stretch_notes(
         apart = np.linalg.norm(places_m - motion.rig.offsets_m, axis=-1)
         apart[:, 0] = 0.0
     else:
-        modelled, _ = place(motion.rig, motion.root_positions_m, motion.rotations)
+        modelled, _ = to_world(motion.rig, motion.root_positions_m, motion.rotations)
         apart = np.linalg.norm(places_m - modelled, axis=-1)
     apart = np.where(seen, apart, 0.0)
     worst = float(apart.max())

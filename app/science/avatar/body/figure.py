@@ -17,7 +17,7 @@ import numpy as np
 from app.science.avatar.body.hulls import Piece, piece_of
 from app.science.avatar.body.humanoid import Humanoid, HumanoidError
 from app.science.avatar.body.parts import FINGERS, PART_NAMES, SIDES
-from app.science.avatar.body.proportions import MIN_RATIO, MAX_RATIO, BodyError, segment_lengths
+from app.science.avatar.body.proportions import MAX_RATIO, MIN_RATIO, BodyError, segment_lengths
 from app.science.rotations import Vector, v_scale
 
 _SHORTEST, _LONGEST = 0.3, 3.0
@@ -94,7 +94,9 @@ def figure_of(humanoid: Humanoid) -> Figure:
                 f" about {expected[name]:.3f} m is expected. Check the bones between which it was"
                 f" measured: {_BETWEEN[name]}."
             )
-        counted = min(max(ratio, MIN_RATIO + _JUST_INSIDE), MAX_RATIO - _JUST_INSIDE) * expected[name]
+        counted = (
+            min(max(ratio, MIN_RATIO + _JUST_INSIDE), MAX_RATIO - _JUST_INSIDE) * expected[name]
+        )
         if abs(counted - length) > _JUST_INSIDE * length:
             notes.append(
                 f"The {_WORDS[name]} of {length:.3f} m is unusual; masses are computed with"

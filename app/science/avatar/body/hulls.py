@@ -2,9 +2,9 @@
 
 The hull of a body part may have hundreds of corners, and each costs time at every contact. So a
 piece starts with the outermost points along 26 directions; the point farthest outside is added
-repeatedly until every point is inside or at most `TOLERANCE_M` outside, or the piece has `MAX_CORNERS`
-corners. The outermost points along 1000 directions are considered before all others. The distance
-by which the farthest point remains outside is stored with the piece.
+repeatedly until every point is inside or at most `TOLERANCE_M` outside, or the piece has
+`MAX_CORNERS` corners. The outermost points along 1000 directions are considered before all others.
+The distance by which the farthest point remains outside is stored with the piece.
 
 Points are first rounded to `GRID_M` and corners are listed in order, so the result depends neither
 on the order of the points nor on a machine's last digit.

@@ -11,8 +11,7 @@ from app.science.rotations import FloatArray, Vector
 
 
 class HumanoidError(ValueError):
-    """A model is not a humanoid body: a part is missing, or its bones do not form a human skeleton.
-    """
+    """A model is not a humanoid: a part is missing, or its bones do not form a human skeleton."""
 
 
 @dataclass(frozen=True, eq=False)

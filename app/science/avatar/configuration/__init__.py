@@ -37,13 +37,13 @@ from app.science.avatar.configuration.model_options import (
 
 __all__ = [
     "ANATOMIC",
+    "DEFAULT_MASS_KG",
     "DEFAULT_OPTIONS",
     "FRICTION",
     "HIPS_TARGET",
     "LIMIT_SOLREF",
     "SIMPLE",
     "TIMESTEP_S",
-    "DEFAULT_MASS_KG",
     "WALL_SOLIMP",
     "WALL_SOLREF",
     "WELD_SOLIMP",

@@ -17,8 +17,8 @@ Irregular input from a tracker is handled as follows:
 - A part that is then deep inside a wall, or inside another part, is pushed out gently
   (`soft_contacts`).
 - If the simulation still fails (a state that is not finite, to which MuJoCo would respond by
-  restarting at time zero, or speeds above `FAILURE_RAD_S`), the angles before the frame are restored,
-  at rest and within their limits, and the clock continues.
+  restarting at time zero, or speeds above `FAILURE_RAD_S`), the angles before the frame are
+  restored, at rest and within their limits, and the clock continues.
 
 `health` counts each of these. Added latency (`switches.set_delay`) delays the motors' targets by
 whole steps, inside the simulation; the hips are never delayed, and zero bypasses the buffer.
@@ -256,7 +256,9 @@ class PhysicsAvatar:
     def _failed(self) -> bool:
         qpos, qvel = self._qpos, self._qvel
         # Comparisons with NaN are false.
-        return not (np.dot(qvel, qvel) < FAILURE_RAD_S**2 and np.dot(qpos, qpos) < _FAILURE_ANGLES**2)
+        return not (
+            np.dot(qvel, qvel) < FAILURE_RAD_S**2 and np.dot(qpos, qpos) < _FAILURE_ANGLES**2
+        )
 
     def _restore(self, previous_qpos: FloatArray) -> None:
         self._restored += 1

@@ -33,8 +33,8 @@ from app.science.joint_error import ERROR_JOINTS, Clipping, ReferenceMotion
 from app.science.rotations import FloatArray, is_unit
 
 GAP_S = 0.25
-"""Longest gap between two frames; after a longer one, hinges restart, as the direction in which they
-turned is unknown."""
+"""Longest gap between two frames; after a longer one, hinges restart, as the direction in which
+they turned is unknown."""
 _CHUNK_FRAMES = 1024
 _LETTERS = ("X", "Y", "Z")
 

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import ConvexHull
 
-from app.science.avatar.body.hulls import TOLERANCE_M, MAX_CORNERS, Piece, piece_of
+from app.science.avatar.body.hulls import MAX_CORNERS, TOLERANCE_M, Piece, piece_of
 from app.science.rotations import FloatArray
 
 GRID_M = 1e-5
