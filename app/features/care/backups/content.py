@@ -24,7 +24,7 @@ from app.features.people.audit import verify_trail
 from app.features.record.sessions import events_of, verify_chain
 from app.models import StudySession
 
-AT_ONCE = 2000
+ROWS_PER_FETCH = 2000
 _TYPES: dict[Kind, frozenset[type]] = {
     Kind.TEXT: frozenset({str, NoneType}),
     Kind.INTEGER: frozenset({int, NoneType}),
@@ -69,15 +69,14 @@ def wrong_rows(driver: sqlite3.Connection, shapes: Iterable[TableShape]) -> Iter
     """Yield a sentence for each column with values of a wrong type.
 
     No value is repeated: it may be a participant's answer. Raises what SQLite raises if a row
-    cannot
-    be read at all; `app.platform.trouble.proves_damage` says what that means.
+    cannot be read at all; `app.platform.trouble.proves_damage` says what that means.
     """
     for shape in shapes:
         wrong: set[str] = set()
         selected = ", ".join(_select_expression(one.name, one.kind) for one in shape.columns)
         # The names are those of the schema, from the models or migrations.
         rows = driver.execute(f'SELECT {selected} FROM "{shape.name}"')  # noqa: S608 - names of our schema
-        while portion := rows.fetchmany(AT_ONCE):
+        while portion := rows.fetchmany(ROWS_PER_FETCH):
             for one, values in zip(shape.columns, zip(*portion, strict=True), strict=True):
                 if one.name not in wrong and not _fit(one.kind, values):
                     wrong.add(one.name)
@@ -129,9 +128,8 @@ class RestoredContent:
     """The check of restored rows, inside the restore's transaction.
 
     `even_though_altered`: accept a record whose hash chains do not verify, because a person decided
-    so.
-    `lifetimes`: how long logins, pairing codes and invitations in it may still last, None to leave
-    them unchanged.
+    so. `lifetimes`: how long logins, pairing codes and invitations in it may still last, None to
+    leave them unchanged.
     """
 
     even_though_altered: bool = False

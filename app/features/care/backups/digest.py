@@ -1,9 +1,9 @@
 """Checksums over rows, equal if and only if the rows are, whichever engine they are on.
 
 A table's checksum is SHA-256 over lines of compact ASCII JSON, each with a line feed: first the
-names of its columns, then every row in the order of the primary key, with
-`{"sha256": "..."}` in the place of bytes. Numbers are written with the fewest digits that restore
-them exactly. Anybody can compute it again with other tools.
+names of its columns, then every row in the order of the primary key, with `{"sha256": "..."}` in
+the place of bytes. Numbers are written with the fewest digits that restore them exactly. Anybody
+can compute it again with other tools.
 """
 
 import hashlib

@@ -71,10 +71,10 @@ from app.protocol import TIMED_KINDS, StudyProtocol, parse_study_json, sha256_of
 from app.science.tasks import Limb
 
 FIRST_YEAR, LAST_YEAR = 1970, 2199
-MOST_INTEGER = 2**31 - 1
+MAX_INTEGER = 2**31 - 1
 LONGEST_INVITATION = timedelta(days=30)
 _SHOWN = 60
-_AT_ONCE = 500
+ROWS_PER_FETCH = 500
 _UNBOUNDED = {(Ledger.__tablename__, "seed")}
 """Integer columns of any size: a study file may have any seed, and SQLite stores it."""
 _WORDS: Mapping[Any, Collection[str]] = {
@@ -155,7 +155,7 @@ def _conditions(table: Table) -> Iterator[tuple[str, str]]:
                 continue
             case Integer() if (table.name, column.name) not in _UNBOUNDED:
                 yield (
-                    f"{name} NOT BETWEEN {-MOST_INTEGER - 1} AND {MOST_INTEGER}",
+                    f"{name} NOT BETWEEN {-MAX_INTEGER - 1} AND {MAX_INTEGER}",
                     f"{column.name} is out of range",
                 )
             case DateTime():
@@ -237,7 +237,7 @@ def _check_json(db: Session) -> None:
             continue
         expected = [_json_types(hints[mapper.get_property_by_column(one).key]) for one in columns]
         keys = list(table.primary_key)
-        query = select(*keys, *columns).execution_options(yield_per=_AT_ONCE)
+        query = select(*keys, *columns).execution_options(yield_per=ROWS_PER_FETCH)
         for row in db.execute(query):
             for column, types, value in zip(columns, expected, row[len(keys) :], strict=True):
                 if not isinstance(value, types):

@@ -32,8 +32,7 @@ class Backup:
     """A backup that is open for reading, and whose checksums match.
 
     `path` is the file that was given. `shapes` are its tables, referenced ones first, `tables`
-    their
-    checksums, `connection` the connection to read their rows.
+    their checksums, `connection` the connection to read their rows.
     """
 
     path: Path
@@ -48,8 +47,7 @@ def opened_backup(path: Path, progress: Progress = silent) -> Iterator[Backup]:
     """Open a backup and verify every checksum in it.
 
     Raises NotFound if there is no file, and InvalidInput if it is damaged, truncated or not a
-    Reembody
-    backup. The file is neither changed nor locked.
+    Reembody backup. The file is neither changed nor locked.
     """
     if not path.is_file():
         raise NotFound(missing_file(path), value=str(path))
@@ -71,8 +69,8 @@ def require_ours(backup: Backup) -> None:
     """Reject a backup that this program cannot have written, whatever its checksums say.
 
     `backup` is in the newest schema. Raises InvalidInput for missing or additional tables and
-    columns,
-    views and triggers, values of a wrong type or range, and rows that refer to missing rows.
+    columns, views and triggers, values of a wrong type or range, and rows that refer to missing
+    rows.
     """
     driver: Any = backup.connection.connection.driver_connection
     found = {shape.name: [one.name for one in shape.columns] for shape in backup.shapes}

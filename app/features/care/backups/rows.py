@@ -37,7 +37,7 @@ from app.features.care.backups.shapes import ColumnShape, Kind, TableShape
 Row = tuple[Any, ...]
 SHORT_ROWS, LONG_ROWS = 2000, 64
 """How many rows are in memory simultaneously."""
-KEPT_QUERIES = 256
+CACHED_QUERIES = 256
 _MOMENT = "YYYY-MM-DD HH24:MI:SS.US"
 Progress = Callable[[str, int], None]
 """A callback with a table's name and how many more of its rows are done."""
@@ -77,7 +77,7 @@ def sqlite_insert(shape: TableShape) -> str:
     return f"INSERT INTO {_quoted(shape.name)} ({names}) VALUES ({marks})"  # noqa: S608 - names, quoted
 
 
-@lru_cache(maxsize=KEPT_QUERIES)
+@lru_cache(maxsize=CACHED_QUERIES)
 def _sqlite_query(shape: TableShape) -> str:
     # SQLite converts JSON that looks like a number to a number.
     selected = ", ".join(
@@ -93,7 +93,7 @@ def _quoted(name: str) -> str:
     return '"' + name.replace('"', '""') + '"'
 
 
-@lru_cache(maxsize=KEPT_QUERIES)
+@lru_cache(maxsize=CACHED_QUERIES)
 def _postgresql_query(shape: TableShape) -> Select[Any]:
     by_name = {one.name: one for one in shape.columns}
     return (

@@ -98,8 +98,7 @@ def back_up(
     `notes` record the temporary file while it is written, for a place outside of the data folder.
 
     On SQLite the write-ahead log cannot be emptied before the copy is finished, and grows
-    meanwhile.
-    Raises Conflict, NotFound or NotDurable; then nothing is left of the file.
+    meanwhile. Raises Conflict, NotFound or NotDurable; then nothing is left of the file.
     """
     began_ns = clock.monotonic_ns()
     with database.reading() as db:
@@ -125,8 +124,7 @@ def checked_backup(path: Path, workplace: Path, progress: Progress = silent) -> 
 
     One of an earlier version is copied into the folder `workplace` and migrated there. Raises
     NotFound or InvalidInput for a file that is missing, damaged, not a Reembody backup, or of a
-    newer
-    program, and for one whose tables and values this program cannot have written.
+    newer program, and for one whose tables and values this program cannot have written.
     """
     with opened_backup(path, progress) as given, as_newest(given, workplace) as backup:
         require_ours(backup)
@@ -156,22 +154,18 @@ def restore(
     """Replace everything in `database`, whose schema must be the newest, by the backup.
 
     All in one transaction: other readers see either the previous content or the whole backup. Rows
-    to
-    be replaced are backed up into the folder `keep_in` first, inside the same transaction, so that
-    nothing can be written in between.
+    to be replaced are backed up into the folder `keep_in` first, inside the same transaction, so
+    that nothing can be written in between.
 
     The headset of an open session has discarded what was acknowledged to it after the backup, so
-    the
-    data that it sends next would have a gap: it has to be paired again, which begins a new run.
+    the data that it sends next would have a gap: it has to be paired again, which begins a new run.
 
     Raises Conflict if sessions are active or rows would be replaced and the caller did not
     allow it, NotDurable if there is no space; then nothing has changed.
 
     Every command that restores must pass `erasures` and `content`. The first repeats erasures that
-    are
-    newer than the backup, so that nobody ever sees erased data again. The second checks the rows
-    before
-    they are committed, and rejects them by raising ReembodyError.
+    are newer than the backup, so that nobody ever sees erased data again. The second checks the
+    rows before they are committed, and rejects them by raising ReembodyError.
     """
     began_ns = clock.monotonic_ns()
     with _ReplacedContent(database) as previous, database.writing() as db:
@@ -207,10 +201,8 @@ class _ReplacedContent:
     """The backup of what a restore replaces; deleted if the restore fails.
 
     After a failure the rows are still in the database, and the backup would be an unnecessary copy
-    of
-    people's data. But a commit that reported an error may have succeeded, so the content is
-    compared
-    first.
+    of people's data. But a commit that reported an error may have succeeded, so the content is
+    compared first.
     """
 
     database: Database

@@ -74,10 +74,8 @@ def damage_of(file: Path, *, every_row: bool = False) -> str | None:
     """Return a short description of the file's damage, or None if it can be used.
 
     A log that was left behind, perhaps with a torn end, is what a power failure leaves and not
-    damage.
-    Rows are read in a small file, and with `every_row` in any. Raises NotDurable if the file cannot
-    be
-    read, so that its state is unknown.
+    damage. Rows are read in a small file, and with `every_row` in any. Raises NotDurable if the
+    file cannot be read, so that its state is unknown.
     """
     with _unless_hindered(file):
         start = _beginning(file)
@@ -133,8 +131,7 @@ def _proven_damage(error: Exception) -> str | None:
     """Return the damage that an error of SQLite proves; None if it proves none.
 
     Only a few simple queries are made, so SQLite's failure to understand them (SQLITE_ERROR: an
-    unknown
-    file format, a definition that is not valid SQL) is damage as well.
+    unknown file format, a definition that is not valid SQL) is damage as well.
     """
     if isinstance(error, UnicodeDecodeError):
         return UNREADABLE

@@ -46,8 +46,8 @@ def quarantine_if_damaged(settings: Settings, clock: Clock, *, every_row: bool =
     cannot be read, so that its state is unknown; in the last two cases it is left alone.
 
     Call it in a process that has not opened the database yet. While another process uses the
-    database,
-    it is not inspected: that process did so when it started. `every_row`: also in a large file.
+    database, it is not inspected: that process did so when it started. `every_row`: also in a large
+    file.
     """
     file = database_file(settings)
     if file is None:
@@ -69,10 +69,8 @@ def refuse_unconfirmed_new_database(settings: Settings, *, new_database: bool) -
     """Raise Conflict instead of creating an empty database where there was one before.
 
     There was one if one is in quarantine, or if the data folder has what belongs to one: backups,
-    the
-    list of erasures and the like. Creating one is allowed once somebody has decided: by
-    `new_database`,
-    by a restored backup, or by a file put in its place.
+    the list of erasures and the like. Creating one is allowed once somebody has decided: by
+    `new_database`, by a restored backup, or by a file put in its place.
     """
     file = database_file(settings)
     if file is not None:
@@ -106,8 +104,7 @@ def bring_up_to_date(settings: Settings, clock: Clock) -> Path | None:
 
     Returns the path of the backup, if one was made. Raises Conflict for the database of a newer
     program or of another one, which is left as it is, and NotDurable if the database cannot be used
-    or
-    the backup cannot be written: nothing is migrated then.
+    or the backup cannot be written: nothing is migrated then.
     """
     url, file = settings.resolved_database_url, database_file(settings)
     if file is not None and not is_there(file):

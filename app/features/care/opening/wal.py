@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 HEADER, FRAME_HEADER = 32, 24
 MAGICS = (0x377F0682, 0x377F0683)
-FRAMES_AT_ONCE = 512
+FRAMES_PER_READ = 512
 _INDEX_HEADER = 48
 """Size of `WalIndexHdr`, which the index has twice; `nBackfill` follows."""
 Words = NDArray[np.uint32]
@@ -65,8 +65,7 @@ def frames_noted(log: Path, index: Path) -> int:
     """Return how many frames of this log, by its index, were committed and not copied yet.
 
     0 if the index is missing, torn or another log's. A log that is too short to be identified
-    counts
-    as the index's own.
+    counts as the index's own.
     """
     if not (log.is_file() and index.is_file()):
         return 0
@@ -98,7 +97,7 @@ def _frames(
     checksum = _Checksum((8 + page_size) // 8)
     usable, after_invalid, previous, all_valid = 0, 0, 0, True
     last_sum = np.array([state], np.uint32)
-    while block := file.read(length * FRAMES_AT_ONCE):
+    while block := file.read(length * FRAMES_PER_READ):
         frames = np.frombuffer(block, np.uint8)
         frames = frames[: len(block) // length * length].reshape(-1, length)
         heads = np.ascontiguousarray(frames[:, :FRAME_HEADER]).view(">u4").astype(np.uint32)

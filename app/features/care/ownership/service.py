@@ -27,7 +27,7 @@ log = logging.getLogger(__name__)
 WAIT_S = 5.0
 """How long to wait for a command that ends by itself."""
 TRY_EVERY_S = 0.1
-LOOK_EVERY_S = 1.0
+CHECK_EVERY_S = 1.0
 OWNER = "owner"
 """The name of the watch among the background tasks."""
 
@@ -100,8 +100,7 @@ def _locks(settings: Settings, owner: Owner) -> list[_Lock]:
     """Take all locks or none, always in the same order, so that one of two processes gets them.
 
     Locks on folders have no effect on processes that open the database by another name, so it must
-    have
-    only one.
+    have only one.
     """
     require_one_name(settings)
     folders = {settings.data_dir.resolve()}
@@ -131,10 +130,8 @@ def prepared_beside_owner(
     """Allow a command that reads, or adds rows in transactions of its own, beside an owner.
 
     Without an owner, the command owns the data while it prepares them (`prepare`), as a server
-    does.
-    Beside an owner, which has prepared them, it does not; raises NotNow if the owner is still
-    preparing
-    them, or if the database is of another version.
+    does. Beside an owner, which has prepared them, it does not; raises NotNow if the owner is still
+    preparing them, or if the database is of another version.
     """
     try:
         own = own_data(settings, command)
@@ -170,8 +167,7 @@ class OwnerWatch(Part):
     """Check regularly whether this server still owns the data, and take lost locks again.
 
     If another process has taken them, `taken_over` is called: two servers on the same data are
-    worse
-    than none.
+    worse than none.
     """
 
     def __init__(
@@ -192,7 +188,7 @@ class OwnerWatch(Part):
             self._thread.join(timeout=10.0)
 
     def _watch(self) -> None:
-        while not self._stop.wait(LOOK_EVERY_S):
+        while not self._stop.wait(CHECK_EVERY_S):
             self.look()
 
     def look(self) -> None:

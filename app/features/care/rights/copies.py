@@ -79,9 +79,8 @@ def register_found(db: Session, settings: Settings, now: datetime) -> Sequence[C
     """Record copies of the database that the product made automatically, and return their rows.
 
     They are backups before a migration or a restore, and databases in quarantine, in the data
-    folder.
-    Unfinished ones are recorded, too: a backup or an export in progress may see the data before an
-    erasure, and one that a crash left is removed, or is on a disk that is not connected.
+    folder. Unfinished ones are recorded, too: a backup or an export in progress may see the data
+    before an erasure, and one that a crash left is removed, or is on a disk that is not connected.
     """
     recorded = set(db.scalars(select(CopyMade.place).where(CopyMade.kind == "backup")))
     found = []

@@ -21,7 +21,7 @@ from app.platform.context import AppContext, Part
 from app.platform.folders import backups_of
 from app.settings import Settings
 
-KEPT_NS = 60 * 1_000_000_000
+CACHED_FOR_NS = 60 * 1_000_000_000
 OPTIONAL: tuple[Place, ...] = ("unused", "log", "database", "backups", "scratch")
 
 
@@ -69,7 +69,7 @@ class StorageDesk(Part):
         with self._lock:
             now_ns = self.clock.monotonic_ns()
             cached = self._measured
-            if cached is None or refresh or now_ns - self._measured_ns > KEPT_NS:
+            if cached is None or refresh or now_ns - self._measured_ns > CACHED_FOR_NS:
                 cached = self._measured = self._measure()
                 self._measured_ns = self.clock.monotonic_ns()
             return cached

@@ -12,7 +12,7 @@ from sqlalchemy.exc import DBAPIError
 
 from app.platform.context import AppContext, Part
 
-LOOK_EVERY_S = 1.0
+CHECK_EVERY_S = 1.0
 UNTRIED_NS = 5_000_000_000
 """Write again after this time, the same as a request waits before it tries to."""
 THREAD = "storage-recovery"
@@ -40,7 +40,7 @@ class StorageRecovery(Part):
             self._thread.join(timeout=10.0)
 
     def _run(self) -> None:
-        while not self._stop.wait(LOOK_EVERY_S):
+        while not self._stop.wait(CHECK_EVERY_S):
             if self.context.storage.is_untried(UNTRIED_NS):
                 self.try_to_write()
             self.context.background.recovered(THREAD)

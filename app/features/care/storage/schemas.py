@@ -80,8 +80,7 @@ class StorageView(BaseModel):
     """The use of disk space, measured at `measured_at`, in bytes.
 
     Sizes of studies and sessions are shares of their tables' sizes by the length of their rows, so
-    they
-    include indexes and half-full pages. `sessions` are the largest of `sessions_total`.
+    they include indexes and half-full pages. `sessions` are the largest of `sessions_total`.
     `half_made` leaves out what this server itself is writing.
     """
 

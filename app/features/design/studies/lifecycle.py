@@ -45,8 +45,7 @@ def archive(db: Session, study: Study, now: datetime) -> None:
     """Archive the study, so that it takes no new sessions; repeating it changes nothing.
 
     A session that was created before and not started yet keeps its slot and may still be run.
-    Raises
-    NotNow while a session is running.
+    Raises NotNow while a session is running.
     """
     if study.archived_at is not None:
         return

@@ -49,8 +49,7 @@ class StudyView(StudySummary):
 
     `phases`: how many timed phases a visit has: practice, free movement and tasks.
     `planned_minutes` is what the protocol sets for each visit; `minutes` adds an estimate for forms
-    and
-    texts.
+    and texts.
     """
 
     languages: list[str]
@@ -119,8 +118,7 @@ class CheckResult(BaseModel):
     """The check of a file: whether it is valid, with every problem and its place.
 
     `tree`: the values of the file, whenever it can be parsed, so that a form can show them while
-    there
-    are problems. `lines`: the line of each value, by its path.
+    there are problems. `lines`: the line of each value, by its path.
     """
 
     ok: bool

@@ -71,8 +71,7 @@ class AvatarSummary(BaseModel):
     """A configuration in a list, in its newest version.
 
     `axes` counts its driven axes, `locked_axes` those that cannot move; `sessions` counts the
-    sessions
-    of the reader's studies that used any of its versions.
+    sessions of the reader's studies that used any of its versions.
     """
 
     key: str

@@ -146,8 +146,7 @@ def model_of(db: Session, key: str, number: int | None, stature_m: float) -> Ava
     """Return the MuJoCo model of a version, or of the newest for None, on a floor.
 
     The stature is rounded to the millimetre. Raises NotFound, and Conflict if the configuration
-    lacks
-    a part that the body needs.
+    lacks a part that the body needs.
     """
     version = version_of(db, key, number)
     humanoid = typed(version).humanoid

@@ -9,7 +9,7 @@ The header has `kind` ("skeleton", "markers" or "bodies"), `names` and `parents`
 (-1 for no parent), `frames` N, `rate_hz` of these frames, `recorded_rate_hz`, and `start_s`, the
 time from the recording's first frame to these.
 
-Frames are left out to stay below `MOST_HZ` and `MOST_NUMBERS`: rate_hz = recorded_rate_hz / step.
+Frames are left out to stay below `MAX_HZ` and `MAX_NUMBERS`: rate_hz = recorded_rate_hz / step.
 """
 
 import json
@@ -22,8 +22,8 @@ import numpy as np
 from app.science.rig import BodyMotion, MarkerMotion, RigMotion
 from app.science.rotations import FloatArray
 
-MOST_HZ = 60.0
-MOST_NUMBERS = 4_000_000
+MAX_HZ = 60.0
+MAX_NUMBERS = 4_000_000
 """16 MB: six minutes of sixty points at sixty hertz."""
 GAP_STEPS = 3.0
 """A logger's samples have a gap between them if they are more usual steps apart than this."""
@@ -83,21 +83,21 @@ def encode(points: Points) -> bytes:
 
 
 def step_for(
-    frames: int, rate_hz: float, numbers_a_frame: int, max_numbers: int = MOST_NUMBERS
+    frames: int, rate_hz: float, numbers_a_frame: int, max_numbers: int = MAX_NUMBERS
 ) -> int:
-    """Return n such that every nth frame stays below `MOST_HZ` and `max_numbers`."""
-    for_rate = math.ceil(rate_hz / MOST_HZ - 1e-6)
+    """Return n such that every nth frame stays below `MAX_HZ` and `max_numbers`."""
+    for_rate = math.ceil(rate_hz / MAX_HZ - 1e-6)
     return max(1, for_rate, math.ceil(frames * numbers_a_frame / max_numbers))
 
 
 def _evenly(motion: BodyMotion) -> tuple[float, FloatArray]:
     """Resample to a constant rate with the nearest samples, because loggers sample unevenly."""
-    rate_hz = min(motion.rate_hz, MOST_HZ)
+    rate_hz = min(motion.rate_hz, MAX_HZ)
     if motion.frame_count < 2 or rate_hz <= 0.0:
         return 1.0, motion.positions_m
     moments = 1 + math.floor((motion.times_s[-1] - motion.times_s[0]) * rate_hz + 1e-6)
     # A gap of hours in a log must not become hours of frames.
-    moments = min(moments, max(1, MOST_NUMBERS // (3 * len(motion.names))))
+    moments = min(moments, max(1, MAX_NUMBERS // (3 * len(motion.names))))
     at_s = motion.times_s[0] + np.arange(moments) / rate_hz
     after = np.clip(np.searchsorted(motion.times_s, at_s), 1, motion.frame_count - 1)
     nearer_before = at_s - motion.times_s[after - 1] <= motion.times_s[after] - at_s

@@ -157,8 +157,7 @@ class JointMapView(BaseModel):
     `version` counts the saved maps, from 0; `chosen` is false while the map is the proposal.
     `sources` says for each mapped body joint whether its name, its place in the hierarchy, or a
     person decided. `usable` is false if too few joints are mapped for retargeting, and `missing`
-    says
-    which are needed.
+    says which are needed.
     """
 
     fingerprint: str
@@ -207,8 +206,7 @@ class WalkStepView(BaseModel):
     """One lift of a foot, from leaving the ground to the next contact.
 
     `length_m` is how far the ball moves forward, `height_m` from its lowest to its highest
-    position,
-    `contact_height_m` its height above the ground at the contact.
+    position, `contact_height_m` its height above the ground at the contact.
     """
 
     side: Side

@@ -35,7 +35,7 @@ from app.science.retargeting import (
 from app.science.rig import RigError
 from app.science.rotations import FloatArray
 
-MOST_DRAWN = 3000
+MAX_DRAWN_POINTS = 3000
 """Maximum number of points of a line; a screen shows fewer."""
 _METRE_DIGITS, _DEGREE_DIGITS = 5, 3
 """Rounding to 0.01 mm and 0.001 degrees, which is far finer than a line can show."""
@@ -53,7 +53,7 @@ def verification_json(mapped: Mapped, avatars: tuple[str, ...], *, lock_feet: bo
         )
     except RigError as error:
         raise Cannot(str(error)) from None
-    step = step_for(source.frame_count, source.rate_hz, 1, MOST_DRAWN)
+    step = step_for(source.frame_count, source.rate_hz, 1, MAX_DRAWN_POINTS)
     view = VerificationView(
         frames=source.frame_count,
         rate_hz=source.rate_hz,

@@ -21,7 +21,7 @@ WITHIN_S = 120.0
 """Time limit of one task; a capture of an hour takes a quarter of it."""
 MEMORY_BYTES = 3 * 1024**3
 """Memory that the process may use in addition to its program."""
-KEPT_BYTES = 64 * 1024**2
+MAX_CACHED_BYTES = 64 * 1024**2
 
 
 def limit_memory() -> None:
@@ -52,7 +52,7 @@ class Workbench(JobQueue):
     _worker: Worker = field(default_factory=lambda: Worker(limit_memory))
 
     def _cache_is_full(self) -> bool:
-        return sum(map(len, self._cache.values())) > KEPT_BYTES and len(self._cache) > 1
+        return sum(map(len, self._cache.values())) > MAX_CACHED_BYTES and len(self._cache) > 1
 
     def _refusal(self, error: Exception) -> InvalidInput | None:
         if not isinstance(error, Cannot):

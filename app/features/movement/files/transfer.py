@@ -49,8 +49,7 @@ async def uploaded(
     """Yield the files of a request's body, in a temporary folder of the data folder.
 
     The last `companion_bytes` are a file of their own. Raises InvalidInput if a file is empty or
-    the
-    connection breaks off, NotDurable if there is no space for it.
+    the connection breaks off, NotDurable if there is no space for it.
     """
     folder = await run_sync(_new_folder, context)
     try:

@@ -12,11 +12,9 @@ class HumanoidListed(BaseModel):
     """A humanoid model in a list.
 
     `content_hash` is the SHA-256 of its file, by which configurations refer to it. `stature_m` is
-    its
-    own; an avatar has that of its participant. `bones_by`: whether bones were identified by VRM's
-    map
-    or by their names. Counts are of body parts that the model has, and of those with a convex
-    piece.
+    its own; an avatar has that of its participant. `bones_by`: whether bones were identified by
+    VRM's map or by their names. Counts are of body parts that the model has, and of those with a
+    convex piece.
     """
 
     content_hash: str
@@ -44,10 +42,8 @@ class HumanoidView(HumanoidListed):
     """A humanoid model in full.
 
     `present` and `absent` are the body parts it has and lacks; those in `simple` have too little
-    skin
-    for a convex piece and keep capsules and boxes. `segments_m` are its lengths. `notes` are
-    sentences
-    on anything unusual in the file.
+    skin for a convex piece and keep capsules and boxes. `segments_m` are its lengths. `notes` are
+    sentences on anything unusual in the file.
     """
 
     present: list[str]

@@ -14,7 +14,7 @@ from app.platform.workers import Worker
 
 WITHIN_S = 120.0
 """Time limit of one prediction; tables of hours of tracks take half a minute."""
-KEPT = 64
+MAX_CACHED = 64
 
 
 def load() -> None:
@@ -38,7 +38,7 @@ class Bench(JobQueue):
     _worker: Worker = field(default_factory=lambda: Worker(load))
 
     def _cache_is_full(self) -> bool:
-        return len(self._cache) > KEPT
+        return len(self._cache) > MAX_CACHED
 
     def _refusal(self, error: Exception) -> InvalidInput | None:
         if not isinstance(error, Cannot):

@@ -170,8 +170,7 @@ class PredictionAsked(PathAsked):
     """A path for which durations are predicted.
 
     `stature_m` null: the mean of the model's people. `count` walks are drawn with `seed`, and the
-    same
-    seed gives the same walks; `shown` of them are followed along the path.
+    same seed gives the same walks; `shown` of them are followed along the path.
     """
 
     stature_m: Stature | None = None

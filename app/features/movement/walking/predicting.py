@@ -25,7 +25,7 @@ Json = dict[str, Any]
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 SHOWN_STEP_S = 0.05
 """Time between two points of a path that is shown."""
-MOST_SHOWN = 400
+MAX_SHOWN_POINTS = 400
 """Maximum number of points of a shown path; slower walkers get longer time steps."""
 
 
@@ -175,7 +175,7 @@ def _walkers(
     found = []
     for vector, duration_s, xy_m in zip(vectors, durations_s, places, strict=True):
         last = int(np.ceil(duration_s / dt_s))
-        every = max(round(SHOWN_STEP_S / dt_s), -(-last // MOST_SHOWN))
+        every = max(round(SHOWN_STEP_S / dt_s), -(-last // MAX_SHOWN_POINTS))
         kept = np.unique(np.append(np.arange(0, last, every), last))
         found.append(
             {

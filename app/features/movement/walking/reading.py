@@ -35,7 +35,7 @@ from app.science.walking.records import PlannedWalk, Track, Walk, WalkingError
 from app.science.walking.scene import Scene, open_scene
 from app.science.walking.synthetic import POPULATIONS, Sample, laboratory_scenes, synthetic_walks
 
-MOST_WALKS = 5000
+MAX_WALKS = 5000
 
 
 def content_of(store: Store, content_hash: str) -> bytes:
@@ -169,8 +169,8 @@ def _synthetic(source: PopulationSource) -> list[PlannedWalk]:
 
 
 def _check_count(count: int) -> None:
-    if count > MOST_WALKS:
+    if count > MAX_WALKS:
         raise Cannot(
             f"{count} walks are too many for one model",
-            f"Take up to {MOST_WALKS}: fewer people, or fewer repetitions.",
+            f"Take up to {MAX_WALKS}: fewer people, or fewer repetitions.",
         )

@@ -62,10 +62,8 @@ class Drawings(Part):
     """The cached dashboards and tests; a worker process makes what is missing, one at a time.
 
     The cache holds up to MAX_CACHED_BYTES and evicts the least recently requested results. Tests
-    have
-    a worker process of their own: those of a thousand participants take minutes, and figures must
-    not
-    wait for them.
+    have a worker process of their own: those of a thousand participants take minutes, and figures
+    must not wait for them.
     """
 
     url: str
@@ -98,8 +96,7 @@ class Drawings(Part):
         """Return the latest dashboard, and whether it shows the current data.
 
         `group` limits it to one group of figures. Raises NotFound for an unknown study, NotDurable
-        where
-        drawing fails.
+        where drawing fails.
         """
         return self._newest(db, DrawingRequest("dashboard", study_key, kind, chosen, group))
 

@@ -209,8 +209,7 @@ class MaterialStore:
         """Return the tables as of `state`, which is the state in the transaction of `db`.
 
         Tables that were read before are reused; others are read through `db`, which must be open
-        when
-        they are first used. If the state has changed, all are read again.
+        when they are first used. If the state has changed, all are read again.
         """
         name = (db.get_bind().engine.url, study_key, kind)
         found = self._cache.pop(name, None)

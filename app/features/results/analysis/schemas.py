@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 Rows = Literal["valid", "all"]
 LimbChoice = Literal["hand", "foot"]
 Code = Annotated[str, StringConstraints(min_length=1, max_length=80)]
-MOST_PARTICIPANTS = 200
+MAX_PARTICIPANTS = 200
 _SHOWN = 6
 Kind = Literal["people", "simulated", "test", "all"]
 DashboardKind = Literal["people", "simulated", "test"]
@@ -27,7 +27,7 @@ class FigureFilter(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    participant: Annotated[tuple[Code, ...], Field(max_length=MOST_PARTICIPANTS)] = ()
+    participant: Annotated[tuple[Code, ...], Field(max_length=MAX_PARTICIPANTS)] = ()
     order: Annotated[str | None, Field(max_length=80)] = None
     rows: Rows = "valid"
     since: date | None = None
@@ -162,8 +162,7 @@ class GlanceView(BaseModel):
 
     `differ`: whether the latencies differ at all. `first`: the first latency that differs from the
     smallest one, empty if none does. `trend`: of the trend along latency, one-sided where a
-    direction
-    was predicted. `way`: the direction of the trend.
+    direction was predicted. `way`: the direction of the trend.
     """
 
     limb: str

@@ -12,7 +12,7 @@ from app.platform.workers import Worker
 
 KEEP_FOR = timedelta(hours=2)
 """How long a finished file is kept after it was made or last downloaded."""
-FEWEST_ROWS = 2_000
+MIN_ROWS_TO_ESTIMATE = 2_000
 """The file's size is estimated only after this many rows have been written."""
 NS_PER_S = 1e9
 
@@ -89,7 +89,9 @@ class Job:
         elapsed_s = self._elapsed_s(now_ns)
         size = self.size_bytes or done.bytes
         share = done.rows / done.rows_total if done.rows_total else 0.0
-        can_estimate = self.state == "making" and done.rows >= FEWEST_ROWS and 0 < share <= 1
+        can_estimate = (
+            self.state == "making" and done.rows >= MIN_ROWS_TO_ESTIMATE and 0 < share <= 1
+        )
         return ExportView(
             id=self.id,
             study_key=self.study_key,

@@ -4,7 +4,7 @@ import re
 from datetime import date
 
 _UNSAFE = re.compile(r"[^A-Za-z0-9_-]")
-MOST_CHARACTERS = 60
+MAX_CHARACTERS = 60
 
 
 def safe_name(text: str) -> str:
@@ -12,7 +12,7 @@ def safe_name(text: str) -> str:
 
     The result has at most 60 characters, is never empty and never begins with a hyphen.
     """
-    return _UNSAFE.sub("_", text)[:MOST_CHARACTERS].lstrip("-") or "_"
+    return _UNSAFE.sub("_", text)[:MAX_CHARACTERS].lstrip("-") or "_"
 
 
 def samples_path(participant_code: str, session_id: str) -> str:

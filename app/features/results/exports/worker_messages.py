@@ -65,9 +65,8 @@ class Meter:
     """The progress file at `path`, in which a worker process records its progress as five numbers.
 
     The writer overwrites them in place, readers read them at any time. A reader during an
-    unfinished
-    write sees one number older than another, which is harmless; no locks are needed, and no lock
-    remains if either process dies.
+    unfinished write sees one number older than another, which is harmless; no locks are needed, and
+    no lock remains if either process dies.
     """
 
     path: Path

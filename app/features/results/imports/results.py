@@ -20,7 +20,8 @@ from app.science.statistics import (
     pairwise,
 )
 
-_FEWEST = 2
+_MIN_CONDITIONS = 2
+_MIN_VALUES = 2
 
 
 def results_of(instrument: Instrument, forms: Sequence[ImportedForm]) -> list[ScoreResult]:
@@ -50,7 +51,7 @@ def _score(key: str, title: str, rows: Sequence[ImportedForm]) -> ScoreResult:
         why_not=None,
         pairs=[],
     )
-    if len(conditions) < _FEWEST:
+    if len(conditions) < _MIN_CONDITIONS:
         return out.model_copy(
             update={"why_not": "There is only one condition, so there is nothing to compare."}
         )
@@ -80,7 +81,7 @@ def _tests(cells: Cells) -> dict[str, object]:
         for one in pairwise(cells.values, levels)
     ]
     fields: dict[str, object] = {"pairs": pairs, "left_out": list(complete.left_out)}
-    if len(levels) > _FEWEST:
+    if len(levels) > _MIN_CONDITIONS:
         omnibus = friedman(complete.values)
         p = "p < .001" if omnibus.p < 0.001 else f"p = {omnibus.p:.3f}".replace("0.", ".", 1)
         fields["test"] = (
@@ -92,7 +93,7 @@ def _tests(cells: Cells) -> dict[str, object]:
 
 
 def _mean(condition: str, values: Sequence[float]) -> ConditionMean:
-    if len(values) < _FEWEST or not np.ptp(values):
+    if len(values) < _MIN_VALUES or not np.ptp(values):
         mean = float(np.mean(values))
         return ConditionMean(
             condition=condition, n=len(values), mean=mean, sd=None, low=None, high=None

@@ -133,8 +133,7 @@ class LookView(BaseModel):
     """The preview of a file, and a proposed mapping.
 
     `remembered`: the proposal is the mapping of an earlier import. `proposal` is None if no column
-    was
-    identified for the participants or for any item.
+    was identified for the participants or for any item.
     """
 
     separator: str

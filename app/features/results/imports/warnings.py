@@ -9,7 +9,7 @@ from app.features.results.imports.applying import Form
 from app.features.results.imports.schemas import Shift
 from app.science.instruments import Instrument, scores_of_columns
 
-_FEWEST = 8
+_MIN_FORMS = 8
 _AGAINST = 0.2
 
 
@@ -78,7 +78,7 @@ def reversal_notes(turning: Map[str, tuple[str, list[str]]], forms: Sequence[For
             if isinstance(one := form.answers.get(item), float)
             and (rest := [v for key in up if isinstance(v := form.answers.get(key), float)])
         ]
-        if len(rows) < _FEWEST:
+        if len(rows) < _MIN_FORMS:
             continue
         own, others = np.array(rows).T
         if np.ptp(own) and np.ptp(others):

@@ -22,7 +22,7 @@ from app.features.results.preregistration.schemas import ExclusionView
 from app.models import InstrumentVersion
 from app.protocol import COUNTED_KINDS, ExclusionRule
 
-FEWEST_ALIKE = 5
+MIN_STRAIGHT_LINED_RATINGS = 5
 """Fewest ratings of a form for which identical ratings count as straight-lining."""
 OVER = ("completed", "aborted", "withdrawn")
 
@@ -143,7 +143,7 @@ def _straight(tables: Tables, session_id: str, limit: float) -> str | None:
     ):
         values = form["value_number"].astype("float64")
         honest = float(values.iloc[0]) == 0.0 and (str(key), int(str(version))) in tables.one_sided
-        alike += len(values) >= FEWEST_ALIKE and values.nunique() == 1 and not honest
+        alike += len(values) >= MIN_STRAIGHT_LINED_RATINGS and values.nunique() == 1 and not honest
     return None if alike <= limit else f"{alike} forms with identical ratings, declared {limit:g}"
 
 

@@ -15,7 +15,7 @@ from app.features.results.preregistration.schemas import PreregistrationView, Pr
 from app.models import Study, StudyVersion
 from app.science.statistics import StatisticsError
 
-FEWEST = 2
+MIN_TESTED = 2
 
 
 def completed_view(
@@ -55,7 +55,7 @@ def completed_view(
 
 
 def _result(declared: Declared, found: Values) -> tuple[PrimaryResult | None, str | None]:
-    if len(found.people) < FEWEST:
+    if len(found.people) < MIN_TESTED:
         return None, "Fewer than two participants have every value: there is nothing to test yet."
     try:
         return make_test(declared.preregistration, found), None

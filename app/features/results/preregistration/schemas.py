@@ -54,8 +54,7 @@ class PrimaryResult(BaseModel):
     """The result of the primary test.
 
     `sentence` is for a paper. `holds`: p is at most alpha. `rows`: single comparisons or the
-    effect,
-    under `columns`.
+    effect, under `columns`.
     """
 
     n: int

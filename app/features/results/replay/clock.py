@@ -33,7 +33,7 @@ class Run:
     uncertainty_ms: float | None
 
 
-MOST_UNEVEN = timedelta(seconds=5)
+MAX_CLOCK_ERROR = timedelta(seconds=5)
 
 
 class Wall(NamedTuple):
@@ -46,13 +46,12 @@ class Wall(NamedTuple):
         """Return the moment, or `latest` if it is later: no message precedes its event.
 
         If a headset's clock ran unevenly between two probes, the error is larger than the probes
-        show; the
-        excess over `latest` is added to the uncertainty. An excess over MOST_UNEVEN means that the
-        server's
-        wall clock was set, which the probes account for and `latest` does not.
+        show; the excess over `latest` is added to the uncertainty. An excess over MAX_CLOCK_ERROR
+        means that the server's wall clock was set, which the probes account for and `latest` does
+        not.
         """
         uncertainty = timedelta(milliseconds=self.uncertainty_ms or 0.0)
-        if self.utc is None or not uncertainty < self.utc - latest <= MOST_UNEVEN:
+        if self.utc is None or not uncertainty < self.utc - latest <= MAX_CLOCK_ERROR:
             return self
         return Wall(latest, (self.utc - latest + uncertainty) / timedelta(milliseconds=1))
 
@@ -136,8 +135,7 @@ def stretches(
     """Return the spans of active time from the reported starts and stops of the clock.
 
     If a run ended without a report, its span ends at the active time at which the next run
-    continued;
-    the last span ends at the phase's own count `active_s`.
+    continued; the last span ends at the phase's own count `active_s`.
     """
     found: list[Stretch] = []
     running_from: tuple[float, float] | None = None

@@ -38,8 +38,7 @@ class Sampling:
     """Assign frames to the moments of a grid, from the pieces of one run in order.
 
     `offset_s` is added to the run's clock to get the phase's time. The first and last frame are
-    also
-    used for moments up to half a step before and after them.
+    also used for moments up to half a step before and after them.
     """
 
     grid: Grid

@@ -47,9 +47,9 @@ from app.science.skeleton import (
 )
 from app.wire import StreamName
 
-MOST_HZ = 30.0
+MAX_HZ = 30.0
 ERROR_HZ = 10.0
-MOST_NUMBERS = 4_000_000
+MAX_NUMBERS = 4_000_000
 """16 MB: a quarter of an hour of two bodies at 30 Hz; longer phases have a lower rate."""
 Places = NDArray[np.float32]
 
@@ -172,7 +172,7 @@ def encode(movement: Movement) -> bytes:
 
 def _rate_hz(duration_s: float, bodies: int) -> float:
     numbers_a_second = 3 * JOINT_COUNT * bodies * max(duration_s, 1e-3)
-    return min(MOST_HZ, MOST_NUMBERS / numbers_a_second)
+    return min(MAX_HZ, MAX_NUMBERS / numbers_a_second)
 
 
 def placed_movement(database: Database, session_id: str, phase_id: int, *, full: bool) -> bytes:

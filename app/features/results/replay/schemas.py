@@ -39,8 +39,7 @@ class ClientRun(BaseModel):
     """One run of the headset's program, from its first to its last moment in the phase.
 
     `begin_utc`: its start by the server's clock; null where it is unknown. `uncertainty_ms`: that
-    of
-    `begin_utc`; null if there is no clock probe and `begin_utc` is the arrival of a message.
+    of `begin_utc`; null if there is no clock probe and `begin_utc` is the arrival of a message.
     """
 
     epoch: int
@@ -111,10 +110,8 @@ class Replay(BaseModel):
 
     `forms`: scores of the forms filled in after this phase and before the next, in order;
     `administrations` names all of them, with or without scores. `stature_m` is that of the body
-    drawn;
-    if it is unknown, a default is used. `time_scale`: seconds of the headset's clock per second of
-    the
-    server's.
+    drawn; if it is unknown, a default is used. `time_scale`: seconds of the headset's clock per
+    second of the server's.
     """
 
     session_id: str

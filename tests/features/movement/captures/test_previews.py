@@ -56,8 +56,8 @@ def test_faster_recordings_are_thinned() -> None:
 def test_a_long_recording_stays_within_its_bound(monkeypatch: pytest.MonkeyPatch) -> None:
     """However long it is."""
     long = Points("markers", ("M",), (-1,), 60.0, np.zeros((500_000, 1, 3)))
-    monkeypatch.setattr(preview, "MOST_NUMBERS", 30_000)
-    step = preview.step_for(500_000, 60.0, 3, preview.MOST_NUMBERS)
+    monkeypatch.setattr(preview, "MAX_NUMBERS", 30_000)
+    step = preview.step_for(500_000, 60.0, 3, preview.MAX_NUMBERS)
     assert 3 * len(long.positions_m[::step]) <= 30_000
 
 

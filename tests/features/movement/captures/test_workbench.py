@@ -75,7 +75,7 @@ def test_what_was_computed_is_kept_within_bounds(
     bench: Workbench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The oldest go first."""
-    monkeypatch.setattr(workbench, "KEPT_BYTES", 10)
+    monkeypatch.setattr(workbench, "MAX_CACHED_BYTES", 10)
 
     async def ask() -> None:
         for n in (4, 5, 6):

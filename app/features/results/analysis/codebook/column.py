@@ -14,12 +14,10 @@ class Column:
     """The description of one exported column.
 
     `of_rules`: the column exists only in exports with sessions of a study version that has rules
-    for
-    valid sessions (`valid_when`). `without_rules`: the meaning in all other exports, where it
-    differs.
-    `type`: text, integer, number (double precision unless the meaning says otherwise), boolean
-    (true or false) or time (UTC, ISO 8601). `unit` is empty for a column without one. `levels` is
-    the range of a number or the words a text column can hold.
+    for valid sessions (`valid_when`). `without_rules`: the meaning in all other exports, where it
+    differs. `type`: text, integer, number (double precision unless the meaning says otherwise),
+    boolean (true or false) or time (UTC, ISO 8601). `unit` is empty for a column without one.
+    `levels` is the range of a number or the words a text column can hold.
     """
 
     table: str

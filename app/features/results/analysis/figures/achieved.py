@@ -5,7 +5,7 @@ import pandas as pd
 import plotly.graph_objects as go
 
 from app.features.results.analysis.figures.drawing import (
-    FEWEST_PARTICIPANTS,
+    MIN_PARTICIPANTS,
     Drawing,
     count_note,
     drawn,
@@ -29,7 +29,7 @@ WHAT = (
     "shifted sideways to be visible. A physics avatar adds a lag of its own."
 )
 LIMIT_MS = 10.0
-_MOST_INTERVALS = 300
+_MAX_INTERVALS = 300
 _STYLES = {False: ("as ordered", BLUE, "circle"), True: ("off", VERMILLION, "x")}
 _COLUMNS = (
     *("participant_code", "session_id", "phase_id", "limb", "latency_ms", "achieved_latency_ms"),
@@ -42,7 +42,7 @@ def achieved_drawing(phases: pd.DataFrame) -> Drawing:
     tasks = phases[phases["phase_kind"].isin(COUNTED_KINDS)]
     measured = tasks.dropna(subset=["achieved_latency_ms", "latency_ms"])
     n = participants(measured)
-    if n < FEWEST_PARTICIPANTS:
+    if n < MIN_PARTICIPANTS:
         return too_few(KEY, TITLE, WHAT, n, "a phase whose achieved latency is known").of_group(
             "movement"
         )
@@ -107,7 +107,7 @@ def _points(
     achieved = own["achieved_latency_ms"].to_numpy(dtype=np.float64)
     high = own["achieved_latency_high_ms"].to_numpy(dtype=np.float64) - achieved
     low = achieved - own["achieved_latency_low_ms"].to_numpy(dtype=np.float64)
-    intervals = len(own) <= _MOST_INTERVALS
+    intervals = len(own) <= _MAX_INTERVALS
     return go.Scatter(
         x=(own["latency_ms"] + spread * (2.0 * place - 1.0)).tolist(),
         y=(achieved - own["latency_ms"].to_numpy() if less else achieved).tolist(),

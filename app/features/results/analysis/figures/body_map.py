@@ -4,7 +4,7 @@ import pandas as pd
 import plotly.graph_objects as go
 
 from app.features.results.analysis.figures.drawing import (
-    FEWEST_PARTICIPANTS,
+    MIN_PARTICIPANTS,
     Drawing,
     count_note,
     drawn,
@@ -34,7 +34,7 @@ def joint_error_body_drawing(errors: pd.DataFrame) -> Drawing:
     """Draw the mean error of every joint on a body, from valid rows of the joint errors."""
     rows = task_angles(errors)
     n = participants(rows)
-    if n < FEWEST_PARTICIPANTS:
+    if n < MIN_PARTICIPANTS:
         return too_few(KEY, TITLE, HOW, n, "joint errors").of_group("movement", wide=True)
     means = joint_rows(rows)
     latencies = sorted(float(one) for one in means["latency_ms"].unique())

@@ -27,7 +27,7 @@ MEANS = (
     "(t distribution). The shape beside it is the distribution of 5 or more participants; n "
     "is below each latency."
 )
-FEWEST_FOR_A_SHAPE = 5
+MIN_FOR_A_SHAPE = 5
 MANY = 60
 """With more participants than this, points are left out and lines are fainter."""
 SHAPE_SHARE = 0.16
@@ -94,8 +94,8 @@ def latency_figure(
     """Draw a measure at each latency, one panel per limb.
 
     `values` has one row per participant, limb and latency (participant_code, limb, latency_ms,
-    value).
-    `axis` is the title of the y axis with its unit, `limits` the lowest and highest possible value.
+    value). `axis` is the title of the y axis with its unit, `limits` the lowest and highest
+    possible value.
     """
     limbs = [limb for limb in LIMBS if (values["limb"] == limb).any()]
     places = sorted(float(place) for place in values[across.column].unique())
@@ -164,7 +164,7 @@ def _shapes(own: pd.DataFrame, limb: str, places: Sequence[float], unit: str) ->
     gap = min((b - a for a, b in itertools.pairwise(places)), default=10.0)
     traces = []
     for place, group in own.groupby("x")["value"]:
-        if len(group) < FEWEST_FOR_A_SHAPE or group.nunique() < 2:
+        if len(group) < MIN_FOR_A_SHAPE or group.nunique() < 2:
             continue
         traces.append(
             go.Violin(

@@ -11,7 +11,7 @@ from app.features.results.analysis.figures.by_latency import (
     per_participant,
 )
 from app.features.results.analysis.figures.drawing import (
-    FEWEST_PARTICIPANTS,
+    MIN_PARTICIPANTS,
     Drawing,
     count_note,
     drawn,
@@ -47,7 +47,7 @@ def _drawing(
 ) -> Drawing:
     tasks = phases[phases["phase_kind"].isin(COUNTED_KINDS)].astype({"completions": "float64"})
     n = participants(tasks)
-    if n < FEWEST_PARTICIPANTS:
+    if n < MIN_PARTICIPANTS:
         return too_few(key, title, words, n, "a finished hand or foot phase")
     values = per_participant(tasks.astype({across.column: "float64"}), "completions", across.column)
     figure = latency_figure(values, axis="completed tasks (per phase)", unit=_UNIT, across=across)

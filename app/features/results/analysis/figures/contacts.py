@@ -8,7 +8,7 @@ import plotly.graph_objects as go
 
 from app.features.results.analysis.figures.by_latency import LIMBS
 from app.features.results.analysis.figures.drawing import (
-    FEWEST_PARTICIPANTS,
+    MIN_PARTICIPANTS,
     Drawing,
     count_note,
     drawn,
@@ -35,7 +35,7 @@ def contacts_drawing(phases: pd.DataFrame, contacts: pd.DataFrame) -> Drawing:
     tasks = phases[phases["phase_kind"].isin(COUNTED_KINDS)]
     sides = contacts[contacts["surface_kind"] == "side"]
     n = participants(tasks)
-    if n < FEWEST_PARTICIPANTS:
+    if n < MIN_PARTICIPANTS:
         return too_few(KEY, TITLE, WHAT, n, "a finished hand or foot phase")
     if sides.empty:
         empty = "No side of a box was touched in any phase that counts."

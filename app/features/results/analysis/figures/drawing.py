@@ -7,7 +7,7 @@ from typing import Any, Literal
 import pandas as pd
 import plotly.graph_objects as go
 
-FEWEST_PARTICIPANTS = 1
+MIN_PARTICIPANTS = 1
 """Even one participant's line is drawn; an interval needs two participants."""
 Group = Literal["progress", "embodiment", "answers", "tasks", "movement", "quality"]
 

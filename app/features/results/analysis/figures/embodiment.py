@@ -11,7 +11,7 @@ from app.features.results.analysis.figures.by_latency import (
     per_participant,
 )
 from app.features.results.analysis.figures.drawing import (
-    FEWEST_PARTICIPANTS,
+    MIN_PARTICIPANTS,
     Drawing,
     count_note,
     drawn,
@@ -38,7 +38,7 @@ def embodiment_drawings(scores: pd.DataFrame) -> Iterator[Drawing]:
 def _component(score: str, title: str, axis: str, rows: pd.DataFrame) -> Drawing:
     key, title = f"embodiment_{score}", f"{title} by added latency"
     n = participants(rows)
-    if n < FEWEST_PARTICIPANTS:
+    if n < MIN_PARTICIPANTS:
         return too_few(key, title, MEANS, n, "a complete questionnaire")
     low, high = float(rows["minimum"].min()), float(rows["maximum"].max())
     bounded = pd.notna(low) and pd.notna(high)

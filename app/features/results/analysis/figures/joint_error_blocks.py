@@ -5,7 +5,7 @@ import plotly.graph_objects as go
 
 from app.features.results.analysis.figures.by_latency import cells, limb_panels
 from app.features.results.analysis.figures.drawing import (
-    FEWEST_PARTICIPANTS,
+    MIN_PARTICIPANTS,
     Drawing,
     count_note,
     drawn,
@@ -32,7 +32,7 @@ def joint_error_blocks_drawing(errors: pd.DataFrame) -> Drawing:
     """Draw the mean angle by block, one line per latency and panel per limb, of valid rows."""
     rows = task_angles(errors).dropna(subset=["block", "limb", "latency_ms"])
     n = participants(rows)
-    if n < FEWEST_PARTICIPANTS:
+    if n < MIN_PARTICIPANTS:
         return too_few(KEY, TITLE, HOW, n, "joint errors").of_group("movement")
     keys = ["limb", "latency_ms", "block", "participant_code"]
     values = rows.astype({"block": "float64"}).groupby(keys)["mean_deg"].mean()

@@ -5,7 +5,7 @@ import plotly.graph_objects as go
 
 from app.features.results.analysis.figures.by_latency import cells, limb_panels
 from app.features.results.analysis.figures.drawing import (
-    FEWEST_PARTICIPANTS,
+    MIN_PARTICIPANTS,
     Drawing,
     count_note,
     drawn,
@@ -44,7 +44,7 @@ def joint_error_course_drawing(courses: pd.DataFrame) -> Drawing:
     chosen = courses["reference"].eq("present") & courses["phase_kind"].isin(COUNTED_KINDS)
     rows = courses[chosen].dropna(subset=[*_KEYS, "mean_deg"])
     n = participants(rows)
-    if n < FEWEST_PARTICIPANTS:
+    if n < MIN_PARTICIPANTS:
         return too_few(KEY, TITLE, HOW, n, "joint errors").of_group("movement")
     values = rows.groupby([*_KEYS, "participant_code"])["mean_deg"].mean()
     data = _means(values.rename("value").reset_index())

@@ -5,7 +5,7 @@ import plotly.graph_objects as go
 
 from app.features.results.analysis.figures.by_latency import cells
 from app.features.results.analysis.figures.drawing import (
-    FEWEST_PARTICIPANTS,
+    MIN_PARTICIPANTS,
     Drawing,
     count_note,
     drawn,
@@ -63,7 +63,7 @@ def joint_error_drawing(errors: pd.DataFrame) -> Drawing:
     key, title = "joint_error_parts", "Joint error by added latency and body part"
     rows = task_angles(errors)
     n = participants(rows)
-    if n < FEWEST_PARTICIPANTS:
+    if n < MIN_PARTICIPANTS:
         return too_few(key, title, f"{WHAT} {INTERVAL}", n, "joint errors")
     latencies = sorted(rows["latency_ms"].unique().tolist())
     step = 0.012 * (latencies[-1] - latencies[0])
@@ -84,7 +84,7 @@ def joint_error_map_drawing(errors: pd.DataFrame) -> Drawing:
     key, title = "joint_error_joints", "Joint error by added latency and joint"
     rows = task_angles(errors)
     n = participants(rows)
-    if n < FEWEST_PARTICIPANTS:
+    if n < MIN_PARTICIPANTS:
         return too_few(key, title, WHAT, n, "joint errors")
     each = rows.groupby(["joint", "latency_ms", "participant_code"])["mean_deg"].mean()
     table = each.groupby(level=["joint", "latency_ms"]).mean().unstack("latency_ms")

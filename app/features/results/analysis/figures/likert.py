@@ -35,7 +35,7 @@ _MIDDLE = "#c9c9c9"
 _HATCH = {"size": 5, "solidity": 0.18, "fgcolor": "rgba(0, 0, 0, 0.55)", "fillmode": "overlay"}
 _OUTLINE = "rgba(90, 90, 90, 0.9)"
 _BAR_PX, _TEXT_PX, _FOOT_PX, _LINE_CHARACTERS = 17, 27, 150, 110
-MOST_CATEGORIES = 9
+MAX_CATEGORIES = 9
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ def _of_instrument(own: pd.DataFrame, instrument: Instrument) -> Iterator[Drawin
     items = [item for item in instrument.items if item.type == "likert"]
     scale = instrument.scale or next((item.scale for item in items if item.scale), None)
     rated = [item for item in items if instrument.scale_of(item) == scale]
-    if scale is None or scale.maximum - scale.minimum + 1 > MOST_CATEGORIES:
+    if scale is None or scale.maximum - scale.minimum + 1 > MAX_CATEGORIES:
         return
     categories = _categories(scale.minimum, scale.maximum, [_english(one) for one in scale.labels])
     n = participants(own)

@@ -33,8 +33,7 @@ def progress_drawing(
     """Draw the number of sessions by order and status, from all rows of the table of sessions.
 
     `orders` are those of the design ("0 125 350"). `blinded` merges all orders, because the order
-    of
-    an open session must not be revealed.
+    of an open session must not be revealed.
     """
     n = participants(sessions)
     if sessions.empty:

@@ -34,7 +34,7 @@ _SEVERITIES = {
     "warning": (ORANGE, PATTERNS[1]),
     "info": (BLUE, ""),
 }
-_MOST_POINTS = 400
+_MAX_POINTS = 400
 _ROW_PX = 34
 
 
@@ -72,7 +72,7 @@ def _box(own: pd.DataFrame, name: str, stream: str, style: tuple[str, str]) -> g
         x=[stream] * len(own),
         y=own[name].astype("float64").tolist(),
         name=stream,
-        boxpoints="all" if len(own) <= _MOST_POINTS else "outliers",
+        boxpoints="all" if len(own) <= _MAX_POINTS else "outliers",
         jitter=0.6,
         pointpos=0,
         fillcolor=CALM,

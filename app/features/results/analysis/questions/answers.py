@@ -27,7 +27,7 @@ from app.features.results.analysis.questions.words import TestReport
 from app.features.results.analysis.schemas import GlanceView, MeasureView, StatisticsResults
 
 USUAL_ALPHA = 0.05
-FEWEST = 2
+MIN_TESTED = 2
 DECLARED = (
     "The study's preregistered test is on the page Preregistration, with its exclusions. "
     "The tests on this page were not preregistered and are exploratory."
@@ -65,10 +65,12 @@ def _notes(material: Material) -> list[str]:
 def _measures(material: Material, alpha: float) -> Iterator[MeasureView]:
     out = left_out(material)
     found = [
-        one for one in measures_of(material) if one.values["participant_code"].nunique() >= FEWEST
+        one
+        for one in measures_of(material)
+        if one.values["participant_code"].nunique() >= MIN_TESTED
     ]
     for measure in found:
-        if len(measure.levels) < FEWEST:
+        if len(measure.levels) < MIN_TESTED:
             continue
         n = int(measure.values["participant_code"].nunique())
         results = list(_results(measure, alpha))

@@ -30,8 +30,7 @@ class Measure:
 
     `values` has the columns participant_code, limb, latency_ms, value; `places` has the block, too.
     `maximum`: the maximum of a score whose range is symmetric about 0. `continuous`: seconds,
-    degrees
-    and counts, for which means and models of means are meaningful.
+    degrees and counts, for which means and models of means are meaningful.
     """
 
     key: str

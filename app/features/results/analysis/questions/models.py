@@ -34,18 +34,18 @@ MIXED_SOURCE = (
     "Laird and Ware 1982, Biometrics 38:963; Kuznetsova et al. 2017, J. Stat. Softw. 82(13)."
 )
 CARRY_SOURCE = "Jones and Kenward 2014, Design and Analysis of Cross-Over Trials."
-_FEWEST_LIMBS = 2
-MOST_FOR_MODELS = 200
+_MIN_LIMBS = 2
+MAX_FOR_MODELS = 200
 _UNTESTABLE = (StatisticsError, np.linalg.LinAlgError)
 _TOO_MANY = (
-    f"Not computed: with more than {MOST_FOR_MODELS} participants, fitting takes minutes. Export "
+    f"Not computed: with more than {MAX_FOR_MODELS} participants, fitting takes minutes. Export "
     "the data and fit the model there."
 )
 
 
 def model_results(measure: Measure, alpha: float) -> Iterator[TestReport]:
     """Yield an analysis of variance and a mixed model of latency x limb."""
-    if len(measure.limbs) < _FEWEST_LIMBS:
+    if len(measure.limbs) < _MIN_LIMBS:
         return
     for test, key, title in (
         (_anova, "rm_anova", "Latency × limb, analysis of variance"),
@@ -63,7 +63,7 @@ def carry_over_result(measure: Measure) -> Iterator[TestReport]:
     """Yield a diagnostic of order, period and carry-over effects; it is not a hypothesis test."""
     places, key = measure.places, "carry_over"
     title = "Order, period and carry-over (diagnostic)"
-    if places["participant_code"].nunique() > MOST_FOR_MODELS:
+    if places["participant_code"].nunique() > MAX_FOR_MODELS:
         yield TestReport(key, title, _TOO_MANY, "", (), (), "", CARRY_SOURCE, exploratory=True)
         return
     limbs = [factor("limb", places["limb"].tolist())] if len(measure.limbs) > 1 else []
@@ -155,7 +155,7 @@ def _effect_words(one: Effect) -> str:
 
 def _mixed(measure: Measure, alpha: float, key: str, title: str) -> TestReport:
     places = measure.places
-    if places["participant_code"].nunique() > MOST_FOR_MODELS:
+    if places["participant_code"].nunique() > MAX_FOR_MODELS:
         return TestReport(key, title, _TOO_MANY, "", (), (), "", MIXED_SOURCE)
     latency = factor("latency", places["latency_ms"].tolist())
     limb, period = (

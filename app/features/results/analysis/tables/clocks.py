@@ -132,8 +132,8 @@ def _in_order(readings: list[Reading]) -> list[Reading]:
     """Return the readings in the order in which they were made.
 
     They are read in the order of the client's time, which is wrong if the client's clock was set
+    back. Then the order of the server's wall clock is used, which could be wrong if that was set
     back.
-    Then the order of the server's wall clock is used, which could be wrong if that was set back.
     """
     server = [reading.server_received_ns or 0 for reading in readings]
     if server == sorted(server):

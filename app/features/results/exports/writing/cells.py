@@ -15,7 +15,7 @@ import pandas as pd
 
 from app.features.results.analysis.codebook import ColumnType, columns_of
 
-ROWS_AT_ONCE = 2000
+ROWS_PER_PIECE = 2000
 # Some spreadsheets treat the full-width forms like the ASCII ones.
 _RUNS = re.compile("^(?:[\\t\\r\\n]|[\\s\"'\ufeff\u200b]*[=+\\-@\uff1d\uff0b\uff0d\uff20])")
 
@@ -32,8 +32,8 @@ def csv_pieces(table: str, frame: pd.DataFrame, *, rules: bool = True) -> Iterat
     """
     columns = columns_of(table, rules=rules)
     yield _lines([[column.name for column in columns]])
-    for first in range(0, len(frame), ROWS_AT_ONCE):
-        part = frame.iloc[first : first + ROWS_AT_ONCE]
+    for first in range(0, len(frame), ROWS_PER_PIECE):
+        part = frame.iloc[first : first + ROWS_PER_PIECE]
         cells = [_cells(part[column.name].tolist(), column.type) for column in columns]
         yield _lines(list(zip(*cells, strict=True)))
 

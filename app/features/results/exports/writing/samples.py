@@ -20,7 +20,7 @@ from app.wire import VALUES_PER_FRAME, StreamName, flag_frames
 
 _POWERS = 10.0 ** np.arange(23)
 """Powers of ten, exact in double precision up to 10^22, so a quotient is rounded only once."""
-_FEWEST, _MOST = 6, 9
+_MIN_DIGITS, _MAX_DIGITS = 6, 9
 ACTIVE_BIT = 1
 _MISSING: list[float | None] = [None] * VALUES_PER_FRAME
 
@@ -46,7 +46,7 @@ def shortest_doubles(values: NDArray[np.float32]) -> NDArray[np.float64]:
     exponent = np.floor(np.log10(np.where(usual, size, 1.0))).astype(np.int64)
     result = exact.copy()
     todo = usual
-    for digits in range(_FEWEST, _MOST + 1):
+    for digits in range(_MIN_DIGITS, _MAX_DIGITS + 1):
         scale = _POWERS[digits - 1 - exponent]
         rounded = np.rint(exact * scale) / scale
         found = todo & (rounded.astype(np.float32) == values)

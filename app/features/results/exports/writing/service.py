@@ -50,8 +50,7 @@ def export_study(
 
     `notes` record the temporary folder while the export is made, so that an erasure also removes an
     unfinished one. Raises NotFound for an unknown study, Conflict if something else is at `to`,
-    OSError
-    if it cannot be written; in each case nothing has changed.
+    OSError if it cannot be written; in each case nothing has changed.
     """
     contents = Contents(db, study_key, kind, now)
     temporary_folder = partial(partial_folder, "export", now=now, notes=notes, study_key=study_key)
@@ -95,8 +94,7 @@ def usual_kind(db: Session, study_key: str) -> Kind:
     """Return the default kind to export: people if there are any, else simulated or test sessions.
 
     So a rehearsed study can be exported without naming a kind, and simulated sessions are never
-    mixed
-    with those of people unless the kind is `all`.
+    mixed with those of people unless the kind is `all`.
     """
     study = study_by_key(db, study_key)
     there = set(db.scalars(select(StudySession.kind).where(StudySession.study_id == study.id)))
