@@ -89,7 +89,7 @@ def install_error_handler(app: FastAPI) -> None:
         ):
             return error_response(_unreadable_body())
         if error.status_code == NotFound.status:
-            return error_response(NotFound("there is nothing at this address"))
+            return error_response(NotFound("nothing exists at this address"))
         if error.status_code == NotAllowed.status:
             return error_response(NotAllowed(str(error.detail)))
         body = {"error": {**ReembodyError(str(error.detail)).as_json(), "code": "http"}}
@@ -124,17 +124,18 @@ def _install_database_handlers(app: FastAPI) -> None:
 
     @app.exception_handler(json.JSONDecodeError)
     def not_as_stored(_: Request, error: Exception) -> JSONResponse:
-        log.error("what is stored was damaged", exc_info=error)
+        log.error("stored data are damaged", exc_info=error)
         return error_response(
             NotDurable(f"{DAMAGED.message}: nothing was stored", remedy=DAMAGED.remedy)
         )
 
     @app.exception_handler(IntegrityError)
     def clash(_: Request, error: IntegrityError) -> JSONResponse:
-        log.warning("two requests clashed", exc_info=error)
+        log.warning("two requests were in conflict", exc_info=error)
         return error_response(
             Conflict(
-                "somebody else stored the same at the same moment; nothing was stored",
+                "somebody else stored the same thing at the same moment; nothing of yours was "
+                "stored",
                 remedy="Reload, then decide.",
             )
         )
@@ -167,7 +168,7 @@ def _not_durable(error: Exception) -> JSONResponse:
 def _went_wrong() -> JSONResponse:
     return error_response(
         ReembodyError(
-            "something went wrong on the server; nothing was stored",
+            "an unexpected error occurred on the server; nothing was stored",
             remedy="Try again. If it happens again, see the server's log for the reason.",
         )
     )
@@ -177,8 +178,8 @@ def _unreadable_body() -> InvalidInput:
     return InvalidInput(
         "the request's body is JSON that cannot be read: a number in it has too many digits, or "
         "its lists and objects are nested too deeply",
-        valid="JSON with numbers of at most 4300 digits, nested a few hundred deep at most",
-        remedy="Send it again without that; nothing was stored.",
+        valid="JSON with numbers of at most 4300 digits, nested at most a few hundred levels deep",
+        remedy="Correct it and send it again; nothing was stored.",
     )
 
 

@@ -158,7 +158,7 @@ class Guards:
             raise NotAllowed(
                 "this request comes from another site",
                 value=origin,
-                remedy="Open the page on the address of this server.",
+                remedy="Open the page at the address of this server.",
             )
 
     async def _read(
@@ -185,7 +185,7 @@ class Guards:
             if not known and tokens_of(HTTPConnection(scope)):
                 # Somebody whose login has expired needs to know that, not that they sent too much.
                 raise NotSignedIn(
-                    "the login or pairing has ended", remedy="Log in again."
+                    "the login or the pairing has ended", remedy="Sign in again."
                 ) from error
             raise
         if len(body) > LARGE_BODY_BYTES:
@@ -299,10 +299,11 @@ def require_known_host(host: str, known: Iterable[str]) -> None:
         return
     if name not in {one.lower() for one in known}:
         raise NotAllowed(
-            "this server is not known by that name",
+            "this server does not answer to that host name",
             value=host,
             valid="an address, a name of the local network, or one of REEMBODY_HOST_NAMES",
-            remedy='Set REEMBODY_HOST_NAMES=["name.example.org"] where the lab gave it that name.',
+            remedy="If the lab gave the server that name, set "
+            'REEMBODY_HOST_NAMES=["name.example.org"].',
         )
 
 

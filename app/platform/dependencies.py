@@ -102,7 +102,7 @@ def authorised_caller(request: HTTPConnection, context: AppContext, method: str)
     roles = allowed(method, template)
     if caller.role not in roles:
         raise NotAllowed(
-            f"this is not for the role {caller.role}",
+            f"the role {caller.role} has no permission for this",
             value=caller.role,
             valid=sorted(roles),
             remedy="Ask the administrator of the lab if you need it.",
@@ -116,7 +116,7 @@ def signed_in_caller(request: HTTPConnection, context: Context) -> Caller:
     """Return the signed-in person, whatever the route; raise NotSignedIn if there is none."""
     token = bearer_token(request) or read_cookie(request, LOGIN_COOKIE)
     if not token:
-        raise NotSignedIn("nobody is signed in", remedy="Log in first.")
+        raise NotSignedIn("you are not signed in", remedy="Sign in first.")
     with context.database.reading() as db:
         return caller_of(account_of_token(db, token, context.clock.utc_now()))
 
@@ -145,7 +145,7 @@ def get_headset(request: Request, context: Context) -> Device:
 
 def _require_device_route(request: Request, who: frozenset[str]) -> None:
     if allowed(request.method, _template(request)) != who:
-        raise NotAllowed("devices may not call this route", remedy="Use the device's own page.")
+        raise NotAllowed("devices may not call this address", remedy="Use the device's own page.")
 
 
 def _template(request: HTTPConnection) -> str:

@@ -108,9 +108,10 @@ class Budget:
         if left < 0:
             wait_s = max(1.0, -left / self.per_s)
             raise TooManyAttempts(
-                "too many requests from this address without a login or pairing",
+                "too many requests from this address without a sign-in or pairing",
                 valid=f"{self.capacity:g} at once, then {self.per_s:g} per second",
-                remedy=f"Wait {round(wait_s)} s and try again. Paired devices and logins go on.",
+                remedy=f"Wait {round(wait_s)} s and try again. Paired devices and people who are "
+                "signed in are not affected.",
                 retry_after_s=wait_s,
             )
 

@@ -158,8 +158,8 @@ class StorageHealth:
         if failure is None or self.clock.monotonic_ns() - failure.last_ns > TRY_AGAIN_NS:
             return
         raise NotDurable(
-            f"{failure.trouble.message}, so nothing new is started",
-            value=f"nothing was stored since {failure.since.isoformat(timespec='seconds')}",
+            f"{failure.trouble.message}, so nothing new can be started",
+            value=f"nothing has been stored since {failure.since.isoformat(timespec='seconds')}",
             remedy=failure.trouble.remedy,
         )
 

@@ -34,7 +34,7 @@ def account_of_token(db: Session, token: str, now: datetime) -> Account:
     """Return the account of a login; raise NotSignedIn if it is unknown, expired or revoked."""
     row = db.get(LoginToken, hash_token(token))
     if row is None or row.revoked_at is not None or row.expires_at <= now:
-        raise NotSignedIn("the login has ended", remedy="Log in again.")
+        raise NotSignedIn("your sign-in has ended", remedy="Sign in again.")
     account = db.get(Account, row.account_id)
     if account is None or account.disabled_at is not None:
         raise NotSignedIn("the account is closed", remedy="Ask the administrator of the lab.")
@@ -46,7 +46,7 @@ def device_of_token(db: Session, token: str, kind: str) -> Device:
     device = db.scalar(_BY_TOKEN, {"token_hash": hash_token(token)})
     if device is None or device.kind != kind or device.revoked_at is not None:
         raise NotSignedIn(
-            f"this {kind} is not paired any more", remedy="Enter a new code from the console."
+            f"this {kind} is no longer paired", remedy="Enter a new code from the console."
         )
     return device
 

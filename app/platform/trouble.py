@@ -35,11 +35,11 @@ DAMAGED = Trouble(
     "Stop the server, keep the data folder as it is, and restore the newest backup.",
 )
 REFUSED = Trouble(
-    "the disk or the database does not accept writes",
+    "the disk or the database rejects writes",
     "Check the disk of the server: it may be full, over a quota, unplugged or broken.",
 )
 NOT_ALLOWED = Trouble(
-    "the operating system does not allow it",
+    "the operating system denied access",
     "Check that the folder exists, and that your account may read and write it.",
 )
 WORN = Trouble(

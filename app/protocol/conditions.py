@@ -16,11 +16,11 @@ def _latency(value: float) -> float:
             f"The latency is negative ({value:g} ms): the body would move before the participant.",
             value=value,
             valid=f"0 to {MAX_LATENCY_MS:g} ms",
-            remedy="Give the latency to add, 0 for none.",
+            remedy="Give the latency to add; use 0 for none.",
         )
     if value > MAX_LATENCY_MS:
         raise refusal(
-            f"The latency of {value:g} ms is longer than any body can be steered with.",
+            f"A latency of {value:g} ms is too long for anyone to control a body.",
             value=value,
             valid=f"0 to {MAX_LATENCY_MS:g} ms",
             remedy="Give milliseconds, not microseconds.",

@@ -107,7 +107,7 @@ def _unknown_key(path: Path, given: object, schema: Schema) -> DefinitionProblem
     close = difflib.get_close_matches(str(path[-1]), valid, n=1)
     remedy = f"Did you mean {close[0]!r}? " if close else ""
     remedy += f"Valid keys here: {', '.join(valid)}."
-    return DefinitionProblem(path, f"The key {path[-1]!r} is not known here.", given, valid, remedy)
+    return DefinitionProblem(path, f"The key {path[-1]!r} is not valid here.", given, valid, remedy)
 
 
 def _wrong_tag(
@@ -120,7 +120,7 @@ def _wrong_tag(
     close = difflib.get_close_matches(str(value), valid, n=1)
     remedy = f"Did you mean {close[0]!r}? " if close else ""
     message = (
-        f"{tag} is {value!r}, which is not known." if value else f"The key {tag!r} is missing."
+        f"{tag} is {value!r}, which is not valid." if value else f"The key {tag!r} is missing."
     )
     remedy += f"Valid: {', '.join(valid)}."
     return DefinitionProblem((*path, tag), message, value, valid, remedy)

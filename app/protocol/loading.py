@@ -151,7 +151,7 @@ def _validated(kind: _Kind[_Value], source: Source, found: list[ConfigProblem]) 
     problems = [*source.problems, *found]
     if not isinstance(source.tree, dict):
         message = "The file is not a mapping of settings."
-        remedy = "Begin with lines like key: my-study."
+        remedy = "Begin with lines such as key: my-study."
         raise ConfigError([*problems, ConfigProblem("", 1, 1, message, remedy=remedy)])
     try:
         value = kind.validate(source.tree)

@@ -193,7 +193,10 @@ class _Builder:
         next(self._events)
         if not isinstance(event := next(self._events), yaml.StreamEndEvent):
             raise self._refusal(
-                event, (), "There is a second document.", "Keep one document: remove the '---'."
+                event,
+                (),
+                "The file contains a second document.",
+                "Keep one document: remove the '---'.",
             )
         return self._source
 

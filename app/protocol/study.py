@@ -27,7 +27,7 @@ def _joints(parts: tuple[str, ...]) -> tuple[str, ...]:
     unknown = [part for part in parts if part not in JOINT_NAMES]
     if unknown:
         raise refusal(
-            f"{unknown[0]!r} is not a body part that can go undelayed.",
+            f"{unknown[0]!r} is not a body part that can be shown without delay.",
             value=unknown[0],
             valid=list(JOINT_NAMES),
             remedy="Use the names of Unity's HumanBodyBones, as in Hips.",

@@ -191,7 +191,7 @@ def read_dot_log(data: bytes, *, name: str, reading: Reading, limits: Limits) ->
     edited={
         FORMATS: [
             after(
-                '            de="Headset und Hände. Bewegungslogs von Quest-Anwendungen.",\n'
+                '            de="Headset und Hände. Bewegungsprotokolle von Quest-Anwendungen.",\n'
                 "        ),\n    ),\n",
                 """    CaptureFormat(
         key="dot-log",

@@ -68,9 +68,9 @@ class Experimenter:
 
     def match_height(self, stated_cm: str, matched_cm: str) -> None:
         """Find the height that was stated on the tablet, and enter the matched one."""
-        stated = self.page.get_by_label("Height as stated")
+        stated = self.page.get_by_label("Stated height")
         expect(stated).to_have_value(f"{stated_cm} cm", timeout=PATIENCE_MS)
-        self.page.get_by_label("Height as matched").fill(matched_cm)
+        self.page.get_by_label("Matched height").fill(matched_cm)
         self.press("Save heights")
 
     def sees_step(self, name: str) -> None:

@@ -191,7 +191,7 @@ def test_a_joint_map_is_changed_undone_and_saved(
     toes = console.get_by_role("combobox", name="Right toes")
     toes.fill("RightFoot")
     console.get_by_role("option", name="RightFoot").click()
-    console.get_by_role("button", name="Back to proposal").click()
+    console.get_by_role("button", name="Back to the proposal").click()
     console.get_by_role("button", name="Save map").click()
     expect(console.get_by_text("Someone else has saved another map")).to_be_visible()
     console.get_by_role("button", name="Use theirs").click()

@@ -128,7 +128,7 @@ def test_an_archived_study_comes_back(writer: Writer) -> None:
     page.get_by_role("dialog").get_by_role("button", name="Archive").click()
     expect(page.get_by_text("Archived: no new sessions")).to_be_visible()
     page.get_by_role("link", name="Studies").click()
-    expect(page.get_by_role("heading", name="No study yet")).to_be_visible()
+    expect(page.get_by_role("heading", name="No studies yet")).to_be_visible()
     page.get_by_role("button", name="Archived studies").click()
     page.get_by_role("link", name="Acting through another body").click()
     page.get_by_role("button", name="Restore").click()

@@ -91,12 +91,12 @@ def test_heights_that_differ_are_asked_about(
         session = session_at(api, "height")["id"]
     page = experimenter.page
     page.goto(f"{running_server.url}/#/sessions/{session}")
-    page.get_by_label("Height as stated").fill("172")
-    page.get_by_label("Height as matched").fill("152")
+    page.get_by_label("Stated height").fill("172")
+    page.get_by_label("Matched height").fill("152")
     experimenter.press("Save heights")
     expect(page.get_by_text("Is that right?")).to_be_visible()
     expect(page.get_by_text("differ by 20 cm")).to_be_visible()
-    page.get_by_label("Height as matched").fill("160")
+    page.get_by_label("Matched height").fill("160")
     experimenter.press("Save heights")
     expect(page.get_by_text("differ by 12 cm")).to_be_visible()
     experimenter.press("Both are right: save")

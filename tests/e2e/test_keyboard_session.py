@@ -161,7 +161,7 @@ def start(keyboard: Keyboard) -> None:
         keyboard.go_to(page.get_by_role("button", name="Start").first, "start")
     keyboard.press("Enter", "start")
     reason = page.get_by_role("dialog").get_by_role("textbox")
-    height = page.get_by_label("Height as matched")
+    height = page.get_by_label("Matched height")
     expect(reason.or_(height).first).to_be_visible(timeout=PATIENCE_MS)
     if reason.is_visible():
         keyboard.write("Pilot")
@@ -195,8 +195,8 @@ def test_a_whole_session_without_a_mouse(
     log_in_and_create(keyboard, running_server.url)
     with paired(keyboard, running_server.url) as (tablet, wearer):
         start(keyboard)
-        keyboard.go_to(console.get_by_label("Height as matched"), "height")
-        stated = console.get_by_label("Height as stated")
+        keyboard.go_to(console.get_by_label("Matched height"), "height")
+        stated = console.get_by_label("Stated height")
         expect(stated).not_to_have_value("", timeout=PATIENCE_MS)
         keyboard.write(f"{100 * tablet.person.stature_m:.0f}")
         keyboard.press("Enter", "height")

@@ -74,7 +74,7 @@ def test_a_full_disk_is_said_on_the_page_and_an_export_can_be_deleted(
         wait_for(lambda: command(client, session, "note").status_code == 503)
         alarm = strip.get_by_role("alert")
         expect(alarm).to_contain_text("Data cannot be stored", timeout=PATIENCE_MS)
-        expect(alarm).to_contain_text("Disk full? Delete exports")
+        expect(alarm).to_contain_text("If the disk is full, delete exports")
         assert axe(page) == []
         screenshot(page, "disk-full")
         page.get_by_role("button", name=re.compile("^Downloads")).click()

@@ -121,8 +121,8 @@ def test_a_link_that_cannot_be_used_says_why(
     for url, said in (
         (link, "This link has already been used"),
         (revoked, "This invitation was revoked"),
-        (link[:-3], "There is no such invitation"),
-        (link[:-40], "There is no such invitation"),
+        (link[:-3], "This invitation does not exist"),
+        (link[:-40], "This invitation does not exist"),
     ):
         stranger.goto("about:blank")
         stranger.goto(url)

@@ -259,7 +259,9 @@ def test_an_order_is_not_known_from_a_session_that_gave_its_slot_up(fresh_lab: L
     given_up, holder = taken.session_ids
     wish = {"reason": "looking for a fault"}
     refused = fresh_lab.operator.post(f"/api/sessions/{given_up}/reveal", json=wish)
-    assert "another session has this one's place" in error(refused, 409, "conflict")["message"]
+    assert (
+        "another session now has this session's slot" in error(refused, 409, "conflict")["message"]
+    )
     assert fresh_lab.view(given_up)["sequence"] is None
     shown = ok(fresh_lab.operator.post(f"/api/sessions/{holder}/reveal", json=wish))
     assert shown["sequence"] == fresh_lab.view(given_up)["sequence"] is not None

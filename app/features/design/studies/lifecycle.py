@@ -61,7 +61,7 @@ def archive(db: Session, study: Study, now: datetime) -> None:
             f"the study has {running} session{'s' if running > 1 else ''} running",
             value=running,
             valid=0,
-            remedy="Finish, abort or withdraw them first. Their data stay in any case.",
+            remedy="Finish, abort or withdraw them first. Their data are kept in any case.",
         )
     study.archived_at = now
     db.flush()

@@ -83,7 +83,7 @@ def create_study(db: Session, text: str, now: datetime) -> StudyVersion:
     key = loaded.protocol.key
     if db.scalar(select(Study).where(Study.key == key)):
         raise Conflict(
-            f"there is a study {key!r} already",
+            f"the study {key!r} already exists",
             value=key,
             remedy="Add a version to it, or give the new study another key.",
         )
@@ -98,10 +98,10 @@ def add_version(db: Session, study: Study, text: str, now: datetime) -> StudyVer
     loaded = check_study(db, text)
     if loaded.protocol.key != study.key:
         raise Conflict(
-            f"the file is of study {loaded.protocol.key!r}",
+            f"the file belongs to the study {loaded.protocol.key!r}",
             value=loaded.protocol.key,
             valid=study.key,
-            remedy="Keep the key to make a version; change it and create a study to make another.",
+            remedy="Keep the key to add a version; to create another study, change the key.",
         )
     return _add_version(db, study, loaded, text, now)
 

@@ -38,7 +38,7 @@ router = APIRouter(prefix="/captures", tags=["captures"])
     "",
     status_code=201,
     openapi_extra=BODY,
-    responses={200: {"model": CaptureView, "description": "The same content was here already."}},
+    responses={200: {"model": CaptureView, "description": "The same content was already stored."}},
 )
 async def post_capture(
     request: Request,

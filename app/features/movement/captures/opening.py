@@ -82,7 +82,7 @@ def open_stored(store: Store, source: Source) -> Opened:
     finally:
         engine.dispose()
     if not all(files.values()):
-        raise Cannot("the capture was deleted meanwhile", source.name)
+        raise Cannot("the capture was deleted in the meantime", source.name)
     return _open(store.max_bytes, source, files)
 
 

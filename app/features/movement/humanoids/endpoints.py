@@ -21,7 +21,7 @@ ContentHash = Annotated[str, Path(pattern=r"^[0-9a-f]{64}$")]
     "",
     status_code=201,
     openapi_extra=BODY,
-    responses={200: {"model": HumanoidView, "description": "The same content was here already."}},
+    responses={200: {"model": HumanoidView, "description": "The same content was already stored."}},
 )
 async def post_humanoid(
     request: Request, response: Response, context: Context, caller: SignedIn, name: FileName

@@ -18,8 +18,8 @@ from app.platform.access import Caller
 from app.platform.context import AppContext
 
 _REMEDY = (
-    "Correct the model in the program that made it, or export it again as glTF binary (.glb) or"
-    " VRM; docs/avatar-configuration.md tells what is read."
+    "Correct the model in the program that made it, or export it again as glTF binary (.glb) or "
+    "VRM; docs/avatar-configuration.md says what is read."
 )
 
 

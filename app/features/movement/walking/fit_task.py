@@ -66,8 +66,8 @@ def _check_people(entries: list[PlannedWalk]) -> None:
     if len(people) < PERSONS:
         raise Cannot(
             f"all {len(entries)} walks are of one person, {people[0]!r}",
-            f"How people differ is learnt from {PERSONS} or more: add walks of others, and name"
-            " who walks in each.",
+            f"The model learns from at least {PERSONS} people how they differ: add walks of "
+            "others, and name who walks in each.",
         )
 
 

@@ -155,7 +155,7 @@ class PathAsked(BaseModel):
     @model_validator(mode="after")
     def _two_ends(self) -> "PathAsked":
         if self.planned and self.scene is None:
-            raise ValueError("a way is planned in a scene: name one, or draw the path")
+            raise ValueError("a path can only be planned in a scene: name one, or draw the path")
         return self
 
 

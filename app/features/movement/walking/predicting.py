@@ -79,7 +79,7 @@ def _check_drawn(scene: Scene, points: tuple[tuple[float, float], ...]) -> None:
                 raise Cannot(
                     f"between its points {number} and {number + 1} the path leads through obstacle"
                     f" {obstacle.name!r}",
-                    "Add a point that leads around it, or let the way be planned.",
+                    "Add a point that leads around it, or have the path planned.",
                 )
 
 

@@ -125,7 +125,7 @@ def put_password(change: NewPassword, request: Request, context: Context, caller
         require_password(account, change.current)
     except NotSignedIn as error:
         raise NotAllowed(
-            "the current password is incorrect", remedy="Type the password you log in with."
+            "the current password is incorrect", remedy="Enter the password you sign in with."
         ) from error
     hashed, now = hash_password(change.new), context.clock.utc_now()
     token = bearer_token(request) or read_cookie(request, LOGIN_COOKIE) or ""

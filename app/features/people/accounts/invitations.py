@@ -86,7 +86,8 @@ def open_invitation(db: Session, token: str, now: datetime) -> Invitation:
         raise Gone(
             f"this invitation is {status}",
             value=status,
-            remedy="Log in if you have an account; else ask the administrator for another link.",
+            remedy="Sign in if you have an account; otherwise ask the administrator for another "
+            "link.",
         )
     return row
 

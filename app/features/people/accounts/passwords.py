@@ -74,7 +74,7 @@ class PasswordQueue:
         with self._lock:
             if self._callers > self.waiting:
                 raise Busy(
-                    "too many passwords are being checked at this moment",
+                    "too many passwords are being checked at the moment",
                     remedy="Wait 2 s and try again; the password was not checked.",
                     retry_after_s=2.0,
                 )
@@ -159,16 +159,16 @@ def require_good(password: str, username: str) -> None:
     elif len(set(password.casefold())) < MIN_DIFFERENT:
         problem = "it repeats a few characters"
     elif username.casefold() in password.casefold() and len(password) < MIN_LENGTH + len(username):
-        problem = "it is mostly the user name"
+        problem = "it consists mostly of the user name"
     elif "reembody" in password.casefold() and len(password) < MIN_LENGTH + len("reembody"):
-        problem = "it is mostly the name of this program"
+        problem = "it consists mostly of the name of this program"
     elif _guesses(password, username) < MIN_GUESSES:
-        problem = "it is made of common passwords, words, dates or patterns"
+        problem = "it consists of common passwords, words, dates or patterns"
     if problem:
         raise InvalidInput(
             f"this password is too easy to guess: {problem}",
             valid=f"{MIN_LENGTH} to {MAX_LENGTH} characters, such as four or five random words",
-            remedy="Choose a longer one; spaces are welcome.",
+            remedy="Choose a longer one; spaces are allowed.",
         )
 
 

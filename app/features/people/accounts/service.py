@@ -97,7 +97,8 @@ def require_password(account: Account | None, password: str) -> Account:
     if not is_password(account.password_hash if account else None, password) or account is None:
         raise NotSignedIn(
             "user name and password do not match",
-            remedy="Check both; the first start printed the admin's password in its terminal.",
+            remedy="Check both. The admin's password was printed in the terminal at the first "
+            "start.",
         )
     return account
 

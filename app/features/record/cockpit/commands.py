@@ -74,7 +74,7 @@ def require_reason(reason: str, what: str) -> str:
             f"{what} needs a reason",
             value=reason,
             valid="1 to 2000 characters",
-            remedy="Write in a few words why; it becomes part of the record.",
+            remedy="Give the reason in a few words; it becomes part of the record.",
         )
     return reason.strip()
 

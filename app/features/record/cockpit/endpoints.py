@@ -130,9 +130,9 @@ def post_reveal(
         apply_command(db, context, session, LiftBlinding(content=content), actor=caller.actor)
         if is_blind(db, caller, protocol_of_session(db, session), session):
             raise Conflict(
-                "another session has this one's place in the ledger, and with it the same order",
+                "another session now has this session's slot in the ledger, and so the same order",
                 value=session.status,
-                remedy="Show the condition of that session, or wait until it is completed.",
+                remedy="Show the condition of that session instead, or wait until it is completed.",
             )
     return session_view(db, context, session, caller)
 

@@ -74,7 +74,7 @@ def usable_code(db: Session, code: str, now: datetime, *, lock: bool = False) ->
         raise Gone(
             "this code was already used or has expired",
             value=code,
-            remedy="Ask the experimenter to show a new code; a paired device keeps working.",
+            remedy="Ask the experimenter to show a new code; devices that are paired keep working.",
         )
     return row
 

@@ -82,7 +82,7 @@ def take_slot(
             raise Conflict(
                 "every slot of the ledger is taken and the study is closed",
                 value=total,
-                remedy="Withdraw a session that will not be finished, or set "
+                remedy="Abort or withdraw a session that will not be finished, or set "
                 "orders.when_full to grow in a new version.",
             )
         _grow(db, ledger, protocol)

@@ -33,13 +33,15 @@ def project(
             close_attempt(db, session, str(status), now)
             clear_all(db, [session.id], "the session has ended", now)
         case e.StopRuleOverridden():
-            over = Condition("stop_rule_met", "the operator went on, with a reason on record")
+            over = Condition("stop_rule_met", "the operator continued, with a reason on record")
             store_change(db, session.id, Change("cleared", over, now))
         case e.ConsentRefused() | e.RefusalRetracted() | e.QuestionAsked() | e.QuestionClosed():
             _note_said(db, session, event, now)
         case e.StepCompleted(step=step) | e.StepSkipped(step=step):
             if plan[step].kind == "consent":
-                over = Condition("refusal_retracted", "the consent has been decided on")
+                over = Condition(
+                    "refusal_retracted", "the participant has agreed or the consent was skipped"
+                )
                 store_change(db, session.id, Change("cleared", over, now))
         case e.PhasePrepared():
             db.add(_phase_row(session, plan[event.step], event, now))
@@ -61,7 +63,9 @@ def _note_said(db: Session, session: StudySession, event: Event, now: datetime) 
             change("cleared", "refusal_retracted", "the participant refused again")
             change("raised", "consent_refused", "The participant does not want to take part.")
         case e.RefusalRetracted(by="tablet"):
-            change("cleared", "consent_refused", "the participant took it back on the tablet")
+            change(
+                "cleared", "consent_refused", "the participant took the refusal back on the tablet"
+            )
             change("raised", "refusal_retracted", "The participant took the refusal back.")
         case e.RefusalRetracted():
             change("cleared", "consent_refused", "the operator showed the consent again")

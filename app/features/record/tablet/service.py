@@ -29,7 +29,7 @@ CODE = "help_asked"
 QUESTION = "question_asked"
 _OVER = ("completed", "aborted", "withdrawn")
 _CALL_WORDS = {
-    "asked": "The participant calls the experimenter from the tablet.",
+    "asked": "The participant called the experimenter from the tablet.",
     "taken_back": "The participant no longer needs help.",
     "answered": "The experimenter went to the participant.",
 }

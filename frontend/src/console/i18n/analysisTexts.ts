@@ -32,7 +32,7 @@ export const analysisEn = {
   "statistics.lead":
     "The study’s questions, answered from all sessions that count. Tests cannot be filtered: choosing data after seeing the results makes p meaningless.",
   "statistics.computing": "being recalculated",
-  "statistics.alpha": "p is compared with α = {{alpha}}",
+  "statistics.alpha": "p values are compared with α = {{alpha}}",
   "statistics.undeclared":
     "The study has not declared α or a primary test. α = {{alpha}} is the usual convention, so every result here is exploratory.",
   "statistics.empty.title": "Nothing to test yet",
@@ -94,10 +94,10 @@ export const analysisDe: Readonly<Record<keyof typeof analysisEn, string>> = {
   "statistics.lead":
     "Die Fragen der Studie, beantwortet aus allen Sitzungen, die zählen. Tests lassen sich nicht filtern: Wer Daten erst nach einem Blick auf die Ergebnisse auswählt, macht p wertlos.",
   "statistics.computing": "wird neu berechnet",
-  "statistics.alpha": "p wird mit α = {{alpha}} verglichen",
+  "statistics.alpha": "p-Werte werden mit α = {{alpha}} verglichen",
   "statistics.undeclared":
     "Die Studie hat weder α noch einen primären Test festgelegt. α = {{alpha}} ist die übliche Konvention; deshalb ist jedes Ergebnis hier explorativ.",
-  "statistics.empty.title": "Noch nichts zu testen",
+  "statistics.empty.title": "Noch nichts auszuwerten",
   "statistics.empty.body": "Ergebnisse erscheinen, sobald zwei Sitzungen dieser Art zählen.",
   "statistics.contents": "Maße",
   "statistics.n": "n = {{count}}",

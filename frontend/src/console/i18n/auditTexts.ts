@@ -126,9 +126,10 @@ export const auditDe: Readonly<Record<keyof typeof auditEn, string>> = {
   "audit.check.broken": "Kette unterbrochen bei Eintrag {{number}}",
   "audit.check.brokenBody":
     "Jemand hat Einträge in der Datenbank geändert oder entfernt. Bewahren Sie eine unveränderte Kopie auf und vergleichen Sie sie mit einer Sicherung.",
-  "act.login.opened": "hat sich von {{address}} angemeldet",
-  "act.login.refused": "Eine Anmeldung von {{address}} wurde abgelehnt",
-  "act.login.refusedMore": "{{refused}} weitere Anmeldungen von {{address}} wurden abgelehnt",
+  "act.login.opened": "hat sich von der Adresse {{address}} angemeldet",
+  "act.login.refused": "Eine Anmeldung von der Adresse {{address}} wurde abgelehnt",
+  "act.login.refusedMore":
+    "{{refused}} weitere Anmeldungen von der Adresse {{address}} wurden abgelehnt",
   "act.login.revoked_one": "hat {{count}} Anmeldung von {{subject}} beendet",
   "act.login.revoked_other": "hat {{count}} Anmeldungen von {{subject}} beendet",
   "act.account.made": "hat auf Einladung ein Konto angelegt, als {{role}}",
@@ -140,7 +141,7 @@ export const auditDe: Readonly<Record<keyof typeof auditEn, string>> = {
   "act.account.closed": "hat das Konto von {{subject}} geschlossen",
   "act.account.reopened": "hat das Konto von {{subject}} wieder geöffnet",
   "act.account.changed": "hat das Konto von {{subject}} geändert",
-  "act.invitation.made": "hat jemanden eingeladen, als {{role}}",
+  "act.invitation.made": "hat jemanden als {{role}} eingeladen",
   "act.invitation.studies": "Studien: {{studies}}",
   "act.invitation.revoked": "hat eine Einladung zurückgenommen",
   "act.study.created": "hat die Studie {{subject}} angelegt",

@@ -32,7 +32,7 @@ export const captureViewEn = {
   "stage.flat": "This browser cannot show 3-D",
   "stage.flat.remedy":
     "WebGL is off or unavailable, so only a side view is shown below. Turn on hardware acceleration to see 3-D.",
-  "stage.squares": "Squares of {{metres}} m",
+  "stage.squares": "Each square is {{metres}} m wide",
   "stage.look": "View from",
   "stage.look.corner": "Corner",
   "stage.look.front": "Front",
@@ -63,7 +63,7 @@ export const captureViewEn = {
   "conventions.rotations": "Rotations",
   "conventions.rate": "Rate",
   "conventions.size": "Size",
-  "conventions.size.value": "{{width}} × {{depth}} m floor, {{height}} m high",
+  "conventions.size.value": "{{width}} × {{depth}} m on the floor, {{height}} m high",
   "conventions.size.hint": "The space taken up by all points in all frames.",
   "conventions.observed": "Observed",
   "conventions.observed.value": "{{percent}} % of all values",
@@ -92,7 +92,7 @@ export const captureViewEn = {
   "conventions.skeleton": "Skeleton",
   "conventions.skeleton.file": "{{count}} joints, from the file",
   "conventions.skeleton.fitted":
-    "{{count}} joints, fitted; {{millimetres}} mm from the recorded points",
+    "{{count}} joints, fitted; {{millimetres}} mm away from the recorded points",
   "conventions.skeleton.unfitted": "Not covered by the markers: {{names}}",
 } as const;
 
@@ -129,7 +129,7 @@ export const captureViewDe: Readonly<Record<keyof typeof captureViewEn, string>>
   "stage.flat": "Dieser Browser kann kein 3-D anzeigen",
   "stage.flat.remedy":
     "WebGL ist ausgeschaltet oder nicht verfügbar; deshalb ist unten nur eine Seitenansicht zu sehen. Schalten Sie für 3-D die Hardwarebeschleunigung ein.",
-  "stage.squares": "Felder von {{metres}} m",
+  "stage.squares": "Jedes Feld ist {{metres}} m breit",
   "stage.look": "Blick von",
   "stage.look.corner": "Ecke",
   "stage.look.front": "Vorn",
@@ -160,7 +160,7 @@ export const captureViewDe: Readonly<Record<keyof typeof captureViewEn, string>>
   "conventions.rotations": "Drehungen",
   "conventions.rate": "Rate",
   "conventions.size": "Ausdehnung",
-  "conventions.size.value": "{{width}} × {{depth}} m Boden, {{height}} m hoch",
+  "conventions.size.value": "{{width}} × {{depth}} m am Boden, {{height}} m hoch",
   "conventions.size.hint": "Der Raum, den alle Punkte in allen Bildern einnehmen.",
   "conventions.observed": "Erfasst",
   "conventions.observed.value": "{{percent}} % aller Werte",

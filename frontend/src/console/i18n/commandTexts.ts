@@ -2,7 +2,7 @@
 export const commandsEn = {
   "stale.title": "Another operator acted first",
   "stale.remedy":
-    "Your command “{{command}}” was not carried out. Check the session and repeat it if it still applies.",
+    "Your command “{{command}}” was not carried out. Look at the session, and repeat the command if it still applies.",
   "command.start": "start the session",
   "command.complete_step": "complete the step",
   "command.begin_phase": "begin the task",
@@ -28,21 +28,21 @@ export const commandsEn = {
   "ask.reason": "Reason (kept in the record)",
   "ask.redo": "Repeat",
   "ask.redo.body":
-    "The step starts again as a new attempt. What was recorded so far is kept, marked as void.",
+    "The step starts again as a new attempt. What was recorded so far is kept and marked as void.",
   "ask.skip": "Skip this step",
-  "ask.skip.body": "The session continues with the next step. This one is marked as skipped.",
+  "ask.skip.body": "The session continues with the next step. This step is marked as skipped.",
   "ask.abort": "Abort the session",
   "ask.abort.body":
     "The session ends now and cannot be resumed. Its data are kept, and its slot becomes free.",
   "ask.withdraw": "Withdraw the participant",
-  "ask.withdraw.body": "Recording stops now. The slot of the ledger becomes free again.",
+  "ask.withdraw.body": "Recording stops now. The session's slot in the ledger becomes free again.",
   "reason.break": "Short break",
   "reason.tracking": "Tracking problem",
   "reason.question": "Participant had a question",
   "reason.misunderstood": "Task misunderstood",
   "reason.interrupted": "Interrupted by someone else",
-  "reason.askedAloud": "Asked aloud instead",
-  "reason.time": "Out of time",
+  "reason.askedAloud": "Question answered aloud instead",
+  "reason.time": "Not enough time",
   "reason.wish": "Participant's wish",
   "reason.equipment": "Equipment failure",
   "reason.sick": "Simulator sickness",
@@ -72,7 +72,7 @@ export const commandsEn = {
 };
 
 export const commandsDe: Readonly<Record<keyof typeof commandsEn, string>> = {
-  "stale.title": "Jemand anderes war schneller",
+  "stale.title": "Jemand anders war schneller",
   "stale.remedy":
     "Ihr Befehl „{{command}}“ wurde nicht ausgeführt. Sehen Sie sich die Sitzung an und wiederholen Sie ihn, wenn er noch passt.",
   "command.start": "Sitzung starten",
@@ -100,22 +100,23 @@ export const commandsDe: Readonly<Record<keyof typeof commandsEn, string>> = {
   "ask.reason": "Begründung (wird festgehalten)",
   "ask.redo": "Wiederholen",
   "ask.redo.body":
-    "Der Schritt beginnt als neuer Versuch. Das bisher Aufgezeichnete bleibt, als ungültig markiert.",
+    "Der Schritt beginnt als neuer Versuch. Das bisher Aufgezeichnete bleibt erhalten und wird als ungültig markiert.",
   "ask.skip": "Diesen Schritt überspringen",
   "ask.skip.body":
-    "Die Sitzung geht mit dem nächsten Schritt weiter. Dieser wird als übersprungen markiert.",
+    "Die Sitzung geht mit dem nächsten Schritt weiter. Dieser Schritt wird als übersprungen markiert.",
   "ask.abort": "Sitzung abbrechen",
   "ask.abort.body":
     "Die Sitzung endet jetzt und kann nicht fortgesetzt werden. Ihre Daten bleiben erhalten, ihr Platz wird frei.",
   "ask.withdraw": "Teilnahme beenden",
-  "ask.withdraw.body": "Die Aufzeichnung endet jetzt. Der Platz im Plan wird wieder frei.",
+  "ask.withdraw.body":
+    "Die Aufzeichnung endet jetzt. Der Platz der Sitzung im Plan wird wieder frei.",
   "reason.break": "Kurze Pause",
   "reason.tracking": "Problem mit dem Tracking",
-  "reason.question": "Frage der Person",
+  "reason.question": "Person hatte eine Frage",
   "reason.misunderstood": "Aufgabe missverstanden",
   "reason.interrupted": "Von außen unterbrochen",
-  "reason.askedAloud": "Stattdessen mündlich gefragt",
-  "reason.time": "Zeit reicht nicht",
+  "reason.askedAloud": "Stattdessen mündlich beantwortet",
+  "reason.time": "Nicht genug Zeit",
   "reason.wish": "Wunsch der Person",
   "reason.equipment": "Geräteausfall",
   "reason.sick": "Simulatorübelkeit",

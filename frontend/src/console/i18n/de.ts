@@ -58,10 +58,10 @@ export const de: Record<keyof typeof en, string> = {
   "studies.lead":
     "Jede Studie ist ein versioniertes Protokoll mit eigenem Plan und eigenen Sitzungen.",
   "studies.add": "Studie hinzufügen",
-  "studies.empty.title": "Noch keine Studie",
+  "studies.empty.title": "Noch keine Studien",
   "studies.empty.body":
     "Eine Studie ist eine YAML-Datei mit Bedingungen, Reihenfolgen, Ablauf und Texten. Fügen Sie sie hier hinzu; jedes Problem wird mit seiner Zeile gezeigt.",
-  "studies.empty.file": "Die Studie zur zusätzlichen Latenz steht in der Datei",
+  "studies.empty.file": "Eine fertige Studie zur zusätzlichen Latenz steht in der Datei",
   "import.title": "Studie hinzufügen",
   "import.titleVersion": "Version hinzufügen",
   "import.lead":
@@ -72,7 +72,7 @@ export const de: Record<keyof typeof en, string> = {
   "import.check": "Prüfen",
   "import.save": "Studie hinzufügen",
   "import.saveVersion": "Version hinzufügen",
-  "import.fine": "Keine Probleme gefunden. Sie kann hinzugefügt werden.",
+  "import.fine": "Keine Probleme gefunden. Die Datei kann hinzugefügt werden.",
   "import.problems_one": "Es gibt ein Problem. Ein Klick führt zur Zeile.",
   "import.problems_other": "Es gibt {{count}} Probleme. Ein Klick führt zur Zeile.",
   "sessions.participant": "Person",
@@ -95,7 +95,7 @@ export const de: Record<keyof typeof en, string> = {
   "join.submit": "Sitzung anlegen",
   "simulated.title": "SIMULIERTE DATEN",
   "simulated.body":
-    "Diese Zahlen stammen von simulierten Personen. Sie zeigen, dass die Studie funktioniert, nicht, was Menschen empfinden.",
+    "Diese Zahlen stammen von simulierten Personen. Sie zeigen, dass die Studie funktioniert, nicht, wie Menschen reagieren würden.",
   "simulated.watermark": "SIMULIERT",
   "simulated.session": "Simulierte Sitzung, {{scale}} × Echtzeit",
   "protocol.frozen":
@@ -106,7 +106,7 @@ export const de: Record<keyof typeof en, string> = {
   "entry.title": "Antworten für {{code}} eingeben",
   "entry.recorded":
     "Es wird festgehalten, dass Sie diese Antworten eingegeben haben. Unbeantwortete Fragen bleiben leer.",
-  "entry.none": "Gerade ist kein Formular auszufüllen.",
+  "entry.none": "Gerade gibt es kein Formular auszufüllen.",
   "unit.years": "Jahre",
   "form.yes": "Ja",
   "form.no": "Nein",

@@ -36,7 +36,7 @@ export const editorEn = {
   "editor.discard": "Discard them and open the stored version",
   "editor.leave.title": "Leave without saving?",
   "editor.leave.body":
-    "The changes are not saved on the server. This browser keeps them until you come back.",
+    "Your changes are not saved on the server. This browser keeps them until you come back.",
   "editor.leave.stay": "Stay",
   "editor.leave.go": "Leave",
   "editor.add": "Add",
@@ -70,7 +70,7 @@ export const editorEn = {
   "dryRun.text": "Text shown",
   "dryRun.rule":
     "≈ marks our own estimate: {{opening}} s to find one's way around a page, {{words}} words per minute for reading, {{likert}} s per item on a scale. Pauses, walks back and breaks are not included.",
-  "dryRun.broken": "No dry run while there are problems",
+  "dryRun.broken": "The dry run is not available while there are problems",
   "dryRun.broken.body": "Fix them under Form and text to see it again.",
 };
 
@@ -111,12 +111,12 @@ export const editorDe: Readonly<Record<keyof typeof editorEn, string>> = {
   "editor.discard": "Verwerfen und gespeicherte Version öffnen",
   "editor.leave.title": "Ohne Speichern verlassen?",
   "editor.leave.body":
-    "Die Änderungen sind nicht auf dem Server gespeichert. Dieser Browser behält sie, bis Sie zurückkommen.",
+    "Ihre Änderungen sind nicht auf dem Server gespeichert. Dieser Browser behält sie, bis Sie zurückkommen.",
   "editor.leave.stay": "Bleiben",
   "editor.leave.go": "Verlassen",
   "editor.add": "Hinzufügen",
   "editor.addStep": "Schritt hinzufügen",
-  "editor.newText": "Schlüssel eines neuen Textes",
+  "editor.newText": "Schlüssel des neuen Textes",
   "editor.leaveOut": "Weglassen: {{name}}",
   "editor.up": "Nach oben: {{name}}",
   "editor.down": "Nach unten: {{name}}",

@@ -55,10 +55,10 @@ export const en = {
   "order.hidden": "Order hidden (blinded)",
   "studies.lead": "Each study is a versioned protocol with its own ledger and sessions.",
   "studies.add": "Add a study",
-  "studies.empty.title": "No study yet",
+  "studies.empty.title": "No studies yet",
   "studies.empty.body":
     "A study is one YAML file with its conditions, orders, procedure and texts. Add it here; every problem is shown with its line.",
-  "studies.empty.file": "The study of added latency is in the file",
+  "studies.empty.file": "A ready-made study of added latency is in the file",
   "import.title": "Add a study",
   "import.titleVersion": "Add a version",
   "import.lead":
@@ -69,7 +69,7 @@ export const en = {
   "import.check": "Check",
   "import.save": "Add the study",
   "import.saveVersion": "Add the version",
-  "import.fine": "No problems found. It can be added.",
+  "import.fine": "No problems found. The file can be added.",
   "import.problems_one": "There is one problem. Click it to go to its line.",
   "import.problems_other": "There are {{count}} problems. Click one to go to its line.",
   "sessions.participant": "Participant",
@@ -92,7 +92,7 @@ export const en = {
   "join.submit": "Create session",
   "simulated.title": "SIMULATED DATA",
   "simulated.body":
-    "These figures come from simulated participants. They show that the study works, not how people feel.",
+    "These figures come from simulated participants. They show that the study works, not how people would respond.",
   "simulated.watermark": "SIMULATED",
   "simulated.session": "Simulated session, {{scale}} × real time",
   "protocol.frozen":
@@ -102,7 +102,7 @@ export const en = {
   "entry.title": "Enter answers for {{code}}",
   "entry.recorded":
     "The record will say that you entered these answers. Unanswered items stay empty.",
-  "entry.none": "There is no form to fill in at the moment.",
+  "entry.none": "There is no form to fill in right now.",
   "unit.years": "years",
   "form.yes": "Yes",
   "form.no": "No",

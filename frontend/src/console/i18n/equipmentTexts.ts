@@ -36,7 +36,7 @@ export const equipmentDe: Readonly<Record<keyof typeof equipmentEn, string>> = {
   "equipment.lead":
     "Wie lange die Geräte selbst brauchen, um eine Bewegung zu zeigen. Die Latenz, die eine Studie vorgibt, kommt hinzu. Die Messungen sind in jedem Export enthalten.",
   "equipment.add": "Messung eintragen",
-  "equipment.empty": "Noch nichts gemessen",
+  "equipment.empty": "Es wurde noch nichts gemessen",
   "equipment.empty.body":
     "Messen Sie die Verzögerung jedes Headsets mit Tracking und Rechner einmal und nach jeder Änderung erneut.",
   "equipment.current": "Neueste",

@@ -16,12 +16,12 @@ export const joinEn = {
   "invited.used.body":
     "It works only once. If you used it, sign in. If not, tell the administrator of the lab immediately.",
   "invited.expired.title": "This link has expired",
-  "invited.expired.body": "Ask the administrator of the lab for another.",
+  "invited.expired.body": "Ask the administrator of the lab for a new one.",
   "invited.revoked.title": "This invitation was revoked",
-  "invited.revoked.body": "Ask the administrator of the lab if you expected it.",
-  "invited.unknown.title": "There is no such invitation",
+  "invited.revoked.body": "If you expected this invitation, ask the administrator of the lab.",
+  "invited.unknown.title": "This invitation does not exist",
   "invited.unknown.body":
-    "Part of the link may be missing: copy all of it. Otherwise ask the administrator of the lab for another.",
+    "Part of the link may be missing: copy all of it. Otherwise ask the administrator of the lab for a new one.",
   "invited.signIn": "Go to sign-in",
   "invited.other.title": "You are signed in as {{name}}",
   "invited.other.body":
@@ -62,12 +62,13 @@ export const joinDe: Readonly<Record<keyof typeof joinEn, string>> = {
   "invited.expired.title": "Dieser Link ist abgelaufen",
   "invited.expired.body": "Bitten Sie den Admin des Labors um einen neuen.",
   "invited.revoked.title": "Diese Einladung wurde zurückgenommen",
-  "invited.revoked.body": "Fragen Sie den Admin des Labors, wenn Sie sie erwartet haben.",
+  "invited.revoked.body":
+    "Wenn Sie diese Einladung erwartet haben, fragen Sie den Admin des Labors.",
   "invited.unknown.title": "Diese Einladung gibt es nicht",
   "invited.unknown.body":
     "Vielleicht fehlt ein Teil des Links: Kopieren Sie ihn ganz. Sonst bitten Sie den Admin des Labors um einen neuen.",
   "invited.signIn": "Zur Anmeldung",
-  "invited.other.title": "Sie sind angemeldet als {{name}}",
+  "invited.other.title": "Sie sind als {{name}} angemeldet",
   "invited.other.body":
     "Eine Einladung legt ein neues Konto an. Melden Sie sich zuerst ab, wenn sie für jemand anderen ist oder für Sie unter einem anderen Namen.",
   "invited.other.stay": "Als {{name}} angemeldet bleiben",

@@ -17,7 +17,7 @@ export const networkEn = {
   "network.local": "This computer",
   "network.first": "Setting up a new device",
   "network.first.body":
-    "Each device installs the lab's certificate once. This page shows how, for iPad, Android, Meta Quest, Windows, Mac and Linux.",
+    "Each device installs the lab's certificate once. This page shows how on iPad, Android, Meta Quest, Windows, Mac and Linux.",
   "network.first.qr": "QR code of the page that shows how to install the certificate",
   "network.certificate": "Certificate",
   "network.fingerprint": "Fingerprint (SHA-256)",
@@ -28,14 +28,14 @@ export const networkEn = {
   "network.expires.authority":
     "{{date}}. Renewed automatically; there is nothing to do on the devices until {{authority}}.",
   "network.expires.own": "{{date}}. Replace it before then; no restart is needed.",
-  "network.uncovered": "Not valid for some addresses of this computer",
+  "network.uncovered": "The certificate is not valid for some addresses of this computer",
   "network.uncovered.body":
     "{{addresses}}. Devices that use them see a warning. Run “./run tls renew --new-authority”; each device then installs the new certificate.",
   "network.uncovered.own": "{{addresses}}. Devices that use them see a warning.",
   "network.cable": "A headset on a USB cable",
   "network.cable.body":
     "No network or certificate needed. Connect the headset, allow debugging on it, and run on this computer:",
-  "network.cable.then": "Then open in the headset's browser:",
+  "network.cable.then": "Then open this address in the headset's browser:",
   "network.none": "This computer has no network address",
   "network.none.body": "Once it is on a network, its addresses appear here within a minute.",
   "pairing.onlyHere": "Only this computer can reach the server",
@@ -65,7 +65,7 @@ export const networkDe: Readonly<Record<keyof typeof networkEn, string>> = {
   "network.local": "Dieser Rechner",
   "network.first": "Ein neues Gerät einrichten",
   "network.first.body":
-    "Jedes Gerät installiert das Zertifikat des Labors einmal. Diese Seite zeigt wie, für iPad, Android, Meta Quest, Windows, Mac und Linux.",
+    "Jedes Gerät installiert das Zertifikat des Labors einmal. Diese Seite zeigt, wie das auf iPad, Android, Meta Quest, Windows, Mac und Linux geht.",
   "network.first.qr": "QR-Code der Seite, die zeigt, wie das Zertifikat installiert wird",
   "network.certificate": "Zertifikat",
   "network.fingerprint": "Fingerabdruck (SHA-256)",
@@ -76,14 +76,14 @@ export const networkDe: Readonly<Record<keyof typeof networkEn, string>> = {
   "network.expires.authority":
     "{{date}}. Wird automatisch erneuert; an den Geräten ist bis {{authority}} nichts zu tun.",
   "network.expires.own": "{{date}}. Ersetzen Sie es vorher; ein Neustart ist nicht nötig.",
-  "network.uncovered": "Für manche Adressen dieses Rechners nicht gültig",
+  "network.uncovered": "Das Zertifikat gilt für manche Adressen dieses Rechners nicht",
   "network.uncovered.body":
     "{{addresses}}. Geräte, die sie benutzen, zeigen eine Warnung. Führen Sie „./run tls renew --new-authority“ aus; danach installiert jedes Gerät das neue Zertifikat.",
   "network.uncovered.own": "{{addresses}}. Geräte, die sie benutzen, zeigen eine Warnung.",
   "network.cable": "Ein Headset am USB-Kabel",
   "network.cable.body":
     "Braucht weder Netz noch Zertifikat. Verbinden Sie das Headset, erlauben Sie darauf das Debugging und führen Sie auf diesem Rechner aus:",
-  "network.cable.then": "Dann im Browser des Headsets öffnen:",
+  "network.cable.then": "Öffnen Sie dann im Browser des Headsets:",
   "network.none": "Dieser Rechner hat keine Netzwerkadresse",
   "network.none.body":
     "Sobald er in einem Netz ist, erscheinen seine Adressen hier binnen einer Minute.",

@@ -205,7 +205,7 @@ export const peopleDe: Readonly<Record<keyof typeof peopleEn, string>> = {
   "invitations.revoke": "Zurücknehmen",
   "invitations.revoke.which": "Einladung {{note}} zurücknehmen",
   "invitations.noNote": "ohne Notiz",
-  "invitations.empty.title": "Noch keine Einladung",
+  "invitations.empty.title": "Noch keine Einladungen",
   "invitations.empty.body":
     "Mit einem Link legt eine Person ein Konto mit der Rolle an, die Sie wählen. Ihr Passwort wählt sie selbst.",
   "forbidden.title": "Ihre Rolle hat keinen Zugang zu dieser Seite",

@@ -30,7 +30,8 @@ export const rightsEn = {
   "erase.goes.devices": "Device names, pairings and alarms",
   "erase.goes.code": "The code {{code}}",
   "erase.stays": "Kept",
-  "erase.stays.session": "That the session took place, when, and in which order",
+  "erase.stays.session":
+    "The fact that the session took place, when it did, and the order of its conditions",
   "erase.stays.log": "The event log, without free text or answers",
   "erase.stays.tombstone": "A record of this erasure: when, by whom, how much",
   "erase.copies": "Copies that you must destroy yourself",
@@ -71,7 +72,8 @@ export const rightsEn = {
   "withdrew.body": "Recording has stopped. Ask whether the data collected so far may be kept.",
   "withdrew.keep": "Keep the data",
   "withdrew.erase": "Erase…",
-  "withdrew.note": "After the withdrawal: the data collected so far may be kept.",
+  "withdrew.note":
+    "After the withdrawal, the participant agreed that the data collected so far may be kept.",
   "withdrew.erased": "The participant's data were erased",
   "withdrew.erased.body": "On {{date}} by {{by}}. Only an outline of the session remains.",
   "export.file.corrections": "corrections.csv",
@@ -81,7 +83,7 @@ export const rightsEn = {
 export const rightsDe: Readonly<Record<keyof typeof rightsEn, string>> = {
   "study.tab.participants": "Teilnehmende",
   "rights.search": "Nach einem Code suchen",
-  "rights.none": "Niemand mit diesem Code",
+  "rights.none": "Keine Person mit diesem Code",
   "rights.none.body": "Leeren Sie die Suche, um alle zu sehen.",
   "rights.empty": "Noch keine Teilnehmenden",
   "rights.empty.body": "Teilnehmende erscheinen hier, sobald sie eine Sitzung haben.",
@@ -109,7 +111,8 @@ export const rightsDe: Readonly<Record<keyof typeof rightsEn, string>> = {
   "erase.goes.devices": "Gerätenamen, Kopplungen und Alarme",
   "erase.goes.code": "Der Code {{code}}",
   "erase.stays": "Bleibt erhalten",
-  "erase.stays.session": "Dass es eine Sitzung gab, wann, und in welcher Reihenfolge",
+  "erase.stays.session":
+    "Die Tatsache, dass es eine Sitzung gab, wann, und mit welcher Reihenfolge der Bedingungen",
   "erase.stays.log": "Das Ereignisprotokoll, ohne freien Text und ohne Antworten",
   "erase.stays.tombstone": "Ein Vermerk über diese Löschung: wann, durch wen, wie viel",
   "erase.copies": "Kopien, die Sie selbst vernichten müssen",
@@ -153,7 +156,8 @@ export const rightsDe: Readonly<Record<keyof typeof rightsEn, string>> = {
     "Die Aufzeichnung hat aufgehört. Fragen Sie, ob die bisherigen Daten aufbewahrt werden dürfen.",
   "withdrew.keep": "Daten behalten",
   "withdrew.erase": "Löschen …",
-  "withdrew.note": "Nach dem Ende der Teilnahme: die bisherigen Daten dürfen aufbewahrt werden.",
+  "withdrew.note":
+    "Nach dem Ende der Teilnahme stimmte die Person zu, dass die bisherigen Daten aufbewahrt werden.",
   "withdrew.erased": "Die Daten der Person wurden gelöscht",
   "withdrew.erased.body": "Am {{date}} von {{by}}. Geblieben ist nur ein Gerüst der Sitzung.",
   "export.file.corrections": "corrections.csv",

@@ -13,7 +13,7 @@ export const safetyEn = {
   "command.override_stop": "continue despite the stop rule",
   "ask.override_stop": "Continue although the stop rule was met?",
   "ask.override_stop.body":
-    "Only after you have spoken to the participant, and they want to go on. The reason becomes part of the record.",
+    "Continue only after you have spoken to the participant and if they want to go on. The reason becomes part of the record.",
   "reason.recovered": "Recovered after a break, wants to continue",
   "reason.mistyped": "The answer was a mistake",
   "reason.stopRule": "Stop rule: sickness",
@@ -27,8 +27,8 @@ export const safetyDe: Readonly<Record<keyof typeof safetyEn, string>> = {
   "practice.until_one": "Endet nach {{count}} erledigter Aufgabe",
   "practice.until_other": "Endet nach {{count}} erledigten Aufgaben",
   "held.title": "Halt: Sehen Sie nach der Person",
-  "held.score": "{{score}} liegt bei oder über der Grenze von {{limit}} in „{{instrument}}“.",
-  "held.rise": "{{score}} ist um {{limit}} oder mehr gestiegen in „{{instrument}}“.",
+  "held.score": "{{score}} liegt in „{{instrument}}“ bei oder über der Grenze von {{limit}}.",
+  "held.rise": "{{score}} ist in „{{instrument}}“ um {{limit}} oder mehr gestiegen.",
   "held.body":
     "Die Sitzung ist angehalten, und das Tablet bittet die Person, auf Sie zu warten. Bieten Sie einen Stuhl und Wasser an; nehmen Sie das Headset ab.",
   "held.end": "Sitzung beenden",
@@ -37,7 +37,7 @@ export const safetyDe: Readonly<Record<keyof typeof safetyEn, string>> = {
   "command.override_stop": "trotz Stoppregel fortfahren",
   "ask.override_stop": "Trotz Stoppregel fortfahren?",
   "ask.override_stop.body":
-    "Nur nachdem Sie mit der Person gesprochen haben und sie weitermachen möchte. Die Begründung wird Teil des Protokolls.",
+    "Fahren Sie nur fort, wenn Sie mit der Person gesprochen haben und sie weitermachen möchte. Die Begründung wird Teil des Protokolls.",
   "reason.recovered": "Nach einer Pause erholt, möchte weitermachen",
   "reason.mistyped": "Die Antwort war ein Versehen",
   "reason.stopRule": "Stoppregel: Übelkeit",

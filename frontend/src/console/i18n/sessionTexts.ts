@@ -1,6 +1,6 @@
 /** Texts of a session's state: its steps and clock, what comes next, what changed. */
 export const sessionEn = {
-  "change.status.planned": "The session is back to planned.",
+  "change.status.planned": "The session was reset to planned.",
   "change.status.active": "The session was started.",
   "change.status.completed": "The session was completed.",
   "change.status.aborted": "The session was aborted.",
@@ -11,7 +11,7 @@ export const sessionEn = {
   "change.phase.running": "The task is running.",
   "change.phase.paused": "The task was paused.",
   "change.phase.walk_back": "The participant is walking back to the start.",
-  "change.phase.freezing": "The task has ended and the picture is frozen.",
+  "change.phase.freezing": "The task has ended, and the picture is frozen.",
   "change.notes_one": "A note was added.",
   "change.notes_other": "{{count}} notes were added.",
   "change.other": "The session was changed.",
@@ -19,7 +19,7 @@ export const sessionEn = {
   "guide.completed": "Everything is stored. Thank the participant.",
   "guide.aborted": "The session was ended early. Its data are kept and its slot is free again.",
   "guide.withdrawn": "The participant withdrew. The slot is free again.",
-  "guide.preparing": "The headset is counting down.",
+  "guide.preparing": "The countdown is running in the headset.",
   "guide.running": "The task is running in the headset. Stay within reach.",
   "guide.paused": "The clock is paused. Resume when the participant is ready.",
   "guide.walk_back":
@@ -45,7 +45,7 @@ export const sessionEn = {
   "step.latency": "{{latency}} added",
   "step.latencyHidden": "latency hidden",
   "step.waitingTablet": "Waiting for the tablet",
-  "step.noTablet": "No tablet is connected: pair it under Devices",
+  "step.noTablet": "No tablet is connected. Pair it under Devices.",
   "step.noHeadset": "No headset is connected. Pair it under Devices, or wake it.",
   "step.waitingHeadset": "Waiting for the headset",
   "clock.label": "Active time",
@@ -54,8 +54,8 @@ export const sessionEn = {
   "clock.noHeadset": "No headset is connected, so the clock is paused.",
   "clock.holding":
     "The headset has not reported for a few seconds. The clock stopped at its last report.",
-  "height.stated": "Height as stated",
-  "height.matched": "Height as matched",
+  "height.stated": "Stated height",
+  "height.matched": "Matched height",
   "height.impossible": "Between {{shortest}} and {{tallest}} cm",
   "timeline.label": "Procedure",
   "timeline.before": "Before",
@@ -104,7 +104,7 @@ export const sessionDe: Readonly<Record<keyof typeof sessionEn, string>> = {
   "guide.aborted":
     "Die Sitzung wurde vorzeitig beendet. Ihre Daten bleiben erhalten, ihr Platz ist wieder frei.",
   "guide.withdrawn": "Die Person hat ihre Teilnahme beendet. Der Platz ist wieder frei.",
-  "guide.preparing": "Das Headset zählt herunter.",
+  "guide.preparing": "Im Headset läuft der Countdown.",
   "guide.running": "Die Aufgabe läuft im Headset. Bleiben Sie in Reichweite.",
   "guide.paused": "Die Uhr ist angehalten. Setzen Sie fort, wenn die Person bereit ist.",
   "guide.walk_back":
@@ -129,7 +129,7 @@ export const sessionDe: Readonly<Record<keyof typeof sessionEn, string>> = {
   "step.latency": "{{latency}} zusätzlich",
   "step.latencyHidden": "Latenz verdeckt",
   "step.waitingTablet": "Wartet auf das Tablet",
-  "step.noTablet": "Kein Tablet ist verbunden: koppeln Sie es unter Geräte",
+  "step.noTablet": "Kein Tablet ist verbunden. Koppeln Sie es unter Geräte.",
   "step.noHeadset":
     "Kein Headset ist verbunden. Koppeln Sie es unter Geräte oder wecken Sie es auf.",
   "step.waitingHeadset": "Wartet auf das Headset",

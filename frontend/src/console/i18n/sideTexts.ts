@@ -111,11 +111,11 @@ export const sideDe: Readonly<Record<keyof typeof sideEn, string>> = {
   "achieved.still": "zu wenig Bewegung",
   "achieved.moved": "{{moved}} s Bewegung, {{needed}} s nötig",
   "achieved.unknown": "nicht messbar",
-  "achieved.within": "in der Toleranz",
+  "achieved.within": "innerhalb der Toleranz",
   "achieved.out": "außerhalb der Toleranz",
   "achieved.off": "weicht ab: {{by}}",
   "achieved.brief": "erreicht {{by}}",
-  "achieved.latencyWithin": "Latenz in der Toleranz",
+  "achieved.latencyWithin": "Latenz innerhalb der Toleranz",
   "achieved.latencyOut": "Latenz außerhalb der Toleranz",
   "achieved.unverified": "Latenz nicht überprüft",
   "hint.alike": "Alle {{items}} Bewertungen sind {{value}}",
@@ -123,5 +123,5 @@ export const sideDe: Readonly<Record<keyof typeof sideEn, string>> = {
   "hint.left_out_one": "{{count}} Frage ausgelassen",
   "hint.left_out_other": "{{count}} Fragen ausgelassen",
   "hint.about":
-    "Ein Hinweis, kein Urteil: Fragen Sie vielleicht, ob etwas unklar war. Die Antworten sind so gespeichert und gewertet, wie sie sind.",
+    "Ein Hinweis, kein Urteil: Fragen Sie vielleicht, ob etwas unklar war. Die Antworten werden so gespeichert und gewertet, wie sie sind.",
 };

@@ -29,12 +29,12 @@ const exportsEn = {
     "One row per contact of a body part with a side: start and end in seconds.",
   "export.file.jointErrors": "joint_errors.csv",
   "export.about.jointErrors":
-    "Joint error per phase, joint and axis in degrees: mean, RMS, p95, maximum, clipped share.",
+    "Joint error per phase, joint and axis in degrees: mean, RMS, 95th percentile, maximum, share clipped by limits.",
   "export.file.jointErrorCourse": "joint_error_course.csv",
   "export.about.jointErrorCourse":
     "Joint error over time within each phase: its mean in degrees for every 5 s of active time.",
   "export.file.events": "events.csv",
-  "export.about.events": "The event log of every session, with the hash that chains it.",
+  "export.about.events": "The event log of every session, with the hashes that chain it.",
   "export.file.quality": "quality.csv",
   "export.about.quality":
     "One row per phase and stream: frame rate, gaps, jumps, frozen joints, invalid values.",
@@ -44,7 +44,8 @@ const exportsEn = {
   "export.about.clocks":
     "The headset's clock compared with the server's: raw readings, and the offset, drift and uncertainty estimated from them.",
   "export.file.samples": "samples/*.csv",
-  "export.about.samples": "One wide file per session: target and actual pose over time.",
+  "export.about.samples":
+    "One file per session: target and actual pose of every frame, side by side.",
   "export.file.receipts": "receipts/*.json",
   "export.about.receipts":
     "One per session: how many frames were produced, are stored and are missing, with proof.",
@@ -70,7 +71,8 @@ const exportsDe: Readonly<Record<keyof typeof exportsEn, string>> = {
   "export.conventions":
     "UTF-8, eine Zeile je Beobachtung, Zeiten als UTC (ISO 8601) oder Sekunden, Winkel in Grad, Längen in Metern. Jede Tabelle gibt an, ob ihre Zeilen simuliert sind und welcher Avatar benutzt wurde.",
   "export.file.sessions": "sessions.csv",
-  "export.about.sessions": "Eine Zeile je Sitzung: Code, Reihenfolge, Version, Zeiten, Ausgang.",
+  "export.about.sessions":
+    "Eine Zeile je Sitzung: Code der Person, Reihenfolge, Version, Zeiten, Ausgang.",
   "export.file.phases": "phases.csv",
   "export.about.phases":
     "Eine Zeile je Aufgabe: Latenz, Hand oder Fuß, aktive Zeit, erledigte Aufgaben, Kontaktzeit mit den Seiten.",
@@ -86,12 +88,12 @@ const exportsDe: Readonly<Record<keyof typeof exportsEn, string>> = {
     "Eine Zeile je Kontakt eines Körperteils mit einer Seite: Beginn und Ende in Sekunden.",
   "export.file.jointErrors": "joint_errors.csv",
   "export.about.jointErrors":
-    "Gelenkfehler je Phase, Gelenk und Achse in Grad: Mittel, RMS, P95, Maximum, gekappter Anteil.",
+    "Gelenkfehler je Phase, Gelenk und Achse in Grad: Mittel, RMS, 95. Perzentil, Maximum, durch Grenzen gekappter Anteil.",
   "export.file.jointErrorCourse": "joint_error_course.csv",
   "export.about.jointErrorCourse":
     "Der Gelenkfehler im Verlauf jeder Phase: Mittelwert in Grad je 5 s aktiver Zeit.",
   "export.file.events": "events.csv",
-  "export.about.events": "Das Ereignisprotokoll jeder Sitzung, mit dem Hash, der es verkettet.",
+  "export.about.events": "Das Ereignisprotokoll jeder Sitzung, mit den Hashes, die es verketten.",
   "export.file.quality": "quality.csv",
   "export.about.quality":
     "Eine Zeile je Phase und Datenstrom: Bildrate, Lücken, Sprünge, eingefrorene Gelenke, ungültige Werte.",
@@ -101,7 +103,8 @@ const exportsDe: Readonly<Record<keyof typeof exportsEn, string>> = {
   "export.about.clocks":
     "Die Uhr des Headsets verglichen mit der des Servers: Rohwerte und die daraus geschätzten Werte für Versatz, Drift und Unsicherheit.",
   "export.file.samples": "samples/*.csv",
-  "export.about.samples": "Eine breite Datei je Sitzung: Ziel- und Ist-Haltung über die Zeit.",
+  "export.about.samples":
+    "Eine Datei je Sitzung: Ziel- und Ist-Haltung jedes Bildes nebeneinander.",
   "export.file.receipts": "receipts/*.json",
   "export.about.receipts":
     "Einer je Sitzung: wie viele Bilder entstanden, gespeichert sind und fehlen, mit Nachweis.",

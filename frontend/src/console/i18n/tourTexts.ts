@@ -83,7 +83,7 @@ export const tourDe: Readonly<Record<keyof typeof tourEn, string>> = {
   "tour.of": "{{number}} von {{total}}",
   "tour.next": "Weiter",
   "tour.back": "Zurück",
-  "tour.skip": "Rundgang beenden",
+  "tour.skip": "Rundgang überspringen",
   "tour.end": "Fertig",
   "tour.keys": "Pfeiltasten blättern, Esc beendet den Rundgang.",
   "tour.timeline.title": "Die ganze Sitzung",

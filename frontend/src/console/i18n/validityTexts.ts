@@ -8,7 +8,7 @@ export const validityEn = {
   "field.min_active_s": "At least this much active time (s)",
   "field.min_active_share": "At least this share of its time was active (0 to 1)",
   "field.forms": "Every one of these questionnaires was answered",
-  "field.achieved_latency": "Latency the avatar actually had",
+  "field.achieved_latency": "Achieved latency of the avatar",
   "field.reported": "It could be measured",
   "field.tolerance_ms": "At most this far from the set latency (ms)",
   "validity.title": "This session does not count",

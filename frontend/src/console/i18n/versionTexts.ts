@@ -3,11 +3,11 @@ export const versionsEn = {
   "changes.broken": "Changes are shown once there are no problems",
   "diff.same": "The content is the same",
   "diff.identical": "There are no differences.",
-  "diff.layout": "Only comments or layout differ; saving would not create a new version.",
-  "diff.newLedger": "Balance is affected: new sessions start a new ledger",
+  "diff.layout": "Only comments or layout differ; saving will not create a new version.",
+  "diff.newLedger": "The balance is affected: new sessions start a new ledger",
   "diff.newLedger.body":
-    "Conditions or orders differ. Slots that are filled stay with the old ledger and are not counted in the new one.",
-  "diff.sameLedger": "Balance is not affected: the ledger continues",
+    "Conditions or orders differ. Filled slots stay in the old ledger and do not count in the new one.",
+  "diff.sameLedger": "The balance is not affected: the ledger continues",
   "diff.sameLedger.body": "Conditions and orders are the same.",
   "diff.underWay_one":
     "One session is planned or running; it keeps the version it was created with.",
@@ -53,7 +53,7 @@ export const versionsDe: Readonly<Record<keyof typeof versionsEn, string>> = {
   "diff.same": "Der Inhalt ist derselbe",
   "diff.identical": "Es gibt keine Unterschiede.",
   "diff.layout":
-    "Nur Kommentare oder Anordnung unterscheiden sich; Speichern ergäbe keine neue Version.",
+    "Nur Kommentare oder Anordnung unterscheiden sich; Speichern ergibt keine neue Version.",
   "diff.newLedger": "Die Balance ist betroffen: Neue Sitzungen beginnen einen neuen Plan",
   "diff.newLedger.body":
     "Bedingungen oder Reihenfolgen unterscheiden sich. Belegte Plätze bleiben beim alten Plan und zählen im neuen nicht.",

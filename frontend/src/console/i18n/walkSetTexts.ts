@@ -12,7 +12,7 @@ export const walkSetEn = {
   "walking.model.file": "Model file",
   "walking.model.scene": "Planned in",
   "walking.model.scene.hint":
-    "Where the tracked people walked; paths are planned around its obstacles.",
+    "Where the tracked people walked; paths are planned around the obstacles in it.",
   "walking.model.scene.open": "the open floor",
   "walking.model.scene.own": "the scenes they were made for",
   "walking.sets": "Walks",
@@ -40,7 +40,7 @@ export const walkSetEn = {
   "walking.rate": "Rate (Hz)",
   "walking.rate.hint": "if time is given as frame numbers",
   "walking.unit": "Unit of x and y",
-  "walking.unit.header": "as the header says",
+  "walking.unit.header": "as stated in the header",
   "walking.statures": "Statures",
   "walking.statures.hint":
     "One line per person, in metres; without them, models cannot take stature into account.",
@@ -55,7 +55,8 @@ export const walkSetEn = {
   "walking.reading.time-aware": "Time-aware",
   "walking.reading.chosen.hint":
     "Ten readings are compared by how well they predict people they were not fitted on.",
-  "walking.reading.paper.hint": "Suitability is one minus the share of the largest deviation.",
+  "walking.reading.paper.hint":
+    "Suitability is one minus the deviation as a share of the largest deviation.",
   "walking.reading.time-aware.hint": "As in the paper, but late arrivals are unsuitable.",
   "walking.option.steps": "Values of each parameter",
   "walking.option.k": "Neighbours",
@@ -110,7 +111,7 @@ export const walkSetDe: Readonly<Record<keyof typeof walkSetEn, string>> = {
   "walking.rate": "Rate (Hz)",
   "walking.rate.hint": "wenn die Zeit als Bildnummer angegeben ist",
   "walking.unit": "Einheit von x und y",
-  "walking.unit.header": "wie im Kopf der Tabelle",
+  "walking.unit.header": "wie im Tabellenkopf angegeben",
   "walking.statures": "Körpergrößen",
   "walking.statures.hint":
     "Eine Zeile je Person, in Metern; ohne sie können Modelle die Körpergröße nicht berücksichtigen.",
@@ -125,7 +126,8 @@ export const walkSetDe: Readonly<Record<keyof typeof walkSetEn, string>> = {
   "walking.reading.time-aware": "Mit Ankunftszeit",
   "walking.reading.chosen.hint":
     "Zehn Lesarten werden danach verglichen, wie gut sie Personen vorhersagen, an die sie nicht angepasst wurden.",
-  "walking.reading.paper.hint": "Eignung ist eins minus der Anteil an der größten Abweichung.",
+  "walking.reading.paper.hint":
+    "Eignung ist eins minus die Abweichung als Anteil der größten Abweichung.",
   "walking.reading.time-aware.hint":
     "Wie in der Veröffentlichung, aber spätes Ankommen ist ungeeignet.",
   "walking.option.steps": "Werte jeder Steuergröße",

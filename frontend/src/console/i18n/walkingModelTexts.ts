@@ -34,7 +34,7 @@ export const walkingModelEn = {
   "walking.walksOf": "{{walks}} walks of {{people}} people",
   "walking.origin.population": "population “{{name}}”",
   "walking.origin.seed": "seed {{seed}}",
-  "walking.origin.laboratory": "the paper's laboratory, 16 walks",
+  "walking.origin.laboratory": "the laboratory of the paper, 16 walks",
   "walking.origin.captures_one": "{{count}} capture",
   "walking.origin.captures_other": "{{count}} captures",
   "walking.scene.shipped": "{{title}} (built in)",

@@ -2,7 +2,7 @@
 export const walkingEn = {
   "walking.title": "Walking",
   "walking.lead": "How long people take to walk a path: a distribution, not a single number.",
-  "walking.tab.ask": "Ask a model",
+  "walking.tab.ask": "Predict a walk",
   "walking.tab.models": "Models and walks",
   "walking.tab.scenes": "Scenes",
   "walking.synthetic": "synthetic",
@@ -40,7 +40,7 @@ export const walkingEn = {
   "walking.axis.y": "Ahead, y (m)",
   "walking.axis.time": "Duration (s)",
   "walking.axis.walks": "Walks",
-  "walking.axis.share": "Walks that are over by then (%)",
+  "walking.axis.share": "Walks completed by then (%)",
   "walking.axis.length": "Length of the planned path (m)",
   "walking.axis.paths": "Walks",
   "walking.duration": "How long the walk takes",
@@ -65,8 +65,8 @@ export const walkingEn = {
   "walking.drawing": "Drawing the figure",
   "walking.notDrawn": "The figure could not be drawn.",
   "walking.told":
-    "{{count}} walks drawn with seed {{seed}}; {{lost}} did not arrive and were redrawn.",
-  "walking.assumed": "{{what}} (assumed: the mean)",
+    "{{count}} walks drawn with seed {{seed}}; {{lost}} did not arrive and were drawn again.",
+  "walking.assumed": "{{what}} (assumed to be the mean)",
   "walking.outside":
     "{{what}}: beyond every walk the model was fitted on, so the prediction is an extrapolation.",
   "walking.dependency.length_m": "length {{value}} m",
@@ -84,14 +84,14 @@ export const walkingEn = {
   "walking.held.at": "Value at which it is held: {{what}}",
   "walking.held.is": "{{what}} held at {{value}}",
   "walking.seen":
-    "{{count}} of the walks drawn; dots: where each is after {{value}} s, half of the median.",
+    "{{count}} of the walks drawn. The dots show where each is after {{value}} s, half of the median.",
 } as const;
 
 export const walkingDe: Readonly<Record<keyof typeof walkingEn, string>> = {
   "walking.title": "Gehen",
   "walking.lead":
     "Wie lange Menschen für einen Weg brauchen: eine Verteilung, nicht nur eine Zahl.",
-  "walking.tab.ask": "Modell befragen",
+  "walking.tab.ask": "Gang vorhersagen",
   "walking.tab.models": "Modelle und Gänge",
   "walking.tab.scenes": "Szenen",
   "walking.synthetic": "synthetisch",
@@ -131,7 +131,7 @@ export const walkingDe: Readonly<Record<keyof typeof walkingEn, string>> = {
   "walking.axis.y": "Voraus, y (m)",
   "walking.axis.time": "Dauer (s)",
   "walking.axis.walks": "Gänge",
-  "walking.axis.share": "Gänge, die bis dahin vorbei sind (%)",
+  "walking.axis.share": "Bis dahin beendete Gänge (%)",
   "walking.axis.length": "Länge des geplanten Weges (m)",
   "walking.axis.paths": "Gänge",
   "walking.duration": "Wie lange der Gang dauert",
@@ -158,7 +158,7 @@ export const walkingDe: Readonly<Record<keyof typeof walkingEn, string>> = {
   "walking.notDrawn": "Die Abbildung konnte nicht gezeichnet werden.",
   "walking.told":
     "{{count}} Gänge mit Startwert {{seed}} gezogen; {{lost}} kamen nicht an und wurden neu gezogen.",
-  "walking.assumed": "{{what}} (angenommen: das Mittel)",
+  "walking.assumed": "{{what}} (als Mittel angenommen)",
   "walking.outside":
     "{{what}}: außerhalb aller Gänge, an die das Modell angepasst wurde; die Vorhersage ist daher eine Extrapolation.",
   "walking.dependency.length_m": "Länge {{value}} m",
@@ -176,5 +176,5 @@ export const walkingDe: Readonly<Record<keyof typeof walkingEn, string>> = {
   "walking.held.at": "Wert, auf dem sie gehalten wird: {{what}}",
   "walking.held.is": "{{what}} konstant bei {{value}}",
   "walking.seen":
-    "{{count}} der gezogenen Gänge; Punkte: wo jeder nach {{value}} s ist, der Hälfte des Medians.",
+    "{{count}} der gezogenen Gänge. Die Punkte zeigen, wo jeder nach {{value}} s ist, der Hälfte des Medians.",
 };

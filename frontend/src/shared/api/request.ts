@@ -85,7 +85,7 @@ export function errorFromBody(status: number, body: unknown): ApiError {
   return new ApiError(status, {
     code: `http_${status}`,
     message: `The server answered with status ${status}.`,
-    remedy: "Try again; if it stays, look at the server's log.",
+    remedy: "Try again. If the problem persists, see the server's log.",
   });
 }
 

@@ -9086,7 +9086,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
-            /** @description The same content was here already. */
+            /** @description The same content was already stored. */
             readonly 200: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9919,7 +9919,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
-            /** @description The same content was here already. */
+            /** @description The same content was already stored. */
             readonly 200: {
                 headers: {
                     readonly [name: string]: unknown;

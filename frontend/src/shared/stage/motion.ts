@@ -78,7 +78,7 @@ function headerOf<Header>(bytes: Uint8Array): Header {
   try {
     return JSON.parse(new TextDecoder().decode(bytes)) as Header;
   } catch (cause) {
-    throw new MotionError("The header is no JSON.", { cause });
+    throw new MotionError("The header is not valid JSON.", { cause });
   }
 }
 

@@ -4,7 +4,7 @@ import type { en } from "./en";
 export const de: Record<keyof typeof en, string> = {
   "pair.title": "Dieses Tablet verbinden",
   "pair.lead":
-    "Geben Sie den Code ein, den der Bildschirm der Versuchsleitung zeigt, oder scannen Sie den QR-Code.",
+    "Geben Sie den Code ein, der auf dem Bildschirm der Versuchsleitung steht, oder scannen Sie den QR-Code.",
   "pair.code": "Verbindungscode",
   "pair.delete": "Letztes Zeichen löschen",
   "pair.connect": "Verbinden",
@@ -12,7 +12,7 @@ export const de: Record<keyof typeof en, string> = {
   "pair.ended.title": "Dieses Tablet wurde getrennt",
   "pair.ended.body":
     "Die Versuchsleitung muss es neu verbinden. Was Sie bisher eingegeben haben, bleibt auf diesem Tablet erhalten.",
-  "pair.headset": "Dieser Code gehört zu einer VR-Brille.",
+  "pair.headset": "Dieser Code gehört zu einem Headset.",
   "pair.headsetRemedy": "Bitten Sie die Versuchsleitung um den Code für das Tablet.",
   "error.unreachable": "Das Tablet hat keine Verbindung zum Studienrechner.",
   "error.unreachableRemedy":
@@ -24,7 +24,7 @@ export const de: Record<keyof typeof en, string> = {
   "bar.language": "Sprache",
   "bar.textSize": "Schriftgröße: {{percent}} %. Drücken, um sie zu ändern",
   "help.call": "Versuchsleitung rufen",
-  "help.called": "Die Versuchsleitung ist gerufen",
+  "help.called": "Die Versuchsleitung wurde gerufen",
   "help.takeBack": "Nicht mehr nötig",
   "help.failed": "Der Ruf kann gerade nicht gesendet werden. Bitte sprechen Sie uns an.",
   "picture.equipment":
@@ -33,9 +33,9 @@ export const de: Record<keyof typeof en, string> = {
   "picture.mirror":
     "Der Spiegel vor Ihnen zeigt Ihren Körper, die verbleibende Zeit und die erledigten Aufgaben",
   "picture.hand_boxes":
-    "Vier offene Kästen in Brusthöhe; eine Hand berührt die Platte in einem; darüber ein Ziel",
+    "Vier offene Kästen in Brusthöhe: Eine Hand berührt die Rückwand in einem davon; darüber ist ein Ziel",
   "picture.foot_boxes":
-    "Vier offene Kästen am Boden zum Hineintreten, dahinter ein Balken, davor ein Quadrat als Start",
+    "Vier offene Kästen am Boden zum Hineintreten, dahinter ein Balken, davor ein Quadrat als Startplatz",
   "waiting.title": "Bitte einen Moment warten",
   "waiting.body":
     "Im Augenblick gibt es hier nichts zu tun. Die Versuchsleitung sagt Ihnen, wenn es weitergeht.",
@@ -50,20 +50,20 @@ export const de: Record<keyof typeof en, string> = {
   "consent.draw": "Stattdessen unterschreiben",
   "consent.name": "Vor- und Nachname",
   "consent.missing.statements": "Bitte kreuzen Sie alle Aussagen an, die nicht freiwillig sind.",
-  "consent.missing.name": "Bitte schreiben Sie Ihren Namen.",
+  "consent.missing.name": "Bitte geben Sie Ihren Namen ein.",
   "consent.missing.signature": "Bitte unterschreiben Sie auf der Fläche oben.",
   "held.wait.title": "Bitte warten, die Versuchsleitung kommt",
   "held.wait.body":
-    "Sie haben nichts falsch gemacht. Sie können die Brille abnehmen und sich setzen, wenn Sie möchten.",
+    "Sie haben nichts falsch gemacht. Wenn Sie möchten, können Sie das Headset abnehmen und sich setzen.",
   "instructions.title": "Anleitung",
   "instructions.go": "Ich habe das gelesen",
   "instructions.ask": "Ist etwas unklar?",
   "instructions.askBody":
-    "Bitte fragen Sie jetzt die Versuchsleitung. Es ist Zeit, und keine Frage ist zu klein.",
+    "Bitte fragen Sie jetzt die Versuchsleitung. Es ist genug Zeit, und keine Frage ist zu klein.",
   "reading.more": "Weiterlesen",
   "ask.question": "Ich habe eine Frage",
   "ask.decline": "Ich möchte nicht teilnehmen",
-  "ask.question.title": "Die Versuchsleitung ist gerufen",
+  "ask.question.title": "Die Versuchsleitung wurde gerufen",
   "ask.question.body": "Bitte stellen Sie Ihre Frage. Danach können Sie hier weitermachen.",
   "refused.title": "Das ist in Ordnung",
   "refused.told":

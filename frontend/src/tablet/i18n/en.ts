@@ -1,7 +1,7 @@
 /** The participant's texts in English; `de.ts` has the same keys. */
 export const en = {
   "pair.title": "Connect this tablet",
-  "pair.lead": "Enter the code that the experimenter's screen shows, or scan its QR code.",
+  "pair.lead": "Enter the code shown on the experimenter's screen, or scan its QR code.",
   "pair.code": "Pairing code",
   "pair.delete": "Delete last character",
   "pair.connect": "Connect",
@@ -22,15 +22,15 @@ export const en = {
   "help.call": "Call the experimenter",
   "help.called": "The experimenter has been called",
   "help.takeBack": "No longer needed",
-  "help.failed": "The call cannot be sent right now. Please ask out loud.",
+  "help.failed": "The call cannot be sent right now. Please ask us in person.",
   "picture.equipment":
     "A headset, a controller in each hand, and trackers on the waist and both lower legs",
   "picture.t_pose": "A person standing upright, arms stretched out to the sides, feet together",
   "picture.mirror": "The mirror in front shows your body, the time left and the tasks completed",
   "picture.hand_boxes":
-    "Four open boxes at chest height; a hand touches the panel inside one; a target above them",
+    "Four open boxes at chest height: a hand touches the panel inside one of them; a target is above them",
   "picture.foot_boxes":
-    "Four open boxes on the floor to step into, a bar behind them, a square to start from",
+    "Four open boxes on the floor to step into, with a bar behind them and a square to start from",
   "waiting.title": "Please wait a moment",
   "waiting.body":
     "There is nothing to do here right now. The experimenter will tell you when to continue.",
@@ -45,7 +45,7 @@ export const en = {
   "consent.draw": "Draw my signature instead",
   "consent.name": "First and last name",
   "consent.missing.statements": "Please tick every statement that is not optional.",
-  "consent.missing.name": "Please write your name.",
+  "consent.missing.name": "Please enter your name.",
   "consent.missing.signature": "Please sign in the area above.",
   "held.wait.title": "Please wait, the experimenter is coming",
   "held.wait.body":
@@ -59,7 +59,7 @@ export const en = {
   "ask.question": "I have a question",
   "ask.decline": "I do not want to take part",
   "ask.question.title": "The experimenter has been called",
-  "ask.question.body": "Please ask your question. You can go on here afterwards.",
+  "ask.question.body": "Please ask your question. You can continue here afterwards.",
   "refused.title": "That is all right",
   "refused.told": "The experimenter knows that you do not want to take part, and will come to you.",
   "refused.telling": "The experimenter is being notified.",

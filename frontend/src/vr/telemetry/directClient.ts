@@ -247,7 +247,7 @@ const otherProtocol = (version: number): Failure => ({
 const foreignJournal = (held: string, wanted: string): Failure => ({
   code: "foreign_journal",
   message: `the journal holds what session ${held} has not delivered, and cannot take session ${wanted}`,
-  remedy: "Pair this headset with that session once more, or use another storageKey for this one.",
+  remedy: "Pair this headset with that session again, or use another storageKey for this one.",
 });
 
 interface Waiter {

@@ -28,7 +28,7 @@ export async function openTelemetryInWorker(
     client.fail({
       code: "worker_failed",
       message: `the telemetry worker has failed: ${message}`,
-      remedy: "Reload this page: it goes on as a new run.",
+      remedy: "Reload this page; it continues as a new run.",
     });
   });
   if (onStatus) client.onStatus(onStatus);

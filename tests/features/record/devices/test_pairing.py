@@ -44,7 +44,7 @@ def test_a_code_works_once(lab: Lab) -> None:
     first, second = lab.stranger(), lab.stranger()
     ok(use(first, code))
     refusal = error(use(second, code), 410, "gone")
-    assert "a paired device keeps working" in refusal["remedy"]
+    assert "devices that are paired keep working" in refusal["remedy"]
     assert first.get("/api/tablet/state").status_code == 200
 
 

@@ -43,7 +43,7 @@ def test_a_report_that_does_not_fit_is_kept_and_does_not_count(site: Site) -> No
     with site.headset(token) as headset:
         headset.report(kind="phase", phase_id=1, what="ended", t_s=1.0, active_s=0.0)
         refused = headset.hear("refused")
-    assert "phase 1 is not under way" in refused["message"]
+    assert "phase 1 is not in progress" in refused["message"]
     with site.database.reading() as db:
         (row,) = db.scalars(select(ClientReport).where(ClientReport.session_id == session_id))
     assert (row.accepted, row.refusal) == (False, refused["message"])

@@ -58,7 +58,7 @@ def test_a_closed_ledger_takes_nobody_more(fresh_lab: Lab) -> None:
     change_study(fresh_lab, "when_full: grow", "when_full: closed")
     views = [fresh_lab.join() for _ in range(12)]
     refusal = error(fresh_lab.try_join(), 409, "conflict")
-    assert (refusal["value"], "Withdraw a session" in refusal["remedy"]) == (12, True)
+    assert (refusal["value"], "withdraw a session" in refusal["remedy"]) == (12, True)
     fresh_lab.command(fresh_lab.command(views[4], "start"), "withdraw", reason="felt dizzy")
     assert fresh_lab.join()["slot"]["index"] == 4
 

@@ -125,7 +125,7 @@ def test_one_press_is_not_enough_where_a_signature_is_wanted(
     answer = tablet.post("/api/tablet/acknowledge", json={"step_index": 0})
     assert "not ticked" in error(answer, 422, "invalid_input")["message"]
     refusal = error(lab.try_command(view, "complete_step", step_index=0), 422, "invalid_input")
-    assert "signed on paper" in refusal["remedy"]
+    assert "sign on paper" in refusal["remedy"]
 
 
 @pytest.mark.one_engine
@@ -162,7 +162,7 @@ def test_no_operator_consents_in_the_participants_place(lab: Lab, sheet: Json | 
         422,
         "invalid_input",
     )
-    assert sheet is not None or "signed on paper" in refusal["remedy"]
+    assert sheet is not None or "sign on paper" in refusal["remedy"]
     assert record(lab, view) is None
     assert lab.view(view["id"])["version"] == view["version"]
 

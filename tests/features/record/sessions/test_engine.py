@@ -218,5 +218,5 @@ def test_a_report_of_another_phase_is_refused() -> None:
     """A report that was on its way when the phase was voided does nothing."""
     run = Run().begin(HAND)
     report = c.Report(what="paused", phase_id=7, client_t_s=1.0, active_s=1.0)
-    with pytest.raises(Refused, match="phase 7 is not under way"):
+    with pytest.raises(Refused, match="phase 7 is not in progress"):
         run.do(report)

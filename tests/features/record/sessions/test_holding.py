@@ -89,7 +89,7 @@ def test_going_on_lifts_the_hold_and_keeps_the_reason() -> None:
     assert event == e.StopRuleOverridden(content_id="content", content_hash="hash")
     assert run.state.held is None
     assert allowed_commands(PLAN, run.state)[0] == "begin_phase"
-    with pytest.raises(Refused, match="no stop rule"):
+    with pytest.raises(Refused, match="not held by a stop rule"):
         run.do(c.OverrideStop(content=WORDS))
 
 

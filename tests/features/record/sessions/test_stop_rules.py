@@ -81,7 +81,7 @@ def test_going_on_needs_a_reason_and_is_on_record(lab: Lab) -> None:
     assert 17 not in [value for one in events for value in one["data"].values()]
     history = ok(lab.operator.get(f"/api/sessions/{view['id']}/alarms"))
     assert [(one["code"], one["outcome"]) for one in history] == [
-        ("stop_rule_met", "the operator went on, with a reason on record")
+        ("stop_rule_met", "the operator continued, with a reason on record")
     ]
 
 

@@ -112,8 +112,8 @@ def test_who_changes_their_mind_sees_the_consent_again_and_may_agree(lab: Lab) -
     assert (after["current"]["index"], after["alarms"]) == (1, [])
     history = ok(lab.operator.get(f"/api/sessions/{view['id']}/alarms"))
     assert {one["code"]: one["outcome"] for one in history} == {
-        "consent_refused": "the participant took it back on the tablet",
-        "refusal_retracted": "the consent has been decided on",
+        "consent_refused": "the participant took the refusal back on the tablet",
+        "refusal_retracted": "the participant has agreed or the consent was skipped",
     }
 
 

@@ -147,7 +147,7 @@ def test_one_participant_is_drawn_without_an_interval(database: Database) -> Non
     figures = {entry.key: entry for entry in _dashboard(database).figures}
     agency = figures["embodiment_agency"]
     assert agency.figure is not None
-    assert "no interval yet" in agency.caption
+    assert "no confidence interval yet" in agency.caption
 
 
 @pytest.mark.one_engine
@@ -210,7 +210,7 @@ def test_a_filter_leaves_only_what_was_chosen_and_says_so(database: Database) ->
     assert day is not None
     none = _dashboard(database, chosen=FigureFilter(until=day - timedelta(days=1)))
     assert none.n_sessions == 0
-    assert all((one.empty or "").startswith("Among what was chosen: ") for one in none.figures)
+    assert all((one.empty or "").startswith("For this selection: ") for one in none.figures)
 
 
 @pytest.mark.one_engine

@@ -205,7 +205,7 @@ def test_no_contact_at_all_is_said() -> None:
     none = pd.DataFrame([_contact("P-1", 0.0, "LeftHand", 1.0, 4.0)]).iloc[:0]
     drawing = contacts_drawing(phases, none)
     assert drawing.figure is None
-    assert drawing.empty == "No side of a box was touched in any phase that counts."
+    assert drawing.empty == "No side of a box was touched in any valid phase."
 
 
 def test_progress_shows_every_order_also_one_nobody_had() -> None:

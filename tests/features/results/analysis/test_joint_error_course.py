@@ -117,7 +117,7 @@ def test_only_tasks_against_the_present_pose_are_drawn() -> None:
     assert drawing.n == 1
     assert set(drawing.data["mean_deg"]) == {10.0}
     assert drawing.data["ci95_low_deg"].isna().all()
-    assert "no interval yet" in drawing.caption
+    assert "no confidence interval yet" in drawing.caption
     nothing = joint_error_course_drawing(pd.DataFrame(rows).iloc[BINS:])
     assert (nothing.figure, nothing.empty) == (None, "No participant has joint errors yet.")
 

@@ -10,14 +10,14 @@ EN: Mapping[str, str] = {
     "visit": "Visit of {date}",
     "status": "How it ended",
     "completed": "completed",
-    "aborted": "broken off by the lab",
+    "aborted": "ended early by the lab",
     "withdrawn": "you withdrew",
     "active": "not ended yet",
-    "planned": "not begun yet",
+    "planned": "not started yet",
     "language": "Language",
     "kept": "What was recorded",
     "frames": "{count} frames of movement, in samples/",
-    "contacts": "{count} touches and {completions} completed tasks",
+    "contacts": "{count} contacts and {completions} completed tasks",
     "consent": "Consent",
     "consent_given": "Given on {date}.",
     "consent_none": "No consent is on record.",
@@ -36,16 +36,16 @@ EN: Mapping[str, str] = {
     "no_notes": "Nothing.",
     "note": "Note",
     "reason": "Reason given for a pause, a repetition, a skipped step or the end",
-    "refused_form": "Answers that came too late and do not count",
+    "refused_form": "Answers that arrived too late and do not count",
     "data": "The data themselves",
     "data_text": (
-        "The other files hold the same and more as tables, with every sample of your movement. "
-        "codebook.csv says what each column means."
+        "The other files contain the same data and more as tables, including every sample of "
+        "your movement. codebook.csv explains each column."
     ),
 }
 DE: Mapping[str, str] = {
     "title": "Ihre Daten",
-    "lead": "Alles, was diese Studie über Sie aufbewahrt, Stand {date}.",
+    "lead": "Alles, was diese Studie über Sie aufbewahrt (Stand: {date}).",
     "code": "Ihr Code in der Studie",
     "study": "Studie",
     "visit": "Besuch vom {date}",
@@ -58,14 +58,14 @@ DE: Mapping[str, str] = {
     "language": "Sprache",
     "kept": "Was aufgezeichnet wurde",
     "frames": "{count} Bewegungsbilder, in samples/",
-    "contacts": "{count} Berührungen und {completions} gelöste Aufgaben",
+    "contacts": "{count} Kontakte und {completions} erledigte Aufgaben",
     "consent": "Einwilligung",
-    "consent_given": "Gegeben am {date}.",
+    "consent_given": "Erteilt am {date}.",
     "consent_none": "Es ist keine Einwilligung verzeichnet.",
     "height": "Körpergröße",
-    "height_text": "angegeben {stated} m, angepasst {matched} m",
+    "height_text": "angegeben {stated} m, angeglichen {matched} m",
     "answers": "Ihre Antworten",
-    "no_answers": "Es wurde kein Fragebogen ausgefüllt.",
+    "no_answers": "Es wurde kein Formular ausgefüllt.",
     "left_out": "ausgelassen",
     "yes": "ja",
     "no": "nein",
@@ -77,13 +77,13 @@ DE: Mapping[str, str] = {
     "no_notes": "Nichts.",
     "note": "Notiz",
     "reason": (
-        "Grund für eine Pause, eine Wiederholung, einen ausgelassenen Schritt oder das Ende"
+        "Grund für eine Pause, eine Wiederholung, einen übersprungenen Schritt oder das Ende"
     ),
     "refused_form": "Antworten, die zu spät kamen und nicht zählen",
     "data": "Die Daten selbst",
     "data_text": (
-        "Die anderen Dateien enthalten dasselbe und mehr als Tabellen, mit jedem Messwert Ihrer "
-        "Bewegung. codebook.csv sagt, was jede Spalte bedeutet (englisch)."
+        "Die anderen Dateien enthalten dieselben Daten und weitere als Tabellen, mit jedem "
+        "Messwert Ihrer Bewegung. codebook.csv erklärt jede Spalte (auf Englisch)."
     ),
 }
 WORDS: Mapping[str, Mapping[str, str]] = {"en": EN, "de": DE}

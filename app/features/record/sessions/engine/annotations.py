@@ -19,7 +19,7 @@ def decide_annotation(state: SessionState, command: c.Command) -> list[e.Event] 
             "the data of this session were erased",
             value="erased",
             valid=[],
-            remedy="Nothing can be added to it. Use a new session.",
+            remedy="Nothing can be added to it. Create a new session.",
         )
     match command:
         case c.AddNote(content=content):
@@ -63,7 +63,7 @@ def _erase(state: SessionState, command: c.EraseData) -> list[e.Event]:
             "the session is active",
             value=state.status,
             valid=[SessionStatus.COMPLETED, SessionStatus.ABORTED, SessionStatus.WITHDRAWN],
-            remedy="Withdraw or abort it first: that stops the recording.",
+            remedy="Withdraw or abort it first; that stops the recording.",
         )
     erased = e.DataErased(erasure_id=command.erasure_id, reason_code=command.reason_code)
     if state.status not in (SessionStatus.PLANNED, SessionStatus.ACTIVE):

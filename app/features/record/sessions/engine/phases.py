@@ -44,7 +44,7 @@ def decide_report(plan: Sequence[Step], state: SessionState, report: c.Report) -
     phase = state.phase
     if phase is None or phase.phase_id != report.phase_id:
         raise Refused(
-            f"phase {report.phase_id} is not under way",
+            f"phase {report.phase_id} is not in progress",
             value=report.phase_id,
             valid=[phase.phase_id] if phase else [],
             remedy="Follow the newest state message.",

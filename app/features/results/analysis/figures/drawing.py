@@ -41,9 +41,7 @@ class Drawing:
         """Return a copy whose empty text says that only the filtered sessions were considered."""
         if self.empty is None:
             return self
-        return replace(
-            self, empty=f"Among what was chosen: {self.empty[0].lower()}{self.empty[1:]}"
-        )
+        return replace(self, empty=f"For this selection: {self.empty[0].lower()}{self.empty[1:]}")
 
     def marked(self, prefix: str, note: str) -> "Drawing":
         """Return a copy with `prefix` before the title and `note` after the caption.
@@ -77,7 +75,7 @@ def too_few(key: str, title: str, caption: str, n: int, what: str) -> Drawing:
 def count_note(n: int) -> str:
     """Return a sentence with the number of participants; one participant has no interval."""
     if n == 1:
-        return "n = 1 participant, so there is no interval yet."
+        return "n = 1 participant, so there is no confidence interval yet."
     return f"n = {n} participants."
 
 

@@ -203,7 +203,7 @@ const FINAL: Readonly<Record<number, string>> = {
   1009: "A message is larger than the server takes. Send fewer frames in a batch.",
   4400: "Reload this page; page and server must be of the same version.",
   4401: "Pair this headset again.",
-  4403: "Open this page on the address of the server.",
+  4403: "Open this page at the address of the server.",
 };
 
 function finalFailure({ code, reason }: Ending): Failure | null {

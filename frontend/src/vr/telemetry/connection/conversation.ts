@@ -88,11 +88,11 @@ const READ_RETRY_MS = 500;
 const lostHere = ({ message }: JournalLost): Failure => ({
   code: "journal_lost",
   message,
-  remedy: "Note the time in the session's record and reload this page: it goes on as a new run.",
+  remedy: "Note the time in the session's record and reload this page; it continues as a new run.",
 });
 
 const lostOnTheServer = ({ stream, epoch, next_seq }: StreamPosition): Failure => ({
   code: "lost_on_the_server",
   message: `the server asks for ${stream} of run ${epoch} from ${next_seq} on, which it had confirmed`,
-  remedy: "Was an older copy of its data restored? Reload this page: it goes on as a new run.",
+  remedy: "Was an older copy of its data restored? Reload this page; it continues as a new run.",
 });

@@ -29,7 +29,7 @@ const COLUMNS: readonly Column[] = [
   { key: "sessions", title: { en: "Sessions", de: "Sitzungen" }, Cell: Sessions },
   {
     key: "actions",
-    title: { en: "What they may ask for", de: "Worum sie bitten kann" },
+    title: { en: "Participant’s rights", de: "Rechte der Person" },
     Cell: Actions,
   },
 ];
