@@ -129,10 +129,10 @@ class JobQueue(Part, ABC):
             return await asyncio.wait_for(asyncio.wrap_future(future), self.within_s)
         except TimeoutError as error:
             await run_sync(self.stop)
-            raise self._too_much(f"it takes longer than {self.within_s:g} s") from error
+            raise self._too_much(f"it took longer than {self.within_s:g} s") from error
         except self.memory_errors as error:
             await run_sync(self.stop)
-            raise self._too_much("it takes too much memory") from error
+            raise self._too_much("it needed too much memory") from error
         except BrokenProcessPool as error:
             raise self._too_much(self.messages.ended) from error
         except Exception as error:

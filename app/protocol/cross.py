@@ -72,7 +72,7 @@ def _screens(tree: dict[str, Plain]) -> Iterator[DefinitionProblem]:
         if isinstance(texts, dict) and key not in texts:
             yield DefinitionProblem(
                 ("texts", key),
-                f"The text {key!r} is missing; devices show it outside of the steps.",
+                f"The text {key!r} is missing; devices show it between the steps.",
                 None,
                 list(SCREEN_TEXTS),
                 "Add it in every language.",
@@ -180,10 +180,10 @@ def _rows(tree: dict[str, Plain]) -> Iterator[DefinitionProblem]:
         rows = math.factorial(n_conditions) if n_conditions < 20 else "far too many"
         yield DefinitionProblem(
             ("orders", "design"),
-            f"All orders of {n_conditions} conditions are {rows} rows for each replicate.",
+            f"All orders of {n_conditions} conditions make {rows} rows for each replicate.",
             n_conditions,
             f"at most {MAX_PERMUTED} conditions ({math.factorial(MAX_PERMUTED)} rows)",
-            "Use fewer conditions, or the design williams, which needs few rows.",
+            "Use fewer conditions, or the design williams, which needs fewer rows.",
         )
 
 
@@ -211,7 +211,7 @@ def _sequences(tree: dict[str, Plain]) -> Iterator[DefinitionProblem]:
                 "This order is listed twice.",
                 sequence,
                 "every order once",
-                "List it once; replicates say how often every order is used.",
+                "List it once; replicates sets how often every order is used.",
             )
         if sorted(map(str, _list(sequence))) != keys:
             yield DefinitionProblem(

@@ -66,9 +66,10 @@ class PrimaryTest(Strict):
         named = self.instrument is not None and self.score is not None
         if (self.measure == "score") != named or (self.instrument is None) != (self.score is None):
             raise refusal(
-                "A score is named by its instrument and its key; other measures by neither.",
+                "The measure score needs an instrument and the key of a score; other measures "
+                "have neither.",
                 value=self.measure,
-                valid="instrument and score with the measure score, none of them otherwise",
+                valid="instrument and score with the measure score; neither with other measures",
                 remedy="Add both, as in instrument: karas2020 and score: agency, or remove both.",
                 at=("measure",),
             )
@@ -85,15 +86,15 @@ class PrimaryTest(Strict):
         if several != (self.reference is not None):
             comparing = " or ".join(one.key for one in TESTS if one.needs_reference)
             raise refusal(
-                f"A reference condition belongs to the test {comparing}, and to no other.",
+                f"Only the test {comparing} has a reference condition.",
                 value=self.reference,
-                valid=f"the key of a condition with {comparing}, none otherwise",
+                valid=f"the key of a condition with {comparing}; nothing with other tests",
                 remedy="Name the condition that the others are compared with, or remove it.",
                 at=("reference",),
             )
         if not several and self.correction != "none":
             raise refusal(
-                f"The test {self.test} is one test: there is nothing to correct for.",
+                f"The test {self.test} is a single test, so there is nothing to correct for.",
                 value=self.correction,
                 valid="none",
                 remedy="Leave correction out.",

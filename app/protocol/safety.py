@@ -73,7 +73,7 @@ def body_problems(tree: Mapping[str, Plain]) -> Iterator[DefinitionProblem]:
         if spec is not None and spec.needs_body and "materialise" not in before[:at]:
             yield DefinitionProblem(
                 ("procedure", "before", at, "step"),
-                f"The {spec.name.en.lower()} comes before the participant has a body.",
+                f"The step “{spec.name.en.lower()}” comes before the participant has a body.",
                 kind,
                 "a place after the step materialise",
                 "Move it after the step materialise.",
@@ -159,7 +159,7 @@ def _start(
     if start not in fitting:
         yield DefinitionProblem(
             (*path, "change_from"),
-            f"There is no form {start!r} before the blocks that asks {key!r}.",
+            f"There is no form {start!r} with the instrument {key!r} before the blocks.",
             start,
             fitting,
             f"Use one of: {', '.join(fitting)}."

@@ -167,7 +167,7 @@ class Tasks(Strict):
         """Return the surfaces of the task of `limb`; raise KeyError if the study has none."""
         task = self.hand if limb == Limb.HAND else self.foot
         if task is None:
-            raise KeyError(f"the study has no task of the {limb}")
+            raise KeyError(f"the study has no task for the {limb}")
         return task.layout()
 
 

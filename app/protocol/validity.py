@@ -128,10 +128,11 @@ def validity_problems(tree: Mapping[str, Plain]) -> Iterator[DefinitionProblem]:
         if _is_number(least) and longest is not None and least > longest:
             yield DefinitionProblem(
                 (*path, "min_active_s"),
-                f"The phase {key!r} has {longest:g} s of active time, so no session would count.",
+                f"The phase {key!r} has only {longest:g} s of active time, so no session would "
+                "count.",
                 least,
                 f"above 0, at most {longest:g}",
-                f"Ask for at most {longest:g} s.",
+                f"Require at most {longest:g} s.",
             )
     forms = _forms(tree)
     for at, key in enumerate(_list(rules.get("forms"))):

@@ -62,7 +62,7 @@ def mark_problems(
         ):
             yield DefinitionProblem(
                 at,
-                f"Nothing is left of this text with the avatar {avatar}.",
+                f"With the avatar {avatar}, this text is empty.",
                 avatar,
                 _marks(KINDS),
                 f"Add a line that begins with [avatar: {avatar}], or one without a mark.",
@@ -73,7 +73,7 @@ def _of_mark(at: Path, mark: re.Match[str], *, in_text: bool) -> Iterator[Defini
     if mark[1] not in KINDS:
         yield DefinitionProblem(
             at,
-            f"There is no avatar {mark[1]!r} that a line could be for.",
+            f"The mark names the avatar {mark[1]!r}, which does not exist.",
             mark[1],
             list(KINDS),
             f"Begin the line with {' or '.join(_marks(KINDS))}.",

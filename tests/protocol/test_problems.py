@@ -11,13 +11,13 @@ from tests.protocol.helpers import edited, problems
         (
             ("replicates: 2", "replicates: 2\n  replicate: 3"),
             "orders.replicate",
-            "not known",
+            "not valid",
             "'replicates'",
         ),
         (
             ("limb_order: fixed", "limb_order: fixed\n    limb_ordr: x"),
             "procedure.block.limb_ordr",
-            "not known",
+            "not valid",
             "mean",
         ),
         (("latency_ms: 125", "latency_ms: -125"), "conditions[1].latency_ms", "negative", "0 for"),

@@ -49,9 +49,9 @@ def test_both_variants_are_in_the_content() -> None:
 @pytest.mark.parametrize(
     ("words", "path", "message"),
     [
-        ("[avatar: ghost] Hold still.", "texts.freeze.en", "There is no avatar 'ghost'"),
+        ("[avatar: ghost] Hold still.", "texts.freeze.en", "names the avatar 'ghost'"),
         ("Hold [avatar: physics] still.", "texts.freeze.en", "where it has no effect"),
-        ("[avatar: physics] Hold still.", "texts.freeze.en", "Nothing is left of this text"),
+        ("[avatar: physics] Hold still.", "texts.freeze.en", "this text is empty"),
     ],
 )
 def test_a_mark_that_would_be_shown_or_leave_nothing_is_refused(

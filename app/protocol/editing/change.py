@@ -60,7 +60,7 @@ def _in_map(node: dict[str, Plain], key: str, change: Change) -> None:
     elif change.action == "remove" and key in node:
         del node[key]
     else:
-        raise _refusal(change, f"The key {key!r} cannot be used for this.")
+        raise _refusal(change, f"The key {key!r} cannot be used here.")
 
 
 def _in_list(node: list[Plain], at: int, change: Change) -> None:

@@ -73,7 +73,7 @@ def require_erasable(db: Session, participant: Participant, confirm: str) -> Non
         raise Conflict(
             "the data of this participant were already erased",
             value=participant.code,
-            remedy="There is nothing left to erase; the list shows what was done.",
+            remedy="There is nothing left to erase; the list shows what was erased.",
         )
     if confirm != participant.code:
         raise InvalidInput(
@@ -92,7 +92,8 @@ def require_erasable(db: Session, participant: Participant, confirm: str) -> Non
             "a session of this participant is active",
             value=list(active),
             valid=[],
-            remedy="Withdraw it first: that stops the recording at once. Then erase.",
+            remedy="Withdraw the participant first, which stops the recording immediately. Then "
+            "erase.",
         )
 
 

@@ -81,7 +81,7 @@ def post_score(request: TryRequest, db: Reading, _: SignedIn) -> TryResult:
     if (request.yaml is None) == (request.key is None):
         raise InvalidInput(
             "either a file or a key must name the instrument",
-            valid="yaml or key, one of the two",
+            valid="either yaml or key",
             remedy="Send the file's text as yaml, or the key of a stored instrument.",
         )
     if request.yaml is not None:

@@ -52,7 +52,7 @@ def create_avatar(
         raise Conflict(
             f"there is an avatar {request.key!r} already",
             value=request.key,
-            remedy="Save a version of it, or give the new one another key.",
+            remedy="Save a new version of it, or give the new one another key.",
         )
     db.add(Avatar(key=request.key, title=request.title, by=actor, at=now))
     db.flush()
@@ -83,7 +83,7 @@ def add_avatar_version(
         return newest
     if request.based_on != newest.number:
         raise StaleVersion(
-            "somebody else has changed this avatar meanwhile",
+            "somebody else has changed this avatar in the meantime",
             value=request.based_on,
             valid=newest.number,
             remedy="Check the current version, then decide. Nothing was saved.",

@@ -178,10 +178,10 @@ def _append(
     newest = 0 if current.saved is None else current.saved.version
     if request.version != newest:
         raise StaleVersion(
-            "somebody else has changed the joint map of this skeleton meanwhile",
+            "somebody else has changed the joint map of this skeleton in the meantime",
             value=request.version,
             valid=newest,
-            remedy="Look at it as it is now, then decide.",
+            remedy="Look at its current state, then decide.",
         )
     now = context.clock.utc_now()
     fingerprint = current.rig.fingerprint

@@ -43,7 +43,7 @@ class Workbench(JobQueue):
         cannot="the capture cannot be processed",
         ended="the process that read it ended",
         less="Cut the recording into shorter ones, or leave out tracks.",
-        otherwise="Check the file with the program that made it; the server's log has more.",
+        otherwise="Check the file with the program that made it; see the server's log for details.",
         log="a capture could not be processed",
     )
     # The process may not have released the memory that it had allocated.

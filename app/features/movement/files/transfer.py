@@ -60,7 +60,7 @@ async def uploaded(
                 "the file is empty" if companion_bytes is None else "the first file is empty",
                 value=size,
                 valid="a file with a recording or a model in it",
-                remedy="Choose another file, or save this one again where it came from.",
+                remedy="Choose another file, or export this one again.",
             )
         yield await run_sync(_split, whole, size, companion_bytes)
     finally:
@@ -73,17 +73,17 @@ def _new_folder(context: AppContext) -> "tempfile.TemporaryDirectory[str]":
             dir=uploads_of(context.settings), ignore_cleanup_errors=True
         )
     except OSError as error:
-        raise not_durable_error("the upload could not be put on the disk", error) from error
+        raise not_durable_error("the upload could not be stored", error) from error
 
 
 async def _received_whole(body: AsyncIterator[bytes], to: Path) -> int:
     try:
         return await _received(body, to)
     except ClientDisconnect as error:
-        raise InvalidInput("the upload broke off", remedy="Send the file again.") from error
+        raise InvalidInput("the upload was interrupted", remedy="Send the file again.") from error
     except OSError as error:
         raise NotDurable(
-            f"the upload could not be put on the disk: {error.strerror}",
+            f"the upload could not be stored: {error.strerror}",
             remedy="Free some space in the data folder of the server, then try again.",
         ) from error
 

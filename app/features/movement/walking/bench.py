@@ -27,12 +27,12 @@ class Bench(JobQueue):
     """Compute predictions one after the other, and cache their results."""
 
     messages: ClassVar[JobMessages] = JobMessages(
-        busy="the server is busy with other questions about walking",
-        cannot="this cannot be answered",
+        busy="the server is busy with other predictions of walking",
+        cannot="the prediction cannot be computed",
         ended="the process that computed it ended",
         less="Take fewer walks, fewer draws or a shorter path.",
-        otherwise="The server's log says more.",
-        log="a question about walking could not be answered",
+        otherwise="See the server's log for details.",
+        log="a prediction of walking could not be computed",
     )
     within_s: float = WITHIN_S
     _worker: Worker = field(default_factory=lambda: Worker(load))

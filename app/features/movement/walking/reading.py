@@ -100,8 +100,8 @@ def walks_in(tracks: Sequence[Track]) -> list[Walk]:
     if not walks:
         raise Cannot(
             f"there are no walks in {len(tracks)} track(s)",
-            "A walk leads 0.25 m or farther from where it begins, faster than 0.1 m/s: check the"
-            " unit of x and y, and the rate.",
+            "A walk must go at least 0.25 m from where it begins, faster than 0.1 m/s: check the "
+            "unit of x and y, and the rate.",
         )
     _check_count(len(walks))
     return walks
@@ -118,7 +118,7 @@ def planned(walks: Sequence[Walk], scene: Scene | None) -> list[PlannedWalk]:
         except WalkingError as error:
             raise Cannot(
                 f"walk {number}, of {walk.subject} ({walk.source}): {error}",
-                "Choose the scene in which these walks were walked, or none.",
+                "Choose the scene in which these walks took place, or none.",
             ) from None
     return entries
 

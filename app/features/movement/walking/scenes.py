@@ -72,7 +72,7 @@ def add_scene(db: Session, context: AppContext, caller: Caller, request: NewScen
         raise invalid_config("scene", error) from error
     if scene.name in _shipped() or db.get(WalkingScene, scene.name) is not None:
         raise Conflict(
-            f"there is a scene {scene.name!r} already",
+            f"the scene {scene.name!r} already exists",
             value=scene.name,
             remedy="Give the file another key, or delete the other scene.",
         )
@@ -110,7 +110,7 @@ def remove_scene(db: Session, context: AppContext, caller: Caller, key: str) -> 
 def _row(db: Session, key: str) -> WalkingScene:
     row = db.get(WalkingScene, key)
     if row is None:
-        raise NotFound("there is no such scene", value=key, remedy="Choose one that is listed.")
+        raise NotFound("there is no such scene", value=key, remedy="Choose one from the list.")
     return row
 
 

@@ -78,7 +78,7 @@ def order_model(db: Session, context: AppContext, caller: Caller, request: NewMo
         raise Conflict(
             "synthetic walkers are planned in the scene that they were made for",
             value=scene.key,
-            remedy="Leave the scene out, or make another set of walks in it.",
+            remedy="Leave the scene out, or generate another set of walks in it.",
         )
     row = WalkingModelRow(
         id=new_id(),
@@ -114,7 +114,7 @@ def order_of(db: Session, model_id: str) -> FitOrder:
             raise Conflict(
                 "the scene has changed since the fit was ordered",
                 value=row.scene["key"],
-                remedy="Order a new model.",
+                remedy="Fit a new model.",
             )
         scene = scene_text(db, row.scene["key"])
     options = FitChoice.model_validate(row.options)

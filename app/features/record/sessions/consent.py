@@ -80,11 +80,11 @@ class ConsentDesk:
         _requirements(step)
         if paper is None:
             raise InvalidInput(
-                "consent is the participant's own to give",
+                "only the participant can give consent",
                 value=None,
                 valid="the form on the tablet, or paper_consent with place and reason",
-                remedy="Let the participant agree on the tablet, or have it signed on paper and "
-                "write down where the sheet is.",
+                remedy="Let the participant agree on the tablet, or have them sign on paper and "
+                "record where the sheet is.",
             )
         return self._store(step, mode="paper", ticked=None, paper=paper.model_dump())
 

@@ -165,7 +165,7 @@ def _version(db: Session, study: Study, wish: NewSuggestion) -> StudyVersion:
             f"the session follows version {version.number}",
             value=wish.version,
             valid=version.number,
-            remedy="Leave version out where a session is given.",
+            remedy="Leave version out when a session is given.",
         )
     return version
 

@@ -108,7 +108,7 @@ class TryoutDesk(Part):
                     "a scripted participant is already running",
                     value=self._newest.by.username,
                     valid="one at a time",
-                    remedy="Watch that one, or stop it first.",
+                    remedy="Watch it, or stop it first.",
                 )
             now = self.clock.utc_now()
             tryout = Tryout(caller, study_key, self._token(caller, now), now)

@@ -23,7 +23,7 @@ def post_tryout(
     languages = protocol_of(newest_version(db, study)).languages
     if wish.language not in languages:
         raise InvalidInput(
-            f"this study is not in the language {wish.language!r}",
+            f"this study has no texts in the language {wish.language!r}",
             value=wish.language,
             valid=list(languages),
             remedy="Choose one of the study's languages.",

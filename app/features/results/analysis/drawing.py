@@ -115,7 +115,7 @@ class Drawings(Part):
         try:
             return future.result(FIRST_WITHIN_S)
         except NotYet:
-            raise _failed("it takes too long") from None
+            raise _failed("it took too long") from None
         except ReembodyError:
             raise
         except Exception as error:
@@ -134,7 +134,7 @@ class Drawings(Part):
             drawing.result(FIRST_WITHIN_S if drawn is None else REFRESH_WITHIN_S)
         except NotYet:
             if drawn is None:
-                raise _failed("it takes too long") from None
+                raise _failed("it took too long") from None
         except Exception as error:
             raise _failed(type(error).__name__) from error
         with self._lock:
@@ -168,7 +168,7 @@ class Drawings(Part):
         stored.set_exception(error)
         if not done.cancelled():
             log.error(
-                "the %s of %s could not be made",
+                "the %s of %s could not be drawn",
                 request.result_kind,
                 request.study_key,
                 exc_info=error,

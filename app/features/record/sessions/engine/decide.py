@@ -88,7 +88,7 @@ def _decide_step(step: Step, state: SessionState, command: c.Command) -> list[e.
         case c.Materialise():
             _require_kind(step, kinds_with_command("materialise"), "materialise the avatar")
             _require_headset(
-                "nothing could show the body or record it", connected=command.headset_connected
+                "no headset could show or record the body", connected=command.headset_connected
             )
             return [
                 e.AvatarMaterialised(step=step.index, by=command.by, client_t_s=command.client_t_s)
@@ -151,10 +151,10 @@ def _begin(step: Step, state: SessionState, command: c.BeginPhase) -> list[e.Eve
         raise Refused(
             f"the phase is already {state.phase.status}",
             value=state.phase.status,
-            valid=["no phase under way"],
-            remedy="Somebody else may have begun it.",
+            valid=["no phase in progress"],
+            remedy="Somebody else may have started it.",
         )
-    _require_headset("nothing could run the phase", connected=command.headset_connected)
+    _require_headset("no headset could run the phase", connected=command.headset_connected)
     return [
         e.PhasePrepared(
             step=step.index,
@@ -175,7 +175,7 @@ def _pause(state: SessionState, command: c.Pause) -> list[e.Event]:
 
 def _resume(state: SessionState, command: c.Resume) -> list[e.Event]:
     phase = _require_phase(state, (PhaseStatus.PAUSED,), "resume")
-    _require_headset("nothing could run the phase", connected=command.headset_connected)
+    _require_headset("no headset could run the phase", connected=command.headset_connected)
     return [] if phase.resuming else [e.ResumeRequested(phase_id=phase.phase_id)]
 
 
@@ -232,7 +232,7 @@ def _require_kind(step: Step, kinds: Sequence[str], wish: str) -> None:
 
 def _require_phase(state: SessionState, statuses: Sequence[PhaseStatus], wish: str) -> PhaseState:
     if state.phase is None or state.phase.status not in statuses:
-        status = state.phase.status if state.phase else "no phase under way"
+        status = state.phase.status if state.phase else "no phase in progress"
         raise Refused(
             f"cannot {wish}: {status}",
             value=status,
@@ -311,7 +311,7 @@ def require_not_held(state: SessionState, command: c.Command) -> None:
             "the session is held: the participant does not want to take part",
             value=f"consent refused at step {state.refused_consent + 1}",
             valid=["withdraw", "abort", "reopen_consent"],
-            remedy="Speak to the participant. Then end the session; or show the consent again, if "
+            remedy="Speak to the participant. Then end the session, or show the consent again if "
             "they have changed their mind.",
         )
     if state.held is not None and isinstance(command, GOES_ON):
@@ -327,7 +327,7 @@ def decide_override(state: SessionState, command: c.OverrideStop) -> list[e.Even
     """Override the stop rule that holds the session; raises Refused if none does."""
     if state.held is None:
         raise Refused(
-            "no stop rule holds the session",
+            "the session is not held by a stop rule",
             value="not held",
             valid=["held by a stop rule"],
             remedy="Somebody else may have decided already; continue with the current step.",

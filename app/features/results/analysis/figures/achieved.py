@@ -21,7 +21,7 @@ from app.features.results.analysis.figures.theme import (
 )
 from app.protocol import COUNTED_KINDS
 
-KEY, TITLE = "achieved_latency", "Achieved against ordered latency"
+KEY, TITLE = "achieved_latency", "Achieved against set latency"
 WHAT = (
     "Each point is a phase: the lag at which the avatar's joints match the participant's best, "
     "from the recorded frames, with its 95 % confidence interval. On the dashed line, achieved and "
@@ -61,10 +61,10 @@ def achieved_drawing(phases: pd.DataFrame) -> Drawing:
 def _figure(measured: pd.DataFrame, off: pd.Series, latencies: list[float]) -> go.Figure:
     """Draw the achieved latency (left) and its deviation from the set latency (right)."""
     spread = 0.05 * max(latencies[-1] - latencies[0], 50.0)
-    figure = new_figure(titles=("Achieved", "Achieved less ordered"), horizontal_spacing=0.14)
+    figure = new_figure(titles=("Achieved", "Achieved minus set"), horizontal_spacing=0.14)
     ends = [latencies[0] - spread, latencies[-1] + spread]
-    figure.add_trace(_line(ends, ends, "achieved = ordered", "dash", legend=True), row=1, col=1)
-    figure.add_trace(_line(ends, [0.0, 0.0], "achieved = ordered", "dash"), row=1, col=2)
+    figure.add_trace(_line(ends, ends, "achieved = set", "dash", legend=True), row=1, col=1)
+    figure.add_trace(_line(ends, [0.0, 0.0], "achieved = set", "dash"), row=1, col=2)
     for place, limit in enumerate((LIMIT_MS, -LIMIT_MS)):
         line = _line(ends, [limit, limit], "10 ms off", "dot", legend=place == 0)
         figure.add_trace(line, row=1, col=2)
@@ -75,7 +75,7 @@ def _figure(measured: pd.DataFrame, off: pd.Series, latencies: list[float]) -> g
                 points = _points(own, style, spread, less=less)
                 figure.add_trace(points.update(showlegend=not less), row=1, col=column)
     latency_axis(figure, latencies)
-    figure.update_xaxes(title_text="ordered latency (ms)")
+    figure.update_xaxes(title_text="set latency (ms)")
     figure.update_yaxes(title_text="achieved latency (ms)", row=1, col=1)
     figure.update_yaxes(title_text="difference (ms)", row=1, col=2)
     return figure

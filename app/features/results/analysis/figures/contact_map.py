@@ -35,7 +35,7 @@ def contact_map_drawing(phases: pd.DataFrame, contacts: pd.DataFrame) -> Drawing
     if n < MIN_PARTICIPANTS:
         return too_few(KEY, TITLE, WHAT, n, "a finished hand or foot phase").of_group("tasks")
     if sides.empty:
-        empty = "No side of a box was touched in any phase that counts."
+        empty = "No side of a box was touched in any valid phase."
         return Drawing(KEY, TITLE, WHAT, n, empty=empty, group="tasks", wide=True)
     means = _means(tasks, sides)
     figure = _figure(means)

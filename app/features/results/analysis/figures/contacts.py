@@ -38,7 +38,7 @@ def contacts_drawing(phases: pd.DataFrame, contacts: pd.DataFrame) -> Drawing:
     if n < MIN_PARTICIPANTS:
         return too_few(KEY, TITLE, WHAT, n, "a finished hand or foot phase")
     if sides.empty:
-        empty = "No side of a box was touched in any phase that counts."
+        empty = "No side of a box was touched in any valid phase."
         return Drawing(KEY, TITLE, WHAT, n, empty=empty)
     panels = (("sides, red time", _side_times(sides)), ("body parts", _part_times(sides)))
     limbs = [limb for limb in LIMBS if (tasks["limb"] == limb).any()]

@@ -7,7 +7,7 @@ from app.features.results.analysis.figures.drawing import Drawing, drawn, partic
 from app.features.results.analysis.figures.theme import BLUE, ORANGE, hatched, new_figure
 from app.protocol import COUNTED_KINDS
 
-KEY, TITLE = "exclusions", "What counts and what is left out"
+KEY, TITLE = "exclusions", "What counts and what is excluded"
 WHAT = (
     "Everything stored of the sessions shown. A phase or form counts if it was finished, not "
     "repeated later, not skipped, and its session neither aborted nor withdrawn nor completed "
@@ -25,7 +25,7 @@ def exclusions_drawing(
     """Draw the counts from all rows, valid or not, of the three tables."""
     n = participants(sessions)
     if sessions.empty:
-        empty = "No session has joined the study yet."
+        empty = "The study has no sessions yet."
         return Drawing(KEY, TITLE, WHAT, 0, empty=empty, group="quality")
     rows = _counts(sessions, phases[phases["phase_kind"].isin(COUNTED_KINDS)], scores)
     figure = _figure(rows)
@@ -77,8 +77,8 @@ def _counts(sessions: pd.DataFrame, tasks: pd.DataFrame, scores: pd.DataFrame) -
     broken = ~tasks["valid"] & (tasks["status"] == "done")
     found += [
         ("phases", "count", True, int(tasks["valid"].sum())),
-        ("phases", "redone or skipped", False, int((tasks["status"] == "voided").sum())),
-        ("phases", "session broken off or not valid", False, int(broken.sum())),
+        ("phases", "repeated or skipped", False, int((tasks["status"] == "voided").sum())),
+        ("phases", "session ended early or not valid", False, int(broken.sum())),
         ("phases", "not finished", False, int(_open(tasks))),
     ]
     of_phases = scores.dropna(subset=["limb"])
@@ -88,7 +88,7 @@ def _counts(sessions: pd.DataFrame, tasks: pd.DataFrame, scores: pd.DataFrame) -
         ("scores", "an item has no answer", False, int(missing.sum())),
         (
             "scores",
-            "superseded, skipped, broken off or not valid",
+            "repeated, skipped, ended early or not valid",
             False,
             int((~of_phases["valid"]).sum()),
         ),

@@ -56,7 +56,7 @@ def likert_drawings(
     rated = answers[answers["item_type"].eq("likert")].dropna(subset=["limb", "value_number"])
     if rated.empty:
         yield too_few(
-            "likert", "Answers item by item", WHAT, 0, "answered a questionnaire after a phase"
+            "likert", "Answers by item", WHAT, 0, "answered a questionnaire after a phase"
         ).of_group("answers", wide=True)
     for key, own in rated.groupby("instrument"):
         # The wording may differ between versions; that of the newest is shown.

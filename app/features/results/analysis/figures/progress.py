@@ -37,7 +37,7 @@ def progress_drawing(
     """
     n = participants(sessions)
     if sessions.empty:
-        return Drawing(KEY, TITLE, "", 0, empty="No session has joined the study yet.")
+        return Drawing(KEY, TITLE, "", 0, empty="The study has no sessions yet.")
     own = pd.Series("all orders", sessions.index) if blinded else sessions["order"]
     status = _statuses(sessions)
     names = ["all orders"] if blinded else sorted({*orders, *own}, key=_as_numbers)
@@ -84,7 +84,9 @@ def progress_time_drawing(sessions: pd.DataFrame, planned: int) -> Drawing:
     done = sessions[_statuses(sessions) == "completed"].dropna(subset=["ended_at_utc"])
     n = participants(done)
     if done.empty:
-        return Drawing(TIME_KEY, TIME_TITLE, "", 0, empty="No session is completed and valid yet.")
+        return Drawing(
+            TIME_KEY, TIME_TITLE, "", 0, empty="No session has been completed and is valid yet."
+        )
     days = done["ended_at_utc"].dt.date.value_counts().sort_index()
     rows = days.rename_axis("day_utc").rename("completed").reset_index()
     rows["together"] = rows["completed"].cumsum()

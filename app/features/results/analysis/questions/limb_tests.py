@@ -81,7 +81,7 @@ def apa_of(one: Comparison) -> str:
 def listwise(data: LimbData) -> str:
     """Return a sentence on how many participants lack a latency, or nothing if none does."""
     left = len(data.table) - len(data.complete)
-    return f"{left} participants without every latency are left out." if left else ""
+    return f"{left} participants who did not complete every latency are left out." if left else ""
 
 
 def signed_floor(found: AgainstReference) -> str:
