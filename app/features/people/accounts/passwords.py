@@ -49,7 +49,7 @@ tenths of a second, those of 72 five seconds.
 """
 NICENESS = 10
 MAX_COST_RATIO = 4
-"""How many times our costs a stored hash may have: other releases of argon2 had other costs."""
+"""How many times our costs a stored hash may have, as releases of argon2 differ in their costs."""
 Result = TypeVar("Result")
 _HASHER = PasswordHasher()
 

@@ -62,7 +62,7 @@ class Change:
 
 @dataclass(frozen=True)
 class Alarm:
-    """An open alarm: its latest condition, since when it is open, and when it was last reported."""
+    """An open alarm: its latest condition, when it was raised, and when it was last reported."""
 
     condition: Condition
     since: datetime

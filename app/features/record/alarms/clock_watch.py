@@ -49,7 +49,7 @@ class ClockWatch:
         return 0.5 * min(trip_s for _, trip_s in self._trips) if self._trips else None
 
     def check(self, now_s: float) -> Iterator[Condition]:
-        """Yield a condition if the headset's clock is unknown or known too inaccurately."""
+        """Yield a condition if the headset's clock is unknown or not known accurately enough."""
         waited_s = now_s - self.usable_s
         uncertainty_s = self.uncertainty_s(now_s)
         if waited_s > self.limits.clock_unknown_s:

@@ -64,7 +64,7 @@ class CalibrationView(BaseModel):
 
 MS_PER_S = 1000.0
 _MS_DIGITS = 6
-"""Removes the rounding errors of the conversion from seconds; far finer than can be measured."""
+"""Milliseconds are rounded to so many digits, which removes the errors of their conversion."""
 
 
 def add_calibration(

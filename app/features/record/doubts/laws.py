@@ -223,7 +223,7 @@ def max_made(age_s: float, time_scale: float) -> float:
 
 
 def _runs(claims: SessionClaims) -> Iterator[Doubt]:
-    """Doubt epochs that the server did not assign.
+    """Yield a doubt about every epoch that the server did not assign.
 
     The server assigns 1, 2, ... in order, and records each number when it assigns it.
     """
@@ -262,7 +262,11 @@ def _backwards(reports: Sequence[ClockReport]) -> Iterator[Doubt]:
 
 
 def _clock(phase: PhaseClaims, reports: Sequence[ClockReport]) -> Iterator[Doubt]:
-    """Doubt active time that outpaces the headset's clock, or passes while the clock is stopped."""
+    """Yield doubts about active time that grows faster than the headset's clock allows.
+
+    Active time must not grow while the phase's clock is stopped. Walks back occur only in phases
+    with the foot.
+    """
     for _, own in _by_epoch(reports):
         # It is unknown whether the headset acted on a report that the server rejected.
         accepted = [one for one in own if one.accepted]
@@ -302,7 +306,7 @@ def _check_gain(phase: PhaseClaims, own: Sequence[ClockReport]) -> Iterator[Doub
 
 
 def _server(phase: PhaseClaims, time_scale: float) -> Iterator[Doubt]:
-    """Doubt more active time than has passed at the server since it prepared the phase.
+    """Yield a doubt if more active time is reported than has passed since the phase was prepared.
 
     Pauses that the headset itself confirmed are subtracted, up to the operator's request to resume:
     the headset cannot have resumed earlier.
@@ -499,7 +503,7 @@ def _check_time(phase: PhaseClaims, one: Completed, running: _Running | None) ->
 
 
 def _check_touches(phase: PhaseClaims) -> Iterator[Doubt]:
-    """Doubt more completions than touches of the target.
+    """Yield a doubt if there are more completions than touches of the target.
 
     Every completion ends at the target, but the last contact of an epoch may have been lost.
     """

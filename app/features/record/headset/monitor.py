@@ -79,7 +79,7 @@ class HeadsetMonitor:
         self.watch.produced(message)
 
     def delivered(self, outcome: Outcome, *, waiting: bool) -> None:
-        """Process the storing of messages; `waiting` says whether others are still unstored."""
+        """Process the storing of messages; `waiting`: others are still to be stored."""
         self.live.flagged(outcome.frames_flagged)
         self.watch.backlog.stored(outcome.positions.values())
         self.watch.backlog.acknowledged(self._now().monotonic_s, waiting=waiting)
@@ -107,7 +107,7 @@ class HeadsetMonitor:
             self._publish_figures({}, now)
 
     def leave(self, *, connected: bool) -> None:
-        """Handle the closing of the socket; `connected` if the session still has another one."""
+        """Handle the closing of the socket; `connected`: the session still has another one."""
         now = self._now()
         self._store(self.watch.alarms.close("the headset's connection has closed", now))
         open_alarms: list[Alarm] = []

@@ -21,7 +21,7 @@ ENDED_EARLY = ("aborted", "withdrawn")
 def get_ledger(key: str, db: Reading, caller: SignedIn, kind: Kind = "people") -> LedgerView:
     """Return every slot with its attempts; before the first session, the slots as planned.
 
-    In a blinded study only the orders that are already existing are shown, and none to operators.
+    In a blinded study, only those orders are shown that may be known by now, and none to operators.
     """
     study = study_by_key(db, key)
     version = newest_version(db, study)

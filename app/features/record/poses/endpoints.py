@@ -24,7 +24,7 @@ router = APIRouter(tags=["sessions"])
 CLOSE_NOT_SIGNED_IN = 4401
 CLOSE_REFUSED = 4403
 RECHECK_S = 5.0
-"""How often access is checked: the expiry of a login, or a lost study, is noticed so soon."""
+"""How often access is checked, so that an expired login or a revoked study is noticed."""
 MAX_UNDRAWN = 4
 
 

@@ -24,7 +24,7 @@ class Finding:
 
     Attributes:
         key: unique within its check; check and finding together form the code, as in "disk.low".
-        status: "wait" if it cannot be judged yet and will be without any action.
+        status: "wait" if it cannot be judged yet, but will be later without any action.
         words: `{{value}}` and `{{limit}}` are replaced by what was measured.
         remedy: what to do about it; required for failures, and absent otherwise.
     """

@@ -33,10 +33,10 @@ class Override(BaseModel):
 class Check(BaseModel):
     """A check of the pre-flight list, with its result.
 
-    `wait`: it cannot be judged yet, but will be without any action. `value` with its `unit` is what
-    was measured; `limit` with `expected` is what it must comply with. `details` are names and
-    hashes, which are not translated. `override`: the latest one; it applies only while the check
-    still has the finding that was overridden.
+    `wait`: it cannot be judged yet, but will be later without any action. `value` with its `unit`
+    is what was measured; `limit` with `expected` is what it must comply with. `details` are names
+    and hashes, which are not translated. `override`: the latest one; it applies only while the
+    check still has the finding that was overridden.
     """
 
     key: CheckKey

@@ -23,7 +23,7 @@ from app.rows import insert_rows
 log = logging.getLogger(__name__)
 TURN_S = 0.2
 ATTEMPTS = 3
-"""An erasure between reading and writing changes the batches; reading them again is enough."""
+"""How often folding is tried: an erasure between reading and writing changes the batches."""
 FOLDER = "telemetry-folder"
 CHUNKS = cast("Table", TelemetryChunk.__table__)
 

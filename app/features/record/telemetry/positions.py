@@ -166,7 +166,7 @@ def certain_active_s(db: Session, session_id: str, phase_id: int) -> float:
 
 @dataclass
 class Outcome:
-    """What to send to the sender once the transaction is on disk.
+    """The result of a transaction for one sender, to be sent once the transaction is on disk.
 
     `messages`: how many of its messages were stored; `frames_flagged`: how many of their frames
     contain invalid values.

@@ -32,13 +32,13 @@ MAX_TRIES = 3
 
 
 class Sender(Protocol):
-    """The sender of a message, to which the result is passed; can be called from any thread."""
+    """The sender of a message, which is notified of the result; callable from any thread."""
 
     def deliver(self, outcome: Outcome) -> None:
-        """Handle that messages of this sender are on disk."""
+        """Process the confirmation that messages of this sender are on disk."""
 
     def fail(self, error: Exception) -> None:
-        """Handle that a message can never be stored; the connection must close."""
+        """Process the error that a message can never be stored; the connection must close."""
 
 
 class ServerSender:

@@ -170,7 +170,7 @@ class PhaseFrozen(Event):
 
 @dataclass(frozen=True, kw_only=True)
 class PhaseEnded(Event):
-    """The freeze has ended, and with it the phase, which counts."""
+    """The freeze ended, and with it the phase; unless it is voided later, the phase counts."""
 
     type = "phase_ended"
     phase_id: int
