@@ -42,7 +42,7 @@ interface ListedPart {
   readonly pages: readonly Listed[];
 }
 
-interface Made {
+interface ParsedPage {
   readonly headings: readonly HelpHeading[];
   readonly body: readonly HelpNode[];
   /** The pictures of the page; its body refers to them by their index in this list. */
@@ -50,7 +50,7 @@ interface Made {
 }
 
 export function helpPages(repository: string): Plugin {
-  const docs = docsOf(repository);
+  const docs = loadDocs(repository);
   return {
     name: "help-pages",
     resolveId: (id) => (id === MODULE || id.startsWith(`${MODULE}/`) ? `\0${id}` : undefined),
@@ -78,12 +78,12 @@ interface Docs {
 }
 
 /** Convert the docs of a repository to modules; the files are read again at each call. */
-export function docsOf(repository: string): Docs {
+export function loadDocs(repository: string): Docs {
   const read = (file: string) => readFileSync(resolve(repository, file), "utf8");
-  const parts = () => listedIn(read(MAP));
+  const parts = () => listedParts(read(MAP));
   const keys = () => keysOf(parts());
   const make = (file: string) =>
-    madeOf(read(file), (target) => followed(repository, keys(), file, target));
+    pageFrom(read(file), (target) => resolveLink(repository, keys(), file, target));
   const fileOf = (key: string) => [...keys()].find(([, other]) => other === key)?.[0];
   return {
     fileOf,
@@ -96,7 +96,7 @@ export function docsOf(repository: string): Docs {
 }
 
 /** The parts of the table of contents, with the pages that the console shows. */
-export function listedIn(map: string): readonly ListedPart[] {
+export function listedParts(map: string): readonly ListedPart[] {
   const parts: { title: string; pages: Listed[] }[] = [];
   for (const line of map.split("\n")) {
     const [, title] = /^## (.+)$/.exec(line) ?? [];
@@ -126,7 +126,7 @@ const inRepository = (file: string, target: string): string =>
 type Followed = Readonly<Record<string, string>> | "elsewhere";
 
 /** Where a link or picture leads: to a help page, the web, a file to be shown, or elsewhere. */
-function followed(
+function resolveLink(
   repository: string,
   keys: ReadonlyMap<string, string>,
   file: string,
@@ -141,7 +141,7 @@ function followed(
   return to.endsWith(".png") ? { picture: resolve(repository, to) } : "elsewhere";
 }
 
-function contentsModule(parts: readonly ListedPart[], make: (file: string) => Made): string {
+function contentsModule(parts: readonly ListedPart[], make: (file: string) => ParsedPage): string {
   const written = parts
     .filter(({ pages }) => pages.length > 0)
     .map(({ title, pages }) => {
@@ -155,14 +155,14 @@ function contentsModule(parts: readonly ListedPart[], make: (file: string) => Ma
   return `export const parts = [${written.join(",\n")}];`;
 }
 
-function bodyModule({ body, pictures }: Made): string {
+function bodyModule({ body, pictures }: ParsedPage): string {
   const imports = pictures.map((path, at) => `import p${at} from ${JSON.stringify(path)};`);
   const tree = JSON.stringify(body).replaceAll(/"picture:(\d+)"/g, "p$1");
   return [...imports, `export const body = ${tree};`].join("\n");
 }
 
 /** Convert a Markdown text to a page; `follow` resolves its links. */
-export function madeOf(text: string, follow: (target: string) => Followed): Made {
+export function pageFrom(text: string, follow: (target: string) => Followed): ParsedPage {
   const headings: HelpHeading[] = [];
   const pictures: string[] = [];
   const seen = new Map<string, number>();

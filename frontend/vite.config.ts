@@ -40,12 +40,12 @@ const proxyToServer: ProxyOptions = {
   changeOrigin: true,
   ws: true,
   configure(proxy) {
-    const sayOurs = (outgoing: ClientRequest, request: IncomingMessage) => {
+    const rewriteOrigin = (outgoing: ClientRequest, request: IncomingMessage) => {
       const { origin, host } = request.headers;
       if (origin === `http://${host}`) outgoing.setHeader("origin", SERVER.origin);
     };
-    proxy.on("proxyReq", sayOurs);
-    proxy.on("proxyReqWs", sayOurs);
+    proxy.on("proxyReq", rewriteOrigin);
+    proxy.on("proxyReqWs", rewriteOrigin);
   },
 };
 

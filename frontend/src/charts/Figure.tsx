@@ -12,7 +12,7 @@ interface FigureProps {
   readonly loading: string;
   readonly failed: string;
   /** Draw the figure only when it is scrolled near the window: for pages with many figures. */
-  readonly whenNear?: boolean;
+  readonly lazy?: boolean;
 }
 
 /** How far below the window a figure may be when it is drawn. */
@@ -24,20 +24,20 @@ export function Figure({
   figure,
   label,
   watermark,
-  whenNear = false,
+  lazy = false,
   ...texts
 }: FigureProps): JSX.Element {
   const root = useRef<HTMLElement>(null);
   const scheme = useComputedColorScheme("light");
   const [state, setState] = useState<State>("loading");
-  const near = useNear(root, whenNear);
+  const isNear = useIsNear(root, lazy);
   useEffect(() => {
     const element = root.current;
-    if (element === null || !near) return;
+    if (element === null || !isNear) return;
     // The colours come from the page, so they are read again whenever the colour scheme changes.
     const palette = paletteOf(element, scheme);
     return draw(element, figure, palette, watermark, setState);
-  }, [figure, scheme, watermark, near]);
+  }, [figure, scheme, watermark, isNear]);
   return (
     <div style={{ position: "relative", height: heightOf(figure) }}>
       {state !== "drawn" && (
@@ -55,21 +55,21 @@ export function Figure({
 }
 
 /** Whether an element has come near the window; always true unless `lazy`. */
-function useNear(root: RefObject<HTMLElement | null>, lazy: boolean): boolean {
-  const [near, setNear] = useState(!lazy);
+function useIsNear(root: RefObject<HTMLElement | null>, lazy: boolean): boolean {
+  const [isNear, setIsNear] = useState(!lazy);
   useEffect(() => {
     const element = root.current;
-    if (element === null || near) return;
+    if (element === null || isNear) return;
     const watch = new IntersectionObserver(
       (entries) => {
-        if (entries.some((entry) => entry.isIntersecting)) setNear(true);
+        if (entries.some((entry) => entry.isIntersecting)) setIsNear(true);
       },
       { rootMargin: AHEAD },
     );
     watch.observe(element);
     return () => watch.disconnect();
-  }, [root, near]);
-  return near;
+  }, [root, isNear]);
+  return isNear;
 }
 
 function draw(

@@ -40,8 +40,8 @@ export function useTabletState() {
       },
       on: {
         state: (data) =>
-          queries.setQueryData<TabletState>(STATE_KEY, (known) =>
-            newer(known, data as TabletState),
+          queries.setQueryData<TabletState>(STATE_KEY, (previous) =>
+            newer(previous, data as TabletState),
           ),
       },
     });

@@ -17,19 +17,19 @@ import { captureQuery, capturesQuery } from "./queries";
 
 export function CaptureHead({ capture }: { readonly capture: Capture }): JSX.Element {
   const { t } = useTexts();
-  const mayWrite = usePermissions()("capture");
+  const canWrite = usePermissions()("capture");
   const [, navigate] = useLocation();
   const [leaving, setLeaving] = useState(false);
   return (
     <div className={classes.head}>
       <div>
-        <CaptureTitle capture={capture} mayWrite={mayWrite} />
+        <CaptureTitle capture={capture} canWrite={canWrite} />
         <Facts capture={capture} />
       </div>
       <div className={classes.actions}>
         <FileLink capture={capture} companion={false} />
         {capture.companion_name !== null && <FileLink capture={capture} companion />}
-        {mayWrite && (
+        {canWrite && (
           <Button variant="subtle" color="red" size="xs" onClick={() => setLeaving(true)}>
             {t("captures.delete.short")}
           </Button>
@@ -91,10 +91,10 @@ function Facts({ capture }: { readonly capture: Capture }): JSX.Element {
 
 interface TitleProps {
   readonly capture: Capture;
-  readonly mayWrite: boolean;
+  readonly canWrite: boolean;
 }
 
-function CaptureTitle({ capture, mayWrite }: TitleProps): JSX.Element {
+function CaptureTitle({ capture, canWrite }: TitleProps): JSX.Element {
   const { t } = useTexts();
   const [editing, setEditing] = useState(false);
   if (editing) return <TitleForm capture={capture} onDone={() => setEditing(false)} />;
@@ -103,7 +103,7 @@ function CaptureTitle({ capture, mayWrite }: TitleProps): JSX.Element {
       <Title order={1} className={classes.title ?? ""}>
         {capture.title}
       </Title>
-      {mayWrite && (
+      {canWrite && (
         <Tooltip label={t("capture.rename")}>
           <ActionIcon
             variant="subtle"

@@ -28,7 +28,7 @@ export function CaptureTable({ captures, onDelete }: CaptureTableProps): JSX.Ele
   return (
     <ListTable
       columns={COLUMNS.map((column) => t(`captures.column.${column}`))}
-      withDoing={onDelete !== null}
+      hasActions={onDelete !== null}
     >
       {captures.map((capture) => (
         <Row key={capture.id} capture={capture} onDelete={onDelete} />

@@ -20,7 +20,7 @@ import { useUploads } from "./useUploads";
 export function CapturesPage(): JSX.Element {
   const { t } = useTexts();
   useTitle(t("captures.title"));
-  const mayWrite = usePermissions()("capture");
+  const canWrite = usePermissions()("capture");
   const uploads = useUploads();
   const query = useQuery(capturesQuery);
   return (
@@ -31,27 +31,27 @@ export function CapturesPage(): JSX.Element {
           <Text c="dimmed">{t("captures.lead")}</Text>
         </div>
       </div>
-      {mayWrite && <DropZone onFiles={uploads.add} />}
+      {canWrite && <DropZone onFiles={uploads.add} />}
       <UploadList uploads={uploads} />
       <Loaded query={query}>
-        {(page) => (page.total === 0 ? <Nothing mayWrite={mayWrite} /> : <All page={page} />)}
+        {(page) => (page.total === 0 ? <Nothing canWrite={canWrite} /> : <All page={page} />)}
       </Loaded>
     </>
   );
 }
 
-function Nothing({ mayWrite }: { readonly mayWrite: boolean }): JSX.Element {
+function Nothing({ canWrite }: { readonly canWrite: boolean }): JSX.Element {
   const { t } = useTexts();
   return (
     <EmptyState icon="walk" title={t("captures.empty")} action={<Formats />}>
-      {t(mayWrite ? "captures.empty.body" : "captures.empty.reader")}
+      {t(canWrite ? "captures.empty.body" : "captures.empty.reader")}
     </EmptyState>
   );
 }
 
 function All({ page }: { readonly page: CapturePage }): JSX.Element {
   const { t } = useTexts();
-  const mayWrite = usePermissions()("capture");
+  const canWrite = usePermissions()("capture");
   const formatName = useFormatName();
   const [wanted, setWanted] = useState("");
   const [leaving, setLeaving] = useState<CaptureListed | null>(null);
@@ -84,14 +84,14 @@ function All({ page }: { readonly page: CapturePage }): JSX.Element {
           {t("captures.none.body")}
         </EmptyState>
       ) : (
-        <CaptureTable captures={shown} onDelete={mayWrite ? setLeaving : null} />
+        <CaptureTable captures={shown} onDelete={canWrite ? setLeaving : null} />
       )}
       {page.total > page.captures.length && (
         <Text c="dimmed" mt="sm">
           {t("captures.older", { shown: page.captures.length, total: page.total })}
         </Text>
       )}
-      {mayWrite && (
+      {canWrite && (
         <details className={classes.help}>
           <summary>{t("captures.formats")}</summary>
           <Formats />

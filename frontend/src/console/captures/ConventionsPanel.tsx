@@ -21,7 +21,7 @@ const CONVENTIONS: readonly (keyof Conventions)[] = ["length", "axes", "rotation
 
 export function ConventionsPanel({ capture, motion }: ConventionsPanelProps): JSX.Element {
   const { t, language } = useTexts();
-  const mayWrite = usePermissions()("capture");
+  const canWrite = usePermissions()("capture");
   const { conventions, notes, observed } = capture.summary;
   const isGuessed = CONVENTIONS.some((name) => conventions[name].origin === "guessed");
   const size = useMemo(() => (motion === null ? null : boxOf(motion)), [motion]);
@@ -62,7 +62,7 @@ export function ConventionsPanel({ capture, motion }: ConventionsPanelProps): JS
           remedy={t("conventions.guessed.body")}
         />
       )}
-      {mayWrite && <ReadingForm capture={capture} />}
+      {canWrite && <ReadingForm capture={capture} />}
       {notes.length > 0 && (
         <div>
           <Title order={3} size="h4" fz="0.9375rem">

@@ -15,16 +15,16 @@ export function DropZone({
   readonly onFiles: (files: readonly File[]) => void;
 }): JSX.Element {
   const { t } = useTexts();
-  const [over, setOver] = useState(false);
+  const [isDraggedOver, setIsDraggedOver] = useState(false);
   const formats = CAPTURE_FORMATS.map((format) => t(`format.${format}`)).join(", ");
   const stop = (event: DragEvent, isOver: boolean) => {
     event.preventDefault();
-    setOver(isOver);
+    setIsDraggedOver(isOver);
   };
   return (
     <section
       className={classes.drop}
-      data-over={over || undefined}
+      data-over={isDraggedOver || undefined}
       aria-label={t("captures.choose")}
       onDragOver={(event) => stop(event, true)}
       onDragLeave={(event) => stop(event, false)}

@@ -48,7 +48,7 @@ interface EditorProps extends TabProps {
 
 function JointMapEditor({ capture, map, view }: EditorProps): JSX.Element {
   const { t } = useTexts();
-  const mayWrite = usePermissions()("capture");
+  const canWrite = usePermissions()("capture");
   const [editing, setEditing] = useState<string | null>(null);
   const { present } = map.edit;
   const problems = useMemo(
@@ -64,8 +64,8 @@ function JointMapEditor({ capture, map, view }: EditorProps): JSX.Element {
         <p className={classes.lead}>
           {t("map.lead")} <State view={view} />
         </p>
-        {mayWrite && <MapBar map={map} view={view} problems={problems.size} />}
-        <Outcome map={map} view={view} />
+        {canWrite && <MapBar map={map} view={view} problems={problems.size} />}
+        <SaveStatus map={map} view={view} />
         <div className={classes.groups}>
           {(Object.keys(GROUPS) as Group[]).map((group) => (
             <section key={group} className={classes.group} data-group={group}>
@@ -78,7 +78,7 @@ function JointMapEditor({ capture, map, view }: EditorProps): JSX.Element {
                   joint={joint}
                   view={view}
                   map={map}
-                  disabled={!mayWrite}
+                  disabled={!canWrite}
                   problem={words(problems.get(joint)) ?? refused.get(joint) ?? null}
                   isEditing={joint === editing}
                   onFocus={() => setEditing(joint)}
@@ -159,7 +159,7 @@ function MapBar({ map, view, problems }: MapBarProps): JSX.Element {
 }
 
 /** The result of saving, or what prevents it. */
-function Outcome({ map, view }: Omit<MapBarProps, "problems">): JSX.Element | null {
+function SaveStatus({ map, view }: Omit<MapBarProps, "problems">): JSX.Element | null {
   const { t } = useTexts();
   if (map.stale) {
     return (

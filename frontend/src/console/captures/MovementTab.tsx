@@ -8,19 +8,19 @@ import { AvatarChoice } from "./AvatarChoice";
 import classes from "./Capture.module.css";
 import { ConventionsPanel } from "./ConventionsPanel";
 import { NoAvatar, type TabProps } from "./NoAvatar";
-import { useFigures, type Wish } from "./useFigures";
+import { useFigures, type StageOptions } from "./useFigures";
 import type { JointMapDraft } from "./useJointMap";
 import { Viewer } from "./Viewer";
 
-const AT_FIRST: Wish = { shown: "recorded", avatar: "165cm", lockFeet: false, ghost: true };
+const AT_FIRST: StageOptions = { shown: "recorded", avatar: "165cm", lockFeet: false, ghost: true };
 
 export function MovementTab({ capture, map }: TabProps): JSX.Element {
-  const [wish, setWish] = useState(AT_FIRST);
-  const { figures, error, busy } = useFigures(capture, wish, map);
+  const [options, setOptions] = useState(AT_FIRST);
+  const { figures, error, busy } = useFigures(capture, options, map);
   return (
     <div className={classes.movement}>
       <div>
-        <ShownBar capture={capture} map={map} wish={wish} busy={busy} onWish={setWish} />
+        <ShownBar capture={capture} map={map} options={options} busy={busy} onOptions={setOptions} />
         {error !== null && <Failure error={error} />}
         {figures.length > 0 ? (
           <Viewer figures={figures} title={capture.title} />
@@ -43,43 +43,43 @@ const isSource = ({ key }: { readonly key: string }): boolean => key === "source
 interface ShownBarProps {
   readonly capture: Capture;
   readonly map: JointMapDraft;
-  readonly wish: Wish;
+  readonly options: StageOptions;
   readonly busy: boolean;
-  readonly onWish: (wish: Wish) => void;
+  readonly onOptions: (wish: StageOptions) => void;
 }
 
-function ShownBar({ capture, map, wish, busy, onWish }: ShownBarProps): JSX.Element {
+function ShownBar({ capture, map, options, busy, onOptions }: ShownBarProps): JSX.Element {
   const { t } = useTexts();
   const isFitted = capture.summary.skeleton?.origin === "fitted";
-  const shown = ["recorded", ...(isFitted ? ["skeleton"] : []), "avatar"] as Wish["shown"][];
+  const shown = ["recorded", ...(isFitted ? ["skeleton"] : []), "avatar"] as StageOptions["shown"][];
   const canMove = capture.has_skeleton && map.view?.usable !== false;
   return (
     <div className={classes.shown}>
       <SegmentedControl
         size="xs"
         aria-label={t("capture.shown")}
-        value={wish.shown}
-        onChange={(value) => onWish({ ...wish, shown: value as Wish["shown"] })}
+        value={options.shown}
+        onChange={(value) => onOptions({ ...options, shown: value as StageOptions["shown"] })}
         data={shown.map((value) => ({
           value,
           label: t(`capture.shown.${value}`),
           disabled: value === "avatar" && !canMove,
         }))}
       />
-      {wish.shown === "avatar" && (
+      {options.shown === "avatar" && (
         <>
-          <AvatarChoice avatar={wish.avatar} onAvatar={(avatar) => onWish({ ...wish, avatar })} />
+          <AvatarChoice avatar={options.avatar} onAvatar={(avatar) => onOptions({ ...options, avatar })} />
           <Checkbox
             size="xs"
             label={t("capture.ghost")}
-            checked={wish.ghost}
-            onChange={(event) => onWish({ ...wish, ghost: event.currentTarget.checked })}
+            checked={options.ghost}
+            onChange={(event) => onOptions({ ...options, ghost: event.currentTarget.checked })}
           />
           <Checkbox
             size="xs"
             label={t("capture.lock")}
-            checked={wish.lockFeet}
-            onChange={(event) => onWish({ ...wish, lockFeet: event.currentTarget.checked })}
+            checked={options.lockFeet}
+            onChange={(event) => onOptions({ ...options, lockFeet: event.currentTarget.checked })}
           />
         </>
       )}

@@ -16,12 +16,12 @@ export interface TabProps {
 export function NoAvatar({ capture, map }: TabProps): JSX.Element | null {
   const { t } = useTexts();
   let why: ReactNode = null;
-  let mend: JSX.Element | undefined;
+  let remedy: JSX.Element | undefined;
   if (!capture.has_skeleton) {
     why = t("capture.noAvatar.skeleton", { why: capture.summary.no_skeleton ?? "" });
   } else if (map.view?.usable === false) {
     why = `${t("capture.noAvatar.map")} ${map.view.missing.join("; ")}`;
-    mend = (
+    remedy = (
       <Button component={Link} href={`/captures/${capture.id}/joints`} size="xs" variant="default">
         {t("capture.noAvatar.openMap")}
       </Button>
@@ -30,7 +30,7 @@ export function NoAvatar({ capture, map }: TabProps): JSX.Element | null {
   if (why === null) return null;
   return (
     <div style={{ marginTop: 12 }}>
-      <Notice tone="warn" title={t("capture.noAvatar")} remedy={why} actions={mend} />
+      <Notice tone="warn" title={t("capture.noAvatar")} remedy={why} actions={remedy} />
     </div>
   );
 }

@@ -25,7 +25,7 @@ export function UploadList({ uploads }: { readonly uploads: Uploads }): JSX.Elem
           tone={upload.phase.at}
           onDismiss={() => uploads.dismiss(upload.id)}
         >
-          <PhaseWords upload={upload} onAgain={() => uploads.retry(upload)} />
+          <PhaseWords upload={upload} onRetry={() => uploads.retry(upload)} />
         </Row>
       ))}
     </ul>
@@ -77,10 +77,10 @@ function Row({ name, tone, onDismiss, children }: RowProps): JSX.Element {
 
 interface PhaseProps {
   readonly upload: Upload;
-  readonly onAgain: () => void;
+  readonly onRetry: () => void;
 }
 
-function PhaseWords({ upload, onAgain }: PhaseProps): JSX.Element {
+function PhaseWords({ upload, onRetry }: PhaseProps): JSX.Element {
   const { t, language } = useTexts();
   const { phase } = upload;
   switch (phase.at) {
@@ -134,20 +134,20 @@ function PhaseWords({ upload, onAgain }: PhaseProps): JSX.Element {
       );
     }
     case "refused":
-      return <Refusal error={phase.error} onAgain={onAgain} />;
+      return <Refusal error={phase.error} onRetry={onRetry} />;
   }
 }
 
 /** The file's name, the reason and the remedy; after a network error the upload can be retried. */
 function Refusal({
   error,
-  onAgain,
+  onRetry,
 }: {
   readonly error: unknown;
-  readonly onAgain: () => void;
+  readonly onRetry: () => void;
 }): JSX.Element {
   const { t } = useTexts();
-  if (!(error instanceof ApiError)) return <Failure error={error} onRetry={onAgain} />;
+  if (!(error instanceof ApiError)) return <Failure error={error} onRetry={onRetry} />;
   const place = error.details.find(({ message }) => message !== "");
   return (
     <div role="alert" className={classes.refusal}>

@@ -68,18 +68,18 @@ export function VerificationTab({ capture, map }: TabProps): JSX.Element {
         </Center>
       )}
       {query.data !== undefined && !query.isError && (
-        <Found capture={capture} verification={query.data} />
+        <VerificationResult capture={capture} verification={query.data} />
       )}
     </div>
   );
 }
 
-interface FoundProps {
+interface VerificationResultProps {
   readonly capture: Capture;
   readonly verification: Verification;
 }
 
-function Found({ capture, verification }: FoundProps): JSX.Element {
+function VerificationResult({ capture, verification }: VerificationResultProps): JSX.Element {
   const { t } = useTexts();
   const words = useFigureWords();
   const figures = useMemo(

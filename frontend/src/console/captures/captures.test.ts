@@ -78,8 +78,8 @@ describe("editing a joint map", () => {
     expect(problemsOf({ LeftFoot: "foot" }, BODY, RIG).get("Hips")).toEqual({ kind: "hips" });
     const twice = problemsOf({ ...LEGS, LeftFoot: "shin" }, BODY, RIG);
     expect(twice.get("LeftFoot")).toEqual({ kind: "twice", other: "LeftLowerLeg" });
-    const turned = { Hips: "root", LeftUpperLeg: "foot", LeftFoot: "thigh" };
-    expect(problemsOf(turned, BODY, RIG).get("LeftFoot")).toEqual({
+    const swapped = { Hips: "root", LeftUpperLeg: "foot", LeftFoot: "thigh" };
+    expect(problemsOf(swapped, BODY, RIG).get("LeftFoot")).toEqual({
       kind: "order",
       above: "LeftUpperLeg",
       aboveJoint: "foot",

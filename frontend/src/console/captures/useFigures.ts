@@ -12,7 +12,7 @@ import { AVATAR_MAP, rolesFrom } from "./bodyJoints";
 import { avatarMotionQuery, motionQuery } from "./queries";
 import type { JointMapDraft } from "./useJointMap";
 
-export interface Wish {
+export interface StageOptions {
   readonly shown: "recorded" | "skeleton" | "avatar";
   readonly avatar: string;
   readonly lockFeet: boolean;
@@ -22,7 +22,7 @@ export interface Wish {
 /** Far enough apart for two people with their arms spread. */
 const OFFSET_M = 1.3;
 
-export function useFigures(capture: Capture, wish: Wish, map: JointMapDraft) {
+export function useFigures(capture: Capture, wish: StageOptions, map: JointMapDraft) {
   const isAvatar = wish.shown === "avatar";
   const version = map.view?.version ?? 0;
   const source = useQuery({

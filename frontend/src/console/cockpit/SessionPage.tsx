@@ -122,15 +122,15 @@ function Cockpit({ session, live: direct }: CockpitProps): JSX.Element {
         {ended && can("rights") && <AfterWithdrawal session={session} send={live.send} />}
         <CommandFailure live={live} />
         {session.refusal !== null ? (
-          <RefusedCard refusal={session.refusal} onAsk={openReason} />
+          <RefusedCard refusal={session.refusal} onReasonNeeded={openReason} />
         ) : session.held !== null ? (
-          <HeldCard held={session.held} onAsk={openReason} />
+          <HeldCard held={session.held} onReasonNeeded={openReason} />
         ) : (
           <CurrentStep
             session={session}
             live={live}
             isReady={flight.isClear}
-            onAsk={openReason}
+            onReasonNeeded={openReason}
             onEnterAnswers={entries.open}
           />
         )}

@@ -61,13 +61,13 @@ interface UnderWayProps {
 
 function UnderWay({ one, cancelling, onCancel }: UnderWayProps): JSX.Element {
   const { t } = useTexts();
-  const known = one.rows_total > 0 && one.rows > 0;
+  const hasProgress = one.rows_total > 0 && one.rows > 0;
   return (
     <>
       {one.state === "making" && (
         <Progress
-          value={known ? Math.min(100, (one.rows / one.rows_total) * 100) : 100}
-          animated={!known}
+          value={hasProgress ? Math.min(100, (one.rows / one.rows_total) * 100) : 100}
+          animated={!hasProgress}
           aria-label={t("downloads.progress", { name: one.file_name })}
         />
       )}
@@ -234,13 +234,13 @@ export function DownloadList({ query, studyKey }: DownloadListProps): JSX.Elemen
   const shown = (query.data ?? []).filter(
     (one) => studyKey === undefined || one.study_key === studyKey,
   );
-  const lost = query.isError && shown.some(isOpen);
+  const connectionLost = query.isError && shown.some(isOpen);
   if (shown.length === 0 && !hasVanished) return null;
   return (
     <div>
-      {(lost || hasVanished) && (
+      {(connectionLost || hasVanished) && (
         <div className={classes.notices}>
-          {lost && (
+          {connectionLost && (
             <Notice tone="warn" title={t("downloads.lost")}>
               {t("downloads.lost.body")}
             </Notice>

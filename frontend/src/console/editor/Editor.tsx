@@ -114,8 +114,8 @@ function Bar({ draft, studyKey, title, unsaved }: BarProps): JSX.Element {
         </div>
         <Figures figures={draft.check?.summary ?? null} />
         <div className={classes.actions}>
-          <Step label={t("editor.undo")} turned={false} onClick={draft.undo} />
-          <Step label={t("editor.redo")} turned onClick={draft.redo} />
+          <Step label={t("editor.undo")} rotated={false} onClick={draft.undo} />
+          <Step label={t("editor.redo")} rotated onClick={draft.redo} />
           <Button
             leftSection={<Icon name="check" size={17} />}
             disabled={!unsaved || !draft.upToDate || draft.check?.ok !== true}
@@ -133,15 +133,15 @@ function Bar({ draft, studyKey, title, unsaved }: BarProps): JSX.Element {
 
 interface StepProps {
   readonly label: string;
-  readonly turned: boolean;
+  readonly rotated: boolean;
   readonly onClick: () => void;
 }
 
-function Step({ label, turned, onClick }: StepProps): JSX.Element {
+function Step({ label, rotated, onClick }: StepProps): JSX.Element {
   return (
     <Tooltip label={label}>
       <ActionIcon variant="default" size="lg" aria-label={label} onClick={onClick}>
-        <span className={turned ? classes.mirrored : undefined}>
+        <span className={rotated ? classes.mirrored : undefined}>
           <Icon name="redo" size={17} />
         </span>
       </ActionIcon>

@@ -68,11 +68,11 @@ interface Labels {
 
 export function useLabels(): Labels {
   const { t } = useTexts();
-  const known = (key: string): string | undefined => (key in NAMED ? t(key as Key) : undefined);
+  const translated = (key: string): string | undefined => (key in NAMED ? t(key as Key) : undefined);
   return {
-    field: (name) => known(`field.${name}`) ?? readable(name),
-    hint: (name) => known(`hint.${name}`),
-    value: (value) => known(`value.${value}`) ?? known(`step.${value}`) ?? value,
+    field: (name) => translated(`field.${name}`) ?? readable(name),
+    hint: (name) => translated(`hint.${name}`),
+    value: (value) => translated(`value.${value}`) ?? translated(`step.${value}`) ?? value,
   };
 }
 

@@ -1,7 +1,7 @@
 /** Search the headings of the help by their words. */
 import type { HelpHeading, HelpPage, HelpPart } from "./nodes";
 
-export interface Found {
+export interface SearchMatch {
   readonly page: HelpPage;
   /** Undefined if the match is the page itself. */
   readonly heading: HelpHeading | undefined;
@@ -17,20 +17,20 @@ const MAX_RESULTS = 40;
  * the
  * page "Backups". Pages come before headings, and those that start with the query come first.
  */
-export function search(parts: readonly HelpPart[], query: string): readonly Found[] {
+export function search(parts: readonly HelpPart[], query: string): readonly SearchMatch[] {
   const words = query.toLowerCase().split(/\s+/).filter(Boolean);
   if (words.length === 0) return [];
   const has = (text: string) => words.every((word) => text.toLowerCase().includes(word));
   const own = (text: string) => words.some((word) => text.toLowerCase().includes(word));
   const found = parts.flatMap(({ pages }) =>
-    pages.flatMap((page): readonly Found[] => [
+    pages.flatMap((page): readonly SearchMatch[] => [
       ...(has(`${page.title} ${page.about}`) ? [{ page, heading: undefined }] : []),
       ...page.headings
         .filter(({ title }) => own(title) && has(`${page.title} ${title}`))
         .map((heading) => ({ page, heading })),
     ]),
   );
-  const rank = ({ page, heading }: Found): number => {
+  const rank = ({ page, heading }: SearchMatch): number => {
     const title = (heading?.title ?? page.title).toLowerCase();
     return (title.startsWith(words[0] ?? "") ? 0 : 2) + (heading === undefined ? 0 : 1);
   };

@@ -57,8 +57,8 @@ export function ImportedScore({ result }: { readonly result: ScoreResult }): JSX
                   </th>
                   <td>{one.n}</td>
                   <td>{formatted(one.w)}</td>
-                  <td>{pWords(one.p)}</td>
-                  <td>{pWords(one.p_holm)}</td>
+                  <td>{formatP(one.p)}</td>
+                  <td>{formatP(one.p_holm)}</td>
                   <td>{exact(one.rank_biserial)}</td>
                 </tr>
               ))}
@@ -79,4 +79,4 @@ export function ImportedScore({ result }: { readonly result: ScoreResult }): JSX
 }
 
 /** A p-value as papers print it: without a zero before the decimal point. */
-const pWords = (p: number): string => (p < 0.001 ? "< .001" : p.toFixed(3).replace(/^0/, ""));
+const formatP = (p: number): string => (p < 0.001 ? "< .001" : p.toFixed(3).replace(/^0/, ""));

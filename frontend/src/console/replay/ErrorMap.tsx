@@ -13,7 +13,7 @@ interface ErrorMapProps {
   readonly time: Seconds;
 }
 
-const SHOWN = 5;
+const MAX_LISTED = 5;
 
 export function ErrorMap({ errors, time }: ErrorMapProps): JSX.Element {
   const { t, language } = useTexts();
@@ -32,7 +32,7 @@ export function ErrorMap({ errors, time }: ErrorMapProps): JSX.Element {
       <div className={classes.errorParts}>
         <Body errors={now} label={t("replay.errors.map")} />
         <ul className={`${classes.worst} numbers`}>
-          {largest(now, SHOWN).map(({ joint, degrees }) => (
+          {largest(now, MAX_LISTED).map(({ joint, degrees }) => (
             <li key={joint}>
               <span>{joint.replace(/([a-z])([A-Z])/g, "$1 $2")}</span>
               <span className={classes.worstValue}>{decimals(degrees ?? 0, language, 1)}°</span>

@@ -7,13 +7,13 @@ import { type Key, useTexts } from "../i18n";
 import { latestEventAt, type ReplayEvent, type Touch, toneOf } from "./events";
 import classes from "./Replay.module.css";
 
-interface HappenedProps {
+interface EventListProps {
   readonly all: readonly ReplayEvent[];
   readonly time: Seconds;
   readonly onSeek: (time: Seconds) => void;
 }
 
-export function EventList({ all, time, onSeek }: HappenedProps): JSX.Element {
+export function EventList({ all, time, onSeek }: EventListProps): JSX.Element {
   const { t } = useTexts();
   const list = useRef<HTMLOListElement>(null);
   const at = latestEventAt(all, time);

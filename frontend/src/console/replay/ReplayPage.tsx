@@ -15,11 +15,11 @@ import classes from "./Replay.module.css";
 
 export function ReplayPage({ id }: { readonly id: string }): JSX.Element {
   return (
-    <Loaded query={useQuery(sessionQuery(id))}>{(session) => <Found session={session} />}</Loaded>
+    <Loaded query={useQuery(sessionQuery(id))}>{(session) => <SessionReplay session={session} />}</Loaded>
   );
 }
 
-function Found({ session }: { readonly session: SessionView }): JSX.Element {
+function SessionReplay({ session }: { readonly session: SessionView }): JSX.Element {
   const { t } = useTexts();
   const { params, arrival, setParams } = useParams(session.id);
   useTitle(t("replay.page", { code: session.participant_code }));

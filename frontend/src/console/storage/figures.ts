@@ -10,13 +10,13 @@ interface DiskShares {
 
 export function diskShares({ disk, parts }: StorageRoom): DiskShares {
   // If the database is elsewhere, only folders are on this disk.
-  const here = parts.filter(
+  const onThisDisk = parts.filter(
     ({ place }) => disk.holds_database || place === "backups" || place === "scratch",
   );
   const taken = Math.max(0, disk.total_bytes - disk.free_bytes);
   const own = Math.min(
     taken,
-    here.reduce((sum, part) => sum + part.bytes, 0),
+    onThisDisk.reduce((sum, part) => sum + part.bytes, 0),
   );
   return { own, other: taken - own, free: disk.free_bytes, total: disk.total_bytes };
 }

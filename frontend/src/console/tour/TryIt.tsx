@@ -51,7 +51,7 @@ export function useTryout(enabled: boolean) {
   return query.data ?? null;
 }
 
-interface Wish {
+interface TryoutRequest {
   readonly studyKey: string;
   readonly language: string;
 }
@@ -59,7 +59,7 @@ interface Wish {
 export function useStartTryout() {
   const queries = useQueryClient();
   return useMutation({
-    mutationFn: ({ studyKey, language }: Wish) => tryouts.start(studyKey, language),
+    mutationFn: ({ studyKey, language }: TryoutRequest) => tryouts.start(studyKey, language),
     onSuccess: (started) => queries.setQueryData(tryoutQuery.queryKey, started),
   });
 }

@@ -7,7 +7,7 @@ import numbers from "./NumbersTable.module.css";
 interface ListTableProps {
   readonly columns: readonly string[];
   /** Whether the last column, which has no title, contains the actions for a row. */
-  readonly withDoing: boolean;
+  readonly hasActions: boolean;
   readonly className?: string | undefined;
   readonly children: ReactNode;
 }
@@ -15,7 +15,7 @@ interface ListTableProps {
 /** A list as a table: the titles of its columns, and a row for each item. */
 export function ListTable({
   columns,
-  withDoing,
+  hasActions,
   className = "",
   children,
 }: ListTableProps): JSX.Element {
@@ -27,7 +27,7 @@ export function ListTable({
             {columns.map((column) => (
               <Table.Th key={column}>{column}</Table.Th>
             ))}
-            {withDoing && <Table.Td />}
+            {hasActions && <Table.Td />}
           </Table.Tr>
         </Table.Thead>
         <Table.Tbody>{children}</Table.Tbody>

@@ -26,12 +26,12 @@ export function ModelPage({ id }: { readonly id: string }): JSX.Element {
         <Icon name="back" size={16} />
         {t("walking.models")}
       </Link>
-      <Loaded query={useQuery(modelQuery(id))}>{(model) => <Found model={model} />}</Loaded>
+      <Loaded query={useQuery(modelQuery(id))}>{(model) => <ModelDetails model={model} />}</Loaded>
     </>
   );
 }
 
-function Found({ model }: { readonly model: Model }): JSX.Element {
+function ModelDetails({ model }: { readonly model: Model }): JSX.Element {
   const { t } = useTexts();
   const [, navigate] = useLocation();
   useTitle(model.title);

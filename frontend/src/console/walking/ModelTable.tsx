@@ -11,7 +11,7 @@ import { usePermissions } from "../permissions";
 import { DeleteButton } from "./DeleteButton";
 import { modelsQuery } from "./queries";
 import classes from "./Walking.module.css";
-import { Created, Synthetic, WalkingTable } from "./WalkingTable";
+import { CreatedCell, Synthetic, WalkingTable } from "./WalkingTable";
 
 const COLUMNS = ["title", "state", "on", "by"] as const;
 
@@ -51,7 +51,7 @@ function Row({ model }: { readonly model: ModelListed }): JSX.Element {
           </span>
         )}
       </Table.Td>
-      <Created at={model.at} by={model.by} />
+      <CreatedCell at={model.at} by={model.by} />
       <Table.Td className={classes.rowActions ?? ""}>
         <Doing model={model} />
       </Table.Td>
@@ -68,14 +68,14 @@ const NOTHING = () => {};
 
 export function Doing({ model, onDeleted = NOTHING }: DoingProps): JSX.Element | null {
   const { t } = useTexts();
-  const mayWrite = usePermissions()("walking");
+  const canWrite = usePermissions()("walking");
   const queries = useQueryClient();
   const act = useMutation({
     mutationFn: (what: "stop" | "resume") =>
       what === "stop" ? walking.stopModel(model.id) : walking.resumeModel(model.id),
     onSettled: () => queries.invalidateQueries({ queryKey: modelsQuery.queryKey }),
   });
-  if (!mayWrite) return null;
+  if (!canWrite) return null;
   const what = model.state === "fitting" ? "stop" : "resume";
   return (
     <>

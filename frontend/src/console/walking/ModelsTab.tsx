@@ -16,7 +16,7 @@ import { WalkSetTable } from "./WalkSetTable";
 
 export function ModelsTab(): JSX.Element {
   const { t } = useTexts();
-  const mayWrite = usePermissions()("walking");
+  const canWrite = usePermissions()("walking");
   const [adding, setAdding] = useState<"model" | "walks" | null>(null);
   const sets = useQuery(walkSetsQuery);
   const done = () => setAdding(null);
@@ -27,7 +27,7 @@ export function ModelsTab(): JSX.Element {
           <Title order={2}>{t("walking.models")}</Title>
           <p className={classes.soft}>{t("walking.models.lead")}</p>
         </div>
-        {mayWrite && (
+        {canWrite && (
           <Button
             leftSection={<Icon name="add" size={18} />}
             disabled={(sets.data ?? []).length === 0}
@@ -53,7 +53,7 @@ export function ModelsTab(): JSX.Element {
           <Title order={2}>{t("walking.sets")}</Title>
           <p className={classes.soft}>{t("walking.sets.lead")}</p>
         </div>
-        {mayWrite && (
+        {canWrite && (
           <Button
             variant="default"
             leftSection={<Icon name="add" size={18} />}

@@ -14,7 +14,7 @@ import classes from "./Walking.module.css";
 
 export function NoModel({ models }: { readonly models: readonly ModelListed[] }): JSX.Element {
   const { t } = useTexts();
-  const mayWrite = usePermissions()("walking");
+  const canWrite = usePermissions()("walking");
   const fitting = models.filter(({ state }) => state === "fitting");
   if (fitting.length > 0) {
     return (
@@ -26,8 +26,8 @@ export function NoModel({ models }: { readonly models: readonly ModelListed[] })
     );
   }
   return (
-    <EmptyState icon="walk" title={t("walking.none")} action={mayWrite ? <TryIt /> : undefined}>
-      {t(mayWrite ? "walking.none.body" : "walking.none.reader")}
+    <EmptyState icon="walk" title={t("walking.none")} action={canWrite ? <TryIt /> : undefined}>
+      {t(canWrite ? "walking.none.body" : "walking.none.reader")}
     </EmptyState>
   );
 }

@@ -21,7 +21,7 @@ export function ScenesTab(): JSX.Element {
 
 function Scenes({ scenes }: { readonly scenes: readonly SceneListed[] }): JSX.Element {
   const { t } = useTexts();
-  const mayWrite = usePermissions()("walking");
+  const canWrite = usePermissions()("walking");
   const queries = useQueryClient();
   const [wanted, setWanted] = useState(scenes[0]?.key ?? "");
   const key = scenes.some((one) => one.key === wanted) ? wanted : (scenes[0]?.key ?? "");
@@ -46,7 +46,7 @@ function Scenes({ scenes }: { readonly scenes: readonly SceneListed[] }): JSX.El
           allowDeselect={false}
           miw={460}
         />
-        {mayWrite && (
+        {canWrite && (
           <FileButton
             accept=".yaml,.yml,.json"
             onChange={(file) => file !== null && add.mutate(file)}
@@ -74,7 +74,7 @@ const unwrapped = (text: string): string => text.trim().replace(/(\S)\n(?=\S)/g,
 
 function SceneCard({ scene }: { readonly scene: Scene }): JSX.Element {
   const { t, language } = useTexts();
-  const mayWrite = usePermissions()("walking");
+  const canWrite = usePermissions()("walking");
   const plan = useMemo(() => planOf(scene.bounds_m), [scene]);
   return (
     <div className={classes.ask}>
@@ -114,7 +114,7 @@ function SceneCard({ scene }: { readonly scene: Scene }): JSX.Element {
           >
             {t("walking.scene.file")}
           </Button>
-          {mayWrite && !scene.shipped && (
+          {canWrite && !scene.shipped && (
             <DeleteButton
               title={scene.title}
               remove={() => walking.removeScene(scene.key)}

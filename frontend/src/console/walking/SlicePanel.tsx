@@ -23,7 +23,7 @@ const MIDDLE = 1;
 
 export function SlicePanel({ modelId, prediction }: SlicePanelProps): JSX.Element {
   const { t } = useTexts();
-  const [held, setHeld] = useState(FIRST);
+  const [held, setFixed] = useState(FIRST);
   const [value, setValue] = useState(MIDDLE);
   const { dependencies } = prediction;
   const query = useQuery(sliceQuery(modelId, { dependencies, held, value }));
@@ -38,11 +38,11 @@ export function SlicePanel({ modelId, prediction }: SlicePanelProps): JSX.Elemen
       <p className={classes.soft}>{t("walking.slice.lead")}</p>
       <Loaded query={query}>
         {(slice) => (
-          <Found
+          <SliceView
             slice={slice}
             prediction={prediction}
-            held={held}
-            onHeld={setHeld}
+            fixed={held}
+            onFixed={setFixed}
             onValue={setValue}
           />
         )}
@@ -51,15 +51,15 @@ export function SlicePanel({ modelId, prediction }: SlicePanelProps): JSX.Elemen
   );
 }
 
-interface FoundProps {
+interface SliceViewProps {
   readonly slice: Slice;
   readonly prediction: Prediction;
-  readonly held: string;
-  readonly onHeld: (held: string) => void;
+  readonly fixed: string;
+  readonly onFixed: (held: string) => void;
   readonly onValue: (value: number) => void;
 }
 
-function Found({ slice, prediction, held, onHeld, onValue }: FoundProps): JSX.Element {
+function SliceView({ slice, prediction, fixed, onFixed, onValue }: SliceViewProps): JSX.Element {
   const { t, language } = useTexts();
   const parameter = useParameter();
   const units = { [slice.x.name]: slice.x, [slice.y.name]: slice.y, [slice.held.name]: slice.held };
@@ -83,8 +83,8 @@ function Found({ slice, prediction, held, onHeld, onValue }: FoundProps): JSX.El
         <Select
           label={t("walking.held")}
           data={slice.order.map((name) => ({ value: name, label: axisTitle(name) }))}
-          value={held}
-          onChange={(name) => name !== null && onHeld(name)}
+          value={fixed}
+          onChange={(name) => name !== null && onFixed(name)}
           allowDeselect={false}
         />
         <Slider

@@ -8,7 +8,7 @@ import { usePermissions } from "../permissions";
 import { DeleteButton } from "./DeleteButton";
 import { walkSetsQuery } from "./queries";
 import classes from "./Walking.module.css";
-import { Created, Synthetic, WalkingTable } from "./WalkingTable";
+import { CreatedCell, Synthetic, WalkingTable } from "./WalkingTable";
 
 const COLUMNS = ["walks", "origin", "lengths", "durations", "by"] as const;
 
@@ -24,7 +24,7 @@ export function WalkSetTable({ sets }: { readonly sets: readonly WalkSet[] }): J
 
 function Row({ set }: { readonly set: WalkSet }): JSX.Element {
   const { t, language } = useTexts();
-  const mayWrite = usePermissions()("walking");
+  const canWrite = usePermissions()("walking");
   const { census, duration_s: duration, walks, people } = set.summary;
   const n = (value: number) => number(value, language);
   const [first, second, third] = census.quartiles_m;
@@ -52,9 +52,9 @@ function Row({ set }: { readonly set: WalkSet }): JSX.Element {
           {t("walking.s.range", { from: n(duration.low), to: n(duration.high) })}
         </span>
       </Table.Td>
-      <Created at={set.at} by={set.by} />
+      <CreatedCell at={set.at} by={set.by} />
       <Table.Td className={classes.rowActions ?? ""}>
-        {mayWrite && (
+        {canWrite && (
           <DeleteButton
             title={set.title}
             remove={() => walking.removeWalkSet(set.id)}

@@ -20,7 +20,7 @@ export function WalkingTable({ columns, children }: WalkingTableProps): JSX.Elem
   return (
     <ListTable
       columns={columns.map((column) => t(`walking.column.${column}`))}
-      withDoing
+      hasActions
       className={classes.list}
     >
       {children}
@@ -33,7 +33,7 @@ interface CreatedProps {
   readonly by: string;
 }
 
-export function Created({ at, by }: CreatedProps): JSX.Element {
+export function CreatedCell({ at, by }: CreatedProps): JSX.Element {
   const { language } = useTexts();
   return (
     <Table.Td>

@@ -21,7 +21,7 @@ export type InstrumentSummary = Schemas["InstrumentSummary"];
 export type TryResult = Schemas["TryResult"];
 export type { Instrument };
 
-interface Wish {
+interface DraftRequest {
   readonly path: readonly (string | number)[];
   readonly action: "set" | "remove" | "insert" | "move";
   readonly value?: unknown;
@@ -35,7 +35,7 @@ export const drafts = {
   schema: () => answer<unknown>(server.GET("/api/study-schema")),
   check: (yaml: string) =>
     answer<CheckResult>(server.POST("/api/studies/check", { body: { yaml } })),
-  edit: (yaml: string, changes: readonly Wish[]) =>
+  edit: (yaml: string, changes: readonly DraftRequest[]) =>
     answer<{ readonly yaml: string }>(
       server.POST("/api/studies/edit", {
         body: {

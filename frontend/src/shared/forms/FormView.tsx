@@ -19,7 +19,7 @@ interface FormViewProps {
   readonly texts: FormTexts;
   readonly draft: FormDraft;
   readonly startedAt: Date;
-  readonly mayOmit?: boolean;
+  readonly canOmit?: boolean;
   readonly busy: boolean;
   readonly onChange: (draft: FormDraft) => void;
   readonly onSubmit: (answers: Readonly<Record<string, Answer>>, draft: FormDraft) => void;

@@ -113,7 +113,7 @@ function Options({
       // The group's unique name distinguishes it from every other group on the page.
       group={spoken["aria-labelledby"]}
       chosen={value === option.value}
-      mayTakeBack={!question.required}
+      isOptional={!question.required}
     />
   ));
 }
@@ -122,7 +122,7 @@ interface OptionFieldProps {
   readonly option: Option;
   readonly group: string;
   readonly chosen: boolean;
-  readonly mayTakeBack: boolean;
+  readonly isOptional: boolean;
   readonly disabled: boolean;
   readonly onAnswer: (value: Value) => void;
 }
@@ -140,7 +140,7 @@ function OptionField(props: OptionFieldProps): JSX.Element {
         disabled={props.disabled}
         onChange={() => onAnswer(option.value)}
         // A radio button cannot be unchecked by default; where no answer is required, it can here.
-        onClick={() => chosen && props.mayTakeBack && onAnswer(undefined)}
+        onClick={() => chosen && props.isOptional && onAnswer(undefined)}
       />
       <span>{option.text}</span>
     </label>

@@ -3,7 +3,7 @@ import type { Instrument } from "../api/types";
 import { administration, instrument, words } from "./example";
 import { answersOf, firstProblem, problemOf, type Question, questionPages } from "./questions";
 
-const options = { language: "en", words, mayOmit: false };
+const options = { language: "en", words, canOmit: false };
 const questions = (changed = {}, of = administration): readonly Question[] =>
   questionPages(of, { ...options, ...changed }).flat();
 const questionOf = (key: string, changed = {}, of = administration): Question => {
@@ -27,7 +27,7 @@ describe("an instrument as a form", () => {
 
   it("marks the few optional questions as optional", () => {
     expect(questionOf("weight").title).toBe("Weight (optional)");
-    expect(questionOf("weight", { mayOmit: true }).title).toBe("Weight");
+    expect(questionOf("weight", { canOmit: true }).title).toBe("Weight");
   });
 
   it("offers every step of the scale with its label", () => {
@@ -72,7 +72,7 @@ describe("the validation of a form", () => {
   });
 
   it("lets the operator omit what was not answered", () => {
-    expect(firstProblem(questions({ mayOmit: true }), {}, words)).toBeUndefined();
+    expect(firstProblem(questions({ canOmit: true }), {}, words)).toBeUndefined();
   });
 
   it("accepts zero and no as answers", () => {

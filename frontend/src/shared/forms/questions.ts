@@ -21,7 +21,7 @@ interface FormOptions {
   readonly language: string;
   readonly words: FormWords;
   /** Whether the operator may omit what the participant did not answer. */
-  readonly mayOmit: boolean;
+  readonly canOmit: boolean;
 }
 
 export interface Option {
@@ -78,14 +78,14 @@ export function questionPages(
 }
 
 function question(item: Item, scale: Scale | null, options: FormOptions): Question {
-  const { language, words, mayOmit } = options;
+  const { language, words, canOmit } = options;
   const text = inLanguage(item.text, language);
   const free = item.required === false;
   const base: QuestionBase = {
     key: item.key,
     // Optional questions are marked in words, since there are few of them.
-    title: free && !mayOmit ? `${text} (${words.optional})` : text,
-    required: !free && !mayOmit,
+    title: free && !canOmit ? `${text} (${words.optional})` : text,
+    required: !free && !canOmit,
   };
   switch (item.type) {
     case "likert":

@@ -19,7 +19,7 @@ export interface FilledFormOptions {
   readonly texts: FormWords;
   readonly draft: FormDraft;
   readonly startedAt: Date;
-  readonly mayOmit?: boolean;
+  readonly canOmit?: boolean;
   readonly onChange: (draft: FormDraft) => void;
   readonly onSubmit: (answers: Readonly<Record<string, Answer>>, draft: FormDraft) => void;
 }
@@ -47,7 +47,7 @@ export interface FilledForm {
 }
 
 export function useFilledForm(options: FilledFormOptions): FilledForm {
-  const { administration, language, texts, mayOmit = false } = options;
+  const { administration, language, texts, canOmit = false } = options;
   const [draft, setDraft] = useState(options.draft);
   // Questions whose problems are shown: those of the pages that the participant tried to leave.
   const [checked, setChecked] = useState<ReadonlySet<string>>(new Set());
@@ -56,8 +56,8 @@ export function useFilledForm(options: FilledFormOptions): FilledForm {
   // The texts change a moment after the language: one of them serves as a marker of their language.
   // biome-ignore lint/correctness/useExhaustiveDependencies: texts are new at every render
   const pages = useMemo(
-    () => questionPages(administration, { language, words: texts, mayOmit }),
-    [administration.key, language, mayOmit, texts.required],
+    () => questionPages(administration, { language, words: texts, canOmit }),
+    [administration.key, language, canOmit, texts.required],
   );
   const page = Math.min(draft.page, Math.max(0, pages.length - 1));
   const questions = pages[page] ?? [];

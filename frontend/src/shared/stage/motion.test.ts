@@ -12,7 +12,7 @@ import {
   timeOf,
 } from "./motion";
 import { gapStretches, hasGaps, placing, seenFrames, unseenNames } from "./placing";
-import { advanced } from "./usePlayback";
+import { advance } from "./usePlayback";
 
 const HEADER = {
   kind: "skeleton",
@@ -93,10 +93,10 @@ describe("time and frame", () => {
   });
 
   it("advance during playback, to the end or in a loop", () => {
-    expect(advanced(seconds(1), 0.5, seconds(2), false)).toEqual({ time: 1.5, ended: false });
-    expect(advanced(seconds(1.5), 1, seconds(2), false)).toEqual({ time: 2, ended: true });
-    expect(advanced(seconds(1.5), 1, seconds(2), true)).toEqual({ time: 0.5, ended: false });
-    expect(advanced(seconds(0), 1, seconds(0), true)).toEqual({ time: 0, ended: true });
+    expect(advance(seconds(1), 0.5, seconds(2), false)).toEqual({ time: 1.5, ended: false });
+    expect(advance(seconds(1.5), 1, seconds(2), false)).toEqual({ time: 2, ended: true });
+    expect(advance(seconds(1.5), 1, seconds(2), true)).toEqual({ time: 0.5, ended: false });
+    expect(advance(seconds(0), 1, seconds(0), true)).toEqual({ time: 0, ended: true });
   });
 });
 

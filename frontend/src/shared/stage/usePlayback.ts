@@ -36,7 +36,7 @@ export function usePlayback(
     let frame = requestAnimationFrame(function tick(now) {
       const passed = before === null ? 0 : (now - before) / 1000;
       before = now;
-      const next = advanced(at.current, passed * speed, duration, loop);
+      const next = advance(at.current, passed * speed, duration, loop);
       at.current = next.time;
       setTime(next.time);
       if (next.ended) setPlaying(false);
@@ -61,7 +61,7 @@ export function usePlayback(
 }
 
 /** A later time, and whether the end was reached; with `loop` it starts over. */
-export function advanced(
+export function advance(
   time: Seconds,
   passed: number,
   duration: Seconds,

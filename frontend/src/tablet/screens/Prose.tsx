@@ -40,11 +40,11 @@ function Part({ paragraph }: { readonly paragraph: Paragraph }): JSX.Element {
 export function ScrollHint(): JSX.Element {
   const { t } = useTexts();
   const end = useRef<HTMLSpanElement>(null);
-  const [more, setMore] = useState(false);
+  const [hasMore, setHasMore] = useState(false);
   useEffect(() => {
     if (end.current === null) return;
     const observer = new IntersectionObserver(([entry]) =>
-      setMore(entry?.isIntersecting === false),
+      setHasMore(entry?.isIntersecting === false),
     );
     observer.observe(end.current);
     return () => observer.disconnect();
@@ -52,7 +52,7 @@ export function ScrollHint(): JSX.Element {
   return (
     <>
       <span ref={end} />
-      {more && (
+      {hasMore && (
         <button
           type="button"
           className={classes.more}

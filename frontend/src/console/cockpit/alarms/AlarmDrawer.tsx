@@ -73,7 +73,7 @@ function AlarmTable({ alarms }: { readonly alarms: readonly Alarm[] }): JSX.Elem
 function AlarmRow({ alarm }: { readonly alarm: Alarm }): JSX.Element {
   const { t, language } = useTexts();
   const shown = fromRecord(alarm);
-  const much = amount(shown, language);
+  const amountText = amount(shown, language);
   const details = [
     t(`alarm.severity.${alarm.severity}`),
     alarm.stream === null ? null : t(`alarm.stream.${alarm.stream as "target" | "actual"}`),
@@ -92,7 +92,7 @@ function AlarmRow({ alarm }: { readonly alarm: Alarm }): JSX.Element {
         <span className={strip[`row_${alarm.severity}`]}>
           <Icon name={alarm.severity === "info" ? "info" : "alert"} size={16} />
           {t(titleKey(shown))}
-          {much !== null && ` · ${much}`}
+          {amountText !== null && ` · ${amountText}`}
         </span>
         <div className={classes.empty}>{details.join(" · ")}</div>
       </td>

@@ -33,14 +33,14 @@ interface SignalStripProps {
 
 export function SignalStrip({ session, alarms, onHistory }: SignalStripProps): JSX.Element {
   const { t } = useTexts();
-  const first = mostUrgent(alarms.on, alarms.isSeen);
+  const first = mostUrgent(alarms.on, alarms.isAcknowledged);
   const tone = first === undefined ? classes.fine : classes[first.severity];
-  const seen = first !== undefined && alarms.isSeen(first);
+  const acknowledged = first !== undefined && alarms.isAcknowledged(first);
   const signal = alarms.quality?.signal ?? null;
   const total = useQuery(alarmsQuery(session.id, stateOf(session))).data?.length ?? 0;
   return (
     <section
-      className={`${classes.strip} ${tone} ${seen ? classes.seen : ""}`}
+      className={`${classes.strip} ${tone} ${acknowledged ? classes.seen : ""}`}
       data-tour="signal"
       aria-label={t("signal.label")}
     >
@@ -50,7 +50,7 @@ export function SignalStrip({ session, alarms, onHistory }: SignalStripProps): J
         <Wrong alarm={first} session={session} others={alarms.on.length - 1} />
       )}
       {isCall(first) && <AnswerCall session={session} />}
-      {first !== undefined && !isCall(first) && !seen && (
+      {first !== undefined && !isCall(first) && !acknowledged && (
         <Button size="xs" variant="default" onClick={() => alarms.see(first)}>
           {t("alarm.understood")}
         </Button>
@@ -119,7 +119,7 @@ interface WrongProps {
 function Wrong({ alarm, session, others }: WrongProps): JSX.Element {
   const { t, language } = useTexts();
   const joints = jointNames(alarm);
-  const much = amount(alarm, language);
+  const amountText = amount(alarm, language);
   const remedy = t(remedyKey(alarm, session));
   return (
     <div className={classes.message}>
@@ -132,9 +132,9 @@ function Wrong({ alarm, session, others }: WrongProps): JSX.Element {
             <span className="visually-hidden">. {remedy}</span>
           </span>
           {/* A value that grows every second is not announced every second by screen readers. */}
-          {much !== null && (
+          {amountText !== null && (
             <span className={`${classes.amount} numbers`} aria-hidden="true">
-              {isDuration(alarm) ? t("alarm.for", { time: much }) : much}
+              {isDuration(alarm) ? t("alarm.for", { time: amountText }) : amountText}
             </span>
           )}
           {others > 0 && (
@@ -159,10 +159,10 @@ function Figures({ signal }: { readonly signal: Signal | null }): JSX.Element {
       ? "–"
       : `${before}${number(value, language, digits)}${unit}`;
   const usual = show(signal?.usual_rate_hz, 0, " Hz");
-  const lost = signal?.gaps ? ` · ${show(signal.gap_s, 1, " s")}` : "";
+  const gaps = signal?.gaps ? ` · ${show(signal.gap_s, 1, " s")}` : "";
   const figures = [
     ["rate", show(signal?.frame_rate_hz, 0, " Hz")],
-    ["gaps", `${show(signal?.gaps, 0)}${lost}`],
+    ["gaps", `${show(signal?.gaps, 0)}${gaps}`],
     ["clock", show(signal?.clock_uncertainty_ms, 1, " ms", "± ")],
     ["behind", show(signal?.behind_s, 1, " s")],
     ["flagged", show(signal?.frames_flagged, 0)],

@@ -85,9 +85,9 @@ export const stateOf = (session: SessionView): string =>
 
 type Code = (typeof ALARMS)[number];
 
-const known = (code: string): Code | "other" => ALARMS.find((one) => one === code) ?? "other";
+const knownCode = (code: string): Code | "other" => ALARMS.find((one) => one === code) ?? "other";
 
-export const titleKey = (alarm: ShownAlarm): Key => `alarm.${known(alarm.code)}`;
+export const titleKey = (alarm: ShownAlarm): Key => `alarm.${knownCode(alarm.code)}`;
 
 /** Whether the participant waits for somebody to come. */
 export const isCall = (alarm: ShownAlarm | undefined): boolean =>
@@ -95,10 +95,10 @@ export const isCall = (alarm: ShownAlarm | undefined): boolean =>
 
 /** The text of the remedy; while the phase is paused because of the alarm, that it is paused. */
 export function remedyKey(alarm: ShownAlarm, session: SessionView): Key {
-  const code = known(alarm.code);
-  const stands = session.current?.status === "paused";
+  const code = knownCode(alarm.code);
+  const isPaused = session.current?.status === "paused";
   const paused = ALARMS_THAT_PAUSE.find((one) => one === code);
-  if (stands && paused !== undefined) return `alarm.${paused}.paused`;
+  if (isPaused && paused !== undefined) return `alarm.${paused}.paused`;
   return `alarm.${code}.do`;
 }
 
@@ -155,7 +155,7 @@ const alarm = (code: string, severity: ShownAlarm["severity"], since: string): S
 export interface Alarms {
   readonly on: readonly ShownAlarm[];
   readonly quality: Quality | null;
-  readonly isSeen: (alarm: ShownAlarm) => boolean;
+  readonly isAcknowledged: (alarm: ShownAlarm) => boolean;
   readonly see: (alarm: ShownAlarm) => void;
 }
 
@@ -167,13 +167,13 @@ export function useAlarms(
   failing: readonly FailingNews[],
 ): Alarms {
   const quality = useQuality(store);
-  const [seen, setSeen] = useState<ReadonlySet<string>>(new Set());
+  const [acknowledged, setAcknowledged] = useState<ReadonlySet<string>>(new Set());
   useRerenderWhenOutdated(quality);
   return {
     on: currentAlarms(session, quality, storage, milliseconds(performance.now()), failing),
     quality,
-    isSeen: (alarm) => seen.has(alarm.key),
-    see: (alarm) => setSeen((before) => new Set([...before, alarm.key])),
+    isAcknowledged: (alarm) => acknowledged.has(alarm.key),
+    see: (alarm) => setAcknowledged((before) => new Set([...before, alarm.key])),
   };
 }
 

@@ -93,7 +93,7 @@ function Paired({ sessionId, device, onPair }: PairedProps): JSX.Element {
   const { t, language } = useTexts();
   const now = useSlowClock();
   const revoke = useMutation({ mutationFn: () => sessions.revoke(sessionId, device.id) });
-  const seen = device.last_seen_at === null ? null : ago(device.last_seen_at, now, language);
+  const lastSeen = device.last_seen_at === null ? null : ago(device.last_seen_at, now, language);
   return (
     <div className={classes.device}>
       <Icon name={device.kind} size={22} />
@@ -102,7 +102,7 @@ function Paired({ sessionId, device, onPair }: PairedProps): JSX.Element {
         <div className={`${classes.deviceState} ${device.connected ? "" : classes.lost}`}>
           <ConnectionMark connected={device.connected} />
           {device.connected ? t("device.connected") : t("device.lost")}
-          {!device.connected && seen !== null && ` · ${seen}`}
+          {!device.connected && lastSeen !== null && ` · ${lastSeen}`}
         </div>
       </div>
       {device.connected ? (

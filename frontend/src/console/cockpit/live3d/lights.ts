@@ -52,9 +52,9 @@ function taken(before: Lights, touch: PoseTouch, now: number, isOld: boolean): L
     const stays = touch.effect === "green";
     const flash = isOld ? now : now + FLASH_MS;
     const until = stays ? Number.POSITIVE_INFINITY : flash;
-    const known = lit.get(touch.surface);
+    const current = lit.get(touch.surface);
     // A completed panel stays lit, whatever else touches it.
-    if (known === undefined || known.until < until) {
+    if (current === undefined || current.until < until) {
       lit.set(touch.surface, { tone: TONES[touch.effect] ?? "touched", until });
     }
   }

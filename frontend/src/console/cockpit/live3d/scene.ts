@@ -20,7 +20,7 @@ const FLOOR = { min: [-2, -3], max: [2, 1], step: 1 } as const;
 interface Player {
   readonly body: Body3d;
   readonly placed: Placed;
-  came: boolean;
+  received: boolean;
 }
 
 export class LiveScene extends Space3d {
@@ -64,7 +64,7 @@ export class LiveScene extends Space3d {
       this.ask();
       return;
     }
-    player.came = true;
+    player.received = true;
     place(this.#setup, values, player.placed);
     player.body.show(NOW);
     this.#moved();
@@ -94,8 +94,8 @@ export class LiveScene extends Space3d {
 
   /** Called after a figure has moved: the camera follows. */
   #moved(): void {
-    const came = STREAMS.filter((stream) => this.#players.get(stream)?.came);
-    for (const [stream, { body, came: is }] of this.#players) {
+    const came = STREAMS.filter((stream) => this.#players.get(stream)?.received);
+    for (const [stream, { body, received: is }] of this.#players) {
       // In the first-person view the participant's own figure would block the view.
       body.group.visible = is && !(this.#view === "first" && stream === "target");
     }
@@ -104,8 +104,8 @@ export class LiveScene extends Space3d {
     const followed = this.#players.get(came[0] ?? "actual") ?? eyes;
     aim(this.camera, this.#view, {
       setup: this.#setup,
-      eyes: eyes?.came ? eyes.placed : null,
-      followed: followed?.came ? followed.placed : null,
+      eyes: eyes?.received ? eyes.placed : null,
+      followed: followed?.received ? followed.placed : null,
     });
     this.ask();
   }
@@ -140,7 +140,7 @@ function makePlayer(
     placed.rotations.set(known.placed.rotations);
   }
   body.show(NOW);
-  return { body, placed, came: known?.came ?? false };
+  return { body, placed, received: known?.received ?? false };
 }
 
 /** Which joints of the product's body are which part of it, by their HumanBodyBones names. */

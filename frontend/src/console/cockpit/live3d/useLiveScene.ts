@@ -32,7 +32,7 @@ export function useLiveScene(
   view: View,
 ): Live {
   const scheme = useComputedColorScheme("light");
-  const isSeen = useDocumentVisibility() === "visible";
+  const isPageVisible = useDocumentVisibility() === "visible";
   const { drawingState, drawing: scene } = useDrawing(root, loadScene);
   const [feed, setFeed] = useState<FeedState>("connecting");
   const [setup, setSetup] = useState<PoseSetup | null>(null);
@@ -57,7 +57,7 @@ export function useLiveScene(
   useEffect(() => scene?.look(view), [scene, view]);
 
   useEffect(() => {
-    if (scene === null || !isSeen) return;
+    if (scene === null || !isPageVisible) return;
     let heardAt = Number.NEGATIVE_INFINITY;
     let undrawn = 0;
     let timer: ReturnType<typeof setTimeout> | undefined;
@@ -110,7 +110,7 @@ export function useLiveScene(
       scene.onDrawn = () => {};
       relight.current = () => {};
     };
-  }, [root, scene, isSeen, id]);
+  }, [root, scene, isPageVisible, id]);
 
   return { drawingState: drawingState, feed, setup, isMoving, last };
 }

@@ -49,7 +49,7 @@ export function useSession(id: string) {
   const { queryKey } = sessionQuery(id);
 
   const accept = (view: SessionView) =>
-    queries.setQueryData<SessionView>(queryKey, (known) => newer(known, view));
+    queries.setQueryData<SessionView>(queryKey, (previous) => newer(previous, view));
 
   // biome-ignore lint/correctness/useExhaustiveDependencies: one feed for one session
   useEffect(
@@ -101,9 +101,9 @@ export function useSession(id: string) {
   /**
    * Send a command that was prepared on `seen`, with reasons that have changed the version since.
    */
-  const resend = async (seen: SessionView, order: Command): Promise<void> => {
-    const done = await resendOnLatestVersion(sessions, seen, order);
-    if (done.overtaken) return overtake({ view: seen, command: order }, done.view);
+  const resend = async (preparedOn: SessionView, order: Command): Promise<void> => {
+    const done = await resendOnLatestVersion(sessions, preparedOn, order);
+    if (done.overtaken) return overtake({ view: preparedOn, command: order }, done.view);
     setOvertaken(null);
     accept(done.view);
   };
@@ -152,8 +152,8 @@ export function isOutdated(
  * The newer of two views: answers and live events may overtake each other, so the higher version
  * wins.
  */
-function newer(known: SessionView | undefined, view: SessionView): SessionView {
-  return known !== undefined && known.version > view.version ? known : view;
+function newer(previous: SessionView | undefined, view: SessionView): SessionView {
+  return previous !== undefined && previous.version > view.version ? previous : view;
 }
 
 /**
@@ -178,14 +178,14 @@ const MAX_ATTEMPTS = 20;
  */
 export async function resendOnLatestVersion(
   api: Pick<typeof sessions, "get" | "command">,
-  seen: SessionView,
+  preparedOn: SessionView,
   order: Command,
 ): Promise<Resent> {
   for (let time = 1; ; time += 1) {
-    const fresh = await api.get(seen.id);
-    if (fresh.status !== seen.status) return { view: fresh, overtaken: true };
+    const fresh = await api.get(preparedOn.id);
+    if (fresh.status !== preparedOn.status) return { view: fresh, overtaken: true };
     try {
-      return { view: await api.command(seen.id, fresh.version, order), overtaken: false };
+      return { view: await api.command(preparedOn.id, fresh.version, order), overtaken: false };
     } catch (error) {
       if (!isApiError(error, "stale") || time === MAX_ATTEMPTS) throw error;
     }

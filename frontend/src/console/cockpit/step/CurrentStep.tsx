@@ -30,7 +30,7 @@ interface CurrentStepProps {
   readonly live: ReturnType<typeof useSession>;
   /** Before the start: whether the pre-flight is loaded and no check is open. */
   readonly isReady: boolean;
-  readonly onAsk: (type: Reasoned) => void;
+  readonly onReasonNeeded: (type: Reasoned) => void;
   readonly onEnterAnswers: () => void;
 }
 
@@ -167,7 +167,7 @@ function Primary({ session, live, onEnterAnswers }: CurrentStepProps): JSX.Eleme
 
 const DANGERS = ["abort", "withdraw"] as const;
 
-function Exceptions({ session, onAsk }: CurrentStepProps): JSX.Element | null {
+function Exceptions({ session, onReasonNeeded }: CurrentStepProps): JSX.Element | null {
   const { t } = useTexts();
   const may = (type: Reasoned): boolean => session.allowed.includes(type);
   const dangers = DANGERS.filter(may);
@@ -179,7 +179,7 @@ function Exceptions({ session, onAsk }: CurrentStepProps): JSX.Element | null {
           color="gray"
           px="sm"
           rightSection={<Key name="R" />}
-          onClick={() => onAsk("redo")}
+          onClick={() => onReasonNeeded("redo")}
         >
           {t("do.redo")}
         </Button>
@@ -190,7 +190,7 @@ function Exceptions({ session, onAsk }: CurrentStepProps): JSX.Element | null {
           color="gray"
           px="sm"
           rightSection={<Key name="S" />}
-          onClick={() => onAsk("skip")}
+          onClick={() => onReasonNeeded("skip")}
         >
           {t("do.skip")}
         </Button>
@@ -209,7 +209,7 @@ function Exceptions({ session, onAsk }: CurrentStepProps): JSX.Element | null {
           </Menu.Target>
           <Menu.Dropdown>
             {dangers.map((type) => (
-              <Menu.Item key={type} onClick={() => onAsk(type)}>
+              <Menu.Item key={type} onClick={() => onReasonNeeded(type)}>
                 {t(`do.${type}`)}
               </Menu.Item>
             ))}

@@ -14,11 +14,11 @@ import classes from "./HeldCard.module.css";
 
 interface HeldCardProps {
   readonly held: NonNullable<SessionView["held"]>;
-  readonly onAsk: (type: Reasoned) => void;
+  readonly onReasonNeeded: (type: Reasoned) => void;
 }
 
 /** A stop rule was met. */
-export function HeldCard({ held, onAsk }: HeldCardProps): JSX.Element {
+export function HeldCard({ held, onReasonNeeded }: HeldCardProps): JSX.Element {
   const { t } = useTexts();
   const can = usePermissions();
   const values = { score: held.score, instrument: held.instrument, limit: held.stop_at };
@@ -36,14 +36,14 @@ export function HeldCard({ held, onAsk }: HeldCardProps): JSX.Element {
             size="lg"
             color="red"
             leftSection={<Icon name="stop" />}
-            onClick={() => onAsk("abort")}
+            onClick={() => onReasonNeeded("abort")}
           >
             {t("held.end")}
           </Button>
-          <Button size="lg" variant="default" onClick={() => onAsk("override_stop")}>
+          <Button size="lg" variant="default" onClick={() => onReasonNeeded("override_stop")}>
             {t("do.override_stop")}
           </Button>
-          <Button variant="subtle" color="red" onClick={() => onAsk("withdraw")}>
+          <Button variant="subtle" color="red" onClick={() => onReasonNeeded("withdraw")}>
             {t("held.withdraw")}
           </Button>
         </div>
@@ -54,11 +54,11 @@ export function HeldCard({ held, onAsk }: HeldCardProps): JSX.Element {
 
 interface RefusedCardProps {
   readonly refusal: NonNullable<SessionView["refusal"]>;
-  readonly onAsk: (type: Reasoned) => void;
+  readonly onReasonNeeded: (type: Reasoned) => void;
 }
 
 /** The participant does not want to take part: nothing continues before somebody has decided. */
-export function RefusedCard({ refusal, onAsk }: RefusedCardProps): JSX.Element {
+export function RefusedCard({ refusal, onReasonNeeded }: RefusedCardProps): JSX.Element {
   const { t, language } = useTexts();
   const can = usePermissions();
   return (
@@ -79,11 +79,11 @@ export function RefusedCard({ refusal, onAsk }: RefusedCardProps): JSX.Element {
             size="lg"
             color="red"
             leftSection={<Icon name="stop" />}
-            onClick={() => onAsk("withdraw")}
+            onClick={() => onReasonNeeded("withdraw")}
           >
             {t("refused.end")}
           </Button>
-          <Button size="lg" variant="default" onClick={() => onAsk("reopen_consent")}>
+          <Button size="lg" variant="default" onClick={() => onReasonNeeded("reopen_consent")}>
             {t("do.reopen_consent")}
           </Button>
         </div>

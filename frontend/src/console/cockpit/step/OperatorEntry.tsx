@@ -101,7 +101,7 @@ function EntryForm({ session, administration, onClose }: EntryFormProps): JSX.El
           texts={texts}
           draft={draft}
           startedAt={startedAt}
-          mayOmit
+          canOmit
           busy={save.isPending}
           onChange={setDraft}
           onSubmit={(answers, { timings, traces }) =>

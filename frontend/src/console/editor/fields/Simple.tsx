@@ -37,7 +37,7 @@ export function WordsField({
   const { reveal } = useForm();
   const { hint } = useLabels();
   const field = useCommitted(shown(value), set);
-  const known = useExistingKeys(path);
+  const existingKeys = useExistingKeys(path);
   const common = {
     label,
     description: hint(String(path.at(-1))),
@@ -55,8 +55,8 @@ export function WordsField({
         onChange={(text) => field.onChange(text)}
       />
     );
-  if (known !== null)
-    return <Autocomplete {...common} data={[...known]} onChange={(text) => field.onChange(text)} />;
+  if (existingKeys !== null)
+    return <Autocomplete {...common} data={[...existingKeys]} onChange={(text) => field.onChange(text)} />;
   const onChange = (event: { currentTarget: { value: string } }) =>
     field.onChange(event.currentTarget.value);
   // Keys have a pattern and are short; a text without a pattern is prose.

@@ -16,11 +16,11 @@ import { useTexts } from "../../i18n";
 import { calibrationsQuery } from "../../queries";
 
 interface AddFormProps {
-  readonly known: readonly string[];
+  readonly existing: readonly string[];
   readonly onClose: () => void;
 }
 
-export function AddForm({ known, onClose }: AddFormProps): JSX.Element {
+export function AddForm({ existing, onClose }: AddFormProps): JSX.Element {
   const { t } = useTexts();
   const queries = useQueryClient();
   const [equipment, setEquipment] = useState("");
@@ -61,7 +61,7 @@ export function AddForm({ known, onClose }: AddFormProps): JSX.Element {
         <Autocomplete
           label={t("equipment.equipment")}
           description={t("equipment.equipmentHint")}
-          data={[...known]}
+          data={[...existing]}
           data-autofocus
           maxLength={120}
           value={equipment}

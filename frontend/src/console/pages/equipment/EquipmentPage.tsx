@@ -19,8 +19,8 @@ export function EquipmentPage(): JSX.Element {
   const { t } = useTexts();
   useTitle(t("equipment.title"));
   const [adding, dialog] = useDisclosure();
-  const mayWrite = usePermissions()("design");
-  const add = mayWrite ? (
+  const canWrite = usePermissions()("design");
+  const add = canWrite ? (
     <Button leftSection={<Icon name="add" size={18} />} onClick={dialog.open}>
       {t("equipment.add")}
     </Button>
@@ -47,7 +47,7 @@ export function EquipmentPage(): JSX.Element {
                 key={name}
                 name={name}
                 own={all.filter((one) => one.equipment === name)}
-                mayWrite={mayWrite}
+                canWrite={canWrite}
               />
             ))
           )
@@ -60,7 +60,7 @@ export function EquipmentPage(): JSX.Element {
         size="lg"
         closeButtonProps={{ "aria-label": t("action.close") }}
       >
-        <AddForm known={names(query.data ?? [])} onClose={dialog.close} />
+        <AddForm existing={names(query.data ?? [])} onClose={dialog.close} />
       </Modal>
     </>
   );

@@ -15,10 +15,10 @@ const COLUMNS = ["state", "delay", "sd", "n", "date", "method", "by"] as const;
 interface HistoryProps {
   readonly name: string;
   readonly own: readonly Calibration[];
-  readonly mayWrite: boolean;
+  readonly canWrite: boolean;
 }
 
-export function History({ name, own, mayWrite }: HistoryProps): JSX.Element {
+export function History({ name, own, canWrite }: HistoryProps): JSX.Element {
   const { t } = useTexts();
   const [retiring, setRetiring] = useState<Calibration | null>(null);
   return (
@@ -35,12 +35,12 @@ export function History({ name, own, mayWrite }: HistoryProps): JSX.Element {
               {COLUMNS.map((column) => (
                 <Table.Th key={column}>{t(`equipment.${column}`)}</Table.Th>
               ))}
-              {mayWrite && <Table.Th aria-label={t("equipment.retire")} />}
+              {canWrite && <Table.Th aria-label={t("equipment.retire")} />}
             </Table.Tr>
           </Table.Thead>
           <Table.Tbody>
             {own.map((one) => (
-              <Row key={one.id} one={one} onRetire={mayWrite ? setRetiring : null} />
+              <Row key={one.id} one={one} onRetire={canWrite ? setRetiring : null} />
             ))}
           </Table.Tbody>
         </Table>

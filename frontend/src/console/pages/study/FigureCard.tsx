@@ -32,7 +32,7 @@ export function FigureCard({ studyKey, entry, filter }: FigureCardProps): JSX.El
           watermark={watermark}
           loading={t("dashboard.loading")}
           failed={t("dashboard.failed")}
-          whenNear
+          lazy
         />
       )}
       <figcaption className={classes.caption}>{caption}</figcaption>
