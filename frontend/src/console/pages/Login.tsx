@@ -28,10 +28,10 @@ export function Login({ ended = null }: { readonly ended?: Account | null }): JS
   );
 }
 
-function LoginForm({ username: known }: { readonly username: string }): JSX.Element {
+function LoginForm({ username: expiredName }: { readonly username: string }): JSX.Element {
   const { t } = useTexts();
   const queries = useQueryClient();
-  const [username, setUsername] = useState(known);
+  const [username, setUsername] = useState(expiredName);
   const [password, setPassword] = useState("");
   const login = useMutation({ mutationFn: () => signIn(queries, username.trim(), password) });
   return (
@@ -47,7 +47,7 @@ function LoginForm({ username: known }: { readonly username: string }): JSX.Elem
           size="md"
           autoComplete="username"
           autoCapitalize="none"
-          autoFocus={known === ""}
+          autoFocus={expiredName === ""}
           required
           withAsterisk={false}
           value={username}
@@ -57,7 +57,7 @@ function LoginForm({ username: known }: { readonly username: string }): JSX.Elem
           label={t("login.password")}
           size="md"
           autoComplete="current-password"
-          autoFocus={known !== ""}
+          autoFocus={expiredName !== ""}
           required
           withAsterisk={false}
           value={password}

@@ -41,7 +41,7 @@ const KEYS: Readonly<Record<string, Point>> = {
 };
 
 export function SceneDrawing(props: SceneDrawingProps): JSX.Element {
-  const { scene, points, plannedPath: way, walkers, synthetic, atS, onChange } = props;
+  const { scene, points, plannedPath: plannedPath, walkers, synthetic, atS, onChange } = props;
   const { t } = useTexts();
   const plan = useMemo(() => planOf(scene.bounds_m), [scene]);
   const root = useRef<SVGSVGElement>(null);
@@ -83,7 +83,7 @@ export function SceneDrawing(props: SceneDrawingProps): JSX.Element {
         ))}
         <polyline
           className={classes.plannedPath}
-          points={lineOf(plan, drag === null && way !== null ? way : shown)}
+          points={lineOf(plan, drag === null && plannedPath !== null ? plannedPath : shown)}
         />
         {walkers.map(({ xy_m, step_s, duration_s, vector }) => {
           const [x, y] = xy_m[Math.min(xy_m.length - 1, Math.round(atS / step_s))] ?? [0, 0];

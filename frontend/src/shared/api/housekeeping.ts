@@ -33,8 +33,8 @@ export const exports = {
 };
 
 export const storageRoom = {
-  get: (anew: boolean) =>
-    answer<StorageRoom>(server.GET("/api/storage", { params: { query: { anew } } })),
+  get: (refresh: boolean) =>
+    answer<StorageRoom>(server.GET("/api/storage", { params: { query: { anew: refresh } } })),
 };
 
 export const tryouts = {

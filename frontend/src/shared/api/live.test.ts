@@ -42,7 +42,7 @@ function started() {
       return source;
     },
   });
-  return { sources, states, heard: received, stop };
+  return { sources, states, received: received, stop };
 }
 
 describe("a live feed", () => {
@@ -50,7 +50,7 @@ describe("a live feed", () => {
   afterEach(() => void vi.useRealTimers());
 
   it("passes on the messages it receives", () => {
-    const { sources, heard } = started();
+    const { sources, received: heard } = started();
     sources[0]?.send("session", { version: 3 });
     expect(heard).toEqual([{ version: 3 }]);
   });

@@ -44,15 +44,15 @@ export function boundedStep(
  * bounds, and held ones that are pulled inwards.
  */
 function violations(
-  held: Int8Array,
+  sides: Int8Array,
   left: Float64Array,
   step: Float64Array,
   low: Float64Array,
   high: Float64Array,
 ): readonly (readonly [number, number])[] {
   const found: [number, number][] = [];
-  for (let i = 0; i < held.length; i++) {
-    const side = held[i];
+  for (let i = 0; i < sides.length; i++) {
+    const side = sides[i];
     const drawn = left[i] as number;
     const value = step[i] as number;
     if (side === AT_LOW && drawn > TOLERANCE) found.push([i, FREE]);

@@ -77,7 +77,7 @@ export class InverseKinematics {
   private readonly steps: number;
   private angles: Float64Array;
   private hips: Place = ORIGIN;
-  private begun = false;
+  private hasStarted = false;
 
   constructor(mujoco: Mujoco, model: MjModel, options: IkOptions = {}) {
     const { restRad = REST_POSE_RAD, weights = WEIGHTS, steps = 2 } = options;
@@ -98,7 +98,7 @@ export class InverseKinematics {
   reset(): void {
     this.angles = Float64Array.from(this.rest);
     this.hips = ORIGIN;
-    this.begun = false;
+    this.hasStarted = false;
   }
 
   /** Solve for the pose of the next frame. */
@@ -132,14 +132,14 @@ export class InverseKinematics {
     const { Hips: waist, Head: head, LeftLowerLeg: left, RightLowerLeg: right } = goals;
     if (waist !== null) {
       this.hips = { positionM: waist.positionM, rotation: normalised(waist.rotation) };
-      this.begun = true;
+      this.hasStarted = true;
       return null;
     }
     if (head === null) return null;
     const shins = left !== null && right !== null ? ([left, right] as const) : null;
     const estimate = estimatedHips(this.chain.trunk, head, shins);
-    if (!this.begun || this.isFarFrom(estimate)) this.hips = estimate;
-    this.begun = true;
+    if (!this.hasStarted || this.isFarFrom(estimate)) this.hips = estimate;
+    this.hasStarted = true;
     return estimate;
   }
 

@@ -46,7 +46,7 @@ export class Stage3d extends Space3d {
     this.#controls = new OrbitControls(this.camera, canvas);
     this.#controls.enableDamping = false;
     this.#controls.maxPolarAngle = 0.495 * Math.PI;
-    this.#controls.addEventListener("change", () => this.ask());
+    this.#controls.addEventListener("change", () => this.requestPicture());
   }
 
   /** Put figures on the stage; the camera stays where it is while the floor is the same. */
@@ -82,7 +82,7 @@ export class Stage3d extends Space3d {
     });
     this.#moveCamera();
     this.renderer.domElement.dataset.frame = String(frames[0] ?? 0);
-    this.ask();
+    this.requestPicture();
   }
 
   setMode(mode: CameraMode): void {
@@ -118,7 +118,7 @@ export class Stage3d extends Space3d {
     const { target } = this.#controls;
     this.camera.position.sub(target).multiplyScalar(factor).add(target);
     this.#controls.update();
-    this.ask();
+    this.requestPicture();
   }
 
   /** The point nearest to a position on the stage, if one is close enough. */

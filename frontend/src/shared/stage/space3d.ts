@@ -26,7 +26,7 @@ export abstract class Space3d {
   protected bodies: readonly Body3d[] = [];
   protected blocks: Blocks3d | null = null;
   #floor: Group | null = null;
-  #asked = 0;
+  #frameRequest = 0;
 
   /** Throws if the browser has no WebGL. */
   constructor(
@@ -43,7 +43,7 @@ export abstract class Space3d {
   /** Show the blocks in their current tones; those that are not listed are plain. */
   light(tones: BlockTones): void {
     this.blocks?.light(tones);
-    this.ask();
+    this.requestPicture();
   }
 
   resize(width: number, height: number): void {
@@ -58,7 +58,7 @@ export abstract class Space3d {
   }
 
   dispose(): void {
-    cancelAnimationFrame(this.#asked);
+    cancelAnimationFrame(this.#frameRequest);
     this.#clearBodies();
     this.#clearBlocks();
     this.#clearFloor();
@@ -91,14 +91,14 @@ export abstract class Space3d {
     this.scene.add(this.#floor);
   }
 
-  protected ask(): void {
-    if (this.#asked !== 0) return;
-    this.#asked = requestAnimationFrame(() => this.#draw());
+  protected requestPicture(): void {
+    if (this.#frameRequest !== 0) return;
+    this.#frameRequest = requestAnimationFrame(() => this.#draw());
   }
 
   #draw(): void {
-    cancelAnimationFrame(this.#asked);
-    this.#asked = 0;
+    cancelAnimationFrame(this.#frameRequest);
+    this.#frameRequest = 0;
     this.renderer.render(this.scene, this.camera);
     this.drawn();
   }

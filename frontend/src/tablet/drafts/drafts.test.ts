@@ -16,59 +16,59 @@ const DRAFT = {
   traces: { q1: { response_s: 3.1, changes: 1 } },
 };
 
-const submissionOf = (kept: StoredForm, answer = 4): Submission => ({
-  idempotency_key: kept.idempotencyKey,
-  administration: kept.administration,
+const submissionOf = (form: StoredForm, answer = 4): Submission => ({
+  idempotency_key: form.idempotencyKey,
+  administration: form.administration,
   answers: { q1: answer },
   shown_order: ["q1"],
   seed: 1,
   language: "en",
-  started_at_utc: kept.startedAt,
+  started_at_utc: form.startedAt,
   timings: {},
   item_traces: {},
 });
 
 let name: string;
 let store: DraftStore;
-let kept: StoredForm;
+let form: StoredForm;
 
 beforeEach(async () => {
   name = uuid();
   store = new DraftStore(name);
-  kept = await store.open("session", "form#1", NOW);
+  form = await store.open("session", "form#1", NOW);
 });
 
 describe("a draft", () => {
   it("is restored after a reload, with its original key", async () => {
-    await store.keep(kept.id, DRAFT);
+    await store.keep(form.id, DRAFT);
     const reopened = await new DraftStore(name).open("session", "form#1", new Date());
     expect(reopened.draft).toEqual(DRAFT);
-    expect(reopened.idempotencyKey).toBe(kept.idempotencyKey);
+    expect(reopened.idempotencyKey).toBe(form.idempotencyKey);
     expect(reopened.startedAt).toBe(NOW.toISOString());
   });
 
   it("belongs to one session and one form only", async () => {
-    await store.keep(kept.id, DRAFT);
+    await store.keep(form.id, DRAFT);
     expect((await store.open("other", "form#1", NOW)).draft.data).toEqual({});
     expect((await store.open("session", "form#2", NOW)).draft.data).toEqual({});
   });
 
   it("no longer changes once it is queued", async () => {
-    await store.queue(kept.id, submissionOf(kept));
-    await store.keep(kept.id, { ...DRAFT, data: { q1: 7 } });
+    await store.queue(form.id, submissionOf(form));
+    await store.keep(form.id, { ...DRAFT, data: { q1: 7 } });
     expect((await store.open("session", "form#1", NOW)).draft.data).toEqual({});
   });
 
   it("is queued once: queuing a second submission returns the first", async () => {
-    await store.queue(kept.id, submissionOf(kept, 4));
-    const sent = await store.queue(kept.id, submissionOf(kept, 7));
+    await store.queue(form.id, submissionOf(form, 4));
+    const sent = await store.queue(form.id, submissionOf(form, 7));
     expect(sent.answers).toEqual({ q1: 4 });
   });
 
   it("is deleted from the tablet when it is old, unless it waits to be sent", async () => {
     const waiting = await store.open("session", "form#2", NOW);
     await store.queue(waiting.id, submissionOf(waiting));
-    await store.keep(kept.id, DRAFT);
+    await store.keep(form.id, DRAFT);
     await store.forgetOld(new Date(NOW.getTime() + 49 * 3_600_000));
     expect((await store.open("session", "form#1", NOW)).draft.data).toEqual({});
     expect(await store.waiting("session")).toHaveLength(1);
@@ -82,8 +82,8 @@ describe("delivering a form", () => {
     throw error;
   };
   const attempt = async (submit: (submission: Submission) => Promise<Receipt>) => {
-    const queued = await store.queue(kept.id, submissionOf(kept));
-    return deliver(store, kept.id, queued, submit);
+    const queued = await store.queue(form.id, submissionOf(form));
+    return deliver(store, form.id, queued, submit);
   };
 
   it("deletes it when the server has stored it", async () => {
@@ -101,7 +101,7 @@ describe("delivering a form", () => {
     expect(await attempt(failing(refusal(503, "not_durable")))).toEqual({ kind: "later" });
     expect(await store.waiting("session")).toHaveLength(1);
     await attempt(offline);
-    expect(new Set(keys)).toEqual(new Set([kept.idempotencyKey]));
+    expect(new Set(keys)).toEqual(new Set([form.idempotencyKey]));
   });
 
   it("sends it once, however many callers ask while it is under way or after it has arrived", async () => {
@@ -110,14 +110,14 @@ describe("delivering a form", () => {
       keys.push(submission.idempotency_key);
       return receipt;
     };
-    const queued = await store.queue(kept.id, submissionOf(kept));
-    const sendOnce = () => deliver(store, kept.id, queued, counted);
+    const queued = await store.queue(form.id, submissionOf(form));
+    const sendOnce = () => deliver(store, form.id, queued, counted);
     expect(await Promise.all([sendOnce(), sendOnce()])).toEqual([
       { kind: "stored" },
       { kind: "stored" },
     ]);
     expect(await sendOnce()).toEqual({ kind: "stored" });
-    expect(keys).toEqual([kept.idempotencyKey]);
+    expect(keys).toEqual([form.idempotencyKey]);
   });
 
   it("keeps it if the tablet was disconnected or the form is not due", async () => {
@@ -129,7 +129,7 @@ describe("delivering a form", () => {
   it("returns it for correction if an answer is invalid", async () => {
     expect((await attempt(failing(refusal(422, "invalid_input")))).kind).toBe("refused");
     expect(await store.waiting("session")).toEqual([]);
-    expect((await store.open("session", "form#1", NOW)).idempotencyKey).toBe(kept.idempotencyKey);
+    expect((await store.open("session", "form#1", NOW)).idempotencyKey).toBe(form.idempotencyKey);
   });
 
   it("deletes it if the experimenter has recorded the form already", async () => {
@@ -167,7 +167,7 @@ describe("the last screen", () => {
 
   it("no longer shows a form once the server has its answers", async () => {
     await store.keepScreen(screen());
-    await store.forget(kept.id);
+    await store.forget(form.id);
     const last = await store.lastScreen();
     expect([last?.screen, last?.administration, last?.next]).toEqual(["waiting", null, null]);
   });
@@ -181,7 +181,7 @@ describe("the last screen", () => {
   it("is deleted with the session, as are drafts never submitted; submissions that wait to be sent stay", async () => {
     const waiting = await store.open("session", "form#2", NOW);
     await store.queue(waiting.id, submissionOf(waiting));
-    await store.keep(kept.id, DRAFT);
+    await store.keep(form.id, DRAFT);
     await store.keepScreen(screen());
     await store.keepScreen(screen({ screen: "finished", administration: null }));
     expect(await store.lastScreen()).toBeUndefined();
@@ -239,7 +239,7 @@ describe("a database written by an older version", () => {
       upgrade: (db) => void db.createObjectStore("kept", { keyPath: "id" }),
     });
     const { traces: _, ...draft } = DRAFT;
-    await database.put("kept", { ...kept, draft });
+    await database.put("kept", { ...form, draft });
     database.close();
     const opened = await new DraftStore(old).open("session", "form#1", NOW);
     expect(opened.draft).toEqual({ ...DRAFT, traces: {} });

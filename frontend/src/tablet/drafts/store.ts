@@ -74,8 +74,8 @@ export class DraftStore {
     const id = formId(sessionId, administration);
     const database = await this.#database;
     const transaction = database.transaction("kept", "readwrite");
-    const known = await transaction.store.get(id);
-    const kept = known ?? {
+    const existing = await transaction.store.get(id);
+    const stored = existing ?? {
       id,
       sessionId,
       administration,
@@ -84,10 +84,10 @@ export class DraftStore {
       draft: EMPTY_DRAFT,
       queued: null,
     };
-    if (known === undefined) await transaction.store.put(kept);
+    if (existing === undefined) await transaction.store.put(stored);
     await transaction.done;
     // An older version may have stored it with fewer fields.
-    return { ...kept, draft: { ...EMPTY_DRAFT, ...kept.draft } };
+    return { ...stored, draft: { ...EMPTY_DRAFT, ...stored.draft } };
   }
 
   /** Store the newest answers; a form that is already queued or confirmed is left as it is. */
@@ -125,7 +125,7 @@ export class DraftStore {
   /** The forms of this session that wait to be sent. */
   async waiting(sessionId: string): Promise<readonly StoredForm[]> {
     const all = await (await this.#database).getAll("kept");
-    return all.filter((kept) => kept.sessionId === sessionId && kept.queued !== null);
+    return all.filter((stored) => stored.sessionId === sessionId && stored.queued !== null);
   }
 
   /** Delete a form that the server has stored; it is not shown again. */
@@ -158,9 +158,9 @@ export class DraftStore {
     if (state.screen === "finished") {
       await screens.delete(LAST);
       const drafts = transaction.objectStore("kept");
-      for (const kept of await drafts.getAll()) {
-        const isOver = kept.sessionId === state.session_id && kept.queued === null;
-        if (isOver) await drafts.delete(kept.id);
+      for (const form of await drafts.getAll()) {
+        const isOver = form.sessionId === state.session_id && form.queued === null;
+        if (isOver) await drafts.delete(form.id);
       }
     } else await screens.put(state, LAST);
     await transaction.done;
@@ -213,9 +213,9 @@ export class DraftStore {
   /** Delete drafts that have not changed for two days; submissions that wait to be sent stay. */
   async forgetOld(now: Date): Promise<void> {
     const transaction = (await this.#database).transaction("kept", "readwrite");
-    for (const kept of await transaction.store.getAll()) {
-      const age = now.getTime() - Date.parse(kept.startedAt);
-      if (kept.queued === null && age > OLD_MS) await transaction.store.delete(kept.id);
+    for (const form of await transaction.store.getAll()) {
+      const age = now.getTime() - Date.parse(form.startedAt);
+      if (form.queued === null && age > OLD_MS) await transaction.store.delete(form.id);
     }
     await transaction.done;
   }

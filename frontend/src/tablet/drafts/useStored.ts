@@ -12,7 +12,7 @@ export const drafts = new DraftStore();
 
 export type FormPhase =
   | { readonly name: "opening" }
-  | { readonly name: "filling"; readonly kept: StoredForm; readonly refused: ApiError | null }
+  | { readonly name: "filling"; readonly form: StoredForm; readonly refused: ApiError | null }
   | { readonly name: "sending"; readonly offline: boolean }
   | { readonly name: "held"; readonly error: ApiError }
   | { readonly name: "done" };
@@ -39,7 +39,7 @@ export function useStoredForm(
 ): StoredFormHandle {
   const [phase, setPhase] = useState<FormPhase>({ name: "opening" });
   const timer = useRef<ReturnType<typeof setTimeout>>(undefined);
-  const kept = useRef<StoredForm | null>(null);
+  const form = useRef<StoredForm | null>(null);
   const settled = useRef(onSettled);
   useEffect(() => {
     settled.current = onSettled;
@@ -57,8 +57,8 @@ export function useStoredForm(
         setPhase({ name: "held", error: delivery.error });
         return;
       case "refused":
-        if (kept.current === null) return;
-        setPhase({ name: "filling", kept: kept.current, refused: delivery.error });
+        if (form.current === null) return;
+        setPhase({ name: "filling", form: form.current, refused: delivery.error });
         return;
       case "stored":
       case "superseded":
@@ -74,8 +74,8 @@ export function useStoredForm(
     let cancelled = false;
     void drafts.open(sessionId, administration.key, new Date()).then((opened) => {
       if (cancelled) return;
-      kept.current = opened;
-      if (opened.queued === null) setPhase({ name: "filling", kept: opened, refused: null });
+      form.current = opened;
+      if (opened.queued === null) setPhase({ name: "filling", form: opened, refused: null });
       else {
         setPhase({ name: "sending", offline: false });
         void attempt(opened.id, opened.queued);
@@ -88,13 +88,13 @@ export function useStoredForm(
   }, [sessionId, administration.key, attempt]);
 
   const storeDraft = (draft: FormDraft) => {
-    if (kept.current === null) return;
-    kept.current = { ...kept.current, draft };
-    void drafts.keep(kept.current.id, draft);
+    if (form.current === null) return;
+    form.current = { ...form.current, draft };
+    void drafts.keep(form.current.id, draft);
   };
 
   const send = (answers: Readonly<Record<string, Answer>>, draft: FormDraft) => {
-    const opened = kept.current;
+    const opened = form.current;
     if (opened === null) return;
     setPhase({ name: "sending", offline: false });
     const submission = submissionOf(opened, administration, language, answers, draft);
@@ -141,8 +141,8 @@ export function useStoredSigning(
   const timer = useRef<ReturnType<typeof setTimeout>>(undefined);
   // biome-ignore lint/correctness/useExhaustiveDependencies: a consent's page is remounted for each step
   useEffect(() => {
-    void drafts.signing(state).then((kept) => {
-      if (kept !== undefined && !touched.current) setSigning(kept);
+    void drafts.signing(state).then((stored) => {
+      if (stored !== undefined && !touched.current) setSigning(stored);
     });
     return () => clearTimeout(timer.current);
   }, []);
@@ -175,8 +175,8 @@ export function useSweep(state: TabletState, connected: boolean): void {
 
 async function sweep(sessionId: string, shown: string | null): Promise<void> {
   await drafts.forgetOld(new Date());
-  for (const kept of await drafts.waiting(sessionId)) {
-    if (kept.administration === shown || kept.queued === null) continue;
-    await deliver(drafts, kept.id, kept.queued, tablet.submit);
+  for (const stored of await drafts.waiting(sessionId)) {
+    if (stored.administration === shown || stored.queued === null) continue;
+    await deliver(drafts, stored.id, stored.queued, tablet.submit);
   }
 }

@@ -29,8 +29,8 @@ export function FormScreen({ state, administration, refresh }: FormScreenProps):
         administration={administration}
         language={state.language}
         texts={texts}
-        draft={phase.kept.draft}
-        startedAt={new Date(phase.kept.startedAt)}
+        draft={phase.form.draft}
+        startedAt={new Date(phase.form.startedAt)}
         busy={false}
         onChange={form.storeDraft}
         onSubmit={form.send}

@@ -102,8 +102,8 @@ function Picture({ session, store, view }: LiveCardProps & { readonly view: View
 /** Why nothing moves, shown over the picture. */
 function State({ session, live }: { readonly session: SessionView; readonly live: Live }) {
   const { t } = useTexts();
-  const { drawingState: way, feed, setup, isMoving } = live;
-  if (way === "flat") {
+  const { drawingState: drawingState, feed, setup, isMoving } = live;
+  if (drawingState === "flat") {
     return (
       <div className={`${classes.state} ${classes.warn}`} role="status">
         <strong>{t("live3d.flat")}</strong>
@@ -111,7 +111,7 @@ function State({ session, live }: { readonly session: SessionView; readonly live
       </div>
     );
   }
-  if (way === "loading" || (setup === null && feed !== "lost")) {
+  if (drawingState === "loading" || (setup === null && feed !== "lost")) {
     return (
       <div className={classes.state}>
         <Loader size="sm" role="status" aria-label={t("live3d.loading")} />

@@ -61,7 +61,7 @@ export class LiveScene extends Space3d {
     // Request a picture all the same: the server waits for the acknowledgement that the pose was
     // drawn.
     if (player === undefined || this.#setup === null) {
-      this.ask();
+      this.requestPicture();
       return;
     }
     player.received = true;
@@ -76,7 +76,7 @@ export class LiveScene extends Space3d {
     const joints = this.#setup?.joints;
     if (body === undefined || joints === undefined) return;
     body.paint((point) => heatColour(errors[joints[point] ?? ""]));
-    this.ask();
+    this.requestPicture();
   }
 
   look(view: View): void {
@@ -107,7 +107,7 @@ export class LiveScene extends Space3d {
       eyes: eyes?.received ? eyes.placed : null,
       followed: followed?.received ? followed.placed : null,
     });
-    this.ask();
+    this.requestPicture();
   }
 }
 

@@ -26,10 +26,10 @@ interface PeoplePageProps {
   readonly tab: string | undefined;
 }
 
-export function PeoplePage({ account, tab: wanted }: PeoplePageProps): JSX.Element {
+export function PeoplePage({ account, tab: requested }: PeoplePageProps): JSX.Element {
   const { t } = useTexts();
   const [, navigate] = useLocation();
-  const tab = TABS.find((known) => known === wanted) ?? "people";
+  const tab = TABS.find((known) => known === requested) ?? "people";
   useTitle(t("people.title"));
   return (
     <>
