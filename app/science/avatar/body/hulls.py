@@ -1,4 +1,4 @@
-"""Build convex pieces: few corners around many points, always the same for the same points.
+"""Build convex pieces with few corners around many points, the same for the same set of points.
 
 The hull of a body part may have hundreds of corners, and each costs time at every contact. So a
 piece starts with the outermost points along 26 directions; the point farthest outside is added

@@ -1,4 +1,4 @@
-"""Define groups of body parts, by which joints are found, edited together, and locked.
+"""Define groups of body parts, for finding joints, editing them together, and locking them.
 
 A group names some body parts; every body part is also a group of its own. Its axes are the driven
 axes of its parts, so the hips and the shoulders, which have none, only matter for colliders. An arm

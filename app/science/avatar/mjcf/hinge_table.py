@@ -12,7 +12,7 @@ from app.science.skeleton import JOINT_NAMES, PARENTS
 
 
 class SimulationError(ValueError):
-    """The model is not an avatar, it lacks a given name, or a value or time is invalid."""
+    """A model is not an avatar or lacks a given name, or a given value or time is invalid."""
 
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""Compute hinge angles from rotations in closed form; compiled.
+"""Compute the hinge angles that make given rotations, in closed form and in compiled code.
 
 A part's rotation is a product of turns about its own axes, R = R(e1, a) R(e2, b) R(e3, c). In the
 frame of its axes, with B = [e1 e2 e3], it is a product about x, y and z. Where e1, e2, e3 are

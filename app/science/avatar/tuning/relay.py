@@ -112,7 +112,7 @@ def run_relay(
     wall_s: Callable[[], float],
     cancelled: Callable[[], bool] = lambda: False,
 ) -> Oscillation | NoOscillation:
-    """Run the experiment and return the limit cycle, or the reason why there is none.
+    """Run the experiment and return the limit cycle, or the reason why there is no limit cycle.
 
     Args:
         plant: the axis alone; it starts at rest.

@@ -43,12 +43,12 @@ _SKIPPED_S: Final = 0.5
 
 @dataclass(frozen=True)
 class Spread:
-    """Mean and 95th percentile of the absolute errors of some samples; NaN where there are none.
+    """Mean and 95th percentile of a set of absolute errors; NaN for an empty set.
 
     Attributes:
         mean_deg: their mean.
         p95_deg: 95 % of them are at most this.
-        samples: their number; an axis in a frame is one.
+        samples: their number; one axis in one frame is one sample.
     """
 
     mean_deg: float

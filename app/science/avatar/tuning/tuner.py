@@ -129,7 +129,10 @@ class _Tuning:
         return tuple(self._result(name) for name in self._configuration.axes)
 
     def _source(self, name: str) -> str:
-        """Return the axis that supplies this one's gains: itself or, mirrored, its left one."""
+        """Return the axis whose gains this one gets.
+
+        It is the axis itself, or its left counterpart where gains are mirrored.
+        """
         other = mirrored_name(name)
         mirrors = self._options.mirror and name.startswith("Right") and other in self._free
         return other if mirrors else name
