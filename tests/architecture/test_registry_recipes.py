@@ -276,7 +276,7 @@ ALARM = Recipe(
         "app/features/record/alarms/silence_watch.py": [
             after(
                 '                unit="s",\n            )\n',
-                """        elif self._heard_s < now_s:
+                """        elif self._last_frame_s < now_s:
             yield Condition("asleep", "The headset sleeps")
 """,
             )

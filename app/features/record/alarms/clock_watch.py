@@ -62,7 +62,7 @@ class ClockWatch:
         elif uncertainty_s is not None and uncertainty_s > self.limits.clock_uncertain_s:
             yield Condition(
                 "clock_uncertain",
-                f"The headset's clock is known to ±{1000 * uncertainty_s:.0f} ms only",
+                f"The headset's clock is known only to ±{1000 * uncertainty_s:.0f} ms",
                 value=round(1000.0 * uncertainty_s, 1),
                 unit="ms",
             )

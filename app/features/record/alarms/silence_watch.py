@@ -23,7 +23,7 @@ class SilenceWatch:
     unread_until_s: float
     recording: bool = False
     _running: bool = False
-    _heard_s: float = float("-inf")
+    _last_frame_s: float = float("-inf")
     _checked_s: float | None = None
     _loss_reported_s: float = float("-inf")
 
@@ -35,11 +35,11 @@ class SilenceWatch:
 
     def frame_arrived(self, now_s: float) -> None:
         """Record that a frame has arrived, on this or another socket of the session."""
-        self._heard_s = max(self._heard_s, now_s)
+        self._last_frame_s = max(self._last_frame_s, now_s)
 
     def is_quiet(self, now_s: float) -> bool:
         """Return whether no frame has arrived recently, so that earlier figures are out of date."""
-        return now_s - self._heard_s > QUIET_S
+        return now_s - self._last_frame_s > QUIET_S
 
     def note_check(self, now_s: float, *, reading: bool) -> None:
         """Record that the server is running, and whether it is reading from the socket."""
@@ -50,7 +50,7 @@ class SilenceWatch:
 
     def silent_s(self, now_s: float) -> float:
         """Return how long expected frames have been missing; 0 within the tolerated time."""
-        silent_s = now_s - max(self._heard_s, self.unread_until_s)
+        silent_s = now_s - max(self._last_frame_s, self.unread_until_s)
         return silent_s if self.recording and silent_s >= self.limits.silent_s else 0.0
 
     def check(self, now_s: float) -> Iterator[Condition]:

@@ -174,9 +174,8 @@ class PhaseView(BaseModel):
 
     The achieved latency is measured once the phase has ended; `movement_s` is null until then. It
     has a 95 % interval; if it cannot be determined, it is null and `latency_reason` says why.
-    `latency_off`:
-    whether it deviates by more than 10 ms and more than one frame, which is all that a blinded
-    operator is shown.
+    `latency_off`: whether it deviates by more than 10 ms and more than one frame, which is all that
+    a blinded operator is shown.
     """
 
     phase_id: int

@@ -65,8 +65,7 @@ def overwrite(database: Database, settings: Settings, *, starting: bool = False)
     """Overwrite what the erased rows left behind; return whether nothing is left to do.
 
     Call this outside any transaction. What cannot be done now is done at the next start.
-    `starting`:
-    the server is starting, so a running session is no reason to postpone.
+    `starting`: the server is starting, so a running session is no reason to postpone.
     """
     try:
         done = _overwrite(database, starting=starting)

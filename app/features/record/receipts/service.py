@@ -172,7 +172,7 @@ def _latency_line(one: LatencyReceipt) -> str:
     name = one.limb or one.kind.replace("_", " ")
     head = f"{one.phase_id:<8}{name:<12}{one.latency_ms:>7.0f} ms"
     if one.achieved_latency_ms is None:
-        return f"{head}   {one.reason or 'not known'}"
+        return f"{head}   {one.reason or 'unknown'}"
     interval = f"{one.achieved_latency_low_ms:.1f} to {one.achieved_latency_high_ms:.1f}"
     achieved = f"{one.achieved_latency_ms:.1f} ms ({interval})"
     return f"{head}{achieved:>28}{'  OFF' if one.off else ''}"

@@ -122,7 +122,7 @@ class Found(NamedTuple):
 
 def _of_phase(
     latency: LatencyRule | None,
-    least_s: float,
+    min_s: float,
     run: PhaseState,
     delay: PhaseDelay | None,
     *,
@@ -131,8 +131,8 @@ def _of_phase(
     """Yield the shortfalls of a phase that was finished."""
     if doubtful:
         yield Found("phase_doubtful")
-    if run.active_s < least_s:
-        yield Found("phase_short", run.active_s, least_s)
+    if run.active_s < min_s:
+        yield Found("phase_short", run.active_s, min_s)
     if delay is None or latency is None:
         return
     if delay.achieved_s is None:

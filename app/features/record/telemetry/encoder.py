@@ -106,5 +106,5 @@ def _answer(db: Session, now: datetime) -> Chunks | str:
     try:
         with db:
             return due_chunks(db, now)
-    except Exception as error:  # noqa: BLE001  # whatever it is, it is told and logged there
+    except Exception as error:  # noqa: BLE001  # any error is returned, and logged by the server
         return f"{type(error).__name__}: {error}"

@@ -27,8 +27,7 @@ class Frames:
     """Consecutive frames of a stream.
 
     `seq` (n,), `times_s` (n,) client monotonic s, `flags` (n,) bits, `values` (n, 91) as on the
-    wire:
-    root position (m, world), then 22 local rotations w, x, y, z.
+    wire: root position (m, world), then 22 local rotations w, x, y, z.
     """
 
     seq: NDArray[np.int64]

@@ -90,15 +90,15 @@ class Summariser(Part):
         self._run(session_id, phase_id, (JOINT_ERRORS,))
         self._take_older()
 
-    def _run(self, session_id: str, phase_id: int, wanted: Sequence[Tables]) -> None:
+    def _run(self, session_id: str, phase_id: int, selected: Sequence[Tables]) -> None:
         try:
             with self.context.database.reading() as db:
-                rows = summary_rows(db, session_id, phase_id, wanted)
+                rows = summary_rows(db, session_id, phase_id, selected)
             with self.context.database.writing() as db:
                 session = session_by_id(db, session_id, lock=True)
                 if erased_session(db, session_id):
                     return
-                replace_rows(db, session_id, phase_id, rows, wanted)
+                replace_rows(db, session_id, phase_id, rows, selected)
                 db.flush()
                 judge_again(db, session, [one.phase_id for one in doubts_of(db, session_id)])
             self._report_doubts(session_id, phase_id)
@@ -152,15 +152,15 @@ def _lacks_its_course() -> ColumnElement[bool]:
 
 
 def summary_rows(
-    db: Session, session_id: str, phase_id: int, wanted: Sequence[Tables] = tuple(SUMMARIES)
+    db: Session, session_id: str, phase_id: int, selected: Sequence[Tables] = tuple(SUMMARIES)
 ) -> list[Row]:
     """Compute summaries of a phase from its stored frames, which are read once.
 
-    `wanted`: which tables to compute; all by default.
+    `selected`: which tables to compute; all by default.
     """
     phase = db.get_one(Phase, (session_id, phase_id))
     runs = phase_runs(db, session_id, phase_id, history_s=history_s(phase))
-    return [row for tables in wanted for row in SUMMARIES[tables](phase, runs)]
+    return [row for tables in selected for row in SUMMARIES[tables](phase, runs)]
 
 
 def replace_rows(
@@ -168,9 +168,9 @@ def replace_rows(
     session_id: str,
     phase_id: int,
     rows: Sequence[Row],
-    wanted: Sequence[Tables] = tuple(SUMMARIES),
+    selected: Sequence[Tables] = tuple(SUMMARIES),
 ) -> None:
     """Store these summaries of a phase, replacing older ones."""
-    for table in (one for tables in wanted for one in tables):
+    for table in (one for tables in selected for one in tables):
         db.execute(delete(table).where(table.session_id == session_id, table.phase_id == phase_id))
     db.add_all(rows)

@@ -58,7 +58,7 @@ log = logging.getLogger(__name__)
 SPEED = 4.0
 """Slow enough to follow: a session of a quarter of an hour takes four minutes."""
 HOURS = 2.0
-LONGEST_STEP = 120
+MAX_STEP_LENGTH = 120
 BROKE_OFF = TryoutTrouble(
     message="the scripted participant ended unexpectedly",
     remedy="Open the session to see how far it got, and start another one.",
@@ -172,7 +172,7 @@ class TryoutDesk(Part):
             if "session" in message:
                 tryout.session_id, tryout.state = str(message["session"]), "running"
             if "step" in message:
-                tryout.step = str(message["step"])[:LONGEST_STEP]
+                tryout.step = str(message["step"])[:MAX_STEP_LENGTH]
             if "done" in message:
                 tryout.state = "done"
             if "error" in message:
