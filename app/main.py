@@ -17,17 +17,17 @@ from app.database import open_database
 from app.features.care.opening import bring_up_to_date
 from app.features.care.ownership import Ownership, OwnerWatch, own_data
 from app.features.care.rights import finish_erasures
-from app.features.care.storage import StorageDesk, StorageRecovery
+from app.features.care.storage import StorageMeter, StorageRecovery
 from app.features.design.studies import add_shipped
 from app.features.movement.avatar import add_shipped_avatar
-from app.features.movement.captures import Workbench
-from app.features.movement.walking import Bench, FittingDesk
+from app.features.movement.captures import CaptureQueue
+from app.features.movement.walking import FitQueue, PredictionQueue
 from app.features.people.accounts import RefusedSignIns, ensure_admin
 from app.features.record.telemetry import Folder, Summariser, TelemetryWriter, stop_running_clocks
 from app.features.record.tryout import TryoutDesk
 from app.features.results.analysis import Drawings
-from app.features.results.exports import ExportDesk
-from app.features.results.replay import ReplayDesk
+from app.features.results.exports import ExportQueue
+from app.features.results.replay import ReplayQueue
 from app.lan import Network
 from app.platform.admission import Admission
 from app.platform.background import Background
@@ -48,12 +48,12 @@ PARTS: tuple[PartMaker, ...] = (
     TelemetryWriter.of,
     Folder.of,
     Drawings.of,
-    ReplayDesk.of,
-    lambda context: Workbench().watched_by(context.background, "captures"),
-    lambda context: Bench().watched_by(context.background, "walking"),
-    FittingDesk.of,
-    ExportDesk.of,
-    StorageDesk.of,
+    ReplayQueue.of,
+    lambda context: CaptureQueue().watched_by(context.background, "captures"),
+    lambda context: PredictionQueue().watched_by(context.background, "walking"),
+    FitQueue.of,
+    ExportQueue.of,
+    StorageMeter.of,
     TryoutDesk.of,
     RefusedSignIns.of,
 )

@@ -15,7 +15,7 @@ import pytest
 from app.clock import Clock
 from app.features.record.alarms import Change, Condition
 from app.features.record.telemetry import AlarmContent, Arrival, TelemetryWriter
-from app.features.results.exports.desk import QUEUE, ExportDesk
+from app.features.results.exports.export_queue import QUEUE, ExportQueue
 from app.features.results.exports.jobs import Job
 from app.platform.background import REMEMBERED_NS, Background
 from app.platform.workers import Worker
@@ -178,7 +178,7 @@ def test_an_export_that_breaks_its_queue_fails_and_the_next_is_made(
     small_lab: Lab, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Nobody waits for ever for one that will not come."""
-    desk = small_lab.context.part(ExportDesk)
+    desk = small_lab.context.part(ExportQueue)
 
     def breaks(job: Job) -> None:
         raise OSError("no process can be started")

@@ -23,7 +23,7 @@ from app.features.movement.files import streamed
 from app.features.people.audit import download_place, record, record_copy
 from app.features.record.erasure import mark_erasure, overwrite
 from app.features.record.questionnaires import StoredAnswers, stored_answers
-from app.features.results.exports import ExportDesk
+from app.features.results.exports import ExportQueue
 from app.models import Study, StudySession
 from app.platform.access import revealed_sessions, session_by_id
 from app.platform.context import AppContext
@@ -63,7 +63,7 @@ async def post_erasure(
 
         await run_in_threadpool(in_transaction)
     # Exported files that were not downloaded yet may contain what was erased.
-    await run_in_threadpool(context.part(ExportDesk).forget_study, key)
+    await run_in_threadpool(context.part(ExportQueue).forget_study, key)
     return await run_in_threadpool(_finished, context, participant_id)
 
 

@@ -49,7 +49,7 @@ class Measured:
 
 
 @dataclass(eq=False)
-class StorageDesk(Part):
+class StorageMeter(Part):
     """The cached measurement of database and disk; thread-safe, one thread measures for all."""
 
     database: Database
@@ -61,7 +61,7 @@ class StorageDesk(Part):
 
     @classmethod
     def of(cls, context: AppContext) -> Self:
-        """Create the storage desk of a server."""
+        """Create the storage meter of a server."""
         return cls(context.database, context.settings, context.clock)
 
     def measured(self, *, refresh: bool = False) -> Measured:

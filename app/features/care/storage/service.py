@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.features.care.storage.measuring import Measured, MeasuredSession, StorageDesk
+from app.features.care.storage.measuring import Measured, MeasuredSession, StorageMeter
 from app.features.care.storage.schemas import (
     DiskView,
     HalfMadeView,
@@ -28,7 +28,7 @@ MEASURED_BY: tuple[SessionKind, ...] = ("people", "test", "simulated")
 
 def storage_view(db: Session, context: AppContext, caller: Caller, *, refresh: bool) -> StorageView:
     """Return all sizes, with only those studies and sessions that the caller may see."""
-    measured = context.part(StorageDesk).measured(refresh=refresh)
+    measured = context.part(StorageMeter).measured(refresh=refresh)
     disk = _disk(context, measured)
     studies = db.scalars(select(Study).where(visible_to(caller)).order_by(Study.key)).all()
     own = {study.key for study in studies}

@@ -11,6 +11,7 @@ from starlette.background import BackgroundTask
 from starlette.concurrency import run_in_threadpool
 
 from app.adapters.captures import WRITERS, writer_of
+from app.features.movement.captures.capture_queue import CaptureQueue
 from app.features.movement.captures.joint_maps import (
     joint_map_view,
     mapped_capture,
@@ -31,7 +32,6 @@ from app.features.movement.captures.tasks import (
     verification_json,
     write_retargeted,
 )
-from app.features.movement.captures.workbench import Workbench
 from app.features.movement.files import BINARY, BYTES, attachment, binary
 from app.platform.context import AppContext
 from app.platform.dependencies import Context, Reading, SignedIn, Writing
@@ -82,7 +82,7 @@ async def get_verification(
     mapped = await run_in_threadpool(mapped_capture, context, capture_id)
     statures = tuple(dict.fromkeys(avatars))
     return Response(
-        await context.part(Workbench).run_cached(
+        await context.part(CaptureQueue).run_cached(
             verification_json, mapped, statures, lock_feet=lock_feet
         ),
         media_type="application/json",
@@ -130,7 +130,7 @@ async def get_retargeted_motion(
     """Return the positions of an avatar's joints over time, for a preview."""
     mapped = await run_in_threadpool(mapped_capture, context, capture_id)
     return Response(
-        await context.part(Workbench).run_cached(
+        await context.part(CaptureQueue).run_cached(
             retargeted_positions, mapped, avatar, lock_feet=lock_feet
         ),
         media_type=BYTES,
@@ -143,7 +143,7 @@ async def _retargeted_file(
     """Write the movement on an avatar to a file that the caller removes; raise InvalidInput."""
     path = await run_in_threadpool(_new_file, context)
     try:
-        await context.part(Workbench).run(
+        await context.part(CaptureQueue).run(
             write_retargeted, mapped, avatar, format_, path, lock_feet=lock_feet
         )
     except BaseException:

@@ -6,6 +6,7 @@ from fastapi import APIRouter, Query, Request, Response
 from fastapi.responses import StreamingResponse
 from starlette.concurrency import run_in_threadpool
 
+from app.features.movement.captures.capture_queue import CaptureQueue
 from app.features.movement.captures.schemas import (
     CaptureChange,
     CapturePage,
@@ -26,7 +27,6 @@ from app.features.movement.captures.service import (
 )
 from app.features.movement.captures.tasks import recorded_positions
 from app.features.movement.captures.views import capture_page, capture_view
-from app.features.movement.captures.workbench import Workbench
 from app.features.movement.files import BODY, BYTES, FileName, attachment, binary, sent
 from app.platform.context import AppContext
 from app.platform.dependencies import Context, Reading, SignedIn, Writing
@@ -123,7 +123,7 @@ async def get_motion(
     """Return positions over time for a preview, as recorded or of the capture's skeleton."""
     source = await run_in_threadpool(source_of_capture, context, capture_id)
     return Response(
-        await context.part(Workbench).run_cached(
+        await context.part(CaptureQueue).run_cached(
             recorded_positions, store_of(context), source, shown
         ),
         media_type=BYTES,

@@ -10,6 +10,7 @@ from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput, NotFound
+from app.features.movement.captures.capture_queue import CaptureQueue
 from app.features.movement.captures.inspecting import (
     Inspected,
     inspect_stored,
@@ -18,7 +19,6 @@ from app.features.movement.captures.inspecting import (
 from app.features.movement.captures.opening import Store
 from app.features.movement.captures.schemas import CaptureChange, ReadingChoice
 from app.features.movement.captures.source import Source, source_of
-from app.features.movement.captures.workbench import Workbench
 from app.features.movement.files import Uploaded, compressed_beside, drop_unused, store, uploaded
 from app.features.people.audit import record
 from app.models import CaptureRow, new_id
@@ -78,7 +78,7 @@ async def add_capture(
             return existing_id, False
         paths = tuple(file.path for file in files)
         max_bytes = context.settings.max_capture_bytes
-        inspected = await context.part(Workbench).run(inspect_upload, max_bytes, source, paths)
+        inspected = await context.part(CaptureQueue).run(inspect_upload, max_bytes, source, paths)
         async with context.database.writing_async() as db:
             return await run_sync(_store, db, context, caller, request, source, files, inspected)
 
@@ -90,7 +90,7 @@ async def change_capture(
     inspected: Inspected | None = None
     if request.reading is not None:
         source = await run_sync(source_of_capture, context, capture_id, request.reading)
-        inspected = await context.part(Workbench).run(inspect_stored, store_of(context), source)
+        inspected = await context.part(CaptureQueue).run(inspect_stored, store_of(context), source)
     async with context.database.writing_async() as db:
         await run_sync(_change, db, context, caller, capture_id, request, inspected)
 

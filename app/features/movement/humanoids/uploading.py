@@ -8,7 +8,7 @@ from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput
-from app.features.movement.captures import Workbench
+from app.features.movement.captures import CaptureQueue
 from app.features.movement.files import Uploaded, compressed_beside, store, uploaded
 from app.features.movement.humanoids.service import is_known
 from app.features.movement.humanoids.tasks import Measured, Refused, measure
@@ -43,7 +43,7 @@ async def add_humanoid(
 async def _measured(context: AppContext, name: str, file: Uploaded) -> Measured:
     try:
         max_bytes = context.settings.max_capture_bytes
-        found = await context.part(Workbench).run(measure, max_bytes, file.path)
+        found = await context.part(CaptureQueue).run(measure, max_bytes, file.path)
     except InvalidInput as error:
         # A limit was exceeded; the message for captures does not apply to models.
         raise InvalidInput(

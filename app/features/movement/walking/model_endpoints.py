@@ -8,8 +8,7 @@ from fastapi.responses import StreamingResponse
 from starlette.concurrency import run_in_threadpool
 
 from app.features.movement.files import BYTES, attachment, binary, sent
-from app.features.movement.walking.bench import Bench
-from app.features.movement.walking.desk import FittingDesk
+from app.features.movement.walking.fit_queue import FitQueue
 from app.features.movement.walking.model_schemas import (
     ModelListed,
     ModelView,
@@ -20,6 +19,7 @@ from app.features.movement.walking.model_schemas import (
     SliceAsked,
     SliceView,
 )
+from app.features.movement.walking.prediction_queue import PredictionQueue
 from app.features.movement.walking.scenes import scene_text
 from app.features.movement.walking.schemas import NewModel
 from app.features.movement.walking.service import (
@@ -64,14 +64,14 @@ def get_model(model_id: str, db: Reading, context: Context, _: SignedIn) -> Mode
 async def delete_model(model_id: str, context: Context, caller: SignedIn) -> None:
     """Delete a model, or cancel its fit."""
     await write(context, lambda db: remove_model(db, context, caller, model_id))
-    await run_in_threadpool(context.part(FittingDesk).forget, model_id)
+    await run_in_threadpool(context.part(FitQueue).forget, model_id)
 
 
 @router.post("/models/{model_id}/stop")
 async def stop_model(model_id: str, context: Context, caller: SignedIn) -> ModelView:
     """Stop fitting a model; its finished maps are kept."""
     await write(context, lambda db: mark_stopped(db, context, caller, model_id))
-    await run_in_threadpool(context.part(FittingDesk).halt, model_id)
+    await run_in_threadpool(context.part(FitQueue).halt, model_id)
     return await run_in_threadpool(_view, context, model_id)
 
 
@@ -99,7 +99,7 @@ def get_model_file(model_id: str, context: Context, _: SignedIn) -> StreamingRes
 async def post_path(request: PathAsked, context: Context, _: SignedIn) -> PathView:
     """Return the shortest path between two points, or check that a drawn one avoids obstacles."""
     question = await run_in_threadpool(_question, context, request)
-    points = await context.part(Bench).run_cached(plan_path, question)
+    points = await context.part(PredictionQueue).run_cached(plan_path, question)
     length_m = sum(dist(a, b) for a, b in pairwise(points))
     return PathView(points_m=points, length_m=length_m)
 
@@ -111,7 +111,7 @@ async def post_prediction(
     """Predict how long people take on a path: a distribution, and walks drawn from it."""
     content_hash = await run_in_threadpool(_content, context, model_id)
     question = await run_in_threadpool(_question, context, request)
-    found = await context.part(Bench).run_cached(
+    found = await context.part(PredictionQueue).run_cached(
         predict_walk, store_of(context), content_hash, question
     )
     return PredictionView.model_validate(found)
@@ -126,7 +126,7 @@ async def post_slice(
     question = SliceQuestion(
         tuple(sorted(request.dependencies.items())), request.held, request.value
     )
-    found = await context.part(Bench).run_cached(
+    found = await context.part(PredictionQueue).run_cached(
         slice_of, store_of(context), content_hash, question
     )
     return SliceView.model_validate(found)

@@ -7,7 +7,7 @@ from sqlalchemy.orm import Session
 
 from app.errors import Conflict, NotFound, NotNow
 from app.features.movement.files import drop_unused, size_of
-from app.features.movement.walking.desk import FittingDesk
+from app.features.movement.walking.fit_queue import FitQueue
 from app.features.movement.walking.model_schemas import (
     FittedOn,
     ModelListed,
@@ -133,7 +133,7 @@ def begin_fit(context: AppContext, model_id: str) -> ModelView:
     """Start the fit of a stored order."""
     with context.database.reading() as db:
         order = order_of(db, model_id)
-        context.part(FittingDesk).order(model_id, order)
+        context.part(FitQueue).order(model_id, order)
         return model_view(db, context, model_id)
 
 
@@ -177,7 +177,7 @@ def _in_state(db: Session, model_id: str, *states: State) -> WalkingModelRow:
 
 
 def _listed(row: WalkingModelRow, context: AppContext) -> ModelListed:
-    progress = None if row.state == "ready" else context.part(FittingDesk).progress(row.id)
+    progress = None if row.state == "ready" else context.part(FitQueue).progress(row.id)
     return ModelListed(
         id=row.id,
         title=row.title,

@@ -12,7 +12,7 @@ from sqlalchemy.orm import Session
 
 from app.errors import Conflict, NotFound
 from app.features.movement.files import compress, drop_unused, store, uploaded
-from app.features.movement.walking.bench import Bench
+from app.features.movement.walking.prediction_queue import PredictionQueue
 from app.features.movement.walking.schemas import (
     CapturesOrigin,
     Kind,
@@ -80,7 +80,7 @@ async def add_table(
     """Store a table of tracks; raise InvalidInput with the line that cannot be parsed."""
     async with uploaded(context, body, None) as (file,):
         source = tracks_source(request.origin, request.kind, file.hash)
-        found = await context.part(Bench).run(inspected_tracks, source, file.path)
+        found = await context.part(PredictionQueue).run(inspected_tracks, source, file.path)
         row = _row(context, caller, request.title, request.kind, request.origin, file.hash)
         row.summary = WalksSummary.model_validate(found).model_dump(mode="json")
         return await _stored(context, caller, row, _storing(file.hash, file.path))
@@ -91,7 +91,7 @@ async def add_walk_set(context: AppContext, caller: Caller, request: NewWalkSet)
     if isinstance(request.origin, CapturesOrigin):
         return await _add_captured(context, caller, request.title, request.origin)
     source = await run_sync(population_source, context, request.origin)
-    found = await context.part(Bench).run(inspected_population, source)
+    found = await context.part(PredictionQueue).run(inspected_population, source)
     row = _row(context, caller, request.title, "synthetic", request.origin, None)
     row.summary = WalksSummary.model_validate(found).model_dump(mode="json")
     return await _stored(context, caller, row, lambda _: None)
@@ -122,7 +122,7 @@ async def _add_captured(
     context: AppContext, caller: Caller, title: str, origin: CapturesOrigin
 ) -> WalkSetView:
     captures = await run_sync(captured_walks, context, origin)
-    found = await context.part(Bench).run(
+    found = await context.part(PredictionQueue).run(
         captured_table, store_of(context), captures, captures_source(origin, "")
     )
     content_hash = hashlib.sha256(found.table).hexdigest()

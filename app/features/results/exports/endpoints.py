@@ -14,7 +14,7 @@ from app.features.design.studies import study_by_key
 from app.features.movement.files import streamed
 from app.features.people.audit import count_sessions, download_place, record, record_copy
 from app.features.results.analysis import Kind
-from app.features.results.exports.desk import ExportDesk
+from app.features.results.exports.export_queue import ExportQueue
 from app.features.results.exports.jobs import Job
 from app.features.results.exports.names import archive_name
 from app.features.results.exports.schemas import ExportView, ExportWish
@@ -70,27 +70,27 @@ def post_export(
         session_id=request.session_id,
         file_name=archive_name(study.key, what, now.date()),
         asked_at=now,
-        folder=context.part(ExportDesk).folder,
+        folder=context.part(ExportQueue).folder,
     )
-    return context.part(ExportDesk).order(job)
+    return context.part(ExportQueue).order(job)
 
 
 @router.get("/exports")
 def get_exports(context: Context, caller: SignedIn) -> list[ExportView]:
     """Return the caller's exports, newest first: queued, in progress, ready or failed."""
-    return context.part(ExportDesk).exports_of(caller.account_id)
+    return context.part(ExportQueue).exports_of(caller.account_id)
 
 
 @router.get("/exports/{export_id}")
 def get_one_export(export_id: str, context: Context, caller: SignedIn) -> ExportView:
     """Return the progress of one export."""
-    return context.part(ExportDesk).view(caller.account_id, export_id)
+    return context.part(ExportQueue).view(caller.account_id, export_id)
 
 
 @router.delete("/exports/{export_id}", status_code=204)
 def delete_export(export_id: str, context: Context, caller: SignedIn) -> None:
     """Cancel an export, or remove its file."""
-    context.part(ExportDesk).cancel(caller.account_id, export_id)
+    context.part(ExportQueue).cancel(caller.account_id, export_id)
 
 
 @router.get(
@@ -125,7 +125,7 @@ def _code_of(db: Session, study_id: str, request: ExportWish) -> str:
 
 
 def _ready(context: AppContext, caller: Caller, export_id: str) -> Job:
-    job = context.part(ExportDesk).find(caller.account_id, export_id)
+    job = context.part(ExportQueue).find(caller.account_id, export_id)
     # The caller may have lost access to the study after ordering the export.
     with context.database.reading() as db:
         require_object(db, caller, "/api/studies/{key}", {"key": job.study_key})

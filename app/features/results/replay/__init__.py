@@ -1,8 +1,8 @@
 """Replay a recorded phase: the movement, and the events in step with it.
 
-The `ReplayDesk` computes the movement, one phase at a time.
+The `ReplayQueue` computes the movement, one phase at a time.
 """
 
-from app.features.results.replay.desk import ReplayDesk
+from app.features.results.replay.replay_queue import ReplayQueue
 
-__all__ = ["ReplayDesk"]
+__all__ = ["ReplayQueue"]

@@ -5,7 +5,7 @@ from typing import Annotated
 from fastapi import APIRouter, Header, Path, Response
 
 from app.features.movement.files import BYTES, binary
-from app.features.results.replay.desk import ReplayDesk
+from app.features.results.replay.replay_queue import ReplayQueue
 from app.features.results.replay.schemas import Replay
 from app.features.results.replay.service import movement_tag, replayable
 from app.features.results.replay.timeline import replay_of
@@ -44,5 +44,5 @@ def get_movement(
     headers = {"etag": tag, "cache-control": "private, no-cache"}
     if if_none_match is not None and tag in if_none_match:
         return Response(status_code=304, headers=headers)
-    body = context.part(ReplayDesk).movement(session_id, phase_id, full=phase_view.full)
+    body = context.part(ReplayQueue).movement(session_id, phase_id, full=phase_view.full)
     return Response(body, media_type=BYTES, headers=headers)

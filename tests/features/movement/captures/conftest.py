@@ -4,11 +4,11 @@ from collections.abc import Iterator
 
 import pytest
 
-from app.features.movement.captures import workbench
+from app.features.movement.captures import capture_queue
 from tests.features.movement.shared_worker import shared_worker
 
 
 @pytest.fixture(scope="package", autouse=True)
 def _one_process() -> Iterator[None]:
-    with shared_worker(workbench.limit_memory, (workbench, "Worker")):
+    with shared_worker(capture_queue.limit_memory, (capture_queue, "Worker")):
         yield

@@ -8,7 +8,7 @@ from sqlalchemy.orm import Session
 
 from app.database import make_engine
 from app.features.movement.files import compress, store
-from app.features.movement.walking.desk import FittingDesk
+from app.features.movement.walking.fit_queue import FitQueue
 from app.features.movement.walking.sources import Cannot, CapturedWalk, Store, TrackSource
 from app.features.movement.walking.tasks import captured_table
 from app.models import WalkingModelRow
@@ -66,6 +66,6 @@ def test_a_fit_that_the_server_left_is_stopped(fresh_lab: Lab) -> None:
     )
     with fresh_lab.database.writing() as db:
         db.add(row)
-    fresh_lab.context.part(FittingDesk).start()
+    fresh_lab.context.part(FitQueue).start()
     (listed,) = ok(fresh_lab.operator.get("/api/walking/models"))
     assert (listed["state"], listed["trouble"]) == ("stopped", None)

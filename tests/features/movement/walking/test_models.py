@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from sqlalchemy import func, select
 
-from app.features.movement.walking.desk import FittingDesk
+from app.features.movement.walking.fit_queue import FitQueue
 from app.models import CaptureContent, WalkSetRow
 from tests.features.lab import Json, Lab, error, ok
 from tests.features.movement.walking.walkers import FLOOR, SMALL, bring_in, fitted, settled, table
@@ -150,7 +150,7 @@ def test_a_fit_is_stopped_and_resumed(walking_lab: Lab) -> None:
     """Stopped while it waits, it is not fitted; resumed, it is; neither can be done twice."""
     walks = ok(bring_in(walking_lab, table(people=2)))
     held = threading.Event()
-    walking_lab.context.part(FittingDesk)._maker.submit(held.wait)
+    walking_lab.context.part(FitQueue)._maker.submit(held.wait)
     wish = {"title": "Again", "walk_set_id": walks["id"], "options": SMALL}
     begun = ok(walking_lab.operator.post("/api/walking/models", json=wish))
     path = f"/api/walking/models/{begun['id']}"

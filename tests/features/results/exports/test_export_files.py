@@ -12,7 +12,7 @@ import pytest
 from fastapi.testclient import TestClient
 from sqlalchemy import select
 
-from app.features.results.exports.desk import ExportDesk
+from app.features.results.exports.export_queue import ExportQueue
 from app.features.results.exports.jobs import KEEP_FOR
 from app.features.results.exports.writing.service import study_archive
 from app.models import CopyMade
@@ -69,7 +69,7 @@ def _until(client: TestClient, export_id: str, *states: str) -> Json:
 
 
 def _folder(lab: Lab) -> list[str]:
-    folder = lab.context.part(ExportDesk).folder
+    folder = lab.context.part(ExportQueue).folder
     return sorted(path.name for path in folder.iterdir()) if folder.is_dir() else []
 
 
@@ -129,7 +129,7 @@ def test_one_session_alone_for_whoever_asked(small_site: Lab) -> None:
         answer = colleague.request(method, f"/api/exports/{done['id']}{path}")
         error(answer, 404, "not_found")
     # It goes two hours after somebody last asked for it.
-    job = small_site.context.part(ExportDesk).find(_account(client), done["id"])
+    job = small_site.context.part(ExportQueue).find(_account(client), done["id"])
     assert job.fetched_at is not None
     job.fetched_at -= KEEP_FOR
     assert ok(client.get("/api/exports")) == []
@@ -142,11 +142,11 @@ def test_what_is_cancelled_ends_at_once_and_leaves_nothing(
     """The process is gone with its half-written file; what waited behind it is made."""
     client = small_site.operator
     with monkeypatch.context() as patched:
-        patched.setattr("app.features.results.exports.desk.make_archive", never_done)
+        patched.setattr("app.features.results.exports.export_queue.make_archive", never_done)
         stuck = _order(client)
         # Asked for again while it is under way, it is the same one.
         assert _order(client)["id"] == stuck["id"]
-        pid_file = small_site.context.part(ExportDesk).folder / f"{stuck['id']}.pid"
+        pid_file = small_site.context.part(ExportQueue).folder / f"{stuck['id']}.pid"
         give_up_s = time.monotonic() + WITHIN_S
         while not pid_file.exists() and time.monotonic() < give_up_s:
             time.sleep(0.05)
@@ -176,7 +176,7 @@ def test_a_file_goes_with_an_erasure(small_site: Lab) -> None:
 
 def test_a_disk_that_is_nearly_full_is_left_alone(small_site: Lab) -> None:
     """The export fails in words, and nothing of it stays; running sessions keep their room."""
-    small_site.context.part(ExportDesk).keep_free_bytes = 2**60
+    small_site.context.part(ExportQueue).keep_free_bytes = 2**60
     client = small_site.operator
     failed = _until(client, _order(client)["id"], "ready", "failed")
     assert failed["state"] == "failed"

@@ -43,7 +43,7 @@ def make_archive(order: ExportOrder) -> ExportResult | ExportFailure:
 
 
 @dataclass(eq=False)
-class ExportDesk(Part):
+class ExportQueue(Part):
     """The queue of a server's exports, with the thread that makes them; thread-safe.
 
     `keep_free_bytes` of the disk are always left free.

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterator
 import pytest
 
 from app.errors import InvalidInput, NotDurable
-from app.features.movement.captures import workbench
-from app.features.movement.captures.workbench import Workbench
+from app.features.movement.captures import capture_queue
+from app.features.movement.captures.capture_queue import CaptureQueue
 from app.platform import job_queue as working_line
 from app.platform.workers import Worker
 from tests.features.movement.captures import hostile
@@ -17,14 +17,14 @@ LIMITED = 512 * 2**20
 
 def limit_to_little() -> None:
     """The process's own limit, but with less to take."""
-    workbench.MEMORY_BYTES = LIMITED
-    workbench.limit_memory()
+    capture_queue.MEMORY_BYTES = LIMITED
+    capture_queue.limit_memory()
 
 
 @pytest.fixture(scope="module")
-def bench() -> Iterator[Workbench]:
+def bench() -> Iterator[CaptureQueue]:
     """A process with a small memory."""
-    bench = Workbench(_worker=Worker(limit_to_little))
+    bench = CaptureQueue(_worker=Worker(limit_to_little))
     yield bench
     bench.stop()
 
@@ -38,7 +38,9 @@ def bench() -> Iterator[Workbench]:
         (hostile.fail, "KeyError"),
     ],
 )
-def test_a_hostile_file_hurts_nobody(bench: Workbench, task: Callable[[], bytes], why: str) -> None:
+def test_a_hostile_file_hurts_nobody(
+    bench: CaptureQueue, task: Callable[[], bytes], why: str
+) -> None:
     """It is refused with the reason, and the next file is read by a process that works."""
 
     async def one_after_the_other() -> bytes:
@@ -55,7 +57,7 @@ def test_a_hostile_file_hurts_nobody(bench: Workbench, task: Callable[[], bytes]
 
 
 def test_whoever_waits_too_long_a_line_is_told(
-    bench: Workbench, monkeypatch: pytest.MonkeyPatch
+    bench: CaptureQueue, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Rather than to fill the server with requests that wait."""
     monkeypatch.setattr(working_line, "WAITING", 2)
@@ -72,10 +74,10 @@ def test_whoever_waits_too_long_a_line_is_told(
 
 
 def test_what_was_computed_is_kept_within_bounds(
-    bench: Workbench, monkeypatch: pytest.MonkeyPatch
+    bench: CaptureQueue, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The oldest go first."""
-    monkeypatch.setattr(workbench, "MAX_CACHED_BYTES", 10)
+    monkeypatch.setattr(capture_queue, "MAX_CACHED_BYTES", 10)
 
     async def ask() -> None:
         for n in (4, 5, 6):

@@ -23,7 +23,7 @@ def load() -> None:
 
 
 @dataclass
-class Bench(JobQueue):
+class PredictionQueue(JobQueue):
     """Compute predictions one after the other, and cache their results."""
 
     messages: ClassVar[JobMessages] = JobMessages(

@@ -35,7 +35,7 @@ def limit_memory() -> None:
 
 
 @dataclass
-class Workbench(JobQueue):
+class CaptureQueue(JobQueue):
     """Run the tasks of captures one after the other, and cache their results (bytes)."""
 
     messages: ClassVar[JobMessages] = JobMessages(

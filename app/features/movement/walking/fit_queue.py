@@ -52,7 +52,7 @@ class _Fit:
 
 
 @dataclass(eq=False)
-class FittingDesk(Part):
+class FitQueue(Part):
     """The queue of a server's fits, with the thread that runs them; thread-safe."""
 
     folder: Path

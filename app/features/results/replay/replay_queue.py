@@ -13,7 +13,7 @@ from app.platform.context import AppContext, Part
 
 
 @dataclass
-class ReplayDesk(Part):
+class ReplayQueue(Part):
     """Compute the movement of one phase after the other, in a thread."""
 
     database: Database
@@ -23,7 +23,7 @@ class ReplayDesk(Part):
 
     @classmethod
     def of(cls, context: AppContext) -> Self:
-        """Create the replay desk of a server."""
+        """Create the replay queue of a server."""
         return cls(context.database)
 
     def movement(self, session_id: str, phase_id: int, *, full: bool) -> bytes:
