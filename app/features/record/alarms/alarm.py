@@ -47,7 +47,7 @@ class Condition:
 
     @property
     def key(self) -> tuple[str, str | None]:
-        """Return what identifies its alarm: at most one is open for each code and stream."""
+        """Return the key of its alarm, code and stream; at most one alarm per key is open."""
         return self.code, self.stream
 
 
@@ -112,15 +112,15 @@ class OpenAlarms:
 
 @dataclass(frozen=True)
 class WatchLimits:
-    """What the watch of a headset tolerates. Durations are in real seconds unless named `client`.
+    """The limits of a headset's quality checks, in real seconds unless named `client`.
 
     `silent_s`: time without a frame while frames are expected. `clock_unknown_s`: time without a
     usable clock probe. `clock_uncertain_s`: half of the smallest round trip within
     `clock_window_s`. `backlog_s`: movement that is not on disk yet. `low_rate_share`: the lowest
     tolerated share of the usual frame rate, over `low_rate_client_s`; it is slightly less than 72
     of 90 Hz, because displays do have that rate. `gap_client_s`: shorter gaps are counted but raise
-    no alarm. `clear_after_s`: how long after its cause ceases an alarm is cleared. `check_every_s`:
-    the interval between checks.
+    no alarm. `clear_after_s`: an alarm is cleared when its cause has been absent for so long.
+    `check_every_s`: the interval between checks.
     """
 
     silent_s: float = 3.0

@@ -67,7 +67,7 @@ class SilenceWatch:
     def phase_is_lost(self, now_s: float) -> bool:
         """Return whether a running phase must be paused now for lack of frames.
 
-        After True it returns False until the headset has been silent for `silent_s` once more.
+        After True it returns False for the next `silent_s` seconds.
         """
         silent_s = self.silent_s(now_s)
         if silent_s == 0.0 or not self._running:

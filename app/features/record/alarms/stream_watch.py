@@ -73,7 +73,7 @@ class StreamWatch:
 
     @property
     def frame_rate_hz(self) -> float | None:
-        """Return the recent frames per second of the client's clock, not counting long gaps."""
+        """Return the recent frame rate on the client's clock, without long gaps."""
         spans_s = sum(span_s for _, span_s in self._pace)
         return sum(frames for frames, _ in self._pace) / spans_s if spans_s > 0.0 else None
 

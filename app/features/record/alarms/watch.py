@@ -29,10 +29,10 @@ class CheckResult:
 
 @dataclass
 class QualityWatch:
-    """All watches over one open headset socket. Uses neither the database nor the event loop.
+    """Run all checks on one open headset socket, without using the database or the event loop.
 
-    Create it with `QualityWatch.of(welcome, ...)`, pass it what the headset sends and what is
-    stored of that, and call `check` about every `limits.check_every_s`.
+    Create it with `QualityWatch.of(welcome, ...)`, pass it what the headset sends and what was
+    stored, and call `check` about every `limits.check_every_s`.
     """
 
     limits: WatchLimits

@@ -25,7 +25,7 @@ A login that is ended elsewhere is noticed immediately, one that expires within 
 
 
 def _existing_session(session_id: str, context: Context) -> str:
-    """Return the id of an existing session; raises an error before the stream has begun."""
+    """Return the session's id; raises NotFound before the stream has begun."""
     with context.database.reading() as db:
         return session_by_id(db, session_id).id
 
