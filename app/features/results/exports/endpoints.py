@@ -134,7 +134,7 @@ def _ready(context: AppContext, caller: Caller, export_id: str) -> Job:
             "this export is not ready",
             value=job.state,
             valid=["ready"],
-            remedy="Wait until it is, or make it again where it failed.",
+            remedy="Wait until it is ready; if it failed, start the export again.",
         )
     return job
 

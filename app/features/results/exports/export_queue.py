@@ -151,7 +151,7 @@ class ExportQueue(Part):
         try:
             self._make(job)
         except Exception as error:
-            log.exception("an export could not be made")
+            log.exception("an export could not be created")
             self.background.failed(QUEUE, error)
             job.trouble = ExportTrouble(message=ENDED.message, remedy=ENDED.remedy)
             job.state = "failed"
@@ -180,7 +180,7 @@ class ExportQueue(Part):
             if not job.cancelled:
                 self.background.failed(QUEUE, error)
         except Exception as error:
-            log.exception("an export could not be made")
+            log.exception("an export could not be created")
             result = ENDED
             self.background.failed(QUEUE, error)
         finally:

@@ -119,7 +119,7 @@ class _Run:
         if value is None:
             self._out.unknown_words[cell[:_SHOWN]] = None
             self._report(
-                row, column, "These words have no number.", "Give the word a number above."
+                row, column, "These words have no number yet.", "Assign a number to the word above."
             )
         elif not fits(self._instrument, item, value):
             became = f" (becomes {value:g})" if isinstance(value, float) else ""
@@ -190,7 +190,7 @@ class _Run:
         if name is not None and not word:
             self._report(row, name, "The condition is missing.", "Fill it in, or remove the row.")
         if len(word) > MAX_CODE and name is not None:
-            self._report(row, name, "The condition is too long.", f"At most {MAX_CODE} letters.")
+            self._report(row, name, "The condition is too long.", f"At most {MAX_CODE} characters.")
         return self._mapping.conditions.get(word, word)[:MAX_CODE]
 
     def _code(self, row: SheetRow) -> str:
@@ -203,10 +203,10 @@ class _Run:
                 row,
                 name,
                 "An e-mail address is not a pseudonym.",
-                "Replace addresses by codes first.",
+                "Replace e-mail addresses with codes first.",
             )
         elif len(code) > MAX_CODE:
-            self._report(row, name, "The code is too long.", f"At most {MAX_CODE} letters.")
+            self._report(row, name, "The code is too long.", f"At most {MAX_CODE} characters.")
         return code
 
     def _day(self, row: SheetRow) -> date | None:
@@ -219,7 +219,9 @@ class _Run:
                 return datetime.strptime(cell.split("T")[0].split(" ")[0], pattern).date()  # noqa: DTZ007 - a day has no zone
             except ValueError:
                 continue
-        self._report(row, name, "This is not a date in the chosen order.", "Choose another order.")
+        self._report(
+            row, name, "This is not a date in the chosen order.", "Choose another date format."
+        )
         return None
 
     def _find_duplicates(self) -> None:

@@ -128,7 +128,7 @@ def _not_mapped(instrument: Instrument, items: set[str]) -> list[str]:
     lacking = [key for key in instrument.by_key if key not in items]
     if not lacking:
         return []
-    return [f"No column for {', '.join(lacking)}: scores that need them stay empty."]
+    return [f"No column for {', '.join(lacking)}: scores that need these items stay empty."]
 
 
 def _preview(form: Form) -> FormPreview:

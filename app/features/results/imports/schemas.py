@@ -53,9 +53,11 @@ class Mapping(_Body):
     def _require_one_source_of_conditions(self) -> Self:
         conditions = [one.condition for one in self.sets]
         if self.condition is not None and any(conditions):
-            raise ValueError("give a column of conditions, or a condition to each set of columns")
+            raise ValueError(
+                "choose a column with the conditions, or a condition for each set of columns"
+            )
         if len(self.sets) > 1 and (None in conditions or len(set(conditions)) < len(conditions)):
-            raise ValueError("several sets of columns need a condition each, all different")
+            raise ValueError("each of several sets of columns needs a condition of its own")
         if self.multiply == 0.0:
             raise ValueError("multiply cannot be 0")
         return self

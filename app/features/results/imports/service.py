@@ -70,7 +70,7 @@ def import_answers(
         raise InvalidInput(
             f"{len(applied.problems)} cells cannot be imported; nothing was stored"
             if applied.problems
-            else "the file holds no answers; nothing was stored",
+            else "the file contains no answers; nothing was stored",
             remedy="Correct the file or the meaning of its columns, then try again.",
             details=[one.model_dump() for one in applied.problems[:_SHOWN_PROBLEMS]],
         )
@@ -130,9 +130,9 @@ def _reject_duplicate(db: Session, study: Study, instrument: str, content_hash: 
     existing = active_import(db, study, instrument, content_hash)
     if existing is not None:
         raise Conflict(
-            "this file was imported before, as answers to the same instrument",
+            "this file has already been imported as answers to the same instrument",
             value=existing.file_name,
-            remedy="Open that import. Undo it first if it was wrong.",
+            remedy="Open that import. If it was wrong, undo it first.",
             details=[{"import_id": existing.id, "imported_at": existing.imported_at.isoformat()}],
         )
 

@@ -53,7 +53,7 @@ class Sheet:
                 f"the file has no column {name!r}",
                 value=name,
                 valid=self.header,
-                remedy="Choose one of its columns. Was the file changed since it was mapped?",
+                remedy="Choose one of its columns; the file may have changed since it was mapped.",
             )
         return self.header.index(name)
 
@@ -146,7 +146,8 @@ def _check_shape(rows: list[SheetRow], header: list[str], header_count: int) -> 
                 f"line {row.line} has {len(row.cells)} cells, but the header has {len(header)}",
                 value=row.line,
                 valid=len(header),
-                remedy="Give every row one cell for each column; quote text with separators.",
+                remedy="Give every row one cell for each column, and put text that contains "
+                "separators in quotes.",
             )
         if any(len(cell) > MAX_CELL or "\0" in cell for cell in row.cells):
             raise InvalidInput(

@@ -32,8 +32,8 @@ def shift_of(instrument: Instrument, numbers: Map[str, Sequence[float]]) -> Shif
         multiply, add = float(scale.step), float(scale.minimum - scale.step * start)
         if (multiply, add) != (1.0, 0.0) and start <= low and high <= n - 1 + start:
             why = (
-                f"The numbers go from {low:g} to {high:g}; the scale has {n} steps from "
-                f"{scale.minimum} to {scale.maximum}. They may count the steps from {start}."
+                f"The numbers range from {low:g} to {high:g}; the scale has {n} steps from "
+                f"{scale.minimum} to {scale.maximum}. The file may count the steps from {start}."
             )
             return Shift(multiply=multiply, add=add, why=why)
     return None

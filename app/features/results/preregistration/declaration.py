@@ -16,7 +16,7 @@ MEASURES = {
 DIRECTIONS = {"two_sided": "two-sided", "rises": "it rises", "falls": "it falls"}
 RULES = {
     "complete_session": "sessions that were not completed",
-    "minimum_frame_rate_hz": "a task phase below {limit:g} frames a second",
+    "minimum_frame_rate_hz": "a task phase below {limit:g} frames per second",
     "minimum_share_of_frames": "a task phase with less than {limit:.0%} of its time in frames",
     "maximum_latency_error_ms": "a task phase whose latency is off by more than {limit:g} ms",
     "minimum_active_time_s": "a task phase shorter than {limit:g} s of active time",

@@ -91,7 +91,10 @@ def _numbers(declared: Declared, sessions: pd.DataFrame, n: int) -> list[Deviati
     still = int(sessions["status"].isin(["planned", "active"]).sum())
     if still:
         deviations.append(
-            _note("still_open", f"{_count(still, 'session')} not over yet: not in the test.")
+            _note(
+                "still_open",
+                f"{_count(still, 'session')} not completed yet, and so not in the test.",
+            )
         )
     if n < planned:
         said = f"{n} of {planned} declared participants are in the test."
@@ -116,8 +119,8 @@ def _by_hand(declared: Declared, sessions: pd.DataFrame) -> list[DeviationView]:
     return [
         _deviation(
             "left_out_by_hand",
-            f"{_count(len(broken), 'session')} broken off and left out, though no declared rule "
-            f"says so: {names}.",
+            f"{_count(len(broken), 'session')} ended early and excluded, although no declared "
+            f"rule says so: {names}.",
         )
     ]
 
@@ -126,8 +129,8 @@ def _unjudged(excluded: Excluded) -> list[DeviationView]:
     return [
         _deviation(
             "not_judged",
-            f"The rule {rule} could not be judged for {_names(codes)}: nothing was measured. They "
-            "were not left out by it.",
+            f"The rule {rule} could not be applied to {_names(codes)}, because nothing was "
+            "measured. It did not exclude them.",
         )
         for rule, codes in excluded.not_judged.items()
     ]
@@ -139,12 +142,12 @@ def _values(found: Values, n_corrected: int) -> list[DeviationView]:
         deviations.append(
             _deviation(
                 "missing_values",
-                f"{_names(list(found.lacking))} left out for a missing value in a condition, not "
+                f"{_names(list(found.lacking))} excluded for a missing value in a condition, not "
                 "by a declared rule.",
             )
         )
     if n_corrected:
-        where = "corrections.csv of the export has each with its reason."
+        where = "corrections.csv in the export lists each with its reason."
         said = f"{_count(n_corrected, 'answer')} corrected after it was given; {where}"
         deviations.append(_note("corrected", said))
     return deviations
@@ -156,12 +159,15 @@ def _notes(declared: Declared) -> list[DeviationView]:
         deviations.append(
             _note(
                 "not_registered",
-                "No registration is named: this declaration is dated and hashed by this server "
-                "only. A registry (OSF, AsPredicted) makes the date independent of the lab.",
+                "No registration is given: only this server dates and hashes the declaration. A "
+                "registry (OSF, AsPredicted) makes the date independent of the lab.",
             )
         )
     deviations.append(
-        _note("exploratory", "Every other test, the Statistics page included, is exploratory.")
+        _note(
+            "exploratory",
+            "Every other test, including those on the Statistics page, is exploratory.",
+        )
     )
     return deviations
 

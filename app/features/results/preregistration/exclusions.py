@@ -106,7 +106,7 @@ def _frame_rate(tables: Tables, session_id: str, limit: float) -> str | None:
     if values.empty:
         return NOT_JUDGED
     lowest = float(values.min())
-    return None if lowest >= limit else f"{lowest:.1f} frames a second, declared {limit:g}"
+    return None if lowest >= limit else f"{lowest:.1f} frames per second, declared {limit:g}"
 
 
 def _share(tables: Tables, session_id: str, limit: float) -> str | None:

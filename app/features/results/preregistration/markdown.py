@@ -32,7 +32,7 @@ def as_markdown(view: PreregistrationView) -> str:
         lines += ["", "**SIMULATED DATA: made by a simulation, not by people.**"]
     one = view.declaration
     if one is None:
-        return "\n".join([*lines, "", "Nothing was declared."]) + "\n"
+        return "\n".join([*lines, "", "Not preregistered."]) + "\n"
     frozen = "not frozen yet" if one.frozen_at is None else f"{one.frozen_at:%Y-%m-%d %H:%M} UTC"
     lines += [
         "",
@@ -47,7 +47,7 @@ def as_markdown(view: PreregistrationView) -> str:
         "",
         "## Done",
         "",
-        f"- {view.sessions} sessions are over; {view.included} participants are in the test",
+        f"- {view.sessions} sessions have ended; {view.included} participants are in the test",
         *[f"- {out.participant_code}: {out.rule}: {out.reason}" for out in view.excluded],
         f"- {view.result.sentence}" if view.result else f"- No result: {view.why_no_result}",
     ]
@@ -75,10 +75,11 @@ def _table(view: PreregistrationView) -> list[str]:
 
 def _unnamed(one: DeviationView) -> DeviationView:
     texts = {
-        "missing_values": "Participants were left out for a missing value in a condition, not by a "
-        "declared rule.",
-        "not_judged": "A declared rule could not be judged for some participants: nothing was "
-        "measured. They were not left out by it.",
-        "left_out_by_hand": "Broken-off sessions were left out, though no declared rule says so.",
+        "missing_values": "Participants were excluded for a missing value in a condition, not by "
+        "a declared rule.",
+        "not_judged": "A declared rule could not be applied to some participants, because "
+        "nothing was measured. It did not exclude them.",
+        "left_out_by_hand": "Sessions that ended early were excluded, although no declared rule "
+        "says so.",
     }
     return one.model_copy(update={"text": texts.get(one.code, one.text)})

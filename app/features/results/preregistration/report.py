@@ -56,7 +56,7 @@ def completed_view(
 
 def _result(declared: Declared, found: Values) -> tuple[PrimaryResult | None, str | None]:
     if len(found.people) < MIN_TESTED:
-        return None, "Fewer than two participants have every value: there is nothing to test yet."
+        return None, "Fewer than two participants have all values; there is nothing to test yet."
     try:
         return make_test(declared.preregistration, found), None
     except StatisticsError as error:

@@ -26,7 +26,7 @@ def get_replay(session_id: str, phase_id: PhaseId, db: Reading, caller: SignedIn
     response_class=Response,
     responses={
         200: binary("Places of the joints over time."),
-        304: {"description": "The movement is the one that is there already."},
+        304: {"description": "The movement has not changed."},
     },
 )
 def get_movement(

@@ -54,7 +54,7 @@ def replayable(db: Session, caller: Caller, session_id: str, phase_id: int) -> R
         raise Gone(
             "the data of this session's participant were erased",
             value=session_id,
-            remedy="There is nothing left to replay; the tombstone on the session's page says why.",
+            remedy="There is nothing left to replay; the session's page says why.",
         )
     phase = db.get(Phase, (session_id, phase_id))
     if phase is None:
@@ -67,7 +67,7 @@ def replayable(db: Session, caller: Caller, session_id: str, phase_id: int) -> R
         )
     if phase.status not in OVER:
         raise NotNow(
-            "this phase is not over yet",
+            "this phase has not ended yet",
             value=phase.status,
             valid=list(OVER),
             remedy="Watch it on the session's page; it can be replayed as soon as it has ended.",

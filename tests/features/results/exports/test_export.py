@@ -80,7 +80,7 @@ def test_the_readme_says_where_it_comes_from(simulated: Made) -> None:
     """Kind, time, study, content hash, counts, and a hash of each file that holds."""
     tree = simulated.tree
     readme = tree["README.txt"].decode()
-    for words in (STUDY, "2026-03-02T09:30:00Z", "simulated", "1 completed", "by a simulation"):
+    for words in (STUDY, "2026-03-02T09:30:00Z", "simulated", "1 completed", "from a simulation"):
         assert words in readme
     assert rows_of(tree["sessions.csv"])[0]["study_content_hash"] in readme
     for name, data in tree.items():

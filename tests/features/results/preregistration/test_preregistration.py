@@ -58,7 +58,7 @@ def test_a_study_that_declared_nothing_says_so(database: Database) -> None:
     visit(database, "P1")
     view = view_of(database)
     assert (view.declaration, view.result, view.deviations) == (None, None, [])
-    assert "Nothing was declared." in as_markdown(view)
+    assert "Not preregistered." in as_markdown(view)
 
 
 @pytest.mark.one_engine

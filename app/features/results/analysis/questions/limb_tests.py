@@ -282,7 +282,11 @@ def _planned(data: LimbData) -> TestReport:
         sentence=(
             f"{first_difference} at α = {bounded(data.alpha, 2)} over all {len(found.comparisons)} "
             "comparisons. "
-            + ("It is no threshold: latencies between those tested are unknown." if first else "")
+            + (
+                "This is not a threshold: latencies between those tested are unknown."
+                if first
+                else ""
+            )
         ),
         apa=f"{data.name}: {'; '.join(parts)}",
         columns=(

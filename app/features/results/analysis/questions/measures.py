@@ -99,7 +99,8 @@ def measures_of(material: Material) -> Iterator[Measure]:
     yield from _measure(
         "contact_time",
         ("Contact time", "s"),
-        "Active seconds per phase in which sides of boxes were red: the union over body parts.",
+        "Active seconds per phase during which a side of a box was red, whichever body part "
+        "touched it.",
         tasks.rename(columns={"side_red_s": "value"}),
     )
     yield from _measure(

@@ -107,7 +107,7 @@ def _why(error: Exception) -> str:
     """Return why no model was fitted; numerical failure means no residual variance."""
     if isinstance(error, StatisticsError):
         return str(error)
-    return "Participants, latencies and limbs explain the measure fully; nothing is left to chance."
+    return "Participants, latencies and limbs explain the measure completely: nothing is left over."
 
 
 def _anova(measure: Measure, alpha: float, key: str, title: str) -> TestReport:

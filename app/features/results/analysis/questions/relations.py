@@ -87,15 +87,15 @@ def _shares_report(limb: str, rows: Sequence[tuple[str, ...]]) -> TestReport:
         key=f"contact_shares_{limb}",
         title=f"{limb.capitalize()}: Which part of the body was in contact?",
         sentence=(
-            "Mean over participants of each one’s share of contact time. Shares at one latency add "
-            "up to 100 %."
+            "Each participant’s share of contact time, averaged over participants. Shares at one "
+            "latency add up to 100 %."
         ),
         apa="",
         columns=("latency (ms)", "part", "mean share", "n", "without contact"),
         rows=rows,
         method=(
-            "Times of parts are summed and may overlap, so these are shares of part-seconds and "
-            "not of the time a side was red. Participants without a contact have no share."
+            "The times of body parts are summed and may overlap, so these are not shares of the "
+            "time a side was red. Participants without a contact have no share."
         ),
         source="Karas 2020, chapter 7.",
     )

@@ -130,7 +130,7 @@ def _require_room(order: ExportOrder) -> None:
 def _no_room(order: ExportOrder) -> ExportFailure:
     keep_gb = order.keep_free_bytes / 1e9
     return ExportFailure(
-        f"the disk has less than {keep_gb:.1f} GB left, which are kept for running sessions",
-        "Free space on the server's disk (the page Storage shows what takes it), or export to"
-        " another disk on the server: ./run export --to FOLDER.",
+        f"the disk has less than {keep_gb:.1f} GB left, which is reserved for running sessions",
+        "Free space on the server's disk (the page Storage shows what uses it), or export to "
+        "another disk on the server: ./run export --to FOLDER.",
     )

@@ -117,13 +117,13 @@ def _blinded(sessions: int) -> list[str]:
 def _warning(kind: str) -> list[str]:
     match kind:
         case "simulated":
-            return ["", "These data were made by a simulation. They say nothing about people."]
+            return ["", "These data come from a simulation. They say nothing about people."]
         case "test":
             return ["", "These are test sessions. They are not results."]
         case "all":
             return [
                 "",
-                "Kinds are together in these files: never analyse them as one (column kind).",
+                "These files mix kinds of sessions: never analyse them together (column kind).",
             ]
         case _:
             return []
