@@ -1,6 +1,6 @@
 import { resolve } from "node:path";
 import { describe, expect, it } from "vitest";
-import { loadDocs, listedParts, pageFrom, slugOf } from "./helpPages.ts";
+import { listedParts, loadDocs, pageFrom, slugOf } from "./helpPages.ts";
 import { HELPS } from "./src/console/help/address.ts";
 
 const nowhere = () => "elsewhere" as const;

@@ -146,9 +146,9 @@ function contentsModule(parts: readonly ListedPart[], make: (file: string) => Pa
     .filter(({ pages }) => pages.length > 0)
     .map(({ title, pages }) => {
       const shown = pages.map(({ key, title: name, file, about }) => {
-        const known = { key, title: name, about: plain(about), headings: make(file).headings };
+        const entry = { key, title: name, about: plain(about), headings: make(file).headings };
         const load = `() => import(${JSON.stringify(`${MODULE}/${key}`)})`;
-        return `{ ...${JSON.stringify(known)}, load: ${load} }`;
+        return `{ ...${JSON.stringify(entry)}, load: ${load} }`;
       });
       return `{ title: ${JSON.stringify(title)}, pages: [${shown.join(",\n")}] }`;
     });

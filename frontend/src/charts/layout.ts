@@ -36,19 +36,19 @@ const isObject = (value: unknown): value is Layout =>
 
 /** The server's layout in the page's colours, on every axis, with the watermark if there is one. */
 export function styled(layout: Layout, palette: Palette, watermark: string | null): Layout {
-  const { template: _template, title: _title, height: _height, ...kept } = layout;
+  const { template: _template, title: _title, height: _height, ...rest } = layout;
   return {
     colorway: COLORWAY,
-    ...kept,
+    ...rest,
     autosize: true,
     paper_bgcolor: "rgba(0,0,0,0)",
     plot_bgcolor: "rgba(0,0,0,0)",
-    margin: { l: 56, r: 12, t: 16, b: 48, ...(isObject(kept.margin) ? kept.margin : {}) },
+    margin: { l: 56, r: 12, t: 16, b: 48, ...(isObject(rest.margin) ? rest.margin : {}) },
     font: { family: palette.font, size: 13, color: palette.ink },
     legend: LEGEND,
-    ...axes(kept, palette),
+    ...axes(rest, palette),
     annotations: [
-      ...annotationsOf(kept),
+      ...annotationsOf(rest),
       ...(watermark === null ? [] : [watermarkOf(watermark, palette)]),
     ],
   };

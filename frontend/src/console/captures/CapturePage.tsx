@@ -48,14 +48,20 @@ export function CapturePage({ id, tab }: CapturePageProps): JSX.Element {
       </Link>
       <Loaded query={useQuery(captureQuery(id))}>
         {(capture) => (
-          <CaptureTabs capture={capture} tab={TABS.find((known) => known === tab) ?? "movement"} />
+          <CaptureTabs capture={capture} tab={TABS.find((name) => name === tab) ?? "movement"} />
         )}
       </Loaded>
     </>
   );
 }
 
-function CaptureTabs({ capture, tab }: { readonly capture: Capture; readonly tab: Tab }): JSX.Element {
+function CaptureTabs({
+  capture,
+  tab,
+}: {
+  readonly capture: Capture;
+  readonly tab: Tab;
+}): JSX.Element {
   const { t } = useTexts();
   const [, navigate] = useLocation();
   useTitle(capture.title);

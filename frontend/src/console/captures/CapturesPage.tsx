@@ -53,16 +53,16 @@ function All({ page }: { readonly page: CapturePage }): JSX.Element {
   const { t } = useTexts();
   const canWrite = usePermissions()("capture");
   const formatName = useFormatName();
-  const [wanted, setWanted] = useState("");
+  const [search, setSearch] = useState("");
   const [leaving, setLeaving] = useState<CaptureListed | null>(null);
   const shown = page.captures.filter((one) =>
     [one.title, one.file_name, one.companion_name ?? "", formatName(one.format), nameOf(one.by)]
       .join(" ")
       .toLowerCase()
-      .includes(wanted.trim().toLowerCase()),
+      .includes(search.trim().toLowerCase()),
   );
   const counted =
-    wanted.trim() === ""
+    search.trim() === ""
       ? t("captures.count", { count: page.total })
       : t("captures.counted", { shown: shown.length, total: page.captures.length });
   return (
@@ -72,8 +72,8 @@ function All({ page }: { readonly page: CapturePage }): JSX.Element {
           aria-label={t("captures.search")}
           placeholder={t("captures.search")}
           type="search"
-          value={wanted}
-          onChange={(event) => setWanted(event.currentTarget.value)}
+          value={search}
+          onChange={(event) => setSearch(event.currentTarget.value)}
         />
         <span className={`${classes.soft} numbers`} role="status">
           {counted}

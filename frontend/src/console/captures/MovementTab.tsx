@@ -8,7 +8,7 @@ import { AvatarChoice } from "./AvatarChoice";
 import classes from "./Capture.module.css";
 import { ConventionsPanel } from "./ConventionsPanel";
 import { NoAvatar, type TabProps } from "./NoAvatar";
-import { useFigures, type StageOptions } from "./useFigures";
+import { type StageOptions, useFigures } from "./useFigures";
 import type { JointMapDraft } from "./useJointMap";
 import { Viewer } from "./Viewer";
 
@@ -20,7 +20,13 @@ export function MovementTab({ capture, map }: TabProps): JSX.Element {
   return (
     <div className={classes.movement}>
       <div>
-        <ShownBar capture={capture} map={map} options={options} busy={busy} onOptions={setOptions} />
+        <ShownBar
+          capture={capture}
+          map={map}
+          options={options}
+          busy={busy}
+          onOptions={setOptions}
+        />
         {error !== null && <Failure error={error} />}
         {figures.length > 0 ? (
           <Viewer figures={figures} title={capture.title} />
@@ -51,7 +57,11 @@ interface ShownBarProps {
 function ShownBar({ capture, map, options, busy, onOptions }: ShownBarProps): JSX.Element {
   const { t } = useTexts();
   const isFitted = capture.summary.skeleton?.origin === "fitted";
-  const shown = ["recorded", ...(isFitted ? ["skeleton"] : []), "avatar"] as StageOptions["shown"][];
+  const shown = [
+    "recorded",
+    ...(isFitted ? ["skeleton"] : []),
+    "avatar",
+  ] as StageOptions["shown"][];
   const canMove = capture.has_skeleton && map.view?.usable !== false;
   return (
     <div className={classes.shown}>
@@ -68,7 +78,10 @@ function ShownBar({ capture, map, options, busy, onOptions }: ShownBarProps): JS
       />
       {options.shown === "avatar" && (
         <>
-          <AvatarChoice avatar={options.avatar} onAvatar={(avatar) => onOptions({ ...options, avatar })} />
+          <AvatarChoice
+            avatar={options.avatar}
+            onAvatar={(avatar) => onOptions({ ...options, avatar })}
+          />
           <Checkbox
             size="xs"
             label={t("capture.ghost")}

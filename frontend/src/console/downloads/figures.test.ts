@@ -32,8 +32,8 @@ describe("a forecast", () => {
     [128, 120],
     [2757, 2700],
     [123_456, 120_000],
-  ])("of %d sessions promises %d, never more", (count, told) => {
-    expect(roughly(count)).toBe(told);
+  ])("of %d sessions promises %d, never more", (count, promised) => {
+    expect(roughly(count)).toBe(promised);
   });
 });
 
@@ -67,7 +67,7 @@ describe("the study that is tried", () => {
     ["/sessions/abc", keys, "reembodiment-latency"],
     ["/studies/gone", ["another"], "another"],
     ["/", [], null],
-  ])("at %s of %j is %s", (address, known, chosen) => {
-    expect(choose(address, known)).toBe(chosen);
+  ])("at %s of %j is %s", (address, studyKeys, chosen) => {
+    expect(choose(address, studyKeys)).toBe(chosen);
   });
 });

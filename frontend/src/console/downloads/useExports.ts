@@ -17,9 +17,9 @@ export function useOrder() {
     mutationFn: (wish: ExportWish) => exports.order(wish),
     onSuccess: (created) => {
       addRequest(created.id);
-      queries.setQueryData(exportsQuery.queryKey, (known) => [
+      queries.setQueryData(exportsQuery.queryKey, (previous) => [
         created,
-        ...(known ?? []).filter(({ id }) => id !== created.id),
+        ...(previous ?? []).filter(({ id }) => id !== created.id),
       ]);
       void queries.invalidateQueries({ queryKey: exportsQuery.queryKey });
     },
@@ -47,7 +47,7 @@ export function useAutomaticDownloads(list: readonly Export[] | undefined): void
   useEffect(() => {
     if (list === undefined) return;
     for (const id of requested) {
-      const one = list.find((known) => known.id === id);
+      const one = list.find((item) => item.id === id);
       if (one === undefined) removeRequest(id, true);
       else if (one.state === "failed") removeRequest(id);
       else if (one.state === "ready") {
@@ -91,10 +91,10 @@ export const openDownloads = (): void => change({ opened: true });
 export const closeDownloads = (): void => change({ opened: false, hasVanished: false });
 const addRequest = (id: string): void =>
   change({ requested: [...desk.requested.filter((one) => one !== id), id], hasVanished: false });
-const removeRequest = (id: string, gone = false): void =>
+const removeRequest = (id: string, hasVanished = false): void =>
   change({
     requested: desk.requested.filter((one) => one !== id),
-    hasVanished: desk.hasVanished || gone,
+    hasVanished: desk.hasVanished || hasVanished,
   });
 
 export function useDesk(): Desk {

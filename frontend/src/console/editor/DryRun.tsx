@@ -16,11 +16,11 @@ import type { Draft } from "./useDraft";
 export function DryRun({ draft }: { readonly draft: Draft }): JSX.Element {
   const { t, language } = useTexts();
   const [slot, setSlot] = useState(0);
-  const [wanted, setWanted] = useState<string>(language);
+  const [chosenLanguage, setChosenLanguage] = useState<string>(language);
   const usable = draft.upToDate && draft.check?.ok === true;
   const query = useQuery({
-    queryKey: ["timeline", draft.text, slot, wanted],
-    queryFn: () => drafts.timeline(draft.text, slot, wanted),
+    queryKey: ["timeline", draft.text, slot, chosenLanguage],
+    queryFn: () => drafts.timeline(draft.text, slot, chosenLanguage),
     enabled: usable,
     placeholderData: keepPreviousData,
     gcTime: 30_000,
@@ -57,7 +57,7 @@ export function DryRun({ draft }: { readonly draft: Draft }): JSX.Element {
             <SegmentedControl
               aria-label={t("dryRun.language")}
               value={timeline.language}
-              onChange={setWanted}
+              onChange={setChosenLanguage}
               data={timeline.languages.map((tag) => ({
                 value: tag,
                 label: LANGUAGE_NAMES[tag] ?? tag,

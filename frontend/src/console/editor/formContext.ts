@@ -68,7 +68,8 @@ interface Labels {
 
 export function useLabels(): Labels {
   const { t } = useTexts();
-  const translated = (key: string): string | undefined => (key in NAMED ? t(key as Key) : undefined);
+  const translated = (key: string): string | undefined =>
+    key in NAMED ? t(key as Key) : undefined;
   return {
     field: (name) => translated(`field.${name}`) ?? readable(name),
     hint: (name) => translated(`hint.${name}`),

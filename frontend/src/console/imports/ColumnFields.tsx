@@ -14,14 +14,14 @@ interface FieldsProps {
   readonly look: ImportPreview;
   readonly mapping: ImportMapping;
   readonly onChange: (part: Partial<ImportMapping>) => void;
-  readonly onAgain: (instrument: string, headerRows: number | null) => void;
+  readonly onPreview: (instrument: string, headerRows: number | null) => void;
 }
 
 const ORDERS = ["iso", "day_first", "month_first"] as const;
 
-export function ColumnFields({ look, mapping, onChange, onAgain }: FieldsProps): JSX.Element {
+export function ColumnFields({ look, mapping, onChange, onPreview }: FieldsProps): JSX.Element {
   const { t } = useTexts();
-  const known = useQuery(instrumentsQuery).data ?? [];
+  const instruments = useQuery(instrumentsQuery).data ?? [];
   const columns = look.columns.map(({ name }) => name);
   return (
     <div className={classes.fields}>
@@ -29,9 +29,9 @@ export function ColumnFields({ look, mapping, onChange, onAgain }: FieldsProps):
         label={t("imports.instrument")}
         allowDeselect={false}
         searchable
-        data={known.map(({ key }) => key)}
+        data={instruments.map(({ key }) => key)}
         value={look.instrument}
-        onChange={(value) => value !== null && onAgain(value, null)}
+        onChange={(value) => value !== null && onPreview(value, null)}
       />
       <Select
         label={t("imports.participant")}
@@ -81,7 +81,7 @@ export function ColumnFields({ look, mapping, onChange, onAgain }: FieldsProps):
         max={5}
         value={look.header_rows}
         onChange={(value) =>
-          typeof value === "number" && value >= 1 && value <= 5 && onAgain(look.instrument, value)
+          typeof value === "number" && value >= 1 && value <= 5 && onPreview(look.instrument, value)
         }
       />
     </div>

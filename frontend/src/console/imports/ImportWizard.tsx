@@ -57,7 +57,7 @@ function Wizard({ study, onOpen }: Pick<WizardProps, "study" | "onOpen">): JSX.E
     look.reset();
     if (text) look.mutate({ file: opened, instrument: null, heads: null });
   };
-  const again = (instrument: string, heads: number | null): void => {
+  const preview = (instrument: string, heads: number | null): void => {
     if (file !== null) look.mutate({ file, instrument, heads });
   };
   return (
@@ -74,7 +74,7 @@ function Wizard({ study, onOpen }: Pick<WizardProps, "study" | "onOpen">): JSX.E
           study={study}
           file={file}
           look={look.data}
-          onAgain={again}
+          onPreview={preview}
           onOpen={onOpen}
         />
       )}
@@ -85,14 +85,14 @@ function Wizard({ study, onOpen }: Pick<WizardProps, "study" | "onOpen">): JSX.E
 interface PreviewedImportProps extends Pick<WizardProps, "study" | "onOpen"> {
   readonly file: OpenedFile;
   readonly look: ImportPreview;
-  readonly onAgain: (instrument: string, headerRows: number | null) => void;
+  readonly onPreview: (instrument: string, headerRows: number | null) => void;
 }
 
 function PreviewedImport({
   study,
   file,
   look,
-  onAgain,
+  onPreview,
   onOpen,
 }: PreviewedImportProps): JSX.Element {
   return (
@@ -104,7 +104,7 @@ function PreviewedImport({
         study={study}
         file={file}
         look={look}
-        onAgain={onAgain}
+        onPreview={onPreview}
         onDone={onOpen}
       />
     </>

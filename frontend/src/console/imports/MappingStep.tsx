@@ -20,11 +20,11 @@ interface StepProps {
   readonly study: StudyDetail;
   readonly file: OpenedFile;
   readonly look: ImportPreview;
-  readonly onAgain: (instrument: string, headerRows: number | null) => void;
+  readonly onPreview: (instrument: string, headerRows: number | null) => void;
   readonly onDone: (id: string) => void;
 }
 
-export function MappingStep({ study, file, look, onAgain, onDone }: StepProps): JSX.Element {
+export function MappingStep({ study, file, look, onPreview, onDone }: StepProps): JSX.Element {
   const { t } = useTexts();
   const [mapping, setMapping] = useState<ImportMapping>(look.proposal ?? emptyMapping(look));
   const change = (part: Partial<ImportMapping>): void => setMapping({ ...mapping, ...part });
@@ -49,7 +49,7 @@ export function MappingStep({ study, file, look, onAgain, onDone }: StepProps): 
           {t("imports.unknown.body")}
         </Notice>
       )}
-      <ColumnFields look={look} mapping={mapping} onChange={change} onAgain={onAgain} />
+      <ColumnFields look={look} mapping={mapping} onChange={change} onPreview={onPreview} />
       {items.data !== undefined && (
         <ItemColumns
           look={look}

@@ -88,7 +88,7 @@ interface ConditionProps extends Pick<WordsProps, "study" | "mapping" | "onChang
 
 function ConditionField({ study, word, mapping, onChange }: ConditionProps): JSX.Element {
   const { t, language } = useTexts();
-  const known = study.protocol?.conditions ?? [];
+  const conditions = study.protocol?.conditions ?? [];
   return (
     <div className={classes.pair}>
       <span>“{word}”</span>
@@ -97,7 +97,10 @@ function ConditionField({ study, word, mapping, onChange }: ConditionProps): JSX
         aria-label={t("imports.conditionIs", { word })}
         placeholder={t("imports.ownWord")}
         clearable
-        data={known.map(({ key, label }) => ({ value: key, label: inLanguage(label, language) }))}
+        data={conditions.map(({ key, label }) => ({
+          value: key,
+          label: inLanguage(label, language),
+        }))}
         value={mapping.conditions[word] ?? null}
         onChange={(value) => {
           const others = Object.entries(mapping.conditions).filter(([one]) => one !== word);

@@ -42,10 +42,7 @@ export function InstrumentPage({ name, tab }: InstrumentPageProps): JSX.Element 
       </Link>
       <Loaded query={useQuery(instrumentQuery(name))}>
         {(instrument) => (
-          <Instrument
-            instrument={instrument}
-            tab={TABS.find((known) => known === tab) ?? "items"}
-          />
+          <Instrument instrument={instrument} tab={TABS.find((name) => name === tab) ?? "items"} />
         )}
       </Loaded>
     </>

@@ -30,9 +30,11 @@ interface TryItProps {
 export function TryIt({ preview, yaml }: TryItProps): JSX.Element {
   const { t, language } = useTexts();
   const [round, setRound] = useState(0);
-  const [wanted, setWanted] = useState<string>(language);
+  const [chosenLanguage, setChosenLanguage] = useState<string>(language);
   const [draft, setDraft] = useState<FormDraft>(EMPTY_DRAFT);
-  const shown = preview.languages.includes(wanted) ? wanted : (preview.languages[0] ?? "en");
+  const shown = preview.languages.includes(chosenLanguage)
+    ? chosenLanguage
+    : (preview.languages[0] ?? "en");
   const restart = () => {
     setDraft(EMPTY_DRAFT);
     setRound(round + 1);
@@ -44,7 +46,7 @@ export function TryIt({ preview, yaml }: TryItProps): JSX.Element {
         <SegmentedControl
           aria-label={t("try.language")}
           value={shown}
-          onChange={setWanted}
+          onChange={setChosenLanguage}
           data={preview.languages.map((tag) => ({ value: tag, label: LANGUAGE_NAMES[tag] ?? tag }))}
         />
         <Button variant="default" size="xs" onClick={restart}>

@@ -118,7 +118,7 @@ export const largest = (errors: readonly JointError[], count: number): readonly 
 
 /** Root mean square over all joints; null if none is known. */
 export function overall(errors: readonly JointError[]): number | null {
-  const known = errors.flatMap(({ degrees }) => degrees ?? []);
-  if (known.length === 0) return null;
-  return Math.sqrt(known.reduce((sum, value) => sum + value * value, 0) / known.length);
+  const knownErrors = errors.flatMap(({ degrees }) => degrees ?? []);
+  if (knownErrors.length === 0) return null;
+  return Math.sqrt(knownErrors.reduce((sum, value) => sum + value * value, 0) / knownErrors.length);
 }

@@ -81,7 +81,7 @@ function useWords(one: ReplayEvent): Words {
   const { t, language } = useTexts();
   switch (one.kind) {
     case "clock": {
-      const cause = CAUSES.find((known) => known === one.cause);
+      const cause = CAUSES.find((name) => name === one.cause);
       return {
         title: t(`replay.clock.${one.what}`),
         detail: cause === undefined ? "" : t(`cause.${cause}`),

@@ -64,22 +64,22 @@ export function Player(props: PlayerProps): JSX.Element {
 /** Why a phase cannot be replayed, in the reader's language if the reason is known. */
 function Refused({ id, error }: { readonly id: string; readonly error: Error }): JSX.Element {
   const { t } = useTexts();
-  const known = isApiError(error, "gone")
+  const reason = isApiError(error, "gone")
     ? ("erased" as const)
     : isApiError(error, "not_now")
       ? ("running" as const)
       : null;
   return (
     <div className={classes.alone}>
-      {known === null ? (
+      {reason === null ? (
         <Failure error={error} />
       ) : (
         <EmptyState
-          icon={known === "erased" ? "lock" : "clock"}
-          title={t(`replay.${known}`)}
+          icon={reason === "erased" ? "lock" : "clock"}
+          title={t(`replay.${reason}`)}
           action={<BackLink id={id} />}
         >
-          {t(`replay.${known}.body`)}
+          {t(`replay.${reason}.body`)}
         </EmptyState>
       )}
     </div>

@@ -15,7 +15,9 @@ import classes from "./Replay.module.css";
 
 export function ReplayPage({ id }: { readonly id: string }): JSX.Element {
   return (
-    <Loaded query={useQuery(sessionQuery(id))}>{(session) => <SessionReplay session={session} />}</Loaded>
+    <Loaded query={useQuery(sessionQuery(id))}>
+      {(session) => <SessionReplay session={session} />}
+    </Loaded>
   );
 }
 

@@ -17,7 +17,7 @@ const REASONS = ["withdrawn", "requested", "retention", "mistake", "restored"] a
 
 export function Tombstone({ erasure, onClose }: TombstoneProps): JSX.Element {
   const { t, language } = useTexts();
-  const reason = REASONS.find((known) => known === erasure.reason_code);
+  const reason = REASONS.find((code) => code === erasure.reason_code);
   return (
     <Stack>
       <p className={classes.plain}>

@@ -28,8 +28,8 @@ export function HelpMenu(): JSX.Element {
   const queries = useQueryClient();
   const start = useStartTryout();
   const can = usePermissions();
-  const known = useQuery({ ...studiesQuery, enabled: opened && can("tryout") });
-  const studyKey = choose(address, known.data?.map(({ key }) => key) ?? []);
+  const listed = useQuery({ ...studiesQuery, enabled: opened && can("tryout") });
+  const studyKey = choose(address, listed.data?.map(({ key }) => key) ?? []);
   const begin = useMutation({
     mutationFn: async (key: string) => {
       const study = await queries.fetchQuery({
@@ -84,7 +84,7 @@ export function HelpMenu(): JSX.Element {
           >
             {t("help.try")}
             <span className={classes.hint}>
-              {studyKey === null && known.isSuccess ? t("help.noStudy") : t("help.try.hint")}
+              {studyKey === null && studies.isSuccess ? t("help.noStudy") : t("help.try.hint")}
             </span>
           </Menu.Item>
         )}

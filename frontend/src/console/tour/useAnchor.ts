@@ -18,7 +18,7 @@ export function useAnchor(step: TourStep): Place | null {
     const anchor = anchorOf(step);
     // Without animation: a callout that follows a scrolling target is hard to read.
     anchor?.scrollIntoView({ block: "nearest" });
-    const update = () => setPlace((known) => same(known, placeOf(anchorOf(step))));
+    const update = () => setPlace((previous) => same(previous, placeOf(anchorOf(step))));
     update();
     // The target may appear, disappear and move with the session, which no event reports.
     const timer = setInterval(update, UPDATE_EVERY_MS);
@@ -43,10 +43,10 @@ function placeOf(anchor: HTMLElement | null): Place | null {
   return { top, left, width: right - left, height: bottom - top };
 }
 
-function same(known: Place | null, found: Place | null): Place | null {
-  if (known === null || found === null) return found;
+function same(previous: Place | null, found: Place | null): Place | null {
+  if (previous === null || found === null) return found;
   const moved = (["top", "left", "width", "height"] as const).some(
-    (side) => Math.abs(known[side] - found[side]) > 0.5,
+    (side) => Math.abs(previous[side] - found[side]) > 0.5,
   );
-  return moved ? found : known;
+  return moved ? found : previous;
 }

@@ -41,7 +41,7 @@ const KEYS: Readonly<Record<string, Point>> = {
 };
 
 export function SceneDrawing(props: SceneDrawingProps): JSX.Element {
-  const { scene, points, plannedPath: plannedPath, walkers, synthetic, atS, onChange } = props;
+  const { scene, points, plannedPath, walkers, synthetic, atS, onChange } = props;
   const { t } = useTexts();
   const plan = useMemo(() => planOf(scene.bounds_m), [scene]);
   const root = useRef<SVGSVGElement>(null);

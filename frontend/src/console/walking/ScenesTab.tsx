@@ -23,13 +23,13 @@ function Scenes({ scenes }: { readonly scenes: readonly SceneListed[] }): JSX.El
   const { t } = useTexts();
   const canWrite = usePermissions()("walking");
   const queries = useQueryClient();
-  const [wanted, setWanted] = useState(scenes[0]?.key ?? "");
-  const key = scenes.some((one) => one.key === wanted) ? wanted : (scenes[0]?.key ?? "");
+  const [chosenKey, setChosenKey] = useState(scenes[0]?.key ?? "");
+  const key = scenes.some((one) => one.key === chosenKey) ? chosenKey : (scenes[0]?.key ?? "");
   const add = useMutation({
     mutationFn: async (file: File) => walking.addScene(await file.text()),
     onSuccess: async (scene) => {
       await queries.invalidateQueries({ queryKey: scenesQuery.queryKey });
-      setWanted(scene.key);
+      setChosenKey(scene.key);
     },
   });
   return (
@@ -42,7 +42,7 @@ function Scenes({ scenes }: { readonly scenes: readonly SceneListed[] }): JSX.El
             label: one.shipped ? t("walking.scene.shipped", { title: one.title }) : one.title,
           }))}
           value={key}
-          onChange={(value) => value !== null && setWanted(value)}
+          onChange={(value) => value !== null && setChosenKey(value)}
           allowDeselect={false}
           miw={460}
         />

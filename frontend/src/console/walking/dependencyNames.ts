@@ -21,4 +21,4 @@ export function useParameter(): (name: string, unit: string) => string {
 }
 
 const isKnown = (name: string): name is (typeof KNOWN)[number] =>
-  KNOWN.some((known) => known === name);
+  KNOWN.some((dependency) => dependency === name);

@@ -42,19 +42,19 @@ export const modelQuery = (id: string) =>
       query.state.data !== undefined && isFitting(query.state.data) ? WHILE_FITTING_MS : false,
   });
 
-export const predictionQuery = (id: string, asked: PredictionRequest) =>
+export const predictionQuery = (id: string, request: PredictionRequest) =>
   queryOptions({
-    queryKey: ["walking", "prediction", id, asked],
-    queryFn: () => walking.predict(id, asked),
+    queryKey: ["walking", "prediction", id, request],
+    queryFn: () => walking.predict(id, request),
     staleTime: Number.POSITIVE_INFINITY,
     placeholderData: keepPreviousData,
     retry: false,
   });
 
-export const sliceQuery = (id: string, asked: SliceRequest) =>
+export const sliceQuery = (id: string, request: SliceRequest) =>
   queryOptions({
-    queryKey: ["walking", "slice", id, asked],
-    queryFn: () => walking.slice(id, asked),
+    queryKey: ["walking", "slice", id, request],
+    queryFn: () => walking.slice(id, request),
     staleTime: Number.POSITIVE_INFINITY,
     placeholderData: keepPreviousData,
     retry: false,

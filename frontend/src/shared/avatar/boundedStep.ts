@@ -66,7 +66,7 @@ function violations(
 function solveFree(
   hessian: Float64Array,
   pull: Float64Array,
-  held: Int8Array,
+  sides: Int8Array,
   low: Float64Array,
   high: Float64Array,
 ): Float64Array {
@@ -74,8 +74,8 @@ function solveFree(
   const step = new Float64Array(n);
   const free: number[] = [];
   for (let i = 0; i < n; i++) {
-    if (held[i] === FREE) free.push(i);
-    else step[i] = (held[i] === AT_LOW ? low[i] : high[i]) as number;
+    if (sides[i] === FREE) free.push(i);
+    else step[i] = (sides[i] === AT_LOW ? low[i] : high[i]) as number;
   }
   const rest = residual(hessian, pull, step);
   const matrix = new Float64Array(free.length * free.length);

@@ -128,7 +128,9 @@ describe("the simulated body in the browser's MuJoCo", () => {
 
 /** The greatest absolute difference; infinite if the two cannot be compared. */
 function greatestDifference(found: Rows, expected: Rows): number {
-  const gaps = expected.flatMap((row, i) => row.map((value, j) => Math.abs(value - at(found, i, j))));
+  const gaps = expected.flatMap((row, i) =>
+    row.map((value, j) => Math.abs(value - at(found, i, j))),
+  );
   return gaps.reduce((most, gap) => (gap <= most ? most : gap), 0);
 }
 

@@ -48,7 +48,7 @@ export class DirectClient implements TelemetryClient {
   #welcome: Welcome | null = null;
   #state: HeadsetState | null = null;
   #closing: Promise<void> | null = null;
-  #told = "";
+  #reported = "";
   #toldAll = "";
 
   constructor(options: TelemetryOptions, ground: Environment) {
@@ -221,11 +221,11 @@ export class DirectClient implements TelemetryClient {
     if (failure !== null) this.#admission.refuseAll(failure);
     this.#waiters.check(failure);
     const status = this.status;
-    if (this.#told !== urgentPart(status)) this.#tellStatus(status);
+    if (this.#reported !== urgentPart(status)) this.#tellStatus(status);
   }
 
   #tellStatus(status: Status): void {
-    this.#told = urgentPart(status);
+    this.#reported = urgentPart(status);
     this.#toldAll = JSON.stringify(status);
     this.#statuses.notify(status);
   }
@@ -244,9 +244,9 @@ const otherProtocol = (version: number): Failure => ({
   remedy: "Reload this page.",
 });
 
-const foreignJournal = (held: string, wanted: string): Failure => ({
+const foreignJournal = (held: string, requested: string): Failure => ({
   code: "foreign_journal",
-  message: `the journal holds what session ${held} has not delivered, and cannot take session ${wanted}`,
+  message: `the journal holds what session ${held} has not delivered, and cannot take session ${requested}`,
   remedy: "Pair this headset with that session again, or use another storageKey for this one.",
 });
 

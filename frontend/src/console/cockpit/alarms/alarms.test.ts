@@ -86,9 +86,9 @@ describe("the active alarms", () => {
 
   it("have the same key, whichever source reported them", () => {
     const view = { ...session, alarms: [recorded("gap", { stream: "target" })] };
-    const [told] = currentAlarms(session, quality([live("gap", { stream: "target" })]), null, at0);
+    const [shown] = currentAlarms(session, quality([live("gap", { stream: "target" })]), null, at0);
     const [read] = currentAlarms(view, null, null, at0);
-    expect(told?.key).toBe(read?.key);
+    expect(shown?.key).toBe(read?.key);
   });
 
   it("include the server's own, which neither the headset nor the record can report", () => {

@@ -179,9 +179,9 @@ export function useAlarms(
 
 /** Re-render when the messages have become outdated, since nothing else would. */
 function useRerenderWhenOutdated(quality: Quality | null): void {
-  const [, again] = useState<Quality | null>(null);
+  const [, rerender] = useState<Quality | null>(null);
   useEffect(() => {
-    const timer = setTimeout(() => again(quality), MESSAGES_VALID + 50);
+    const timer = setTimeout(() => rerender(quality), MESSAGES_VALID + 50);
     return () => clearTimeout(timer);
   }, [quality]);
 }

@@ -63,7 +63,9 @@ function Code({ session, device, onClose }: CodeProps): JSX.Element {
 /** Close the dialog when the code has been used: a device is there that was not when it opened. */
 function useCloseWhenPaired(session: SessionView, device: Device, onClose: () => void): void {
   const earlierDevices = useRef(new Set(session.devices.map(({ id }) => id)));
-  const arrived = session.devices.some(({ id, kind }) => kind === device && !earlierDevices.current.has(id));
+  const arrived = session.devices.some(
+    ({ id, kind }) => kind === device && !earlierDevices.current.has(id),
+  );
   useEffect(() => {
     if (arrived) onClose();
   }, [arrived, onClose]);

@@ -102,7 +102,7 @@ function Picture({ session, store, view }: LiveCardProps & { readonly view: View
 /** Why nothing moves, shown over the picture. */
 function State({ session, live }: { readonly session: SessionView; readonly live: Live }) {
   const { t } = useTexts();
-  const { drawingState: drawingState, feed, setup, isMoving } = live;
+  const { drawingState, feed, setup, isMoving } = live;
   if (drawingState === "flat") {
     return (
       <div className={`${classes.state} ${classes.warn}`} role="status">

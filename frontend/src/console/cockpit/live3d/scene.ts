@@ -115,7 +115,7 @@ function makePlayer(
   setup: PoseSetup,
   stream: PoseStream,
   palette: StagePalette,
-  known: Player | undefined,
+  previous: Player | undefined,
 ): Player {
   const placed = makePlaced(setup.joints.length);
   place(setup, restValues(setup), placed);
@@ -135,12 +135,12 @@ function makePlayer(
   };
   // Measured in the rest pose, then put back to where it was.
   const body = new Body3d(figure, palette);
-  if (known !== undefined && known.placed.positions.length === placed.positions.length) {
-    placed.positions.set(known.placed.positions);
-    placed.rotations.set(known.placed.rotations);
+  if (previous !== undefined && previous.placed.positions.length === placed.positions.length) {
+    placed.positions.set(previous.placed.positions);
+    placed.rotations.set(previous.placed.rotations);
   }
   body.show(NOW);
-  return { body, placed, received: known?.received ?? false };
+  return { body, placed, received: previous?.received ?? false };
 }
 
 /** Which joints of the product's body are which part of it, by their HumanBodyBones names. */

@@ -83,8 +83,8 @@ const CAUSES = [
 ] as const;
 
 function causeKey(reason: string | null): Key | null {
-  const known = CAUSES.find((cause) => cause === reason);
-  return known === undefined ? null : `cause.${known}`;
+  const match = CAUSES.find((cause) => cause === reason);
+  return match === undefined ? null : `cause.${match}`;
 }
 
 interface ProgressProps {

@@ -56,7 +56,13 @@ export function WordsField({
       />
     );
   if (existingKeys !== null)
-    return <Autocomplete {...common} data={[...existingKeys]} onChange={(text) => field.onChange(text)} />;
+    return (
+      <Autocomplete
+        {...common}
+        data={[...existingKeys]}
+        onChange={(text) => field.onChange(text)}
+      />
+    );
   const onChange = (event: { currentTarget: { value: string } }) =>
     field.onChange(event.currentTarget.value);
   // Keys have a pattern and are short; a text without a pattern is prose.

@@ -12,7 +12,11 @@ export interface PasswordChecks {
   readonly same: boolean;
 }
 
-export function checkPassword(password: string, again: string, username: string): PasswordChecks {
+export function checkPassword(
+  password: string,
+  repeated: string,
+  username: string,
+): PasswordChecks {
   const small = password.toLowerCase();
   const mostly = (name: string): boolean =>
     small.includes(name.toLowerCase()) && password.length < MIN_LENGTH + name.length;
@@ -20,7 +24,7 @@ export function checkPassword(password: string, again: string, username: string)
     length: [...password].length >= MIN_LENGTH,
     different: new Set(small).size >= MIN_DIFFERENT,
     name: password !== "" && !mostly(PROGRAM) && !(username !== "" && mostly(username)),
-    same: password !== "" && password === again,
+    same: password !== "" && password === repeated,
   };
 }
 

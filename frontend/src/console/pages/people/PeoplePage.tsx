@@ -29,7 +29,7 @@ interface PeoplePageProps {
 export function PeoplePage({ account, tab: requested }: PeoplePageProps): JSX.Element {
   const { t } = useTexts();
   const [, navigate] = useLocation();
-  const tab = TABS.find((known) => known === requested) ?? "people";
+  const tab = TABS.find((name) => name === requested) ?? "people";
   useTitle(t("people.title"));
   return (
     <>

@@ -70,8 +70,8 @@ interface StudiesChoiceProps {
 /** Which studies an account may see: all, including future ones, or only these. */
 export function StudiesChoice({ studies, onChange }: StudiesChoiceProps): JSX.Element {
   const { t } = useTexts();
-  const known = useQuery(studiesQuery).data ?? [];
-  const titles = new Map(known.map(({ key, title }) => [key, title]));
+  const studyList = useQuery(studiesQuery).data ?? [];
+  const titles = new Map(studyList.map(({ key, title }) => [key, title]));
   // Archived studies are not listed, but stay assigned.
   const keys = [...new Set([...titles.keys(), ...(studies ?? [])])];
   return (

@@ -97,7 +97,7 @@ export function StudyPage({ studyKey, tab }: StudyPageProps): JSX.Element {
         {t("app.studies")}
       </Link>
       <Loaded query={useQuery(studyQuery(studyKey))}>
-        {(study) => <Study study={study} tab={TABS.find((known) => known === tab) ?? "overview"} />}
+        {(study) => <Study study={study} tab={TABS.find((name) => name === tab) ?? "overview"} />}
       </Loaded>
     </>
   );

@@ -14,7 +14,7 @@ export class Prober {
   readonly #timeoutMs: number;
   readonly #asking: ReturnType<typeof setInterval>;
   /** Client time of each unanswered probe -> the timer that gives up on it. */
-  readonly #asked = new Map<number, ReturnType<typeof setTimeout>>();
+  readonly #unanswered = new Map<number, ReturnType<typeof setTimeout>>();
 
   constructor(send: (text: string) => void, clock: () => number, limits: Limits) {
     this.#send = send;
@@ -26,10 +26,10 @@ export class Prober {
 
   /** Handle an answer; `receivedS` is the client time at which it arrived. */
   take(answer: ProbeAnswer, receivedS: number): void {
-    const giveUp = this.#asked.get(answer.client_sent_s);
+    const giveUp = this.#unanswered.get(answer.client_sent_s);
     if (giveUp === undefined) return;
     clearTimeout(giveUp);
-    this.#asked.delete(answer.client_sent_s);
+    this.#unanswered.delete(answer.client_sent_s);
     this.#send(
       probedText(answer.client_sent_s, {
         serverReceivedNs: answer.server_received_ns,
@@ -41,17 +41,17 @@ export class Prober {
 
   stop(): void {
     clearInterval(this.#asking);
-    for (const giveUp of this.#asked.values()) clearTimeout(giveUp);
-    this.#asked.clear();
+    for (const giveUp of this.#unanswered.values()) clearTimeout(giveUp);
+    this.#unanswered.clear();
   }
 
   #ask(): void {
     const sentS = this.#clock();
     const giveUp = () => {
-      this.#asked.delete(sentS);
+      this.#unanswered.delete(sentS);
       this.#send(probedText(sentS, null));
     };
-    this.#asked.set(sentS, setTimeout(giveUp, this.#timeoutMs));
+    this.#unanswered.set(sentS, setTimeout(giveUp, this.#timeoutMs));
     this.#send(textOf({ type: "probe", client_sent_s: sentS }));
   }
 }
