@@ -84,7 +84,7 @@ export function HelpMenu(): JSX.Element {
           >
             {t("help.try")}
             <span className={classes.hint}>
-              {studyKey === null && studies.isSuccess ? t("help.noStudy") : t("help.try.hint")}
+              {studyKey === null && listed.isSuccess ? t("help.noStudy") : t("help.try.hint")}
             </span>
           </Menu.Item>
         )}
