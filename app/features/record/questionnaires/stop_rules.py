@@ -25,7 +25,7 @@ MET, NEAR, UNKNOWN = "stop_rule_met", "stop_rule_near", "stop_rule_unknown"
 
 @dataclass(frozen=True)
 class Judgement:
-    """The level of each rule on the latest scores, and which rules the new form meets."""
+    """The level of each stop rule on the latest scores, and the rules that the new form meets."""
 
     levels: tuple[Level, ...]
     met: tuple[int, ...]
@@ -76,7 +76,10 @@ def _rules(db: Session, session: StudySession) -> Sequence[StopRule]:
 
 
 def _message(code: str, rule: StopRule) -> str:
-    """Describe a rule by the keys of the study file, without the value, which is an answer."""
+    """Describe a stop rule by the keys of the study file, without the score itself.
+
+    The score itself is stored only with the answers.
+    """
     what = f"{rule.score} of {rule.instrument}"
     if code == UNKNOWN:
         return f"the stop rule on {what} could not be applied: the score is missing"

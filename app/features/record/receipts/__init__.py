@@ -1,4 +1,4 @@
-"""Receipts: what of a session was made, stored and is missing, computed from the record."""
+"""Receipts: what was made, stored and is missing of a session, computed from the record."""
 
 from app.features.record.receipts.service import SessionReceipt, receipt_of, receipt_text
 

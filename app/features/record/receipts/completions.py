@@ -122,7 +122,7 @@ def _commands_by_epoch(db: Session, phase: Phase) -> list[tuple[int, list[Comman
 
 
 def _from_the_start(reported: list[Command]) -> list[Command]:
-    """Make the commands of an epoch begin with a start.
+    """Return the commands of an epoch, beginning with a start command.
 
     An epoch that took over began with a stopped clock, and continues at its first resume.
     """

@@ -1,4 +1,4 @@
-"""Sessions that accept no more data, because the participant withdrew or was erased.
+"""Sessions that accept no more data: the participant withdrew, or their data were erased.
 
 A headset that was offline may deliver data that a finished session still lacks. After a withdrawal
 or an erasure, data from any source are rejected with the reason, and not stored.
@@ -43,7 +43,7 @@ def closed_sessions(db: Session, session_ids: Collection[str]) -> frozenset[str]
 
 
 def erased_session(db: Session, session_id: str) -> bool:
-    """Return whether a session's participant was erased; lock the session first."""
+    """Return whether the data of a session's participant were erased; lock the session first."""
     query = select(StudySession.id).where(
         StudySession.id == session_id, ~not_erased(StudySession.id)
     )
@@ -51,7 +51,7 @@ def erased_session(db: Session, session_id: str) -> bool:
 
 
 def not_erased(session_id: InstrumentedAttribute[str]) -> ColumnElement[bool]:
-    """Return the SQL condition that a row's session has not been erased."""
+    """Return the SQL condition that the data of a row's session have not been erased."""
     mine, erasure = aliased(StudySession), aliased(Erasure)
     found = (
         select(erasure.id)
