@@ -46,7 +46,7 @@ class Folder(Part):
 
     @classmethod
     def of(cls, context: AppContext) -> Self:
-        """Create the folder of a server, which encodes in a separate process."""
+        """Create the instance of a server from its context, with a separate encoding process."""
         return cls(context, Encoder(context.settings.resolved_database_url))
 
     def start(self) -> None:
@@ -122,8 +122,8 @@ _DELETE = delete(BATCHES).where(
 def _replace(db: Session, chunks: Chunks) -> None:
     """Store chunks and delete the batches they contain.
 
-    Raises BatchesChanged if these have gone, as a session may have been erased or a backup restored
-    since they were read.
+    Raises BatchesChanged if some of these batches no longer exist, because a session was erased or
+    a backup was restored since they were read.
     """
     columns = CHUNKS.c.keys()
     insert_rows(db, CHUNKS, [{name: chunk[name] for name in columns} for chunk in chunks])

@@ -36,7 +36,7 @@ def iter_frames(
     """Yield frames of about a second at a time in seq order, each with its phase_id.
 
     `phase_id` restricts them to one phase, and `since_s` leaves out chunks that end before that
-    client time. A damaged chunk is left out too, so that one bad page does not make a session
+    client time. A damaged chunk is left out too, so that it does not make the whole session
     unreadable: the session's receipt counts its frames as missing.
     """
     for piece in iter_pieces(db, session_id, stream, epoch, phase_id, since_s=since_s):

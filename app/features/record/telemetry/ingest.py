@@ -157,7 +157,7 @@ class Intake:
     def store_alarm(self, session_id: str, change: Change) -> None:
         """Record the raising or clearing of an alarm, and make pages refresh.
 
-        No alarm is raised for a session that has ended, since its end has cleared them all; except
+        No alarm is raised for a session that has ended, since its end has cleared them all, except
         for an impossible report, which is always recorded.
         """
         raised = change.state == "raised" and change.condition.code != OBSERVED

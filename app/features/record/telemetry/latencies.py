@@ -28,7 +28,7 @@ def history_s(phase: Phase) -> float:
 
 
 def longest_lag_s(phase: Phase) -> float:
-    """Return the longest latency to search for, well beyond the one that is set."""
+    """Return the longest latency to search for, well beyond the latency that is set."""
     return max(HIGHEST_S, phase.latency_ms / MS_PER_S + _BEYOND_S)
 
 
