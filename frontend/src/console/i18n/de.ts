@@ -56,7 +56,7 @@ export const de: Record<keyof typeof en, string> = {
   "order.label": "Reihenfolge der Latenzen:",
   "order.hidden": "Reihenfolge verdeckt (verblindet)",
   "studies.lead":
-    "Jede Studie ist ein versioniertes Protokoll mit eigenem Plan und eigenen Sitzungen.",
+    "Jede Studie ist ein versioniertes Studienprotokoll mit eigenem Plan und eigenen Sitzungen.",
   "studies.add": "Studie hinzufügen",
   "studies.empty.title": "Noch keine Studien",
   "studies.empty.body":

@@ -31,7 +31,7 @@ export const importsEn = {
   "imports.other": "Another file",
   "imports.drop": "Drop a CSV file here",
   "imports.drop.hint":
-    "Comma, semicolon or tab separated; the first row names the columns. Use codes instead of names and addresses. Nothing is stored until you confirm.",
+    "Separated by commas, semicolons or tabs; the first row names the columns. Use codes instead of names and addresses. Nothing is stored until you confirm.",
   "imports.same": "This file has already been imported",
   "imports.same.body":
     "“{{file}}” has the same content. The same file cannot be imported twice for one instrument.",

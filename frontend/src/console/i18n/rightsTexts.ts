@@ -159,7 +159,7 @@ export const rightsDe: Readonly<Record<keyof typeof rightsEn, string>> = {
   "withdrew.note":
     "Nach dem Ende der Teilnahme stimmte die Person zu, dass die bisherigen Daten aufbewahrt werden.",
   "withdrew.erased": "Die Daten der Person wurden gelöscht",
-  "withdrew.erased.body": "Am {{date}} von {{by}}. Geblieben ist nur ein Gerüst der Sitzung.",
+  "withdrew.erased.body": "Am {{date}} von {{by}}. Von der Sitzung ist nur ein Umriss geblieben.",
   "export.file.corrections": "corrections.csv",
   "export.about.corrections": "Berichtigte Antworten: vorher, nachher, warum, durch wen.",
 };
