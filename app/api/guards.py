@@ -137,8 +137,7 @@ class Guards:
             return True
         scope[STRANGER] = True
         # One at a time, with a turn of the event loop for each: messages of headsets and tablets
-        # are
-        # processed between any two strangers, and not after a whole crowd of them.
+        # are processed between any two strangers, not after a whole crowd of them.
         async with self._turnstile:
             await asyncio.sleep(0)
         self._strangers.spend(_network(scope), SOCKET_COST if scope["type"] == "websocket" else 1.0)
