@@ -69,7 +69,7 @@ def read_manifest(connection: sqlite3.Connection) -> Manifest:
     try:
         rows = connection.execute(f"SELECT entry, value FROM {MANIFEST_TABLE}").fetchall()  # noqa: S608 - our own table
     except sqlite3.OperationalError as error:
-        raise ManifestError("it holds no manifest") from error
+        raise ManifestError("it has no manifest") from error
     entries = {str(entry): str(value) for entry, value in rows}
     if entries.get("format") != FORMAT:
         raise ManifestError(f"its format is {entries.get('format')!r}, not {FORMAT!r}")

@@ -162,7 +162,7 @@ def _conditions(table: Table) -> Iterator[tuple[str, str]]:
                 yield (
                     # SQLite compares such a column as a number, but its first characters as text.
                     f"substr({name}, 1, 4) NOT BETWEEN '{FIRST_YEAR}' AND '{LAST_YEAR}'",
-                    f"{column.name} lies outside of {FIRST_YEAR} to {LAST_YEAR}",
+                    f"{column.name} is outside {FIRST_YEAR} to {LAST_YEAR}",
                 )
             case String():
                 yield f"instr({name}, char(0)) > 0", f"{column.name} holds a NUL character"

@@ -265,7 +265,7 @@ def _refuse_if_active(db: Session) -> None:
         value=len(active),
         valid=0,
         remedy="Finish or abort them first: a connected headset has already discarded what was "
-        "stored. If they cannot be finished any more, say --even-though-active.",
+        "stored. If they cannot be finished any more, use --even-though-active.",
         details=[
             {"session_id": session_id, "participant_code": code, "started_at": str(started_at)}
             for session_id, code, started_at in active

@@ -30,8 +30,8 @@ Checking takes about 2.5 s for each GB if the disk has to read it, 0.4 s if it i
 """
 ROWS_READ_BYTES = 200 * 10**6
 """The rows of a larger file are read only if the database turned out to be unusable."""
-UNNAMED = "it does not say which schema it has"
-UNREADABLE = "what is in it cannot be read as text"
+UNNAMED = "its schema version is unknown"
+UNREADABLE = "its content cannot be read as text"
 _HEADER = 100
 _BLOCK = 4 * 1024 * 1024
 _SHARED_FIRST, _SHARED_SIZE = 0x40000002, 510

@@ -90,8 +90,8 @@ def refuse_unconfirmed_new_database(settings: Settings, *, new_database: bool) -
             else f"there is no {file}"
         )
         raise Conflict(
-            f"{where}, but {home_of(settings)} holds what belongs to a database: "
-            f"{', '.join(traces)}. No new one was begun",
+            f"{where}, but {home_of(settings)} contains what belongs to a database: "
+            f"{', '.join(traces)}. No new one was created",
             value=traces,
             remedy="Put the database back (is its disk there, are the settings the same?), or "
             f"restore a backup: ./run restore FILE.{_newest_backup(settings)} Or begin an empty "
@@ -111,7 +111,7 @@ def bring_up_to_date(settings: Settings, clock: Clock) -> Path | None:
         create_database(file, clock)
         return None
     with errors_as_not_durable(
-        f"the database {_name_of(settings)} cannot be worked with, and was left as it is"
+        f"the database {_name_of(settings)} cannot be used, and was left as it is"
     ):
         database = open_database(url)
         try:
@@ -262,7 +262,7 @@ def _is_missing(settings: Settings) -> bool:
     file = database_file(settings)
     if file is not None:
         return not is_there(file)
-    with errors_as_not_durable(f"the database {_name_of(settings)} cannot be worked with"):
+    with errors_as_not_durable(f"the database {_name_of(settings)} cannot be used"):
         database = open_database(settings.resolved_database_url)
         try:
             with database.reading() as db:
@@ -278,7 +278,7 @@ def create_database(file: Path, clock: Clock) -> None:
     one. Raises NotDurable if the database cannot be created; nothing is left of it then.
     """
     folder = file.absolute().parent
-    with errors_as_not_durable(f"a new database cannot be begun in {folder}"):
+    with errors_as_not_durable(f"a new database cannot be created in {folder}"):
         if any(file.with_name(file.name + suffix).exists() for suffix in DATABASE_SUFFIXES[1:]):
             quarantine = Quarantine(file)
             quarantine.resolve(quarantine.put_away("its database is missing", clock.utc_now()))

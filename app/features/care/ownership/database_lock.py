@@ -78,7 +78,7 @@ class DatabaseLock:
             disconnect(connection)
             raise NotDurable(
                 f"the database {shown_address(self._url)} cannot be locked: {first_line(error)}",
-                remedy="See whether it runs and is whole, then try again.",
+                remedy="Check that it is running and intact, then try again.",
             ) from error
         except Owned:
             disconnect(connection)

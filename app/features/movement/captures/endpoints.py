@@ -115,7 +115,7 @@ def get_file(
 @router.get(
     "/{capture_id}/motion",
     response_class=Response,
-    responses={200: binary("Positions for a preview: docs/captures.md tells their form.")},
+    responses={200: binary("Positions for a preview: docs/captures.md describes their format.")},
 )
 async def get_motion(
     capture_id: str, context: Context, _: SignedIn, shown: Shown = "recorded"

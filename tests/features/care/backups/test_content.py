@@ -230,7 +230,7 @@ LIES = {
     ),
     "a login for ever": (
         "UPDATE login_tokens SET expires_at = '9999-12-31 23:59:59.999999'",
-        "expires_at lies outside of 1970 to 2199",
+        "expires_at is outside 1970 to 2199",
     ),
     "a login for what is unknown": ("UPDATE login_tokens SET purpose = 'all'", "purpose 'all'"),
     "a participant who is nobody": ("UPDATE participants SET kind = 'gods'", "kind 'gods'"),

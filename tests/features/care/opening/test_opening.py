@@ -161,7 +161,7 @@ def test_a_good_file_in_its_place_resolves_it(tmp_path: Path) -> None:
     file.write_bytes(good)
     prepare_database(settings, CLOCK)
     file.unlink()
-    with pytest.raises(Conflict, match="holds what belongs to a database: quarantine"):
+    with pytest.raises(Conflict, match="contains what belongs to a database: quarantine"):
         prepare_database(settings, CLOCK)
     assert not file.exists()
 

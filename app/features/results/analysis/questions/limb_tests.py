@@ -250,8 +250,8 @@ def _friedman(data: LimbData) -> TestReport:
         title=f"{data.limb.capitalize()}: Do the latencies differ?",
         sentence=(
             f"With {found.n} participants the latencies {differ}: {against(found.p, data.alpha)}; "
-            f"Kendall’s W = {bounded(found.kendall_w, 2)} (0: participants disagree, 1: all order "
-            "the latencies alike)."
+            f"Kendall’s W = {bounded(found.kendall_w, 2)} (0: participants disagree, 1: all rank "
+            "the latencies in the same order)."
         ),
         apa=apa,
         columns=("latency (ms)", "mean rank"),

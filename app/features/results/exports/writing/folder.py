@@ -63,7 +63,7 @@ def check_target(to: Path) -> None:
         inside = path.relative_to(to)
         ours = str(inside) in TOP_LEVEL or _is_in_folder(inside)
         if not ours or path.is_symlink():
-            raise _refused(to, f"also holds {inside}, which is not part of an export")
+            raise _refused(to, f"also contains {inside}, which is not part of an export")
 
 
 def _is_in_folder(inside: Path) -> bool:
