@@ -107,13 +107,13 @@ function HasSkeleton({ capture }: { readonly capture: CaptureListed }): JSX.Elem
   return (
     <span className={classes.no}>
       {t("captures.skeleton.no")}
-      <Why capture={capture} />
+      <ReasonPopover capture={capture} />
     </span>
   );
 }
 
 /** The reason is part of the capture itself, so it is fetched on request. */
-function Why({ capture }: { readonly capture: CaptureListed }): JSX.Element {
+function ReasonPopover({ capture }: { readonly capture: CaptureListed }): JSX.Element {
   const { t } = useTexts();
   const [opened, setOpened] = useState(false);
   const query = useQuery({ ...captureQuery(capture.id), enabled: opened });

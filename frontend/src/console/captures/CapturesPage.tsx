@@ -34,13 +34,15 @@ export function CapturesPage(): JSX.Element {
       {canWrite && <DropZone onFiles={uploads.add} />}
       <UploadList uploads={uploads} />
       <Loaded query={query}>
-        {(page) => (page.total === 0 ? <Nothing canWrite={canWrite} /> : <All page={page} />)}
+        {(page) =>
+          page.total === 0 ? <NoCaptures canWrite={canWrite} /> : <CaptureList page={page} />
+        }
       </Loaded>
     </>
   );
 }
 
-function Nothing({ canWrite }: { readonly canWrite: boolean }): JSX.Element {
+function NoCaptures({ canWrite }: { readonly canWrite: boolean }): JSX.Element {
   const { t } = useTexts();
   return (
     <EmptyState icon="walk" title={t("captures.empty")} action={<Formats />}>
@@ -49,7 +51,7 @@ function Nothing({ canWrite }: { readonly canWrite: boolean }): JSX.Element {
   );
 }
 
-function All({ page }: { readonly page: CapturePage }): JSX.Element {
+function CaptureList({ page }: { readonly page: CapturePage }): JSX.Element {
   const { t } = useTexts();
   const canWrite = usePermissions()("capture");
   const formatName = useFormatName();

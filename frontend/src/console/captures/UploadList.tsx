@@ -16,7 +16,7 @@ export function UploadList({ uploads }: { readonly uploads: Uploads }): JSX.Elem
   return (
     <ul className={classes.uploads} aria-label={t("captures.uploads")}>
       {uploads.lonely.map((file) => (
-        <Lonely key={`${file.name} ${file.lastModified}`} file={file} uploads={uploads} />
+        <IncompletePair key={`${file.name} ${file.lastModified}`} file={file} uploads={uploads} />
       ))}
       {uploads.uploads.map((upload) => (
         <Row
@@ -165,7 +165,7 @@ function Refusal({
   );
 }
 
-function Lonely({
+function IncompletePair({
   file,
   uploads,
 }: {

@@ -13,7 +13,7 @@ import { KindBadge, StatusBadge } from "../ui/badges";
 import { Order } from "../ui/Order";
 import classes from "./Cockpit.module.css";
 import { ConnectionMark } from "./ConnectionMark";
-import { Reveal } from "./Reveal";
+import { RevealCondition } from "./RevealCondition";
 
 interface HeaderProps {
   readonly session: SessionView;
@@ -44,7 +44,7 @@ export function Header({ session, feed, onChecks, onLog, onHelp }: HeaderProps):
         <span className={classes.hiddenOrder}>
           <Icon name="lock" size={15} />
           {t("order.hidden")}
-          <Reveal session={session} />
+          <RevealCondition session={session} />
         </span>
       ) : (
         <Order sequence={session.sequence} />

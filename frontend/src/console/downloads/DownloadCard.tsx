@@ -11,7 +11,7 @@ import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { exportsQuery } from "../queries";
 import classes from "./Downloads.module.css";
-import { isOpen, useDesk, useOrder, useRemoval } from "./useExports";
+import { isOpen, useDownloads, useOrder, useRemoval } from "./useExports";
 
 function DownloadCard({ one }: { readonly one: Export }): JSX.Element {
   const removal = useRemoval();
@@ -21,11 +21,11 @@ function DownloadCard({ one }: { readonly one: Export }): JSX.Element {
         <Failed one={one} onRemove={() => removal.mutate(one.id)} />
       ) : (
         <>
-          <What one={one} />
+          <DownloadTitle one={one} />
           {one.state === "ready" ? (
             <Ready one={one} onRemove={() => removal.mutate(one.id)} />
           ) : (
-            <UnderWay
+            <DownloadProgress
               one={one}
               cancelling={removal.isPending}
               onCancel={() => removal.mutate(one.id)}
@@ -38,7 +38,7 @@ function DownloadCard({ one }: { readonly one: Export }): JSX.Element {
   );
 }
 
-function What({ one }: { readonly one: Export }): JSX.Element {
+function DownloadTitle({ one }: { readonly one: Export }): JSX.Element {
   const { t } = useTexts();
   const kind = t(one.kind === "all" ? "downloads.kind.all" : `kind.${one.kind}`);
   return (
@@ -53,13 +53,13 @@ function What({ one }: { readonly one: Export }): JSX.Element {
   );
 }
 
-interface UnderWayProps {
+interface DownloadProgressProps {
   readonly one: Export;
   readonly cancelling: boolean;
   readonly onCancel: () => void;
 }
 
-function UnderWay({ one, cancelling, onCancel }: UnderWayProps): JSX.Element {
+function DownloadProgress({ one, cancelling, onCancel }: DownloadProgressProps): JSX.Element {
   const { t } = useTexts();
   const hasProgress = one.rows_total > 0 && one.rows > 0;
   return (
@@ -230,7 +230,7 @@ interface DownloadListProps {
 /** The account's files, newest first; only those of one study on that study's pages. */
 export function DownloadList({ query, studyKey }: DownloadListProps): JSX.Element | null {
   const { t } = useTexts();
-  const { hasVanished } = useDesk();
+  const { hasVanished } = useDownloads();
   const shown = (query.data ?? []).filter(
     (one) => studyKey === undefined || one.study_key === studyKey,
   );

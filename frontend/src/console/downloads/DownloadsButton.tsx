@@ -14,14 +14,14 @@ import {
   isOpen,
   openDownloads,
   useAutomaticDownloads,
-  useDesk,
+  useDownloads,
   useExports,
   useOrder,
 } from "./useExports";
 
 export function DownloadsButton(): JSX.Element {
   const { t } = useTexts();
-  const { opened, requested } = useDesk();
+  const { opened, requested } = useDownloads();
   // Nothing is requested while no file is expected and the list is closed.
   const query = useExports(opened || requested.length > 0);
   useAutomaticDownloads(query.isFetchedAfterMount ? query.data : undefined);

@@ -2,7 +2,7 @@
 import type { StorageRoom } from "@shared/api/housekeeping";
 import { bytes } from "@shared/format";
 import { describe, expect, it } from "vitest";
-import { diskShares, roughly } from "../storage/figures";
+import { diskShares, roundToTwoDigits } from "../storage/figures";
 import { choose } from "../tour/HelpMenu";
 
 describe("sizes", () => {
@@ -33,7 +33,7 @@ describe("a forecast", () => {
     [2757, 2700],
     [123_456, 120_000],
   ])("of %d sessions promises %d, never more", (count, promised) => {
-    expect(roughly(count)).toBe(promised);
+    expect(roundToTwoDigits(count)).toBe(promised);
   });
 });
 

@@ -42,7 +42,7 @@ export function useRemoval() {
  * writes it to disk as it arrives.
  */
 export function useAutomaticDownloads(list: readonly Export[] | undefined): void {
-  const { requested } = useDesk();
+  const { requested } = useDownloads();
   const queries = useQueryClient();
   useEffect(() => {
     if (list === undefined) return;
@@ -66,7 +66,7 @@ const KEY = "reembody.downloads.wanted";
  * The list of downloads, and the exports that this tab has requested: each is downloaded as soon as
  * it is ready. They are remembered when the page is reloaded, and other tabs do not fetch them too.
  */
-interface Desk {
+interface DownloadRequests {
   readonly opened: boolean;
   /** Exports that were requested here and are not downloaded yet. */
   readonly requested: readonly string[];
@@ -74,14 +74,14 @@ interface Desk {
   readonly hasVanished: boolean;
 }
 
-let desk: Desk = { opened: false, requested: storedRequests(), hasVanished: false };
+let desk: DownloadRequests = { opened: false, requested: storedRequests(), hasVanished: false };
 const listeners = new Set<() => void>();
 
 function storedRequests(): readonly string[] {
   return (sessionStorage.getItem(KEY) ?? "").split(" ").filter((id) => id !== "");
 }
 
-function change(next: Partial<Desk>): void {
+function change(next: Partial<DownloadRequests>): void {
   desk = { ...desk, ...next };
   sessionStorage.setItem(KEY, desk.requested.join(" "));
   for (const listener of listeners) listener();
@@ -97,7 +97,7 @@ const removeRequest = (id: string, hasVanished = false): void =>
     hasVanished: desk.hasVanished || hasVanished,
   });
 
-export function useDesk(): Desk {
+export function useDownloads(): DownloadRequests {
   return useSyncExternalStore(
     (listener) => {
       listeners.add(listener);

@@ -41,15 +41,17 @@ export function ImportDetailDialog({ studyKey, id, onClose }: DialogProps): JSX.
 
 function Detail({ studyKey, id }: { readonly studyKey: string; readonly id: string }): JSX.Element {
   const query = useQuery(importQuery(studyKey, id));
-  return <Loaded query={query}>{(found) => <Found studyKey={studyKey} found={found} />}</Loaded>;
+  return (
+    <Loaded query={query}>{(found) => <ImportResults studyKey={studyKey} found={found} />}</Loaded>
+  );
 }
 
-interface FoundProps {
+interface ImportResultsProps {
   readonly studyKey: string;
   readonly found: ImportDetail;
 }
 
-function Found({ studyKey, found }: FoundProps): JSX.Element {
+function ImportResults({ studyKey, found }: ImportResultsProps): JSX.Element {
   const { t, language } = useTexts();
   const can = usePermissions();
   const { view, results } = found;

@@ -40,7 +40,7 @@ export function ImportWizard({ study, opened, onClose, onOpen }: WizardProps): J
 function Wizard({ study, onOpen }: Pick<WizardProps, "study" | "onOpen">): JSX.Element {
   const { t } = useTexts();
   const [file, setFile] = useState<OpenedFile | null>(null);
-  const look = useMutation({
+  const previewing = useMutation({
     mutationFn: async (wish: {
       file: OpenedFile;
       instrument: string | null;
@@ -54,11 +54,11 @@ function Wizard({ study, onOpen }: Pick<WizardProps, "study" | "onOpen">): JSX.E
     const text = isText(opened.text);
     setStranger(text ? null : chosen.name);
     setFile(text ? opened : null);
-    look.reset();
-    if (text) look.mutate({ file: opened, instrument: null, heads: null });
+    previewing.reset();
+    if (text) previewing.mutate({ file: opened, instrument: null, heads: null });
   };
   const preview = (instrument: string, heads: number | null): void => {
-    if (file !== null) look.mutate({ file, instrument, heads });
+    if (file !== null) previewing.mutate({ file, instrument, heads });
   };
   return (
     <div className={classes.wizard}>
@@ -68,12 +68,12 @@ function Wizard({ study, onOpen }: Pick<WizardProps, "study" | "onOpen">): JSX.E
           {t("imports.noTable.body")}
         </Notice>
       )}
-      {look.isError && <Failure error={look.error} />}
-      {file !== null && look.data !== undefined && (
+      {previewing.isError && <Failure error={previewing.error} />}
+      {file !== null && previewing.data !== undefined && (
         <PreviewedImport
           study={study}
           file={file}
-          look={look.data}
+          look={previewing.data}
           onPreview={preview}
           onOpen={onOpen}
         />
@@ -97,7 +97,7 @@ function PreviewedImport({
 }: PreviewedImportProps): JSX.Element {
   return (
     <>
-      {look.same_file !== null && <Same found={look.same_file} onOpen={onOpen} />}
+      {look.same_file !== null && <DuplicateNotice found={look.same_file} onOpen={onOpen} />}
       <MappingStep
         // Start over with another file, instrument or number of header rows.
         key={`${file.name} ${look.instrument} ${look.header_rows} ${file.text.length}`}
@@ -111,7 +111,7 @@ function PreviewedImport({
   );
 }
 
-function Same({
+function DuplicateNotice({
   found,
   onOpen,
 }: {

@@ -13,7 +13,7 @@ import { instrumentQuery } from "../queries";
 import { Loaded } from "../ui/Loaded";
 import { useTitle } from "../ui/page";
 import classes from "./Instruments.module.css";
-import { Used } from "./InstrumentsPage";
+import { UsedBy } from "./InstrumentsPage";
 import { Items } from "./Items";
 import { Scoring } from "./Scoring";
 import { TryIt } from "./TryIt";
@@ -69,7 +69,7 @@ function Instrument({ instrument, tab }: InstrumentProps): JSX.Element {
             <code>{instrument.key}</code>
             <span>{t("instrument.version", { version: instrument.version })}</span>
             <span>{t("instruments.items", { count: instrument.items })}</span>
-            <Used instrument={instrument} />
+            <UsedBy instrument={instrument} />
           </div>
         </div>
         {can("design") && (

@@ -84,13 +84,13 @@ function Row({ instrument }: { readonly instrument: InstrumentSummary }): JSX.El
             ? t("instruments.noScores")
             : scores.map(({ label }) => inLanguage(label, language)).join(", ")}
         </div>
-        <Used instrument={instrument} />
+        <UsedBy instrument={instrument} />
       </div>
     </li>
   );
 }
 
-export function Used({ instrument }: { readonly instrument: InstrumentSummary }): JSX.Element {
+export function UsedBy({ instrument }: { readonly instrument: InstrumentSummary }): JSX.Element {
   const { t } = useTexts();
   const { used_by, used_by_older } = instrument;
   return (

@@ -13,8 +13,8 @@ import { usePermissions } from "../permissions";
 import { EmptyState } from "../ui/EmptyState";
 import { KindFilter } from "../ui/KindFilter";
 import { Loaded } from "../ui/Loaded";
-import { Declared } from "./Declared";
-import { Done } from "./Done";
+import { AnalysisCard } from "./AnalysisCard";
+import { DeclarationCard } from "./DeclarationCard";
 import classes from "./Preregistration.module.css";
 
 export function PreregistrationTab({ study }: { readonly study: StudyDetail }): JSX.Element {
@@ -52,7 +52,7 @@ interface PageProps {
 function Page({ study, view }: PageProps): JSX.Element {
   const { t } = useTexts();
   const { declaration } = view;
-  if (declaration === null) return <Undeclared study={study} />;
+  if (declaration === null) return <NotPreregistered study={study} />;
   return (
     <div className={classes.page}>
       {view.simulated && (
@@ -61,15 +61,15 @@ function Page({ study, view }: PageProps): JSX.Element {
         </Notice>
       )}
       <div className={classes.both}>
-        <Declared declaration={declaration} />
-        <Done view={view} alpha={declaration.alpha} />
+        <DeclarationCard declaration={declaration} />
+        <AnalysisCard view={view} alpha={declaration.alpha} />
       </div>
       <Deviations deviations={view.deviations} />
     </div>
   );
 }
 
-function Undeclared({ study }: { readonly study: StudyDetail }): JSX.Element {
+function NotPreregistered({ study }: { readonly study: StudyDetail }): JSX.Element {
   const { t } = useTexts();
   const can = usePermissions();
   return (

@@ -35,14 +35,14 @@ export function LaneStage(props: LaneStageProps): JSX.Element {
   const figures = useFiguresOf(lane, ghost);
   const otherFigures = useFiguresOf(other ?? NOBODY, false);
   const blocks = useBlocksOf(lane);
-  const tones = useSteady(tonesAt(lane.replay, time));
+  const tones = useStableMap(tonesAt(lane.replay, time));
   const isGap = lane.movement?.gaps.some(([begin, end]) => begin < time && time < end) ?? false;
   const motion = figures[0]?.motion;
   return (
     <section className={classes.lane} aria-label={lane.label}>
       {other !== null && <h2 className={classes.laneName}>{lane.label}</h2>}
       {motion === undefined ? (
-        <NoFigure lane={lane} />
+        <NoMovement lane={lane} />
       ) : (
         <div className={classes.stage}>
           <Stage
@@ -64,7 +64,7 @@ export function LaneStage(props: LaneStageProps): JSX.Element {
   );
 }
 
-function NoFigure({ lane }: { readonly lane: Lane }): JSX.Element {
+function NoMovement({ lane }: { readonly lane: Lane }): JSX.Element {
   const { t } = useTexts();
   if (lane.error !== null) return <Failure error={lane.error} onRetry={lane.retry} />;
   if (lane.replay.has_movement) {
@@ -94,7 +94,7 @@ function StageLegend({ ghost }: { readonly ghost: boolean }): JSX.Element {
 }
 
 /** Return the same map while its content is the same, so that nothing is redrawn needlessly. */
-function useSteady(tones: BlockTones): BlockTones {
+function useStableMap(tones: BlockTones): BlockTones {
   const before = useRef(tones);
   const signature = (map: BlockTones) =>
     [...map]

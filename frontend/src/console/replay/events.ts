@@ -2,12 +2,12 @@
 import type { Replay, ReplayContact, ReplayMoment } from "@shared/api/replays";
 import type { BlockTone, BlockTones } from "@shared/stage/figure";
 
-interface At {
+interface Timed {
   readonly key: string;
   readonly time: number;
 }
 
-export interface Touch extends At {
+export interface Touch extends Timed {
   readonly kind: "touch";
   readonly surfaceKind: string;
   readonly box: number | null;
@@ -17,25 +17,25 @@ export interface Touch extends At {
   readonly end: number;
 }
 
-interface Done extends At {
+interface TaskCompletion extends Timed {
   readonly kind: "done";
   readonly number: number;
   readonly duration: number;
 }
 
-interface Clock extends At {
+interface Clock extends Timed {
   readonly kind: "clock";
   readonly what: ReplayMoment["what"];
   readonly cause: string | null;
 }
 
-interface Note extends At {
+interface Note extends Timed {
   readonly kind: "note";
   readonly text: string;
   readonly by: string;
 }
 
-export type ReplayEvent = Touch | Done | Clock | Note;
+export type ReplayEvent = Touch | TaskCompletion | Clock | Note;
 
 /**
  * All events in order of time; body parts that touch the same surface simultaneously are one touch.
@@ -51,7 +51,7 @@ export function eventsOf(replay: Replay): readonly ReplayEvent[] {
     }),
   );
   const done = replay.completions.map(
-    ({ number, t_s, duration_s }): Done => ({
+    ({ number, t_s, duration_s }): TaskCompletion => ({
       kind: "done",
       key: `done ${number}`,
       time: t_s,
@@ -76,10 +76,10 @@ export function touches(contacts: readonly ReplayContact[]): readonly Touch[] {
   for (const contact of contacts) {
     bySurface.set(contact.surface, [...(bySurface.get(contact.surface) ?? []), contact]);
   }
-  return [...bySurface.values()].flatMap(united);
+  return [...bySurface.values()].flatMap(mergedTouches);
 }
 
-function united(contacts: readonly ReplayContact[]): readonly Touch[] {
+function mergedTouches(contacts: readonly ReplayContact[]): readonly Touch[] {
   const found: Touch[] = [];
   for (const one of [...contacts].sort((a, b) => a.begin_s - b.begin_s)) {
     const before = found.at(-1);
@@ -150,7 +150,7 @@ export function tonesAt(
 }
 
 /** The last event up to a time; -1 before the first. */
-export function latestEventAt(all: readonly At[], time: number): number {
+export function latestEventAt(all: readonly Timed[], time: number): number {
   let low = 0;
   let high = all.length;
   while (low < high) {
@@ -162,7 +162,7 @@ export function latestEventAt(all: readonly At[], time: number): number {
 }
 
 /** The time to jump to: the nearest event before or after; null if there is none. */
-export function jumpFrom(all: readonly At[], time: number, way: -1 | 1): number | null {
+export function jumpFrom(all: readonly Timed[], time: number, way: -1 | 1): number | null {
   const EPSILON_S = 0.02;
   const found =
     way > 0

@@ -5,7 +5,7 @@ import type { JSX } from "react";
 import { Link } from "wouter";
 import { useTexts } from "../i18n";
 import { KindBadge } from "../ui/badges";
-import { roughly } from "./figures";
+import { roundToTwoDigits } from "./figures";
 import classes from "./Storage.module.css";
 
 export function StudySizes({ studies }: { readonly studies: readonly StudyRoom[] }): JSX.Element {
@@ -60,7 +60,7 @@ function StudyRow({ study }: { readonly study: StudyRoom }): JSX.Element {
       <td>
         {room === null
           ? "–"
-          : t("storage.study.room.of", { number: number(roughly(room), language, 0) })}
+          : t("storage.study.room.of", { number: number(roundToTwoDigits(room), language, 0) })}
       </td>
     </tr>
   );

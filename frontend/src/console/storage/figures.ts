@@ -13,16 +13,16 @@ export function diskShares({ disk, parts }: StorageRoom): DiskShares {
   const onThisDisk = parts.filter(
     ({ place }) => disk.holds_database || place === "backups" || place === "scratch",
   );
-  const taken = Math.max(0, disk.total_bytes - disk.free_bytes);
+  const used = Math.max(0, disk.total_bytes - disk.free_bytes);
   const own = Math.min(
-    taken,
+    used,
     onThisDisk.reduce((sum, part) => sum + part.bytes, 0),
   );
-  return { own, other: taken - own, free: disk.free_bytes, total: disk.total_bytes };
+  return { own, other: used - own, free: disk.free_bytes, total: disk.total_bytes };
 }
 
 /** Round to two significant digits: a forecast is no more exact than the mean it comes from. */
-export function roughly(count: number): number {
+export function roundToTwoDigits(count: number): number {
   if (count < 100) return count;
   const step = 10 ** (Math.floor(Math.log10(count)) - 1);
   return Math.floor(count / step) * step;

@@ -50,7 +50,7 @@ export function DurationPanel({ prediction, busy }: DurationPanelProps): JSX.Ele
           <div className={classes.soft}>{t("walking.planFor", { to: s(q.p95) })}</div>
         </div>
       </div>
-      <Outside prediction={prediction} />
+      <ExtrapolationNotice prediction={prediction} />
       <SegmentedControl
         mt="xs"
         size="xs"
@@ -92,7 +92,11 @@ function Summary({ prediction }: { readonly prediction: Prediction }): JSX.Eleme
   );
 }
 
-function Outside({ prediction }: { readonly prediction: Prediction }): JSX.Element | null {
+function ExtrapolationNotice({
+  prediction,
+}: {
+  readonly prediction: Prediction;
+}): JSX.Element | null {
   const { t } = useTexts();
   const dependency = useDependency();
   if (prediction.outside.length === 0) return null;

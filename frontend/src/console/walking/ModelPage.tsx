@@ -12,7 +12,7 @@ import { type Key, useTexts } from "../i18n";
 import { Loaded } from "../ui/Loaded";
 import { useTitle } from "../ui/page";
 import { useParameter } from "./dependencyNames";
-import { Doing, FitProgress } from "./ModelTable";
+import { FitProgress, ModelActions } from "./ModelTable";
 import { modelQuery } from "./queries";
 import classes from "./Walking.module.css";
 import { Synthetic } from "./WalkingTable";
@@ -54,7 +54,7 @@ function ModelDetails({ model }: { readonly model: Model }): JSX.Element {
               {t("walking.model.file")}
             </Button>
           )}
-          <Doing model={model} onDeleted={() => navigate("/walking/models")} />
+          <ModelActions model={model} onDeleted={() => navigate("/walking/models")} />
         </div>
       </div>
       <FitProgress model={model} />

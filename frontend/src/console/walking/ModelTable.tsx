@@ -53,20 +53,23 @@ function Row({ model }: { readonly model: ModelListed }): JSX.Element {
       </Table.Td>
       <CreatedCell at={model.at} by={model.by} />
       <Table.Td className={classes.rowActions ?? ""}>
-        <Doing model={model} />
+        <ModelActions model={model} />
       </Table.Td>
     </Table.Tr>
   );
 }
 
-interface DoingProps {
+interface ModelActionsProps {
   readonly model: ModelListed;
   readonly onDeleted?: () => void;
 }
 
 const NOTHING = () => {};
 
-export function Doing({ model, onDeleted = NOTHING }: DoingProps): JSX.Element | null {
+export function ModelActions({
+  model,
+  onDeleted = NOTHING,
+}: ModelActionsProps): JSX.Element | null {
   const { t } = useTexts();
   const canWrite = usePermissions()("walking");
   const queries = useQueryClient();

@@ -6,7 +6,7 @@ type Schemas = components["schemas"];
 export type SceneListed = Schemas["SceneListed"];
 /** A tuple, which the server's description does not distinguish from other lists. */
 export type Point = readonly [number, number];
-type With<Told, Exact> = Omit<Told, keyof Exact> & Exact;
+type With<Type, Exact> = Omit<Type, keyof Exact> & Exact;
 export type Scene = With<
   Schemas["SceneView"],
   {

@@ -23,12 +23,12 @@ export function placing(figure: Figure): Placing {
   const place = (time: Seconds): number => {
     const frame = frameAt(motion, time);
     for (let point = 0; point < points; point++) {
-      const taken = from === null ? frame : (from[frame * points + point] ?? -1);
-      seen[point] = taken === frame ? 1 : 0;
-      const at = 3 * (taken * points + point);
-      placed[3 * point] = taken < 0 ? Number.NaN : (motion.positions[at] ?? 0) + asideX;
-      placed[3 * point + 1] = taken < 0 ? Number.NaN : (motion.positions[at + 1] ?? 0);
-      placed[3 * point + 2] = taken < 0 ? Number.NaN : (motion.positions[at + 2] ?? 0) + asideZ;
+      const source = from === null ? frame : (from[frame * points + point] ?? -1);
+      seen[point] = source === frame ? 1 : 0;
+      const at = 3 * (source * points + point);
+      placed[3 * point] = source < 0 ? Number.NaN : (motion.positions[at] ?? 0) + asideX;
+      placed[3 * point + 1] = source < 0 ? Number.NaN : (motion.positions[at + 1] ?? 0);
+      placed[3 * point + 2] = source < 0 ? Number.NaN : (motion.positions[at + 2] ?? 0) + asideZ;
     }
     return frame;
   };

@@ -65,7 +65,7 @@ export class Stage3d extends Space3d {
       this.#plan = plan;
       this.#ground = palette.ground;
     }
-    if (isElsewhere) this.look("corner");
+    if (isElsewhere) this.placeCamera("corner");
     else this.show(this.#time);
   }
 
@@ -92,12 +92,12 @@ export class Stage3d extends Space3d {
     this.#controls.enabled = mode !== "eyes";
     this.camera.fov = mode === "eyes" ? WIDE_DEG : USUAL_DEG;
     this.camera.updateProjectionMatrix();
-    if (wasInside) this.look("corner");
+    if (wasInside) this.placeCamera("corner");
     else this.show(this.#time);
   }
 
   /** Place the camera so that the whole movement is in view, seen from a side of the body. */
-  look(from: CameraSide): void {
+  placeCamera(from: CameraSide): void {
     const plan = this.#plan;
     if (plan === null) return;
     for (const body of this.bodies) body.show(this.#time);
@@ -129,7 +129,7 @@ export class Stage3d extends Space3d {
   }
 
   protected override resized(before: number): void {
-    if (before === 1) this.look("corner");
+    if (before === 1) this.placeCamera("corner");
   }
 
   override dispose(): void {

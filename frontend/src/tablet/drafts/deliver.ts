@@ -34,7 +34,7 @@ export function deliver(
   const key = submission.idempotency_key;
   const before = sent.get(key);
   if (before !== undefined) return before;
-  const delivery = bring(store, id, submission, submit).then((ended) => {
+  const delivery = sendForm(store, id, submission, submit).then((ended) => {
     if (ended.kind !== "stored") sent.delete(key);
     return ended;
   });
@@ -42,7 +42,7 @@ export function deliver(
   return delivery;
 }
 
-async function bring(
+async function sendForm(
   store: DraftStore,
   id: string,
   submission: Submission,

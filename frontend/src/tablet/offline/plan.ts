@@ -17,13 +17,13 @@ export interface Build {
   readonly files: readonly string[];
 }
 
-interface Asked {
+interface PlannedRequest {
   readonly method: string;
   readonly url: string;
   readonly mode: string;
 }
 
-export function planFor({ method, url, mode }: Asked, origin: string, page: string): Plan {
+export function planFor({ method, url, mode }: PlannedRequest, origin: string, page: string): Plan {
   const address = new URL(url);
   if (method !== "GET" || address.origin !== origin) return "leave";
   if (mode === "navigate") return address.pathname === page ? "page" : "leave";

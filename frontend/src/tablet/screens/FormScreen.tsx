@@ -21,7 +21,7 @@ export function FormScreen({ state, administration, refresh }: FormScreenProps):
   const texts = formTexts(t);
   const form = useStoredForm(state.session_id, administration, state.language, refresh);
   const { phase } = form;
-  if (phase.name !== "filling") return <Between phase={phase} retry={form.retry} />;
+  if (phase.name !== "filling") return <FormStatus phase={phase} retry={form.retry} />;
   return (
     <>
       {phase.refused !== null && <Failure error={phase.refused} />}
@@ -47,13 +47,13 @@ function Opening(): JSX.Element {
   );
 }
 
-interface BetweenProps {
+interface FormStatusProps {
   readonly phase: Exclude<FormPhase, { name: "filling" }>;
   readonly retry: () => void;
 }
 
 /** The screen before the form has loaded, and after it was sent. */
-function Between({ phase, retry }: BetweenProps): JSX.Element {
+function FormStatus({ phase, retry }: FormStatusProps): JSX.Element {
   const { t } = useTexts();
   switch (phase.name) {
     case "opening":

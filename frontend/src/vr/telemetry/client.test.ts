@@ -62,10 +62,10 @@ describe("a client", () => {
     const notices: string[] = [];
     telemetry.onState((state) => versions.push(state.version));
     telemetry.onNotice((notice) => notices.push(notice.type));
-    bed.server.say(stateOf(2));
-    bed.server.say({ type: "refused", epoch: 1, seq: 0, message: "m", remedy: "r" });
-    bed.server.say({ type: "weather", message: "a newer server says more" });
-    bed.server.say(stateOf(3));
+    bed.server.broadcast(stateOf(2));
+    bed.server.broadcast({ type: "refused", epoch: 1, seq: 0, message: "m", remedy: "r" });
+    bed.server.broadcast({ type: "weather", message: "a newer server says more" });
+    bed.server.broadcast(stateOf(3));
     await eventually(() => versions.length === 2);
     expect([versions, notices, telemetry.state.version]).toEqual([[2, 3], ["refused"], 3]);
   });

@@ -23,7 +23,7 @@ export type ToWorker =
   | { readonly kind: "call"; readonly id: number; readonly call: Call };
 
 /** An error as it is passed between threads: its message, and the failure if it has one. */
-export interface Wrong {
+export interface PortError {
   readonly name: string;
   readonly message: string;
   readonly failure: Failure | null;
@@ -31,8 +31,8 @@ export interface Wrong {
 
 export type FromWorker =
   | { readonly kind: "opened"; readonly welcome: Welcome; readonly state: HeadsetState }
-  | { readonly kind: "refused"; readonly wrong: Wrong }
-  | { readonly kind: "done"; readonly id: number; readonly wrong: Wrong | null }
+  | { readonly kind: "refused"; readonly wrong: PortError }
+  | { readonly kind: "done"; readonly id: number; readonly wrong: PortError | null }
   | { readonly kind: "state"; readonly state: HeadsetState; readonly welcome: Welcome }
   | { readonly kind: "status"; readonly status: Status }
   | { readonly kind: "notice"; readonly notice: Notice };

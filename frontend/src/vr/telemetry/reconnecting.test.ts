@@ -102,7 +102,7 @@ describe("a gap", () => {
     await produce(telemetry, 4);
     await eventually(() => bed.server.storedOf("reports", 1).length === 1);
     bed.server.positions.set("target/1", 6);
-    bed.server.say({ type: "resend", stream: "target", epoch: 1, next_seq: 6 });
+    bed.server.broadcast({ type: "resend", stream: "target", epoch: 1, next_seq: 6 });
     bed.server.acknowledges = true;
     await telemetry.drained();
     expect(bed.server.positions.get("target/1")).toBe(24);

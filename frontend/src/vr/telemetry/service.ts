@@ -2,7 +2,7 @@
 import type { TelemetryClient } from "./client";
 import { TelemetryError } from "./failure";
 import { openTelemetry } from "./open";
-import type { Call, FromWorker, Port, ToWorker, Wrong } from "./port";
+import type { Call, FromWorker, Port, PortError, ToWorker } from "./port";
 
 export function serveTelemetry(port: Port<FromWorker, ToWorker>, open = openTelemetry): void {
   const givenUp = new AbortController();
@@ -17,7 +17,7 @@ export function serveTelemetry(port: Port<FromWorker, ToWorker>, open = openTele
         onStatus: (status) => send({ kind: "status", status }),
       });
     } catch (error) {
-      send({ kind: "refused", wrong: wrongOf(error) });
+      send({ kind: "refused", wrong: portErrorOf(error) });
       return;
     }
     const { welcome, state } = client;
@@ -35,7 +35,7 @@ export function serveTelemetry(port: Port<FromWorker, ToWorker>, open = openTele
       const { id } = data;
       perform(client, data.call).then(
         () => send({ kind: "done", id, wrong: null }),
-        (error) => send({ kind: "done", id, wrong: wrongOf(error) }),
+        (error) => send({ kind: "done", id, wrong: portErrorOf(error) }),
       );
     }
   });
@@ -53,7 +53,7 @@ async function perform(client: TelemetryClient, call: Call): Promise<void> {
   else await client[call.what]();
 }
 
-function wrongOf(error: unknown): Wrong {
+function portErrorOf(error: unknown): PortError {
   if (!(error instanceof Error)) return { name: "Error", message: String(error), failure: null };
   const failure = error instanceof TelemetryError ? error.failure : null;
   return { name: error.name, message: error.message, failure };

@@ -62,8 +62,8 @@ it("passes events on, and its state is the last one received", async () => {
   const [states, notices]: [number[], string[]] = [[], []];
   client.onState((state) => states.push(state.version));
   client.onNotice((notice) => notices.push(notice.type));
-  server.say(stateOf(2));
-  server.say({ type: "refused", epoch: 1, seq: 0, message: "m", remedy: "r" });
+  server.broadcast(stateOf(2));
+  server.broadcast({ type: "refused", epoch: 1, seq: 0, message: "m", remedy: "r" });
   await eventually(() => notices.length === 1);
   expect([states, client.state.version]).toEqual([[2], 2]);
 });

@@ -8,7 +8,7 @@ import {
 } from "./client";
 import type { Notice } from "./connection/connection";
 import { CLOSED, type Failure, TelemetryError } from "./failure";
-import type { Call, FromWorker, Port, ToWorker, Wrong } from "./port";
+import type { Call, FromWorker, Port, PortError, ToWorker } from "./port";
 import type { Frames, StreamName } from "./wire/batch";
 import type { ReportBody } from "./wire/fromClient";
 import type { HeadsetState, Welcome } from "./wire/fromServer";
@@ -176,7 +176,7 @@ export class WorkerClient implements TelemetryClient {
     }
   }
 
-  #answered(id: number, wrong: Wrong | null): void {
+  #answered(id: number, wrong: PortError | null): void {
     const call = this.#pending.get(id);
     this.#pending.delete(id);
     if (wrong === null) call?.resolve();
@@ -202,7 +202,7 @@ const NOTHING_YET: Status = {
   failure: null,
 };
 
-function errorOf({ name, message, failure }: Wrong): Error {
+function errorOf({ name, message, failure }: PortError): Error {
   if (failure !== null) return new TelemetryError(failure);
   return Object.assign(new Error(message), { name });
 }

@@ -45,9 +45,9 @@ export function SignalStrip({ session, alarms, onHistory }: SignalStripProps): J
       aria-label={t("signal.label")}
     >
       {first === undefined ? (
-        <Calm session={session} isRecording={isMoving(signal)} />
+        <NoAlarm session={session} isRecording={isMoving(signal)} />
       ) : (
-        <Wrong alarm={first} session={session} others={alarms.on.length - 1} />
+        <ActiveAlarm alarm={first} session={session} others={alarms.on.length - 1} />
       )}
       {isCall(first) && <AnswerCall session={session} />}
       {first !== undefined && !isCall(first) && !acknowledged && (
@@ -85,12 +85,12 @@ function AnswerCall({ session }: { readonly session: SessionView }): JSX.Element
 const isMoving = (signal: Signal | null): boolean =>
   signal !== null && (signal.frame_rate_hz ?? 0) > 0;
 
-interface CalmProps {
+interface NoAlarmProps {
   readonly session: SessionView;
   readonly isRecording: boolean;
 }
 
-function Calm({ session, isRecording }: CalmProps): JSX.Element {
+function NoAlarm({ session, isRecording }: NoAlarmProps): JSX.Element {
   const { t } = useTexts();
   const ended = session.ended_at !== null;
   const connected = session.devices.some((one) => one.kind === "headset" && one.connected);
@@ -110,13 +110,13 @@ function Calm({ session, isRecording }: CalmProps): JSX.Element {
   );
 }
 
-interface WrongProps {
+interface ActiveAlarmProps {
   readonly alarm: ShownAlarm;
   readonly session: SessionView;
   readonly others: number;
 }
 
-function Wrong({ alarm, session, others }: WrongProps): JSX.Element {
+function ActiveAlarm({ alarm, session, others }: ActiveAlarmProps): JSX.Element {
   const { t, language } = useTexts();
   const joints = jointNames(alarm);
   const amountText = amount(alarm, language);

@@ -66,11 +66,11 @@ describe("the active alarms", () => {
 
   it("come from the headset's messages while these are recent, otherwise from the session", () => {
     const view = { ...session, alarms: [recorded("disconnected")] };
-    const news = quality([live("gap")]);
-    const codes = (now: number, from: typeof news | null) =>
+    const message = quality([live("gap")]);
+    const codes = (now: number, from: typeof message | null) =>
       currentAlarms(view, from, null, milliseconds(now)).map(({ code }) => code);
-    expect(codes(2900, news)).toEqual(["gap"]);
-    expect(codes(3100, news)).toEqual(["disconnected"]);
+    expect(codes(2900, message)).toEqual(["gap"]);
+    expect(codes(3100, message)).toEqual(["disconnected"]);
     expect(codes(0, null)).toEqual(["disconnected"]);
   });
 

@@ -39,11 +39,11 @@ export function withTouches(before: Lights, touches: readonly PoseTouch[], now: 
   const isFirst = before.seen[0] < 0;
   return touches
     .filter(({ number }) => isNewer(number, before.seen))
-    .reduce((lights, touch) => taken(lights, touch, now, isFirst), before);
+    .reduce((lights, touch) => withTouch(lights, touch, now, isFirst), before);
 }
 
 /** Add one touch. Touches from before this page was opened do not flash: only what stays is lit. */
-function taken(before: Lights, touch: PoseTouch, now: number, isOld: boolean): Lights {
+function withTouch(before: Lights, touch: PoseTouch, now: number, isOld: boolean): Lights {
   const lit = new Map(touch.phase_id === before.phaseId ? before.lit : []);
   const after = { seen: touch.number, phaseId: touch.phase_id, last: touch };
   if (touch.kind === "completion") {

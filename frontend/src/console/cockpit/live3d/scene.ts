@@ -79,7 +79,7 @@ export class LiveScene extends Space3d {
     this.requestPicture();
   }
 
-  look(view: View): void {
+  setView(view: View): void {
     this.#view = view;
     this.#moved();
   }

@@ -54,7 +54,7 @@ export function useLiveScene(
     return store.subscribe(heat);
   }, [root, scene, setup, scheme, store]);
 
-  useEffect(() => scene?.look(view), [scene, view]);
+  useEffect(() => scene?.setView(view), [scene, view]);
 
   useEffect(() => {
     if (scene === null || !isPageVisible) return;

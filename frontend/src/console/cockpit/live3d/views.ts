@@ -24,7 +24,7 @@ const FIELD_DEG = { first: 78, side: 38, third: 42 } as const;
 export function aim(camera: PerspectiveCamera, view: View, subjects: Subjects): void {
   const first = view === "first" ? fromEyes(subjects) : null;
   camera.fov = FIELD_DEG[first === null && view === "first" ? "third" : view];
-  const [from, to] = first ?? fromOutside(view, subjects.followed);
+  const [from, to] = first ?? outsideView(view, subjects.followed);
   camera.position.set(...from);
   camera.lookAt(...to);
   camera.updateProjectionMatrix();
@@ -46,7 +46,7 @@ function fromEyes({ setup, eyes }: Subjects): readonly [Vector, Vector] | null {
   ];
 }
 
-function fromOutside(view: View, followed: Placed | null): readonly [Vector, Vector] {
+function outsideView(view: View, followed: Placed | null): readonly [Vector, Vector] {
   const [hipX = 0, , hipZ = 0] = followed?.positions ?? [];
   const x = Number.isFinite(hipX) ? hipX : 0;
   const z = Number.isFinite(hipZ) ? hipZ : 0;

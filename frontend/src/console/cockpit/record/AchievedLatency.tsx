@@ -21,10 +21,10 @@ export function AchievedLatency({ phase }: AchievedLatencyProps): JSX.Element {
     case "none":
       return <span>–</span>;
     case "measuring":
-      return <Soft>{t("achieved.measuring")}</Soft>;
+      return <MutedText>{t("achieved.measuring")}</MutedText>;
     case "still":
       return (
-        <Soft>
+        <MutedText>
           {t("achieved.still")}
           <small className={classes.detail}>
             {t("achieved.moved", {
@@ -33,17 +33,21 @@ export function AchievedLatency({ phase }: AchievedLatencyProps): JSX.Element {
               needed: MIN_MOVEMENT,
             })}
           </small>
-        </Soft>
+        </MutedText>
       );
     case "unknown":
       return (
-        <Soft>
+        <MutedText>
           {t("achieved.unknown")}
           <Reason text={verdict.reason} />
-        </Soft>
+        </MutedText>
       );
     case "hidden":
-      return verdict.off ? <Off text="achieved.out" /> : <span>{t("achieved.within")}</span>;
+      return verdict.off ? (
+        <ToleranceBadge text="achieved.out" />
+      ) : (
+        <span>{t("achieved.within")}</span>
+      );
     case "measured":
       return (
         <>
@@ -52,7 +56,7 @@ export function AchievedLatency({ phase }: AchievedLatencyProps): JSX.Element {
               {latencyWithin(verdict.value, verdict.halfWidth, language)}
             </span>
             {verdict.off && (
-              <Off text="achieved.off" by={latencyDifference(verdict.by, language)} />
+              <ToleranceBadge text="achieved.off" by={latencyDifference(verdict.by, language)} />
             )}
           </span>
           <Reason text={verdict.reason} />
@@ -74,7 +78,7 @@ export function AchievedInBrief({ phase }: AchievedLatencyProps): JSX.Element | 
       return <span>{t("achieved.unverified")}</span>;
     case "hidden":
       return verdict.off ? (
-        <Off text="achieved.latencyOut" />
+        <ToleranceBadge text="achieved.latencyOut" />
       ) : (
         <span>{t("achieved.latencyWithin")}</span>
       );
@@ -82,18 +86,26 @@ export function AchievedInBrief({ phase }: AchievedLatencyProps): JSX.Element | 
       // Next to the badge there is no room for the uncertainty, which is small compared to the
       // deviation.
       if (verdict.off)
-        return <Off text="achieved.brief" by={latencyMeasured(verdict.value, language)} />;
+        return (
+          <ToleranceBadge text="achieved.brief" by={latencyMeasured(verdict.value, language)} />
+        );
       const value = latencyWithin(verdict.value, verdict.halfWidth, language);
       return <span className={classes.value}>{t("achieved.brief", { by: value })}</span>;
     }
   }
 }
 
-function Soft({ children }: { readonly children: ReactNode }): JSX.Element {
+function MutedText({ children }: { readonly children: ReactNode }): JSX.Element {
   return <span className={classes.soft}>{children}</span>;
 }
 
-function Off({ text, by = "" }: { readonly text: Key; readonly by?: string }): JSX.Element {
+function ToleranceBadge({
+  text,
+  by = "",
+}: {
+  readonly text: Key;
+  readonly by?: string;
+}): JSX.Element {
   const { t } = useTexts();
   return (
     <span className={classes.off}>

@@ -76,7 +76,7 @@ function StepRow({ step, phase }: StepRowProps): JSX.Element {
       <span>
         {t(stepName(step))}
         <span className="visually-hidden">, {t(`timeline.${step.status}`)}</span>
-        <Sub step={step} phase={phase} />
+        <StepDetails step={step} phase={phase} />
         {phase !== undefined && step.status === "done" && (
           <span className={classes.sub}>
             <AchievedInBrief phase={phase} />
@@ -87,7 +87,7 @@ function StepRow({ step, phase }: StepRowProps): JSX.Element {
   );
 }
 
-function Sub({ step, phase }: StepRowProps): JSX.Element | null {
+function StepDetails({ step, phase }: StepRowProps): JSX.Element | null {
   const { t } = useTexts();
   const parts: string[] = [];
   if (step.status === "skipped") parts.push(step.reason ?? t("timeline.skipped"));

@@ -48,7 +48,7 @@ export function CurrentStep(props: CurrentStepProps): JSX.Element {
         </h2>
       ) : (
         <>
-          <Kicker session={session} step={step} />
+          <StepPosition session={session} step={step} />
           <h2 className={classes.title}>
             <Icon name={stepIcon(step)} size={28} />
             {t(stepName(step))}
@@ -85,7 +85,7 @@ export function CurrentStep(props: CurrentStepProps): JSX.Element {
   );
 }
 
-function Kicker({ session, step }: { readonly session: SessionView; readonly step: Step }) {
+function StepPosition({ session, step }: { readonly session: SessionView; readonly step: Step }) {
   const { t } = useTexts();
   const parts = [t("step.of", { number: step.index + 1, total: session.steps.length })];
   if (step.block !== null) {

@@ -75,10 +75,10 @@ function Invitation({ token }: { readonly token: string }): JSX.Element {
   );
 }
 
-type Why = "used" | "expired" | "revoked" | "unknown";
+type InvalidReason = "used" | "expired" | "revoked" | "unknown";
 
 /** Why a link is not valid (any more); null for every other error. */
-function whyRefused(error: unknown): Why | null {
+function whyRefused(error: unknown): InvalidReason | null {
   // A truncated link is too short for the server to look up.
   if (isApiError(error) && [404, 422].includes(error.status)) return "unknown";
   if (!isApiError(error, "gone")) return null;

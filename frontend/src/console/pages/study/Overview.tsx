@@ -14,14 +14,14 @@ import { Procedure } from "./Procedure";
 
 export function Overview({ study }: { readonly study: StudyDetail }): JSX.Element {
   return study.protocol === null ? (
-    <Blinded study={study} />
+    <BlindedOverview study={study} />
   ) : (
-    <Whole study={study} protocol={study.protocol} />
+    <FullOverview study={study} protocol={study.protocol} />
   );
 }
 
 /** The overview for operators who run the study without knowing its conditions. */
-function Blinded({ study }: { readonly study: StudyDetail }): JSX.Element {
+function BlindedOverview({ study }: { readonly study: StudyDetail }): JSX.Element {
   const { t } = useTexts();
   return (
     <>
@@ -33,12 +33,12 @@ function Blinded({ study }: { readonly study: StudyDetail }): JSX.Element {
   );
 }
 
-interface WholeProps {
+interface FullOverviewProps {
   readonly study: StudyDetail;
   readonly protocol: StudyProtocol;
 }
 
-function Whole({ study, protocol }: WholeProps): JSX.Element {
+function FullOverview({ study, protocol }: FullOverviewProps): JSX.Element {
   const { t, language } = useTexts();
   return (
     <>
@@ -97,7 +97,7 @@ function Conditions({ protocol }: { readonly protocol: StudyProtocol }): JSX.Ele
   );
 }
 
-function Design({ study, protocol }: WholeProps): JSX.Element {
+function Design({ study, protocol }: FullOverviewProps): JSX.Element {
   const { t } = useTexts();
   const { orders, conditions, blinding, on_disconnect, procedure } = protocol;
   const count = orderCount(orders, conditions.length);

@@ -35,7 +35,7 @@ afterEach(() => {
 
 describe("a channel", () => {
   it("ends as broken if it is not answered in time", async () => {
-    socket.opens();
+    socket.open();
     await vi.advanceTimersByTimeAsync(9_900);
     expect(ending).toBe(null);
     await vi.advanceTimersByTimeAsync(200);
@@ -44,9 +44,9 @@ describe("a channel", () => {
   });
 
   it("stays open as long as something is received now and then", async () => {
-    socket.opens();
+    socket.open();
     for (let second = 0; second < 60; second += 5) {
-      socket.hears("news");
+      socket.receive("news");
       await vi.advanceTimersByTimeAsync(5_000);
     }
     expect(ending).toBe(null);
@@ -55,17 +55,17 @@ describe("a channel", () => {
   });
 
   it("ends with the server's code and reason, and passes nothing on after that", async () => {
-    socket.opens();
+    socket.open();
     socket.breaks(4401, "replaced");
     await vi.advanceTimersByTimeAsync(0);
     expect(ending).toEqual({ code: 4401, reason: "replaced" });
-    socket.hears("late");
+    socket.receive("late");
     await vi.advanceTimersByTimeAsync(0);
     expect([received, channel.isOpen]).toEqual([["open"], false]);
   });
 
   it("does not wait for the closing handshake of a dead network", async () => {
-    socket.opens();
+    socket.open();
     const shut = vi.spyOn(socket, "close").mockImplementation(() => undefined);
     channel.close(1000);
     await vi.advanceTimersByTimeAsync(0);
@@ -74,7 +74,7 @@ describe("a channel", () => {
   });
 
   it("waits while the network takes nothing, but only while it is open", async () => {
-    socket.opens();
+    socket.open();
     const [first, second] = [vi.fn(), vi.fn()];
     socket.bufferedAmount = DEFAULT_LIMITS.bufferedBytes;
     void channel.room().then(first);

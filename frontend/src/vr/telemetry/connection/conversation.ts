@@ -66,7 +66,7 @@ export class Conversation {
       try {
         await this.#sendNext();
       } catch (error) {
-        if (error instanceof JournalLost) this.#parts.onFailure(lostHere(error));
+        if (error instanceof JournalLost) this.#parts.onFailure(lostInBrowser(error));
         // A disk that cannot be read now may be readable in a moment.
         else await new Promise((resolve) => setTimeout(resolve, READ_RETRY_MS));
       }
@@ -79,13 +79,13 @@ export class Conversation {
     if (entry !== null) {
       await this.#channel.room();
       this.#channel.send(entry.message);
-    } else if (this.#channel.isOpen) await reader.news();
+    } else if (this.#channel.isOpen) await reader.moreToSend();
   }
 }
 
 const READ_RETRY_MS = 500;
 
-const lostHere = ({ message }: JournalLost): Failure => ({
+const lostInBrowser = ({ message }: JournalLost): Failure => ({
   code: "journal_lost",
   message,
   remedy: "Note the time in the session's record and reload this page; it continues as a new run.",

@@ -35,7 +35,7 @@ export class Reader {
   }
 
   /** Resolves when there is more to send, or on `wake`. */
-  async news(): Promise<void> {
+  async moreToSend(): Promise<void> {
     if (this.#cursor < this.#contents.end) return;
     await new Promise<void>((resolve) => {
       this.#wake = resolve;

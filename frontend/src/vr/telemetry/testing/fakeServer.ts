@@ -2,7 +2,7 @@
 import { decodeBatch } from "../wire/batch";
 import type { Welcome } from "../wire/fromServer";
 
-interface Said {
+interface ReceivedMessage {
   readonly type: string;
   readonly epoch: number;
   readonly seq: number;
@@ -11,7 +11,7 @@ interface Said {
 
 export class FakeServer {
   /** Messages received from clients, other than batches, in the order of arrival. */
-  readonly received: Said[] = [];
+  readonly received: ReceivedMessage[] = [];
   /** Stored seqs as `stream/epoch/seq`, in the order of arrival. */
   readonly stored: string[] = [];
   readonly sockets: FakeSocket[] = [];
@@ -32,7 +32,7 @@ export class FakeServer {
   readonly makeSocket = (_url: string, protocols: string[]): WebSocket => {
     const socket = new FakeSocket(protocols, (data) => this.#receive(socket, data));
     this.sockets.push(socket);
-    queueMicrotask(() => (this.isUp ? socket.opens() : socket.breaks()));
+    queueMicrotask(() => (this.isUp ? socket.open() : socket.breaks()));
     return socket as unknown as WebSocket;
   };
 
@@ -42,8 +42,8 @@ export class FakeServer {
     return newest;
   }
 
-  say(message: object): void {
-    this.socket.hears(JSON.stringify(message));
+  broadcast(message: object): void {
+    this.socket.receive(JSON.stringify(message));
   }
 
   breaks(): void {
@@ -51,14 +51,14 @@ export class FakeServer {
   }
 
   acknowledge(): void {
-    this.say({ type: "ack", positions: this.#positions });
+    this.broadcast({ type: "ack", positions: this.#positions });
   }
 
   storedOf(stream: string, epoch: number): readonly string[] {
     return this.stored.filter((one) => one.startsWith(`${stream}/${epoch}/`));
   }
 
-  of(type: string): readonly Said[] {
+  of(type: string): readonly ReceivedMessage[] {
     return this.received.filter((message) => message.type === type);
   }
 
@@ -75,23 +75,27 @@ export class FakeServer {
       this.#store(stream, epoch, seqFirst, timesS.length);
       return;
     }
-    const message = JSON.parse(data) as Said;
+    const message = JSON.parse(data) as ReceivedMessage;
     this.received.push(message);
     if (message.type === "hello") this.#greet(socket, message);
     else if (message.type === "report") this.#store("reports", message.epoch, message.seq, 1);
     else if (message.type === "probe" && this.answersProbes) {
-      this.say({ ...message, server_received_ns: 1, server_sent_ns: 2 });
+      this.broadcast({ ...message, server_received_ns: 1, server_sent_ns: 2 });
     }
   }
 
-  #greet(socket: FakeSocket, hello: Said): void {
+  #greet(socket: FakeSocket, hello: ReceivedMessage): void {
     if (this.refusal !== null) {
-      this.say(this.refusal.error);
+      this.broadcast(this.refusal.error);
       socket.breaks(this.refusal.code);
       return;
     }
     if (hello.epoch === null) this.lastEpoch++;
-    this.say({ ...welcome, ...this.#welcome(hello.epoch ?? this.lastEpoch), ...this.welcomeWith });
+    this.broadcast({
+      ...welcome,
+      ...this.#welcome(hello.epoch ?? this.lastEpoch),
+      ...this.welcomeWith,
+    });
   }
 
   #welcome(epoch: number): Partial<Welcome> {
@@ -103,7 +107,7 @@ export class FakeServer {
     const next = this.positions.get(key) ?? 0;
     if (seqFirst > next) {
       this.resends++;
-      this.say({ type: "resend", stream, epoch, next_seq: next });
+      this.broadcast({ type: "resend", stream, epoch, next_seq: next });
       return;
     }
     for (let seq = next; seq < seqFirst + count; seq++) this.stored.push(`${key}/${seq}`);
@@ -173,12 +177,12 @@ export class FakeSocket {
     this.breaks(code, reason);
   }
 
-  opens(): void {
+  open(): void {
     this.readyState = WebSocket.OPEN;
     this.onopen?.();
   }
 
-  hears(text: string): void {
+  receive(text: string): void {
     queueMicrotask(() => this.onmessage?.({ data: text }));
   }
 

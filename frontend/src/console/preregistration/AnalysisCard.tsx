@@ -7,12 +7,12 @@ import { useTexts } from "../i18n";
 import { NumbersTable } from "../ui/tables";
 import classes from "./Preregistration.module.css";
 
-interface DoneProps {
+interface AnalysisCardProps {
   readonly view: Preregistration;
   readonly alpha: number;
 }
 
-export function Done({ view, alpha }: DoneProps): JSX.Element {
+export function AnalysisCard({ view, alpha }: AnalysisCardProps): JSX.Element {
   const { t } = useTexts();
   const planned = view.declaration?.planned_n ?? 0;
   return (

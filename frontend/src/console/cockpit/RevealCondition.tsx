@@ -18,7 +18,11 @@ const REASONS: readonly Key[] = [
 ];
 
 /** Renders nothing if no condition is hidden, or if it stays hidden for good. */
-export function Reveal({ session }: { readonly session: SessionView }): JSX.Element | null {
+export function RevealCondition({
+  session,
+}: {
+  readonly session: SessionView;
+}): JSX.Element | null {
   const { t } = useTexts();
   const can = usePermissions();
   const [opened, { open, close }] = useDisclosure();

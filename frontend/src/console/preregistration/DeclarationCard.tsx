@@ -6,7 +6,11 @@ import type { JSX } from "react";
 import { useTexts } from "../i18n";
 import classes from "./Preregistration.module.css";
 
-export function Declared({ declaration }: { readonly declaration: Declaration }): JSX.Element {
+export function DeclarationCard({
+  declaration,
+}: {
+  readonly declaration: Declaration;
+}): JSX.Element {
   const { t, language } = useTexts();
   const frozen = declaration.frozen_at;
   const rules = declaration.section.exclusions ?? [];
