@@ -156,8 +156,8 @@ ENGLISH = HelpTexts(
             (
                 "Download the certificate and open it: *Keychain Access* adds it to *login*.",
                 (
-                    "Open it there, unfold *Trust*, and set *When using this certificate* to"
-                    " *Always Trust*. Close the window; your password confirms it."
+                    "Open it there, unfold *Trust*, and set *When using this certificate* to "
+                    "*Always Trust*. Close the window and confirm with your password."
                 ),
                 "Then restart Safari or Chrome.",
             ),
@@ -198,9 +198,9 @@ GERMAN = HelpTexts(
     other_name="English",
     title="Dieses Gerät verbinden",
     lead=(
-        "Der Server des Labors verschlüsselt, was er sendet, und weist sich mit einem Zertifikat"
-        " des Labors aus. Jedes Gerät installiert dieses Zertifikat einmal; danach öffnet sich jede"
-        " Seite ohne Warnung."
+        "Der Server des Labors verschlüsselt, was er sendet, und weist sich mit einem Zertifikat "
+        "des Labors aus. Installieren Sie dieses Zertifikat einmal auf jedem Gerät; danach "
+        "öffnet sich jede Seite ohne Warnung."
     ),
     download="Zertifikat holen",
     certificate="Zertifikat laden",
@@ -211,16 +211,17 @@ GERMAN = HelpTexts(
         "SHA-256. Dieselben Ziffern stehen in der Konsole auf der Seite *Netzwerk* und im Terminal"
         " des Laborrechners."
     ),
-    compare_stop="Stimmen sie nicht überein: nichts installieren und im Labor Bescheid sagen.",
+    compare_stop="Stimmen sie nicht überein, installieren Sie nichts und sagen Sie im Labor "
+    "Bescheid.",
     install="Installieren",
     go_on="Weiter über https",
-    go_on_how="Öffnet sich die Seite ohne Warnung, ist alles getan.",
+    go_on_how="Öffnet sich die Seite ohne Warnung, sind Sie fertig.",
     tablet="Seite für das Tablet öffnen",
     console="Konsole öffnen",
     elsewhere="Diese Seite für ein anderes Gerät",
     limits=(
-        "Dieses Zertifikat kann nur für private Netze und den Rechner des Labors bürgen, nie für"
-        " eine Seite im Internet. Von Geräten, die das Labor verlassen, sollte es entfernt werden."
+        "Dieses Zertifikat gilt nur für private Netze und den Rechner des Labors, nie für eine "
+        "Seite im Internet. Entfernen Sie es von Geräten, die das Labor verlassen."
     ),
     until="Es gilt bis {date}.",
     devices=(
@@ -241,9 +242,8 @@ GERMAN = HelpTexts(
                 (
                     "*Einstellungen*, *Allgemein*, *Info*, ganz unten"
                     " *Zertifikats\u00advertrauens\u00adeinstellungen*:"
-                    " *Reembody* einschalten. Ohne diesen Schritt zeigt Safari Seiten und"
-                    " verweigert"
-                    " doch deren Live-Verbindung."
+                    " *Reembody* einschalten. Ohne diesen Schritt zeigt Safari zwar Seiten,"
+                    " verweigert aber deren Live-Verbindung."
                 ),
                 "Hierher zurück und weiter mit Schritt 4.",
             ),
@@ -268,11 +268,9 @@ GERMAN = HelpTexts(
                     " wählen."
                 ),
                 (
-                    "*Chrome* benutzen. Firefox muss es erlaubt werden: *Einstellungen*,"
-                    " *Über Firefox*,"
-                    " fünfmal auf das Logo tippen; dann *Einstellungen*, *Secret Settings*,"
-                    " *Use third"
-                    " party CA certificates*."
+                    "*Chrome* benutzen. Firefox braucht eine Einstellung: *Einstellungen*, *Über "
+                    "Firefox*, fünfmal auf das Logo tippen; dann *Einstellungen*, *Secret "
+                    "Settings*, *Use third party CA certificates*."
                 ),
             ),
             ("Android",),
@@ -282,15 +280,14 @@ GERMAN = HelpTexts(
             "Meta Quest",
             (
                 (
-                    "Das Headset hat keine Seite, um Zertifikate zu installieren. Am besten ist ein"
-                    " Kabel: am Laborrechner `adb reverse tcp:{port} tcp:{port}`, im Headset"
-                    " `http://localhost:{port}`."
+                    "Auf dem Headset lassen sich keine Zertifikate installieren. Verwenden Sie "
+                    "ein Kabel: am Laborrechner `adb reverse tcp:{port} tcp:{port}`, im Headset "
+                    "`http://localhost:{port}`."
                 ),
                 (
-                    "Ohne Kabel: die Adresse aus Schritt 4 im Browser des Headsets öffnen. Bei der"
-                    " Warnung *Erweitert*, dann *Weiter* wählen. Der Browser merkt sich das"
-                    " eine Weile;"
-                    " am besten erledigen, bevor die Versuchsperson kommt."
+                    "Ohne Kabel: die Adresse aus Schritt 4 im Browser des Headsets öffnen. Bei "
+                    "der Warnung *Erweitert*, dann *Weiter* wählen. Der Browser merkt sich das "
+                    "eine Weile; erledigen Sie es, bevor die teilnehmende Person kommt."
                 ),
             ),
             ("OculusBrowser", "Quest"),
@@ -318,12 +315,13 @@ GERMAN = HelpTexts(
             "Mac",
             (
                 (
-                    "Zertifikat laden und öffnen: die *Schlüsselbundverwaltung* nimmt es in"
-                    " *Anmeldung* auf."
+                    "Zertifikat laden und öffnen: Die *Schlüsselbundverwaltung* nimmt es in "
+                    "*Anmeldung* auf."
                 ),
                 (
-                    "Dort öffnen, *Vertrauen* aufklappen, *Bei Verwendung dieses Zertifikats* auf"
-                    " *Immer vertrauen* stellen. Fenster schließen; das Kennwort bestätigt es."
+                    "Dort öffnen, *Vertrauen* aufklappen, *Bei Verwendung dieses Zertifikats* "
+                    "auf *Immer vertrauen* stellen. Fenster schließen und mit dem Passwort "
+                    "bestätigen."
                 ),
                 "Danach Safari oder Chrome neu starten.",
             ),
