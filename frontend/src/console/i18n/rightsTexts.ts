@@ -72,8 +72,7 @@ export const rightsEn = {
   "withdrew.body": "Recording has stopped. Ask whether the data collected so far may be kept.",
   "withdrew.keep": "Keep the data",
   "withdrew.erase": "Erase…",
-  "withdrew.note":
-    "After the withdrawal, the participant agreed that the data collected so far may be kept.",
+  "withdrew.note": "After the withdrawal: the data collected so far may be kept.",
   "withdrew.erased": "The participant's data were erased",
   "withdrew.erased.body": "On {{date}} by {{by}}. Only an outline of the session remains.",
   "export.file.corrections": "corrections.csv",
@@ -156,8 +155,7 @@ export const rightsDe: Readonly<Record<keyof typeof rightsEn, string>> = {
     "Die Aufzeichnung hat aufgehört. Fragen Sie, ob die bisherigen Daten aufbewahrt werden dürfen.",
   "withdrew.keep": "Daten behalten",
   "withdrew.erase": "Löschen …",
-  "withdrew.note":
-    "Nach dem Ende der Teilnahme stimmte die Person zu, dass die bisherigen Daten aufbewahrt werden.",
+  "withdrew.note": "Nach dem Ende der Teilnahme: die bisherigen Daten dürfen aufbewahrt werden.",
   "withdrew.erased": "Die Daten der Person wurden gelöscht",
   "withdrew.erased.body": "Am {{date}} von {{by}}. Von der Sitzung ist nur ein Umriss geblieben.",
   "export.file.corrections": "corrections.csv",
