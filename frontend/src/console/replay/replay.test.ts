@@ -179,6 +179,6 @@ describe("the bytes of a movement", () => {
 
   it("are rejected if they are truncated", () => {
     expect(() => decodeMovement(bytesOf(["target"], [1, 2]))).toThrow("Expected 3 numbers");
-    expect(() => decodeMovement(new ArrayBuffer(2))).toThrow("hold no movement");
+    expect(() => decodeMovement(new ArrayBuffer(2))).toThrow("are not a movement");
   });
 });

@@ -1,7 +1,7 @@
 /**
  * The live movement of a session over a WebSocket.
  *
- * Poses arrive as binary messages (`app/features/record/poses/service.py` describes the layout),
+ * Poses arrive as binary messages (`app/features/record/headset/poses.py` describes the layout),
  * everything else as JSON. The client acknowledges each drawn pose with `drawn`: the server never
  * has
  * more than a few on the way, so the newest pose is shown, however slow the page is.

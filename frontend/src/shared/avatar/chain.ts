@@ -135,8 +135,8 @@ export class Chain {
     const found = this.mujoco.mj_name2id(this.model, this.mujoco.mjtObj.mjOBJ_BODY.value, part);
     if (found < 0) {
       throw new IkError(
-        `The model has no ${part}: inverse kinematics needs ${GOAL_PARTS.join(", ")} and what` +
-          " lies between them.",
+        `The model has no ${part}: inverse kinematics needs ${GOAL_PARTS.join(", ")} and the` +
+          " parts between them.",
       );
     }
     return found;

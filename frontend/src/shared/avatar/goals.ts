@@ -38,13 +38,13 @@ function check(part: string, goal: Place | null): void {
   if (!goal.positionM.every(Number.isFinite)) {
     throw new IkError(
       `The goal of ${part} lies at ${goal.positionM.join(", ")}: give null for a part whose` +
-        " position is not known.",
+        " position is unknown.",
     );
   }
   const norm = Math.hypot(...goal.rotation);
   if (!(Math.abs(norm - 1) <= UNIT_WITHIN)) {
     throw new IkError(
-      `The rotation of ${part} is no unit quaternion (w, x, y, z): its length is ${norm}, not 1.`,
+      `The rotation of ${part} is not a unit quaternion (w, x, y, z): its length is ${norm}, not 1.`,
     );
   }
 }

@@ -96,7 +96,7 @@ describe("inverse kinematics", () => {
     const solver = new InverseKinematics(mujoco, model);
     expect(() => solver.solve(headAt(Number.NaN))).toThrow(/Head lies at/);
     const flat = { positionM: [0, 1.6, 0], rotation: [0, 0, 0, 0] } as const;
-    expect(() => solver.solve({ ...NOWHERE, Head: flat })).toThrow(/Head is no unit quaternion/);
+    expect(() => solver.solve({ ...NOWHERE, Head: flat })).toThrow(/Head is not a unit quaternion/);
     solver.delete();
   });
 

@@ -60,7 +60,7 @@ export function splitMovement<Header>(
   bytes: ArrayBuffer,
   countOf: (header: Header) => number,
 ): { readonly header: Header; readonly numbers: Float32Array } {
-  if (bytes.byteLength < 4) throw new MotionError(`${bytes.byteLength} bytes hold no movement.`);
+  if (bytes.byteLength < 4) throw new MotionError(`${bytes.byteLength} bytes are not a movement.`);
   const length = new DataView(bytes).getUint32(0, true);
   if (4 + length > bytes.byteLength) {
     throw new MotionError(`The header should have ${length} bytes; the answer has fewer.`);
