@@ -98,7 +98,7 @@ export function CameraBar({ mode, hasEyes, stage, onMode }: CameraBarProps): JSX
             key={from}
             type="button"
             className={classes.cameraSide}
-            onClick={() => stage.current?.look(from)}
+            onClick={() => stage.current?.placeCamera(from)}
           >
             {t(`stage.look.${from}`)}
           </button>

@@ -118,9 +118,12 @@ export type Key = KeyOf<typeof allEn>;
 
 const REMEMBERED = "reembody.console.language";
 // Tests of modules that import these texts run where there is no storage.
-const wanted = [globalThis.localStorage?.getItem(REMEMBERED) ?? [], navigator.languages].flat();
+const preferred = [globalThis.localStorage?.getItem(REMEMBERED) ?? [], navigator.languages].flat();
 
-export const translations = createTranslations({ en: allEn, de: allDe }, preferredLanguage(wanted));
+export const translations = createTranslations(
+  { en: allEn, de: allDe },
+  preferredLanguage(preferred),
+);
 translations.on("languageChanged", (language) => localStorage.setItem(REMEMBERED, language));
 
 export const useTexts = (): Texts<Key> => useTranslations<Key>();

@@ -169,8 +169,8 @@ function useStages() {
   const second = useRef<StageHandle>(null);
   const refs = [first, second] as const;
   const all = useRef<StageHandle>({
-    look: (from: CameraSide) => {
-      for (const { current } of refs) current?.look(from);
+    placeCamera: (from: CameraSide) => {
+      for (const { current } of refs) current?.placeCamera(from);
     },
     zoom: (factor: number) => {
       for (const { current } of refs) current?.zoom(factor);

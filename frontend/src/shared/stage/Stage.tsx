@@ -31,7 +31,7 @@ export interface StageTexts {
 }
 
 export interface StageHandle {
-  readonly look: (from: CameraSide) => void;
+  readonly placeCamera: (from: CameraSide) => void;
   readonly zoom: (factor: number) => void;
 }
 

@@ -40,7 +40,7 @@ export function SignalStrip({ session, alarms, onHistory }: SignalStripProps): J
   const total = useQuery(alarmsQuery(session.id, stateOf(session))).data?.length ?? 0;
   return (
     <section
-      className={`${classes.strip} ${tone} ${acknowledged ? classes.seen : ""}`}
+      className={`${classes.strip} ${tone} ${acknowledged ? classes.acknowledged : ""}`}
       data-tour="signal"
       aria-label={t("signal.label")}
     >
