@@ -56,9 +56,9 @@ class Shortfall(BaseModel):
             case "phase_short":
                 return f"{self.value:.1f} s of active time, at least {self.limit:g} s needed"
             case "phase_doubtful":
-                return "what the headset reported about it cannot be true"
+                return "what the headset said of it cannot be true"
             case "headset_doubtful":
-                return "what the headset reported about the whole session cannot be true"
+                return "what the headset said of the whole session cannot be true"
             case "form_skipped":
                 return f"questionnaire {self.instrument} not answered"
             case "latency_missing":
