@@ -71,7 +71,7 @@ export function Stage(props: StageProps): JSX.Element {
   });
   const [pointed, setPointed] = useState<Pointed | null>(null);
   useImperativeHandle(handle, () => ({
-    look: (from) => stage?.placeCamera(from),
+    placeCamera: (from) => stage?.placeCamera(from),
     zoom: (factor) => stage?.zoom(factor),
   }));
   if (drawingState === "flat") {
