@@ -11,7 +11,7 @@ import { instrumentsQuery } from "../queries";
 import classes from "./Imports.module.css";
 
 interface FieldsProps {
-  readonly look: ImportPreview;
+  readonly preview: ImportPreview;
   readonly mapping: ImportMapping;
   readonly onChange: (part: Partial<ImportMapping>) => void;
   readonly onPreview: (instrument: string, headerRows: number | null) => void;
@@ -19,10 +19,10 @@ interface FieldsProps {
 
 const ORDERS = ["iso", "day_first", "month_first"] as const;
 
-export function ColumnFields({ look, mapping, onChange, onPreview }: FieldsProps): JSX.Element {
+export function ColumnFields({ preview, mapping, onChange, onPreview }: FieldsProps): JSX.Element {
   const { t } = useTexts();
   const instruments = useQuery(instrumentsQuery).data ?? [];
-  const columns = look.columns.map(({ name }) => name);
+  const columns = preview.columns.map(({ name }) => name);
   return (
     <div className={classes.fields}>
       <Select
@@ -30,7 +30,7 @@ export function ColumnFields({ look, mapping, onChange, onPreview }: FieldsProps
         allowDeselect={false}
         searchable
         data={instruments.map(({ key }) => key)}
-        value={look.instrument}
+        value={preview.instrument}
         onChange={(value) => value !== null && onPreview(value, null)}
       />
       <Select
@@ -79,9 +79,12 @@ export function ColumnFields({ look, mapping, onChange, onPreview }: FieldsProps
         label={t("imports.headerRows")}
         min={1}
         max={5}
-        value={look.header_rows}
+        value={preview.header_rows}
         onChange={(value) =>
-          typeof value === "number" && value >= 1 && value <= 5 && onPreview(look.instrument, value)
+          typeof value === "number" &&
+          value >= 1 &&
+          value <= 5 &&
+          onPreview(preview.instrument, value)
         }
       />
     </div>

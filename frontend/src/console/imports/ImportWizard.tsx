@@ -45,7 +45,7 @@ function Wizard({ study, onOpen }: Pick<WizardProps, "study" | "onOpen">): JSX.E
       file: OpenedFile;
       instrument: string | null;
       heads: number | null;
-    }) => imports.look(study.key, wish.file.text, wish.instrument, wish.heads),
+    }) => imports.preview(study.key, wish.file.text, wish.instrument, wish.heads),
   });
   const [stranger, setStranger] = useState<string | null>(null);
   const choose = async (chosen: File | null): Promise<void> => {
@@ -73,7 +73,7 @@ function Wizard({ study, onOpen }: Pick<WizardProps, "study" | "onOpen">): JSX.E
         <PreviewedImport
           study={study}
           file={file}
-          look={previewing.data}
+          preview={previewing.data}
           onPreview={preview}
           onOpen={onOpen}
         />
@@ -84,26 +84,26 @@ function Wizard({ study, onOpen }: Pick<WizardProps, "study" | "onOpen">): JSX.E
 
 interface PreviewedImportProps extends Pick<WizardProps, "study" | "onOpen"> {
   readonly file: OpenedFile;
-  readonly look: ImportPreview;
+  readonly preview: ImportPreview;
   readonly onPreview: (instrument: string, headerRows: number | null) => void;
 }
 
 function PreviewedImport({
   study,
   file,
-  look,
+  preview,
   onPreview,
   onOpen,
 }: PreviewedImportProps): JSX.Element {
   return (
     <>
-      {look.same_file !== null && <DuplicateNotice found={look.same_file} onOpen={onOpen} />}
+      {preview.same_file !== null && <DuplicateNotice found={preview.same_file} onOpen={onOpen} />}
       <MappingStep
         // Start over with another file, instrument or number of header rows.
-        key={`${file.name} ${look.instrument} ${look.header_rows} ${file.text.length}`}
+        key={`${file.name} ${preview.instrument} ${preview.header_rows} ${file.text.length}`}
         study={study}
         file={file}
-        look={look}
+        preview={preview}
         onPreview={onPreview}
         onDone={onOpen}
       />

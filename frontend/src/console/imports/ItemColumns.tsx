@@ -8,7 +8,7 @@ import { useTexts } from "../i18n";
 import classes from "./Imports.module.css";
 
 interface ItemsProps {
-  readonly look: ImportPreview;
+  readonly preview: ImportPreview;
   readonly items: readonly {
     readonly key: string;
     readonly text: Readonly<Record<string, string>>;
@@ -19,10 +19,16 @@ interface ItemsProps {
   readonly onChange: (part: Partial<ImportMapping>) => void;
 }
 
-export function ItemColumns({ look, items, reversed, mapping, onChange }: ItemsProps): JSX.Element {
+export function ItemColumns({
+  preview,
+  items,
+  reversed,
+  mapping,
+  onChange,
+}: ItemsProps): JSX.Element {
   const { t, language } = useTexts();
   const { sets } = mapping;
-  const columns = look.columns.map(({ name }) => name);
+  const columns = preview.columns.map(({ name }) => name);
   const put = (at: number, item: string, column: string | null): void =>
     onChange({
       sets: sets.map((one, place) =>

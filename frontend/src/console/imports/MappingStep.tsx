@@ -19,14 +19,14 @@ import { WordFields } from "./WordFields";
 interface StepProps {
   readonly study: StudyDetail;
   readonly file: OpenedFile;
-  readonly look: ImportPreview;
+  readonly preview: ImportPreview;
   readonly onPreview: (instrument: string, headerRows: number | null) => void;
   readonly onDone: (id: string) => void;
 }
 
-export function MappingStep({ study, file, look, onPreview, onDone }: StepProps): JSX.Element {
+export function MappingStep({ study, file, preview, onPreview, onDone }: StepProps): JSX.Element {
   const { t } = useTexts();
-  const [mapping, setMapping] = useState<ImportMapping>(look.proposal ?? emptyMapping(look));
+  const [mapping, setMapping] = useState<ImportMapping>(preview.proposal ?? emptyMapping(preview));
   const change = (part: Partial<ImportMapping>): void => setMapping({ ...mapping, ...part });
   const ready = mapping.participant !== "" && mapping.sets.some(hasItems);
   const requested = { ...mapping, sets: mapping.sets.filter(hasItems) };
@@ -34,25 +34,25 @@ export function MappingStep({ study, file, look, onPreview, onDone }: StepProps)
     ...checkQuery(study.key, `${file.name} ${file.text.length}`, file.text, requested),
     enabled: ready,
   });
-  const items = useQuery(instrumentQuery(look.instrument));
-  const words = [...new Set([...look.words, ...(check.data?.unknown_words ?? [])])];
+  const items = useQuery(instrumentQuery(preview.instrument));
+  const words = [...new Set([...preview.words, ...(check.data?.unknown_words ?? [])])];
   return (
     <>
-      <FilePreview look={look} />
-      {look.remembered && (
+      <FilePreview look={preview} />
+      {preview.remembered && (
         <Notice tone="info" title={t("imports.remembered")}>
           {t("imports.remembered.body")}
         </Notice>
       )}
-      {look.proposal === null && (
+      {preview.proposal === null && (
         <Notice tone="warn" title={t("imports.unknown")}>
           {t("imports.unknown.body")}
         </Notice>
       )}
-      <ColumnFields look={look} mapping={mapping} onChange={change} onPreview={onPreview} />
+      <ColumnFields preview={preview} mapping={mapping} onChange={change} onPreview={onPreview} />
       {items.data !== undefined && (
         <ItemColumns
-          look={look}
+          preview={preview}
           items={items.data.preview.instrument.items}
           reversed={check.data?.reversed_items ?? []}
           mapping={mapping}
@@ -62,7 +62,7 @@ export function MappingStep({ study, file, look, onPreview, onDone }: StepProps)
       <WordFields
         study={study}
         words={words}
-        conditions={conditionWords(look, mapping, check.data?.conditions)}
+        conditions={conditionWords(preview, mapping, check.data?.conditions)}
         mapping={mapping}
         onChange={change}
       />
@@ -116,9 +116,9 @@ function Store({ study, file, mapping, allowed, forms, onDone }: StoreProps): JS
 
 const hasItems = (one: ImportMapping["sets"][number]): boolean => Object.keys(one.items).length > 0;
 
-function emptyMapping(look: ImportPreview): ImportMapping {
+function emptyMapping(preview: ImportPreview): ImportMapping {
   return {
-    instrument: look.instrument,
+    instrument: preview.instrument,
     participant: "",
     condition: null,
     date: null,
@@ -129,7 +129,7 @@ function emptyMapping(look: ImportPreview): ImportMapping {
     multiply: 1,
     add: 0,
     turned: [],
-    header_rows: look.header_rows,
+    header_rows: preview.header_rows,
   };
 }
 

@@ -21,7 +21,7 @@ export const imports = {
     answer<readonly AnswerImport[]>(server.GET("/api/studies/{key}/imports", of(key))),
   get: (key: string, id: string) =>
     answer<ImportDetail>(server.GET("/api/studies/{key}/imports/{import_id}", one(key, id))),
-  look: (key: string, text: string, instrument: string | null, headerRows: number | null) =>
+  preview: (key: string, text: string, instrument: string | null, headerRows: number | null) =>
     answer<ImportPreview>(
       server.POST("/api/studies/{key}/imports/look", {
         ...of(key),

@@ -50,7 +50,7 @@ export const invitations = {
         params: { path: { invitation_id: id } },
       }),
     ),
-  look: (token: string) =>
+  preview: (token: string) =>
     answer<InvitationLook>(server.POST("/api/invitations/look", { body: { token } })),
   accept: (token: string, username: string, password: string) =>
     answer<{ account: Account }>(

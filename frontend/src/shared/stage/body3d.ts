@@ -221,12 +221,12 @@ function makeMeshes(
   };
 }
 
-function headOf(figure: Figure, palette: StagePalette, look: object): Head | null {
+function headOf(figure: Figure, palette: StagePalette, material: object): Head | null {
   if (figure.roles?.head == null) return null;
   const colour = figure.tone === "ghost" ? palette.ghost : palette.trunk;
   return new Mesh(
     new SphereGeometry(1, 22, 16),
-    new MeshLambertMaterial({ ...look, color: colour }),
+    new MeshLambertMaterial({ ...material, color: colour }),
   );
 }
 

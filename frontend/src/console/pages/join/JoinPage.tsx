@@ -60,7 +60,7 @@ function SignedIn({ account }: { readonly account: Account }): JSX.Element {
 function Invitation({ token }: { readonly token: string }): JSX.Element {
   const query = useQuery({
     queryKey: ["invitation", token],
-    queryFn: () => invitations.look(token),
+    queryFn: () => invitations.preview(token),
     staleTime: Number.POSITIVE_INFINITY,
     gcTime: 0,
   });
