@@ -17,7 +17,7 @@ def williams(n: int) -> tuple[Row, ...]:
         raise ValueError(f"{n} treatments cannot be ordered; give at least 1.")
     # 0, 1, n-1, 2, n-2, ...: the differences of neighbours, modulo n, are all different.
     first = [(place + 1) // 2 if place % 2 else -(place // 2) for place in range(n)]
-    rows = [tuple((one + shift) % n for one in first) for shift in range(n)]
+    rows = [tuple((treatment + shift) % n for treatment in first) for shift in range(n)]
     if n % 2 == 0 or n == 1:
         return tuple(rows)
     # For an odd n these rows contain half of the ordered pairs; reversed, the other half.

@@ -81,11 +81,13 @@ def aligned_contrasts(
     pairs = list(combinations(range(len(names)), 2))
     flat = means.ravel()
     estimates = [float(flat[a] - flat[b]) for a, b in pairs]
-    p_values = [2.0 * float(stdtr(df, -abs(one) / error)) for one in estimates]
+    p_values = [2.0 * float(stdtr(df, -abs(difference) / error)) for difference in estimates]
     return AlignedContrasts(
         tuple(
-            AlignedContrast(names[a], names[b], one, error, one / error, df, p, adjusted)
-            for (a, b), one, p, adjusted in zip(
+            AlignedContrast(
+                names[a], names[b], difference, error, difference / error, df, p, adjusted
+            )
+            for (a, b), difference, p, adjusted in zip(
                 pairs, estimates, p_values, holm(p_values), strict=True
             )
         ),

@@ -78,10 +78,19 @@ def explore(
         found[name] = _number(values, np.asarray(column, dtype=np.float64), name)
     for name, words in (categories or {}).items():
         found[name] = _category(values, words, name)
-    adjusted = holm([one.p for one in found.values()])
+    adjusted = holm([result.p for result in found.values()])
     return tuple(
-        Explored(name, one.kind, one.effect, one.p, p, one.n, values.size - one.n, one.why_not)
-        for (name, one), p in zip(found.items(), adjusted, strict=True)
+        Explored(
+            name,
+            result.kind,
+            result.effect,
+            result.p,
+            p,
+            result.n,
+            values.size - result.n,
+            result.why_not,
+        )
+        for (name, result), p in zip(found.items(), adjusted, strict=True)
     )
 
 

@@ -60,5 +60,7 @@ def as_number(text: str) -> float | None:
 
 def _natural(level: str) -> tuple[list[tuple[int, float, str]], str]:
     pieces = _DIGITS.split(level.casefold())
-    key = [(0, float(one), "") if one.isdigit() else (1, 0.0, one) for one in pieces if one]
+    key = [
+        (0, float(piece), "") if piece.isdigit() else (1, 0.0, piece) for piece in pieces if piece
+    ]
     return key, level

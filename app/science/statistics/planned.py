@@ -85,7 +85,7 @@ def against_reference(
     place = place_of(levels, reference)
     pairs = [(other, place) for other in range(len(levels)) if other != place]
     comparisons = compare_pairs(values, levels, pairs, alternative=alternative)
-    first = next((one.a for one in comparisons if one.p_holm <= alpha), None)
+    first = next((comparison.a for comparison in comparisons if comparison.p_holm <= alpha), None)
     return AgainstReference(levels[place], comparisons, first, alpha, alternative)
 
 

@@ -87,7 +87,7 @@ class Cells:
 
         The result is (n, levels); a subject's mean is NaN if one of its cells is missing.
         """
-        others = tuple(one for one in range(1, self.values.ndim) if one != axis)
+        others = tuple(other for other in range(1, self.values.ndim) if other != axis)
         return _rounded(self.values.mean(axis=others)) if others else self.values
 
 
@@ -143,12 +143,14 @@ def _sums_by_cell(
     values: list[float],
 ) -> tuple[FloatArray, IntArray]:
     """Return the sum and the number of the values in each cell."""
-    shape = (len(who), *(len(one) for one in levels))
+    shape = (len(who), *(len(factor_levels) for factor_levels in levels))
     subject_place = {name: place for place, name in enumerate(who)}
     index = [np.array([subject_place[name] for name in names])]
     for factor_levels, column in zip(levels, columns, strict=True):
         places = level_places(factor_levels)
-        index.append(np.array([places.get(one, places.get(as_number(one), -1)) for one in column]))
+        index.append(
+            np.array([places.get(level, places.get(as_number(level), -1)) for level in column])
+        )
     flat = np.ravel_multi_index(tuple(index), shape)
     numbers = np.array(values)
     there = ~np.isnan(numbers)

@@ -110,17 +110,17 @@ def carry_over(
     y = np.asarray(values, dtype=np.float64)[usable]
     names = [who for who, use in zip(participants, usable, strict=True) if use]
     condition = _selected(factor(CONDITION, conditions), usable)
-    before = [str(one) if one is not None else None for one in previous]
+    before = [str(each) if each is not None else None for each in previous]
     design = build_design(
         [
             condition,
             _selected(factor(PERIOD, periods), usable),
-            *(_selected(one, usable) for one in further),
+            *(_selected(each, usable) for each in further),
         ],
         [
             _previous_condition(
                 condition,
-                [one for one, use in zip(before, usable, strict=True) if use],
+                [each for each, use in zip(before, usable, strict=True) if use],
             )
         ],
     )
@@ -137,7 +137,7 @@ def _diagnosed(
 ) -> CarryOver:
     tested, period = term_test(model, CARRY_OVER), term_test(model, PERIOD)
     differences = _differences(model, model.design.factor(CONDITION).levels)
-    largest = max(max(abs(one.value.low), abs(one.value.high)) for one in differences)
+    largest = max(max(abs(each.value.low), abs(each.value.high)) for each in differences)
     return CarryOver(
         orders=orders,
         condition=term_test(model, CONDITION),
@@ -168,8 +168,8 @@ def _conditions_by_period(
     return placed
 
 
-def _selected(one: Factor, usable: np.ndarray) -> Factor:
-    return Factor(one.name, one.levels, one.codes[usable])
+def _selected(term: Factor, usable: np.ndarray) -> Factor:
+    return Factor(term.name, term.levels, term.codes[usable])
 
 
 def _previous_condition(condition: Factor, before: Sequence[str | None]) -> Covariate:

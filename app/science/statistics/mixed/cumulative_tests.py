@@ -108,8 +108,8 @@ def cumulative_term_tests(
     for term in terms or design.terms:
         large = _without_products_of(design, term)
         fits = (
-            fit_cumulative_model(answers, participants, one, link=link, nodes=nodes)
-            for one in (without_term(large, term), large)
+            fit_cumulative_model(answers, participants, each, link=link, nodes=nodes)
+            for each in (without_term(large, term), large)
         )
         found.append(CumulativeTermTest(term, likelihood_ratio(*fits)))
     return tuple(found)
@@ -124,8 +124,8 @@ def method_of(model: CumulativeModel) -> str:
 
 def without_term(design: Design, term: str) -> Design | None:
     """Return the design without one term; None if nothing is left."""
-    factors = [one for one in design.factors if one.name != term]
-    covariates = [one for one in design.covariates if one.name != term]
+    factors = [each for each in design.factors if each.name != term]
+    covariates = [each for each in design.covariates if each.name != term]
     products = [names for names in design.interactions if ":".join(names) != term]
     return build_design(factors, covariates, products) if factors or covariates else None
 
@@ -186,7 +186,7 @@ def cumulative_contrasts(
 
 
 def _effect(model: CumulativeModel, name: str, row: np.ndarray) -> CumulativeEffect:
-    value = float(row @ [one.estimate for one in model.effects])
+    value = float(row @ [each.estimate for each in model.effects])
     se = float(np.sqrt(row @ model.covariance @ row))
     half = float(scipy.stats.norm.ppf((1.0 + _LEVEL) / 2.0)) * se
     z = value / se

@@ -44,15 +44,15 @@ class Design:
     @property
     def terms(self) -> tuple[str, ...]:
         """The terms that can be tested: `latency`, `limb`, `latency:limb`, and each covariate."""
-        mains = [*(one.name for one in self.factors), *(one.name for one in self.covariates)]
+        mains = [*(each.name for each in self.factors), *(each.name for each in self.covariates)]
         return (*mains, *(":".join(names) for names in self.interactions))
 
     def factor(self, name: str) -> Factor:
         """Return the factor of that name; if unknown, raise ModelError listing the factors."""
-        for one in self.factors:
-            if one.name == name:
-                return one
-        valid = ", ".join(one.name for one in self.factors)
+        for each in self.factors:
+            if each.name == name:
+                return each
+        valid = ", ".join(each.name for each in self.factors)
         raise ModelError(f"There is no factor {name} in the model; valid: {valid}.")
 
 
@@ -73,15 +73,15 @@ def build_design(
             combination of the others, so that its coefficient cannot be estimated.
     """
     _check_names(factors, covariates)
-    lengths = {len(one.codes) for one in factors} | {len(one.columns) for one in covariates}
+    lengths = {len(each.codes) for each in factors} | {len(each.columns) for each in covariates}
     if len(lengths) != 1:
         raise ModelError(f"Every term needs one value per observation; lengths are {lengths}.")
     found = Design(
         np.empty((0, 0)), (), tuple(factors), tuple(covariates), tuple(map(tuple, interactions))
     )
-    matrix, names = _columns(found, [one.codes for one in factors], lengths.pop())
-    numbers = [one.columns for one in covariates]
-    names += [_part(one.name, part) for one in covariates for part in one.parts]
+    matrix, names = _columns(found, [each.codes for each in factors], lengths.pop())
+    numbers = [each.columns for each in covariates]
+    names += [_part(each.name, part) for each in covariates for part in each.parts]
     matrix = np.hstack([matrix, *numbers])
     _check_independence(matrix, names)
     return Design(matrix, tuple(names), found.factors, found.covariates, found.interactions)
@@ -89,7 +89,7 @@ def build_design(
 
 def cells(design: Design) -> tuple[tuple[int, ...], ...]:
     """Return every combination of levels, as indices in the order of the factors."""
-    return tuple(product(*(range(len(one.levels)) for one in design.factors)))
+    return tuple(product(*(range(len(each.levels)) for each in design.factors)))
 
 
 def grid(design: Design) -> FloatArray:
@@ -97,7 +97,7 @@ def grid(design: Design) -> FloatArray:
     combinations = cells(design)
     codes = np.array(combinations, dtype=np.int64).reshape(len(combinations), -1)
     matrix, _ = _columns(design, list(codes.T), len(combinations))
-    held = [value for one in design.covariates for value in one.held_at]
+    held = [value for each in design.covariates for value in each.held_at]
     return np.hstack([matrix, np.tile(held, (len(combinations), 1))])
 
 
@@ -111,14 +111,14 @@ def term_contrasts(design: Design, term: str) -> FloatArray:
     """
     if term not in design.terms:
         raise ModelError(f"There is no term {term}; valid: {', '.join(design.terms)}.")
-    for one in design.covariates:
-        if one.name == term:
-            columns = [_part(one.name, part) for part in one.parts]
+    for each in design.covariates:
+        if each.name == term:
+            columns = [_part(each.name, part) for part in each.parts]
             return np.eye(len(design.names))[[design.names.index(name) for name in columns]]
     factors = term.split(":")
     weights = [
-        _differences(len(one.levels)) if one.name in factors else _average(len(one.levels))
-        for one in design.factors
+        _differences(len(each.levels)) if each.name in factors else _average(len(each.levels))
+        for each in design.factors
     ]
     joint: FloatArray = np.ones((1, 1))
     for weight in weights:
@@ -134,7 +134,7 @@ def marginal_weights(design: Design, factor: str, by: str = "") -> dict[str, dic
     Raises:
         ModelError: there is no such factor.
     """
-    names = [one.name for one in design.factors]
+    names = [each.name for each in design.factors]
     rows, places = grid(design), np.array(cells(design))
     compared, within = design.factor(factor), {"": np.full(len(rows), True)}
     if by:
@@ -175,18 +175,18 @@ def _average(levels: int) -> FloatArray:
 
 def _columns(design: Design, codes: list[IntArray], rows: int) -> tuple[FloatArray, list[str]]:
     """Return intercept, main effects and interactions for the given codes of each factor."""
-    named = {one.name: (one, code) for one, code in zip(design.factors, codes, strict=True)}
+    named = {each.name: (each, code) for each, code in zip(design.factors, codes, strict=True)}
     columns, names = [np.ones((rows, 1))], [INTERCEPT]
-    for term in (*((one.name,) for one in design.factors), *design.interactions):
+    for term in (*((each.name,) for each in design.factors), *design.interactions):
         unknown = [name for name in term if name not in named]
         if unknown:
             raise ModelError(f"{unknown[0]} is not a factor; valid: {', '.join(named)}.")
         block, labels = np.ones((rows, 1)), [""]
         for name in term:
-            one, code = named[name]
-            indicators = np.eye(len(one.levels))[code][:, 1:]
+            factor, code = named[name]
+            indicators = np.eye(len(factor.levels))[code][:, 1:]
             block = (block[:, :, np.newaxis] * indicators[:, np.newaxis, :]).reshape(rows, -1)
-            parts = [_part(name, level) for level in one.levels[1:]]
+            parts = [_part(name, level) for level in factor.levels[1:]]
             labels = [f"{left}:{part}".lstrip(":") for left in labels for part in parts]
         columns.append(block)
         names += labels
@@ -198,7 +198,7 @@ def _part(name: str, part: str) -> str:
 
 
 def _check_names(factors: Sequence[Factor], covariates: Sequence[Covariate]) -> None:
-    names = [*(one.name for one in factors), *(one.name for one in covariates)]
+    names = [*(each.name for each in factors), *(each.name for each in covariates)]
     if not names or len(set(names)) < len(names):
         raise ModelError(f"The terms of a model need distinct names; given: {names}.")
 
