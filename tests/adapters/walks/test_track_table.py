@@ -59,7 +59,7 @@ def test_people_are_kept_apart() -> None:
         ("x,y\n0,0\n", "no column of time"),
         ("frame,x,y\n0,0,0\n1,0,1\n", "give the rate"),
         ("t,x,y\n0,0,0\n", r"1 point\(s\); a walk needs at least two"),
-        ("t,x,y\n0,0,0\n0,0,1\n", "do not grow, at index 1"),
+        ("t,x,y\n0,0,0\n0,0,1\n", "do not increase, at index 1"),
         ("t,x,y\n0,0,0\n1,0,30\n2,0,60\n", "moves at 30 m/s"),
         ("t,x,y\n0,0,0\n1,0,1\n2,0,2\n9,0,3\n", r"not seen for 7\.00 s from 2\.00 s"),
         ("t,x,y\n", "no rows"),
