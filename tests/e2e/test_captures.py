@@ -272,7 +272,7 @@ def test_every_page_of_a_capture_is_accessible(
     assert axe(page) == []
     screenshot(page, f"captures-{scheme}")
     for tab, sign in (
-        ("movement", "Squares of 1 m"),
+        ("movement", "Each square is 1 m wide"),
         ("joints", "Parts of the body without a joint"),
         ("verification", "Every avatar lifts"),
     ):

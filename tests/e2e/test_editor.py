@@ -90,7 +90,7 @@ def test_a_study_from_template_to_second_version(
     page.get_by_label("Added latency (ms)").nth(1).fill("250")
     expect(page.get_by_text("Not saved yet")).to_be_visible()
     page.get_by_role("tab", name="What changes").click()
-    expect(page.get_by_text("Balance is affected")).to_be_visible()
+    expect(page.get_by_text("The balance is affected")).to_be_visible()
     expect(page.get_by_role("row", name="conditions[1].latency_ms")).to_contain_text("250")
     assert axe(page) == []
     screenshot(page, "editor-changes")

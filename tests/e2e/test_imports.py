@@ -37,7 +37,7 @@ def test_a_file_is_mapped_checked_and_taken_in(
     page.locator("input[type=file]").set_input_files(file)
     expect(page.get_by_text("Cells that do not fit: 3").first).to_be_visible()
     assert axe(page) == []
-    page.get_by_label("Number of “none”").fill("0")
+    page.get_by_label("Number for “none”").fill("0")
     page.keyboard.press("Tab")
     page.get_by_role("button", name="Import 9 forms").click()
     expect(page.get_by_text("Imported, not measured here")).to_be_visible(timeout=20_000)

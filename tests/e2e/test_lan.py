@@ -167,7 +167,7 @@ def test_pairing_offers_the_certificate_first(
     page = operator.page
     page.get_by_role("button", name="Pair the tablet").click()
     expect(page.get_by_text(f"{lan.secure_url}/tablet?code=")).to_be_visible()
-    page.get_by_text("First time with this device?").click()
+    page.get_by_text("New device?").click()
     expect(page.get_by_text(lan.help_url)).to_be_visible()
     assert axe(page) == []
     screenshot(page, "pairing-first-time")

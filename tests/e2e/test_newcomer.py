@@ -92,7 +92,7 @@ def _download(
         assert archive.read("sessions.csv").count(b"\n") == 1 + 1
     page.get_by_role("button", name="Downloads").click()
     drawer = page.get_by_role("dialog")
-    expect(drawer.get_by_text(re.compile("^Passed to the browser"))).to_be_visible(
+    expect(drawer.get_by_text(re.compile("^Handed over to the browser"))).to_be_visible(
         timeout=PATIENCE_MS
     )
     assert axe(page) == []

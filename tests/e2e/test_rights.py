@@ -42,7 +42,7 @@ def test_a_withdrawn_participant_is_erased_by_typing_the_code(
         page.get_by_label("Type P-0077 to confirm").fill("P-0077")
         assert axe(page) == []
         erase.click()
-        expect(page.get_by_text("Nothing of it is left")).to_be_visible(timeout=30_000)
+        expect(page.get_by_text("No trace of it is left")).to_be_visible(timeout=30_000)
         page.get_by_role("button", name="Destroyed").first.click()
         expect(page.get_by_text("Destroyed on")).to_be_visible()
         page.get_by_role("button", name="Close").last.click()
