@@ -17,8 +17,8 @@ GENEROUS_S = 60.0
 @pytest.fixture(autouse=True)
 def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """As a big folder would after the first second."""
-    monkeypatch.setattr(progress, "SAID_AFTER_S", 0.0)
-    monkeypatch.setattr(progress, "SAID_EVERY_S", 0.01)
+    monkeypatch.setattr(progress, "FIRST_UPDATE_S", 0.0)
+    monkeypatch.setattr(progress, "LOG_EVERY_S", 0.01)
     monkeypatch.setattr(progress, "DRAWN_EVERY_S", 0.01)
 
 
@@ -68,7 +68,7 @@ def test_a_command_that_is_done_at_once_says_nothing(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A script's standard error stays empty."""
-    monkeypatch.setattr(progress, "SAID_AFTER_S", GENEROUS_S)
+    monkeypatch.setattr(progress, "FIRST_UPDATE_S", GENEROUS_S)
     with Activity("nothing of it"):
         pass
     assert capsys.readouterr().err == ""

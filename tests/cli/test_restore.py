@@ -29,7 +29,7 @@ RESTORE = Invoked("restore")
 @pytest.fixture(autouse=True)
 def soon_done(monkeypatch: pytest.MonkeyPatch) -> None:
     """What a slow machine says of its progress is no warning."""
-    monkeypatch.setattr(progress, "SAID_AFTER_S", 600.0)
+    monkeypatch.setattr(progress, "FIRST_UPDATE_S", 600.0)
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,7 @@ def test_a_head_that_is_none_is_refused_before_the_database_is_opened(
     head: str, data: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Nothing is said of opening, and no folder is made for a database that is not there."""
-    monkeypatch.setattr(progress, "SAID_AFTER_S", 0.0)
+    monkeypatch.setattr(progress, "FIRST_UPDATE_S", 0.0)
     said = Invoked("verify").refusal("--head", head)
     assert "is not the head of an audit trail" in said
     assert "opening" not in said
