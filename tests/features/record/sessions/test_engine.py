@@ -22,7 +22,7 @@ def test_starting_twice_is_refused() -> None:
     """The second of two starts hears that the session is active already."""
     run = Run()
     run.do(c.Start())
-    with pytest.raises(Refused, match="active already"):
+    with pytest.raises(Refused, match="already active"):
         run.do(c.Start())
 
 
@@ -67,7 +67,7 @@ def test_a_phase_needs_a_headset() -> None:
 def test_a_phase_is_begun_once() -> None:
     """A second begin while one is under way is refused."""
     run = Run().begin(HAND)
-    with pytest.raises(Refused, match="running already"):
+    with pytest.raises(Refused, match="already running"):
         run.do(c.BeginPhase(headset_connected=True))
 
 

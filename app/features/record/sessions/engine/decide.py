@@ -295,7 +295,7 @@ def _retract_refusal(state: SessionState, command: c.RetractRefusal) -> list[e.E
         if command.content is None:
             return []
         raise Refused(
-            "consent was not refused, or the refusal was already taken back",
+            "consent was not refused, or the refusal has already been taken back",
             value="not refused",
             valid=["a refused consent"],
             remedy="Continue with the current step.",
