@@ -25,7 +25,7 @@ def exclusions_drawing(
     """Draw the counts from all rows, valid or not, of the three tables."""
     n = participants(sessions)
     if sessions.empty:
-        empty = "The study has no sessions yet."
+        empty = "No session has been created yet."
         return Drawing(KEY, TITLE, WHAT, 0, empty=empty, group="quality")
     rows = _counts(sessions, phases[phases["phase_kind"].isin(COUNTED_KINDS)], scores)
     figure = _figure(rows)

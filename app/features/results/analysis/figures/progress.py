@@ -37,7 +37,7 @@ def progress_drawing(
     """
     n = participants(sessions)
     if sessions.empty:
-        return Drawing(KEY, TITLE, "", 0, empty="The study has no sessions yet.")
+        return Drawing(KEY, TITLE, "", 0, empty="No session has been created yet.")
     own = pd.Series("all orders", sessions.index) if blinded else sessions["order"]
     status = _statuses(sessions)
     names = ["all orders"] if blinded else sorted({*orders, *own}, key=_as_numbers)

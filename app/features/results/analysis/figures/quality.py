@@ -89,7 +89,7 @@ def alarms_drawing(alarms: pd.DataFrame, sessions: int) -> Drawing:
     n = participants(raised)
     what = f"{ALARMS_WHAT} {sessions} sessions."
     if raised.empty:
-        empty = "No alarm was raised." if sessions else "The study has no sessions yet."
+        empty = "No alarm was raised." if sessions else "No session has been created yet."
         return Drawing(ALARMS_KEY, ALARMS_TITLE, what, n, empty=empty, group="quality")
     counts = raised.groupby(["code", "severity"]).size().rename("count").reset_index()
     order = counts.groupby("code")["count"].sum().sort_values(ascending=False).index.tolist()
