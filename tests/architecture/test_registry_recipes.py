@@ -252,7 +252,7 @@ def joined_drawing(sessions: pd.DataFrame) -> Drawing:
             ),
             after(
                 "FIGURES: tuple[Figure, ...] = (\n",
-                '    Figure.one("progress", lambda rows: joined_drawing(rows.left.sessions)),\n',
+                '    Figure.one("progress", lambda rows: joined_drawing(rows.filtered.sessions)),\n',
             ),
         ]
     },
