@@ -1,5 +1,7 @@
 """The sample of texts that a reader judges is drawn by the commit alone, from everything."""
 
+from collections import Counter
+
 from tests.architecture.trees import REPOSITORY
 from tests.docs.draw_texts import SAMPLE, docstrings, drawn, page_texts
 
@@ -17,3 +19,11 @@ def test_every_page_text_is_drawn_with_its_german() -> None:
     texts = page_texts(REPOSITORY)
     assert len(texts) > 1000
     assert [text.place for text in texts if not text.german] == []
+
+
+def test_no_key_has_two_texts() -> None:
+    """A key is defined in one table of its pages, so that no table overrides another's text."""
+    keys = Counter(
+        (text.place.split("/")[2], text.place.rsplit(" ", 1)[1]) for text in page_texts(REPOSITORY)
+    )
+    assert [key for key, count in keys.items() if count > 1] == []

@@ -1,4 +1,4 @@
-/** The kinds of steps: their names, their icons, and what is done in them. */
+/** The kinds of steps: their names, their icons, what is done in them, and why they pause. */
 import type { Limb, PhaseSummary, SessionView, Step, StepKind } from "@shared/api/types";
 import { latency } from "@shared/format";
 import type { IconName } from "@shared/ui/Icon";
@@ -69,4 +69,18 @@ export function usePhaseName(): (session: SessionView, phase: PhaseSummary) => s
       .filter((part) => part !== null)
       .join(" · ");
   };
+}
+
+const CAUSES = [
+  "operator",
+  "headset_lost",
+  "headset_silent",
+  "server_restarted",
+  "headset",
+] as const;
+
+/** The key of the text for why a phase's clock was paused; null for a reason in a person's words. */
+export function causeKey(reason: string | null): Key | null {
+  const match = CAUSES.find((cause) => cause === reason);
+  return match === undefined ? null : `cause.${match}`;
 }

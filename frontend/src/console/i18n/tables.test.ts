@@ -1,19 +1,8 @@
-import { describe, expect, it } from "vitest";
-import { de } from "./de";
-import { en } from "./en";
+import { itIsTranslated } from "@shared/i18n/tableTests";
+import { describe } from "vitest";
+import { translations } from ".";
 
-const placeholders = (text: string) =>
-  [...text.matchAll(/{{(\w+)}}/g)].map(([, name]) => name).sort();
-const keys = Object.keys(en) as (keyof typeof en)[];
+const tableOf = (language: string): Readonly<Record<string, string>> =>
+  translations.getResourceBundle(language, "translation");
 
-describe("the texts", () => {
-  it("exist in both languages", () => {
-    expect(Object.keys(de).sort()).toEqual(Object.keys(en).sort());
-    expect(keys.filter((key) => en[key].trim() === "" || de[key].trim() === "")).toEqual([]);
-  });
-
-  it("have the same placeholders in both languages", () => {
-    for (const key of keys)
-      expect([key, placeholders(de[key])]).toEqual([key, placeholders(en[key])]);
-  });
-});
+describe("every text of the console", () => itIsTranslated(tableOf("en"), tableOf("de")));

@@ -92,7 +92,7 @@ function Paper({ preview, yaml, language, draft, onDraft }: PaperProps): JSX.Ele
     }),
     [preview, yaml, language],
   );
-  if (done) return <Notice tone="info" icon="check" title={t("try.done")} />;
+  if (done) return <Notice tone="info" icon="check" title={t("try.complete")} />;
   return (
     <div className={classes.paper} lang={language}>
       <Suspense

@@ -4,6 +4,7 @@ import { BLOCK_COLOURS } from "@shared/stage/figure";
 import { type Seconds, seconds } from "@shared/units";
 import { type CSSProperties, type JSX, memo, useEffect, useRef } from "react";
 import { type Key, useTexts } from "../i18n";
+import { causeKey } from "../steps";
 import { latestEventAt, type ReplayEvent, type Touch, toneOf } from "./events";
 import classes from "./Replay.module.css";
 
@@ -81,10 +82,10 @@ function useWords(one: ReplayEvent): Words {
   const { t, language } = useTexts();
   switch (one.kind) {
     case "clock": {
-      const cause = CAUSES.find((name) => name === one.cause);
+      const cause = causeKey(one.cause);
       return {
         title: t(`replay.clock.${one.what}`),
-        detail: cause === undefined ? "" : t(`cause.${cause}`),
+        detail: cause === null ? "" : t(cause),
       };
     }
     case "done":
@@ -109,13 +110,6 @@ function useWords(one: ReplayEvent): Words {
   }
 }
 
-const CAUSES = [
-  "operator",
-  "headset_lost",
-  "headset_silent",
-  "server_restarted",
-  "headset",
-] as const;
 const EFFECTS = new Set(["green", "out_of_order", "wrong_part", "early"]);
 
 function touchTitle(one: Touch, t: ReturnType<typeof useTexts>["t"]): string {

@@ -1,6 +1,7 @@
 /** A longer text of the study as paragraphs and points; never as HTML. */
 import { type Paragraph, paragraphs } from "@shared/text";
 import { Icon } from "@shared/ui/Icon";
+import { Points } from "@shared/ui/Points";
 import { type JSX, useEffect, useRef, useState } from "react";
 import { useTexts } from "../i18n";
 import { Picture } from "../pictures/Picture";
@@ -26,13 +27,7 @@ function Part({ paragraph }: { readonly paragraph: Paragraph }): JSX.Element {
     case "prose":
       return <p>{paragraph.text}</p>;
     case "points":
-      return (
-        <ul>
-          {paragraph.points.map((point) => (
-            <li key={point}>{point}</li>
-          ))}
-        </ul>
-      );
+      return <Points points={paragraph.points} />;
   }
 }
 

@@ -6,6 +6,7 @@ import { Icon, type IconName } from "@shared/ui/Icon";
 import { type Milliseconds, milliseconds, type Seconds, seconds } from "@shared/units";
 import { type JSX, useEffect, useMemo, useState } from "react";
 import { type Key, useTexts } from "../../i18n";
+import { causeKey } from "../../steps";
 import { type TelemetryStore, useTelemetry } from "../session/telemetryStore";
 import classes from "./CurrentStep.module.css";
 
@@ -72,19 +73,6 @@ export function PhaseClock({ session, store }: PhaseClockProps): JSX.Element | n
 function stateKey(current: Current): Key {
   if (current.pausing) return "phase.pausing";
   return current.resuming ? "phase.resuming" : `phase.${current.status}`;
-}
-
-const CAUSES = [
-  "operator",
-  "headset_lost",
-  "headset_silent",
-  "server_restarted",
-  "headset",
-] as const;
-
-function causeKey(reason: string | null): Key | null {
-  const match = CAUSES.find((cause) => cause === reason);
-  return match === undefined ? null : `cause.${match}`;
 }
 
 interface ProgressProps {

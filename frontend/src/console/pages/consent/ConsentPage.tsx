@@ -5,6 +5,7 @@ import { dateTime } from "@shared/format";
 import { type Paragraph, paragraphs } from "@shared/text";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
+import { Points } from "@shared/ui/Points";
 import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { Link } from "wouter";
@@ -122,13 +123,7 @@ function Part({ paragraph }: { readonly paragraph: Paragraph }): JSX.Element {
       // The picture was part of what was signed, so the page to print mentions it.
       return <p>[{paragraph.name}]</p>;
     case "points":
-      return (
-        <ul>
-          {paragraph.points.map((point) => (
-            <li key={point}>{point}</li>
-          ))}
-        </ul>
-      );
+      return <Points points={paragraph.points} />;
   }
 }
 

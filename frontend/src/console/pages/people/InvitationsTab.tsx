@@ -11,6 +11,7 @@ import { invitationsQuery } from "../../queries";
 import { RoleBadge } from "../../ui/badges";
 import { EmptyState } from "../../ui/EmptyState";
 import { Loaded } from "../../ui/Loaded";
+import { ListTable } from "../../ui/tables";
 import { actorName } from "./auditWords";
 import classes from "./People.module.css";
 import { Studies } from "./PeopleTab";
@@ -34,23 +35,11 @@ export function InvitationsTab(): JSX.Element {
             {t("invitations.empty.body")}
           </EmptyState>
         ) : (
-          <div className={classes.frame}>
-            <Table verticalSpacing="sm" horizontalSpacing="md">
-              <Table.Thead>
-                <Table.Tr>
-                  {COLUMNS.map((column) => (
-                    <Table.Th key={column}>{t(column)}</Table.Th>
-                  ))}
-                  <Table.Td />
-                </Table.Tr>
-              </Table.Thead>
-              <Table.Tbody>
-                {all.map((invitation) => (
-                  <Row key={invitation.id} invitation={invitation} />
-                ))}
-              </Table.Tbody>
-            </Table>
-          </div>
+          <ListTable columns={COLUMNS.map((column) => t(column))} hasActions>
+            {all.map((invitation) => (
+              <Row key={invitation.id} invitation={invitation} />
+            ))}
+          </ListTable>
         )
       }
     </Loaded>

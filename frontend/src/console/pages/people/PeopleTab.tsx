@@ -10,10 +10,17 @@ import { useTexts } from "../../i18n";
 import { peopleQuery } from "../../queries";
 import { RoleBadge } from "../../ui/badges";
 import { Loaded } from "../../ui/Loaded";
+import { ListTable } from "../../ui/tables";
 import classes from "./People.module.css";
 import { PersonDrawer } from "./PersonDrawer";
 
-const COLUMNS = ["people.name", "role.label", "people.studies", "people.lastLogin"] as const;
+const COLUMNS = [
+  "people.name",
+  "role.label",
+  "people.studies",
+  "people.lastLogin",
+  "people.logins",
+] as const;
 
 export function PeopleTab({ account }: { readonly account: Account }): JSX.Element {
   const { t } = useTexts();
@@ -21,34 +28,23 @@ export function PeopleTab({ account }: { readonly account: Account }): JSX.Eleme
   return (
     <Loaded query={useQuery({ ...peopleQuery, refetchInterval: 15_000 })}>
       {(people) => (
-        <div className={classes.frame}>
-          <Table verticalSpacing="sm" horizontalSpacing="md">
-            <Table.Thead>
-              <Table.Tr>
-                {COLUMNS.map((column) => (
-                  <Table.Th key={column}>{t(column)}</Table.Th>
-                ))}
-                <Table.Th>{t("people.logins")}</Table.Th>
-                <Table.Td />
-              </Table.Tr>
-            </Table.Thead>
-            <Table.Tbody>
-              {people.map((person) => (
-                <Row
-                  key={person.id}
-                  person={person}
-                  isSelf={person.id === account.id}
-                  onEdit={() => setChosen(person.id)}
-                />
-              ))}
-            </Table.Tbody>
-          </Table>
+        <>
+          <ListTable columns={COLUMNS.map((column) => t(column))} hasActions>
+            {people.map((person) => (
+              <Row
+                key={person.id}
+                person={person}
+                isSelf={person.id === account.id}
+                onEdit={() => setChosen(person.id)}
+              />
+            ))}
+          </ListTable>
           <PersonDrawer
             person={people.find(({ id }) => id === chosen) ?? null}
             isSelf={chosen === account.id}
             onClose={() => setChosen(null)}
           />
-        </div>
+        </>
       )}
     </Loaded>
   );

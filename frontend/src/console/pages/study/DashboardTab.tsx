@@ -19,7 +19,7 @@ import { useLocation, useSearch } from "wouter";
 import { useTexts } from "../../i18n";
 import { dashboardQuery } from "../../queries";
 import { EmptyState } from "../../ui/EmptyState";
-import { KindFilter } from "../../ui/KindFilter";
+import { KindFilter, sessionCounts } from "../../ui/KindFilter";
 import { Loaded } from "../../ui/Loaded";
 import classes from "./DashboardTab.module.css";
 import { FigureCard } from "./FigureCard";
@@ -43,11 +43,7 @@ export function DashboardTab({ study }: { readonly study: StudyDetail }): JSX.El
         />
         {query.data !== undefined && (
           <span className={page.spacer}>
-            {t("dashboard.sessions", {
-              count: query.data.n_completed - query.data.n_not_valid,
-            })}
-            {query.data.n_not_valid > 0 &&
-              ` · ${t("validity.excluded", { count: query.data.n_not_valid })}`}
+            {sessionCounts(query.data, t)}
             {(!query.data.current || waiting) && ` · ${t("dashboard.drawing")}`}
           </span>
         )}

@@ -8,7 +8,7 @@ import { type JSX, useState } from "react";
 import { useTexts } from "../../i18n";
 import { statisticsQuery } from "../../queries";
 import { EmptyState } from "../../ui/EmptyState";
-import { KindFilter } from "../../ui/KindFilter";
+import { KindFilter, sessionCounts } from "../../ui/KindFilter";
 import { Loaded } from "../../ui/Loaded";
 import { AtAGlance } from "./AtAGlance";
 import { ResultCard } from "./ResultCard";
@@ -25,11 +25,7 @@ export function StatisticsTab({ study }: { readonly study: StudyDetail }): JSX.E
         <KindFilter kind={kind} onChange={setKind} />
         {query.data !== undefined && (
           <span className={page.spacer}>
-            {t("dashboard.sessions", {
-              count: query.data.n_completed - query.data.n_not_valid,
-            })}
-            {query.data.n_not_valid > 0 &&
-              ` · ${t("validity.excluded", { count: query.data.n_not_valid })}`}
+            {sessionCounts(query.data, t)}
             {!query.data.current && ` · ${t("statistics.computing")}`}
           </span>
         )}
