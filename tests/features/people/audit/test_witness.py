@@ -88,7 +88,7 @@ def test_an_entry_that_was_changed_is_named_without_a_session(database: Database
         db.execute(update(AuditEntry).where(AuditEntry.seq == 2).values(action="test.changed"))
     result = VERIFY.run()
     assert result.exit_code == 1
-    assert "entry 2 was changed or is gone" in result.stdout
+    assert "entry 2 was changed or removed" in result.stdout
 
 
 def test_backup_and_export_print_the_head(database: Database, tmp_path: Path) -> None:
