@@ -24,7 +24,7 @@ from app.features.movement.captures import CaptureQueue
 from app.features.movement.walking import FitQueue, PredictionQueue
 from app.features.people.accounts import RefusedSignIns, ensure_admin
 from app.features.record.telemetry import Folder, Summariser, TelemetryWriter, stop_running_clocks
-from app.features.record.tryout import TryoutDesk
+from app.features.record.tryout import TryoutRunner
 from app.features.results.analysis import Drawings
 from app.features.results.exports import ExportQueue
 from app.features.results.replay import ReplayQueue
@@ -54,7 +54,7 @@ PARTS: tuple[PartMaker, ...] = (
     FitQueue.of,
     ExportQueue.of,
     StorageMeter.of,
-    TryoutDesk.of,
+    TryoutRunner.of,
     RefusedSignIns.of,
 )
 """The features' long-lived parts, started in this order and stopped in reverse."""

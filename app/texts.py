@@ -1,8 +1,9 @@
 """Texts that people see, in both languages, defined next to what they describe.
 
-A registry (such as `app/features/record/preflight/checks.py` or `app/adapters/captures/formats.py`)
-contains objects with their own texts. Pages cannot import Python, so their tables of texts are
-generated: `python -m app.cli.page_texts` writes them, and a test fails while one is out of date.
+A registry (such as `app/features/record/preflight/checks/registry.py`, or
+`app/adapters/captures/formats.py`) contains objects with their own texts. Pages cannot import
+Python, so their tables of texts are generated: `python -m app.cli.page_texts` writes them, and a
+test fails while one is out of date.
 """
 
 import json

@@ -20,7 +20,7 @@ from app.features.movement.captures.avatar_endpoints import router as on_avatars
 from app.features.movement.captures.endpoints import router as captures
 from app.features.movement.humanoids.endpoints import router as humanoids
 from app.features.movement.walking.endpoints import router as walks
-from app.features.movement.walking.model_endpoints import router as walking_models
+from app.features.movement.walking.models.endpoints import router as walking_models
 from app.features.people.accounts.endpoints import router as accounts
 from app.features.people.accounts.people_endpoints import router as people
 from app.features.people.audit.endpoints import router as audit

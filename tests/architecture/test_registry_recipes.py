@@ -8,7 +8,7 @@ from pathlib import Path
 from tests.architecture.recipes import Edit, Json, Recipe, Tree, after, before
 
 PAGE_TEXTS = "frontend/src/console/i18n/registries.generated.ts"
-CHECKS = "app/features/record/preflight/checks.py"
+CHECKS = "app/features/record/preflight/checks/registry.py"
 TESTS = "app/science/statistical_tests/registry.py"
 WRITERS = "app/adapters/captures/writers.py"
 FORMATS = "app/adapters/captures/formats.py"
@@ -48,7 +48,7 @@ CODE = StateCheck(
     edited={
         CHECKS: [
             before(
-                "from app.features.record.preflight.storage_checks",
+                "from app.features.record.preflight.checks.storage",
                 "from app.features.record.preflight.notes_check import CODE\n",
             ),
             after("    CONFIGURATION,\n    LANGUAGE,\n", "    CODE,\n"),
@@ -252,7 +252,8 @@ def joined_drawing(sessions: pd.DataFrame) -> Drawing:
             ),
             after(
                 "FIGURES: tuple[Figure, ...] = (\n",
-                '    Figure.one("progress", lambda rows: joined_drawing(rows.filtered.sessions)),\n',
+                '    Figure.one("progress", lambda rows: joined_drawing(rows.filtered.sessions)),'
+                "\n",
             ),
         ]
     },
@@ -273,7 +274,7 @@ ALARM = Recipe(
 """,
             )
         ],
-        "app/features/record/alarms/silence_watch.py": [
+        "app/features/record/alarms/watches/silence.py": [
             after(
                 '                unit="s",\n            )\n',
                 """        elif self._last_frame_s < now_s:
@@ -314,7 +315,7 @@ def test_a_preflight_check_takes_one_edited_file(tmp_path: Path) -> None:
 from types import SimpleNamespace
 from pydantic import TypeAdapter
 from app.features.record.preflight.check import Situation
-from app.features.record.preflight.checks import CHECKS
+from app.features.record.preflight.checks.registry import CHECKS
 from app.features.record.preflight.schemas import Check, OverrideRequest
 from app.features.record.preflight.service import _line
 check = CHECKS[-1]
@@ -463,7 +464,7 @@ def test_an_alarm_takes_two_edited_files(tmp_path: Path) -> None:
         tree,
         """
 from app.features.record.alarms import WatchLimits
-from app.features.record.alarms.silence_watch import SilenceWatch
+from app.features.record.alarms.watches.silence import SilenceWatch
 (found,) = SilenceWatch(WatchLimits(), 0.0).check(1.0)
 answer = [found.code, found.severity]
 """,

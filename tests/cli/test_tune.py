@@ -14,7 +14,7 @@ from app.features.movement.avatar import (
     newest_version,
     typed,
 )
-from app.features.movement.humanoids.tasks import measured
+from app.features.movement.humanoids.worker_tasks import measured
 from app.models import CaptureContent, HumanoidRow
 from app.protocol.avatar import file_of, load_avatar
 from app.science.avatar.body import AXIS_NAMES

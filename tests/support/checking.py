@@ -138,9 +138,7 @@ def _units(tests: Sequence[Path]) -> Stage:
     if TESTS not in tests:
         return pytest_stage("unit tests", *options, *map(str, tests))
     spread = ["-n", str(CORES), "--dist", "worksteal"]
-    ignored = [
-        f"--ignore={folder}" for folder in (ARCHITECTURE_TESTS, BROWSER_TESTS, FAULT_TESTS)
-    ]
+    ignored = [f"--ignore={folder}" for folder in (ARCHITECTURE_TESTS, BROWSER_TESTS, FAULT_TESTS)]
     return pytest_stage(
         "unit tests", *options, *spread, *ignored, str(TESTS), alone=True, aloud=True
     )

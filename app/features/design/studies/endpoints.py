@@ -11,7 +11,7 @@ from sqlalchemy.orm import Session
 
 from app.database import referenced_row
 from app.features.design.studies.comparing import compare_versions
-from app.features.design.studies.draft_endpoints import router as drafts
+from app.features.design.studies.drafts.endpoints import router as drafts
 from app.features.design.studies.lifecycle import archive, duplicate, restore
 from app.features.design.studies.schemas import (
     DuplicateRequest,

@@ -27,7 +27,7 @@ from app.features.movement.captures.schemas import (
     JointMapWish,
     VerificationView,
 )
-from app.features.movement.captures.tasks import (
+from app.features.movement.captures.worker_tasks import (
     retargeted_positions,
     verification_json,
     write_retargeted,

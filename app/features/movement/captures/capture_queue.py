@@ -26,7 +26,7 @@ MAX_CACHED_BYTES = 64 * 1024**2
 
 def limit_memory() -> None:
     """Import needed modules, then limit the process's memory; runs in the worker process."""
-    import_module("app.features.movement.captures.tasks")
+    import_module("app.features.movement.captures.worker_tasks")
     if sys.platform == "linux":
         import resource
 

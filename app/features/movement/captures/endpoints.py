@@ -25,8 +25,8 @@ from app.features.movement.captures.service import (
     store_of,
     stored_file,
 )
-from app.features.movement.captures.tasks import recorded_positions
 from app.features.movement.captures.views import capture_page, capture_view
+from app.features.movement.captures.worker_tasks import recorded_positions
 from app.features.movement.files import BODY, BYTES, FileName, attachment, binary, sent
 from app.platform.context import AppContext
 from app.platform.dependencies import Context, Reading, SignedIn, Writing

@@ -11,7 +11,7 @@ from app.errors import InvalidInput
 from app.features.movement.captures import CaptureQueue
 from app.features.movement.files import Uploaded, compressed_beside, store, uploaded
 from app.features.movement.humanoids.service import is_known
-from app.features.movement.humanoids.tasks import Measured, Refused, measure
+from app.features.movement.humanoids.worker_tasks import Measured, Refused, measure
 from app.features.people.audit import record
 from app.models import HumanoidRow
 from app.platform.access import Caller

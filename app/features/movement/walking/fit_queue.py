@@ -25,7 +25,7 @@ from app.errors import as_sentences
 from app.features.movement.files import compress, store
 from app.features.movement.walking.progress import FitFolder, Progress
 from app.features.movement.walking.sources import Cannot, FitOrder, Store
-from app.features.movement.walking.tasks import fit_model
+from app.features.movement.walking.worker_tasks import fit_model
 from app.models import WalkingModelRow
 from app.platform.background import Background
 from app.platform.context import AppContext, Part

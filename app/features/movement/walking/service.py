@@ -8,7 +8,7 @@ from sqlalchemy.orm import Session
 from app.errors import Conflict, NotFound, NotNow
 from app.features.movement.files import drop_unused, size_of
 from app.features.movement.walking.fit_queue import FitQueue
-from app.features.movement.walking.model_schemas import (
+from app.features.movement.walking.models.schemas import (
     FittedOn,
     ModelListed,
     ModelSummary,

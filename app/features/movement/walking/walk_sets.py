@@ -29,7 +29,7 @@ from app.features.movement.walking.set_sources import (
     tracks_source,
 )
 from app.features.movement.walking.sources import Store
-from app.features.movement.walking.tasks import (
+from app.features.movement.walking.worker_tasks import (
     captured_table,
     inspected_population,
     inspected_tracks,

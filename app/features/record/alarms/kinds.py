@@ -1,7 +1,7 @@
 """The registry of alarms: the severity, title and remedy of each.
 
 To add an alarm, add an entry to `ALARMS` and raise the alarm where it is detected, usually in one
-of the `*_watch.py` modules in this folder. The cockpit's texts in both languages are generated from
+of the modules in `watches`. The cockpit's texts in both languages are generated from
 the entry.
 """
 

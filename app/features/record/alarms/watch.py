@@ -12,10 +12,10 @@ from app.features.record.alarms.alarm import (
     OpenAlarms,
     WatchLimits,
 )
-from app.features.record.alarms.backlog_watch import BacklogWatch
-from app.features.record.alarms.clock_watch import ClockWatch
-from app.features.record.alarms.silence_watch import SilenceWatch
-from app.features.record.alarms.stream_watch import StreamWatch
+from app.features.record.alarms.watches.backlog import BacklogWatch
+from app.features.record.alarms.watches.clock import ClockWatch
+from app.features.record.alarms.watches.silence import SilenceWatch
+from app.features.record.alarms.watches.stream import StreamWatch
 from app.wire import Batch, HeadsetState, Probed, Produced, StreamName, Welcome
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from pydantic import BaseModel, ConfigDict, StringConstraints
 
 from app.features.record.preflight.check import Expected, Unit
-from app.features.record.preflight.checks import CHECKS
+from app.features.record.preflight.checks.registry import CHECKS
 
 CheckStatus = Literal["ok", "wait", "fail", "overridden"]
 if TYPE_CHECKING:

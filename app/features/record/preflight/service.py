@@ -18,7 +18,7 @@ from app.features.record.preflight.check import (
     StateCheck,
     TrialCheck,
 )
-from app.features.record.preflight.checks import CHECKS
+from app.features.record.preflight.checks.registry import CHECKS
 from app.features.record.preflight.schemas import Check, Override, OverrideRequest, Preflight
 from app.features.record.sessions import (
     OverrideCheck,

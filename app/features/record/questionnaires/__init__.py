@@ -1,5 +1,12 @@
 """Questionnaires of a session: forms, answers, corrections and scores."""
 
+from app.features.record.questionnaires.repository import (
+    answers_of,
+    correct_answer,
+    newest_corrections,
+    stored_answers,
+    stored_scores,
+)
 from app.features.record.questionnaires.schemas import (
     Administration,
     AnswerValue,
@@ -10,13 +17,6 @@ from app.features.record.questionnaires.schemas import (
     SubmissionRequest,
 )
 from app.features.record.questionnaires.service import current_administration, submit
-from app.features.record.questionnaires.stored import (
-    answers_of,
-    correct_answer,
-    newest_corrections,
-    stored_answers,
-    stored_scores,
-)
 
 __all__ = [
     "Administration",

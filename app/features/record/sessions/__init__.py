@@ -8,13 +8,13 @@ from app.features.record.sessions.closed_sessions import (
     require_capture,
     require_capture_of,
 )
-from app.features.record.sessions.consent import ConsentDesk, consent_form, consent_record
-from app.features.record.sessions.consent_schemas import (
+from app.features.record.sessions.consent.schemas import (
     ConsentForm,
     ConsentGiven,
     ConsentRecord,
     PaperConsent,
 )
+from app.features.record.sessions.consent.service import ConsentDesk, consent_form, consent_record
 from app.features.record.sessions.contents import content_body, contents_of, store_content
 from app.features.record.sessions.engine import (
     Command,

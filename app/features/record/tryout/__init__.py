@@ -1,7 +1,7 @@
 """Scripted participants, who go through a session on this server so that newcomers can watch."""
 
-from app.features.record.tryout.desk import TryoutDesk
+from app.features.record.tryout.runner import TryoutRunner
 
 __all__ = [
-    "TryoutDesk",
+    "TryoutRunner",
 ]

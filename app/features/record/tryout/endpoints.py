@@ -4,7 +4,7 @@ from fastapi import APIRouter
 
 from app.errors import InvalidInput, NotFound
 from app.features.design.studies import newest_version, protocol_of, require_open, study_by_key
-from app.features.record.tryout.desk import TryoutDesk, TryoutView, TryoutWish
+from app.features.record.tryout.runner import TryoutRunner, TryoutView, TryoutWish
 from app.platform.access import Caller, require_object
 from app.platform.context import AppContext
 from app.platform.dependencies import Context, Reading, SignedIn
@@ -29,23 +29,23 @@ def post_tryout(
             remedy="Choose one of the study's languages.",
         )
     url = context.network.reach.local_url
-    return context.part(TryoutDesk).begin(caller, study.key, wish.language, url)
+    return context.part(TryoutRunner).begin(caller, study.key, wish.language, url)
 
 
 @router.get("/tryout")
 def get_tryout(context: Context, caller: SignedIn) -> TryoutView | None:
     """Return the latest scripted participant; null if there was none since the server started."""
-    newest = context.part(TryoutDesk).newest(caller)
+    newest = context.part(TryoutRunner).newest(caller)
     return newest if newest is not None and _sees(context, caller, newest) else None
 
 
 @router.delete("/tryout")
 def delete_tryout(context: Context, caller: SignedIn) -> TryoutView:
     """Stop the scripted participant that is running, and end its session."""
-    newest = context.part(TryoutDesk).newest(caller)
+    newest = context.part(TryoutRunner).newest(caller)
     if newest is None or not _sees(context, caller, newest):
         raise NotFound("no scripted participant is running", remedy="Start another one.")
-    return context.part(TryoutDesk).call_off(caller)
+    return context.part(TryoutRunner).call_off(caller)
 
 
 def _sees(context: AppContext, caller: Caller, tryout: TryoutView) -> bool:

@@ -3,7 +3,7 @@
 They are kept apart from the answers of sessions, in tables and in exports.
 """
 
+from app.features.results.imports.repository import import_files, imported_answers_of
 from app.features.results.imports.service import forget_participant
-from app.features.results.imports.stored import import_files, imported_answers_of
 
 __all__ = ["forget_participant", "import_files", "imported_answers_of"]

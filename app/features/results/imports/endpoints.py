@@ -11,6 +11,14 @@ from app.features.design.studies import study_by_key
 from app.features.people.audit import download_place, record, record_copy
 from app.features.record.erasure import clear_erasure_mark, mark_erasure, overwrite
 from app.features.results.imports.previewing import check, look
+from app.features.results.imports.repository import (
+    as_csv,
+    forms_of,
+    import_by_id,
+    import_view,
+    imports_of,
+    instrument_of_import,
+)
 from app.features.results.imports.schemas import (
     CheckRequest,
     CheckView,
@@ -24,14 +32,6 @@ from app.features.results.imports.schemas import (
     UndoRequest,
 )
 from app.features.results.imports.service import erase_imported, import_answers, undo
-from app.features.results.imports.stored import (
-    as_csv,
-    forms_of,
-    import_by_id,
-    import_view,
-    imports_of,
-    instrument_of_import,
-)
 from app.platform.context import AppContext
 from app.platform.dependencies import Context, Reading, SignedIn, Writing
 

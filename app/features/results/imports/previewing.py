@@ -8,6 +8,7 @@ from app.features.design.instruments import parsed_instruments
 from app.features.design.studies import newest_version, protocol_of
 from app.features.results.imports.applying import Applied, Form, apply_mapping
 from app.features.results.imports.proposing import likely_instrument, propose
+from app.features.results.imports.repository import active_import, import_view, imports_of
 from app.features.results.imports.schemas import (
     CheckView,
     ConditionCount,
@@ -20,7 +21,6 @@ from app.features.results.imports.schemas import (
 )
 from app.features.results.imports.service import applied_to, known_instrument
 from app.features.results.imports.sheet import Sheet, read_sheet
-from app.features.results.imports.stored import active_import, import_view, imports_of
 from app.features.results.imports.warnings import reversal_notes, reversed_items, shift_of
 from app.models import Study
 from app.protocol import sha256_of

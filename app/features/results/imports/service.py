@@ -11,9 +11,9 @@ from app.features.design.instruments import newest_instruments, parsed_instrumen
 from app.features.design.studies import newest_version, protocol_of
 from app.features.people.audit import record
 from app.features.results.imports.applying import Applied, Form, apply_mapping
+from app.features.results.imports.repository import active_import
 from app.features.results.imports.schemas import ImportRequest, Mapping
 from app.features.results.imports.sheet import read_sheet
-from app.features.results.imports.stored import active_import
 from app.models import AnswerImport, ImportedForm, Study, new_id
 from app.protocol import sha256_of
 from app.science.instruments import Instrument

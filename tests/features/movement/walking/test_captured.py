@@ -10,7 +10,7 @@ from app.database import make_engine
 from app.features.movement.files import compress, store
 from app.features.movement.walking.fit_queue import FitQueue
 from app.features.movement.walking.sources import Cannot, CapturedWalk, Store, TrackSource
-from app.features.movement.walking.tasks import captured_table
+from app.features.movement.walking.worker_tasks import captured_table
 from app.models import WalkingModelRow
 from tests.features.lab import Lab, ok
 from tests.features.movement.captures.files import SPEED_M_S, walk_bvh

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from sqlalchemy import func, select, text
 
-from app.features.record.preflight.storage_checks import KIND
+from app.features.record.preflight.checks.storage import KIND
 from app.features.record.sessions.contents import content_body, contents_of
 from app.models import SessionContent
 from tests.features.lab import Json, Lab, error, ok
@@ -145,14 +145,14 @@ def test_storage_that_keeps_something_else_is_told(
     session_id = fresh_lab.join()["id"]
     words = iter(["00", "11"])
     monkeypatch.setattr(
-        "app.features.record.preflight.storage_checks._compare",
+        "app.features.record.preflight.checks.storage._compare",
         lambda database, row_id, _: _compare_with(database, row_id, next(words)),
     )
     assert codes_of(fresh_lab, session_id)["storage"] == "storage.differs"
 
 
 def _compare_with(database: Any, row_id: str, words: str) -> None:
-    from app.features.record.preflight.storage_checks import DiffersError
+    from app.features.record.preflight.checks.storage import DiffersError
 
     with database.reading() as db:
         if db.scalar(select(SessionContent.body).where(SessionContent.id == row_id)) != words:

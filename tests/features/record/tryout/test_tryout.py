@@ -4,7 +4,7 @@ import time
 
 import pytest
 
-from app.features.record.tryout.desk import TryoutDesk
+from app.features.record.tryout.runner import TryoutRunner
 from app.models import Account, LoginToken
 from app.platform.access import Caller
 from app.platform.tokens import hash_token
@@ -14,7 +14,7 @@ WITHIN_S = 60.0
 NOBODY = "http://127.0.0.1:9"
 
 
-def _until_over(desk: TryoutDesk, caller: Caller) -> Json:
+def _until_over(desk: TryoutRunner, caller: Caller) -> Json:
     give_up_s = time.monotonic() + WITHIN_S
     while True:
         view = desk.newest(caller)
@@ -36,7 +36,7 @@ def test_it_fails_in_words_and_leaves_nothing_behind(fresh_lab: Lab) -> None:
     with lab.database.reading() as db:
         account = db.query(Account).filter_by(username="admin").one()
     caller = Caller(account.id, account.username, account.role)
-    desk = lab.context.part(TryoutDesk)
+    desk = lab.context.part(TryoutRunner)
     desk.begin(caller, STUDY, "en", NOBODY)
     again = lab.operator.post(f"/api/studies/{STUDY}/tryout", json={"language": "en"})
     refusal = error(again, 409, "conflict")

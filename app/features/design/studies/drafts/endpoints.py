@@ -5,7 +5,7 @@ from typing import Any
 from fastapi import APIRouter
 
 from app.features.design.studies.comparing import compare_draft
-from app.features.design.studies.drafts import check, dry_run, edit, templates
+from app.features.design.studies.drafts.service import check, dry_run, edit, templates
 from app.features.design.studies.schemas import (
     CheckResult,
     DraftFile,

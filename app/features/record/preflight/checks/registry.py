@@ -6,16 +6,16 @@ that.
 """
 
 from app.features.record.preflight.check import PreflightCheck
-from app.features.record.preflight.device_checks import (
+from app.features.record.preflight.checks.device import (
     CLOCK,
     FRAME_RATE,
     HEADSET,
     TABLET,
     TRACKERS,
 )
-from app.features.record.preflight.latency_check import LATENCY
-from app.features.record.preflight.storage_checks import DISK, STORAGE
-from app.features.record.preflight.study_checks import CONFIGURATION, INSTRUMENTS, LANGUAGE
+from app.features.record.preflight.checks.latency import LATENCY
+from app.features.record.preflight.checks.storage import DISK, STORAGE
+from app.features.record.preflight.checks.study import CONFIGURATION, INSTRUMENTS, LANGUAGE
 from app.texts import Words
 
 CHECKS: tuple[PreflightCheck, ...] = (

@@ -9,7 +9,7 @@ from starlette.concurrency import run_in_threadpool
 
 from app.features.movement.files import BYTES, attachment, binary, sent
 from app.features.movement.walking.fit_queue import FitQueue
-from app.features.movement.walking.model_schemas import (
+from app.features.movement.walking.models.schemas import (
     ModelListed,
     ModelView,
     PathAsked,
@@ -33,8 +33,8 @@ from app.features.movement.walking.service import (
     remove_model,
 )
 from app.features.movement.walking.sources import Question, SliceQuestion
-from app.features.movement.walking.tasks import plan_path, predict_walk, slice_of
 from app.features.movement.walking.walk_sets import store_of
+from app.features.movement.walking.worker_tasks import plan_path, predict_walk, slice_of
 from app.platform.context import AppContext
 from app.platform.dependencies import Context, Reading, SignedIn, write
 

@@ -14,7 +14,7 @@ from sqlalchemy.orm import Session
 from app.database import referenced_row
 from app.errors import InvalidInput
 from app.features.design.studies import protocol_of
-from app.features.record.sessions.consent_schemas import (
+from app.features.record.sessions.consent.schemas import (
     ConsentForm,
     ConsentGiven,
     ConsentRecord,

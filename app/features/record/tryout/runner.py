@@ -86,7 +86,7 @@ class Tryout:
 
 
 @dataclass(eq=False)
-class TryoutDesk(Part):
+class TryoutRunner(Part):
     """Start, stop and report the scripted participants of a server; thread-safe."""
 
     database: Database

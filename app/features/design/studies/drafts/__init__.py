@@ -1,0 +1,1 @@
+"""Drafts: study files that are checked and changed before they are stored."""

@@ -1,0 +1,1 @@
+"""Fitted models of walking and their answers."""

@@ -1,0 +1,1 @@
+"""Consent: how it is given, stored and shown."""
