@@ -1,7 +1,7 @@
 import type { Verification } from "@shared/api/captures";
 import { describe, expect, it } from "vitest";
-import { verificationEn } from "../i18n/verificationTexts";
 import { anglesFigure, type FigureWords, liftsFigure, toeFigure } from "./verificationFigures";
+import { verificationEn } from "./verificationTexts";
 
 const words: FigureWords = {
   left: "left",

@@ -5,9 +5,9 @@
 import type { ConfigProblem } from "@shared/api/types";
 import { createContext, useContext, useEffect, useRef, useState } from "react";
 import { type Key, useTexts } from "../i18n";
-import { fieldsEn } from "../i18n/fieldTexts";
-import { preregistrationEn } from "../i18n/preregistrationTexts";
 import { registryEn } from "../i18n/registries.generated";
+import { preregistrationEn } from "../preregistration/texts";
+import { fieldsEn } from "./fields/texts";
 import { type Change, type JsonObject, type Path, pathText, valueAt } from "./paths";
 
 export interface FormState {

@@ -1,9 +1,9 @@
 /** The console's texts in German. */
-import { alarmsDe } from "./alarmTexts";
-import { commandsDe } from "./commandTexts";
+import { alarmsDe } from "../cockpit/alarms/texts";
+import { sideDe } from "../cockpit/record/texts";
+import { commandsDe } from "../cockpit/session/texts";
+import { sessionDe } from "../cockpit/step/texts";
 import type { en } from "./en";
-import { sessionDe } from "./sessionTexts";
-import { sideDe } from "./sideTexts";
 
 export const de: Record<keyof typeof en, string> = {
   ...alarmsDe,

@@ -1,8 +1,8 @@
 /** The console's texts in English; `de.ts` has the same keys. */
-import { alarmsEn } from "./alarmTexts";
-import { commandsEn } from "./commandTexts";
-import { sessionEn } from "./sessionTexts";
-import { sideEn } from "./sideTexts";
+import { alarmsEn } from "../cockpit/alarms/texts";
+import { sideEn } from "../cockpit/record/texts";
+import { commandsEn } from "../cockpit/session/texts";
+import { sessionEn } from "../cockpit/step/texts";
 
 export const en = {
   ...alarmsEn,

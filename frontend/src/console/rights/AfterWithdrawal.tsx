@@ -9,9 +9,9 @@ import { Notice } from "@shared/ui/Notice";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { useTexts } from "../i18n";
-import { rightsDe, rightsEn } from "../i18n/rightsTexts";
 import { participantsQuery } from "../queries";
 import { EraseDialog } from "./EraseDialog";
+import { rightsDe, rightsEn } from "./texts";
 
 /** The participant's decision is recorded as a note, in the language of the operator. */
 const CONSENT_NOTES: readonly string[] = [rightsEn["withdrew.note"], rightsDe["withdrew.note"]];

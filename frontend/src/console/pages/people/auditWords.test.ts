@@ -4,9 +4,9 @@ import { join } from "node:path";
 import type { AuditEntry } from "@shared/api/people";
 import { createTranslations } from "@shared/i18n/i18n";
 import { describe, expect, it } from "vitest";
-import { auditDe, auditEn } from "../../i18n/auditTexts";
-import { peopleDe, peopleEn } from "../../i18n/peopleTexts";
+import { auditDe, auditEn } from "./auditTexts";
 import { actorName, KINDS, sentences } from "./auditWords";
+import { peopleDe, peopleEn } from "./texts";
 
 const tables = createTranslations(
   { en: { ...auditEn, ...peopleEn }, de: { ...auditDe, ...peopleDe } },
