@@ -52,7 +52,7 @@ def tell(outcomes: list[Outcome], what: str) -> list[str]:
     """The figures, and every stream that did not end as it should."""
     lies = what == "lying"
     wrong = [
-        f"{one.seed} {one.lie}: {one.status} {one.refusals} {[d.message for d in one.doubts]}"
+        f"{one.seed} {one.lie}: {one.status} {one.refusals} {[d.words for d in one.doubts]}"
         for one in outcomes
         if (one.believed if lies else one.refusals or one.doubts or one.status != "done")
     ]

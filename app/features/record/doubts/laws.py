@@ -66,7 +66,7 @@ class Doubt:
 
     phase_id: int | None
     kind: str
-    message: str
+    words: str
     claimed: float | None = None
     possible: float | None = None
     unit: str | None = None
@@ -202,10 +202,10 @@ def doubts_about(claims: SessionClaims) -> tuple[Doubt, ...]:
             found += _completions(phase, reports)
     worst: dict[tuple[int | None, str, str], Doubt] = {}
     for doubt in found:
-        key = (doubt.phase_id, doubt.kind, doubt.message if doubt.claimed is None else "")
+        key = (doubt.phase_id, doubt.kind, doubt.words if doubt.claimed is None else "")
         if key not in worst or _excess(doubt) > _excess(worst[key]):
             worst[key] = doubt
-    return tuple(sorted(worst.values(), key=lambda one: (one.phase_id or 0, one.kind, one.message)))
+    return tuple(sorted(worst.values(), key=lambda one: (one.phase_id or 0, one.kind, one.words)))
 
 
 def _excess(doubt: Doubt) -> float:

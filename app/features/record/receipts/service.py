@@ -100,7 +100,7 @@ def _stream_problems(streams: tuple[StreamReceipt, ...]) -> list[str]:
 
 def _doubt_problem(doubt: Doubt) -> str:
     where = "" if doubt.phase_id is None else f"phase {doubt.phase_id}: "
-    return f"{where}cannot be true: {doubt.message}"
+    return f"{where}cannot be true: {doubt.words}"
 
 
 def _phase_problems(db: Session, session_id: str) -> list[str]:

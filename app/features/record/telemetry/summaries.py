@@ -117,7 +117,7 @@ class Summariser(Part):
         if not doubts:
             return
         now = self.context.clock.utc_now()
-        message = f"phase {phase_id} does not count: {'; '.join(one.message for one in doubts)}"
+        message = f"phase {phase_id} does not count: {'; '.join(one.words for one in doubts)}"
         condition = Condition("doubtful", message)
         with self.context.database.writing() as db:
             if session_by_id(db, session_id, lock=True).ended_at is None:

@@ -13,7 +13,7 @@ export interface paths {
         };
         /**
          * Get Accounts
-         * @description Everybody who has or had an account.
+         * @description Return all accounts, including closed ones.
          */
         readonly get: operations["get_accounts_api_accounts_get"];
         readonly put?: never;
@@ -39,7 +39,7 @@ export interface paths {
         readonly head?: never;
         /**
          * Patch Account
-         * @description Change role or studies, or close and reopen an account; logins of a closed one end.
+         * @description Change the role or studies of an account, close it (which ends its logins), or reopen it.
          */
         readonly patch: operations["patch_account_api_accounts__account_id__patch"];
         readonly trace?: never;
@@ -56,7 +56,7 @@ export interface paths {
         readonly post?: never;
         /**
          * Delete Logins
-         * @description End every login of somebody, such as one on a lost laptop.
+         * @description End every login of an account, for example after a laptop was lost.
          */
         readonly delete: operations["delete_logins_api_accounts__account_id__logins_delete"];
         readonly options?: never;
@@ -73,7 +73,7 @@ export interface paths {
         };
         /**
          * Get Audit
-         * @description What was done, newest first; an `action` that ends with a dot takes all that begin so.
+         * @description Return entries, newest first; an `action` that ends with a dot matches as a prefix.
          */
         readonly get: operations["get_audit_api_audit_get"];
         readonly put?: never;
@@ -93,7 +93,7 @@ export interface paths {
         };
         /**
          * Get Audit Check
-         * @description Recompute the whole chain.
+         * @description Verify the audit trail by recomputing the whole hash chain.
          */
         readonly get: operations["get_audit_check_api_audit_check_get"];
         readonly put?: never;
@@ -113,13 +113,13 @@ export interface paths {
         };
         /**
          * Get Avatars
-         * @description Every avatar's configuration, as its newest version is.
+         * @description Return every avatar's configuration in its newest version.
          */
         readonly get: operations["get_avatars_api_avatars_get"];
         readonly put?: never;
         /**
          * Post Avatar
-         * @description Save a configuration under a new key.
+         * @description Save an avatar configuration under a new key.
          */
         readonly post: operations["post_avatar_api_avatars_post"];
         readonly delete?: never;
@@ -137,7 +137,7 @@ export interface paths {
         };
         /**
          * Get Avatar
-         * @description One avatar with all its versions, and the newest in full.
+         * @description Return one avatar with all its versions, the newest one in full.
          */
         readonly get: operations["get_avatar_api_avatars__key__get"];
         readonly put?: never;
@@ -157,7 +157,7 @@ export interface paths {
         };
         /**
          * Get Avatar Model
-         * @description The avatar of a stature as a MuJoCo model, the newest version if none is named.
+         * @description Return the avatar at a stature as a MuJoCo model; without `version`, the newest version.
          */
         readonly get: operations["get_avatar_model_api_avatars__key__model_get"];
         readonly put?: never;
@@ -179,7 +179,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Avatar Version
-         * @description Append a version; the content of the newest gives the newest.
+         * @description Append a version to an avatar, unless its content is that of the newest version.
          */
         readonly post: operations["post_avatar_version_api_avatars__key__versions_post"];
         readonly delete?: never;
@@ -197,7 +197,7 @@ export interface paths {
         };
         /**
          * Get Avatar Version
-         * @description One version in full.
+         * @description Return one version of an avatar configuration in full.
          */
         readonly get: operations["get_avatar_version_api_avatars__key__versions__number__get"];
         readonly put?: never;
@@ -217,7 +217,7 @@ export interface paths {
         };
         /**
          * Get Avatar File
-         * @description A version as a JSON file to keep, which can be brought in again.
+         * @description Download a version as a JSON file that can be imported again.
          */
         readonly get: operations["get_avatar_file_api_avatars__key__versions__number__file_get"];
         readonly put?: never;
@@ -239,7 +239,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Avatar Check
-         * @description Read a file without storing it: its configuration, or every problem with its place.
+         * @description Parse a file without storing it; return its configuration or all problems with places.
          */
         readonly post: operations["post_avatar_check_api_avatars_check_post"];
         readonly delete?: never;
@@ -257,13 +257,13 @@ export interface paths {
         };
         /**
          * Get Calibrations
-         * @description Every measurement, by equipment, the newest first.
+         * @description Return all calibrations, sorted by equipment and then newest first.
          */
         readonly get: operations["get_calibrations_api_calibrations_get"];
         readonly put?: never;
         /**
          * Post Calibration
-         * @description Record a measurement of an equipment's own delay.
+         * @description Store a measurement of the motion-to-photon delay of a piece of equipment.
          */
         readonly post: operations["post_calibration_api_calibrations_post"];
         readonly delete?: never;
@@ -283,7 +283,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Retirement
-         * @description Say that a measurement was a mistake; it stays in the history.
+         * @description Mark a calibration as a mistake; it remains in the history.
          */
         readonly post: operations["post_retirement_api_calibrations__calibration_id__retire_post"];
         readonly delete?: never;
@@ -301,7 +301,7 @@ export interface paths {
         };
         /**
          * Get Captures
-         * @description The captures of the lab, the newest first.
+         * @description Return the captures of the lab, newest first.
          */
         readonly get: operations["get_captures_api_captures_get"];
         readonly put?: never;
@@ -309,8 +309,8 @@ export interface paths {
          * Post Capture
          * @description Store a capture file, which is the body of the request.
          *
-         *     Where one file is not enough (an AMC needs its ASF) the body goes on with the other one: its
-         *     name is `companion`, and `companion_bytes` tells how many of the last bytes are it.
+         *     If a second file is needed (an AMC needs its ASF), it follows in the same body: its name is
+         *     `companion`, and `companion_bytes` is its size in bytes.
          */
         readonly post: operations["post_capture_api_captures_post"];
         readonly delete?: never;
@@ -328,7 +328,7 @@ export interface paths {
         };
         /**
          * Get Capture
-         * @description One capture and what reading it found.
+         * @description Return one capture with its summary.
          */
         readonly get: operations["get_capture_api_captures__capture_id__get"];
         readonly put?: never;
@@ -342,7 +342,7 @@ export interface paths {
         readonly head?: never;
         /**
          * Patch Capture
-         * @description Change the title, or read the file by other conventions.
+         * @description Change the title, or parse the file again with other conventions.
          */
         readonly patch: operations["patch_capture_api_captures__capture_id__patch"];
         readonly trace?: never;
@@ -356,7 +356,7 @@ export interface paths {
         };
         /**
          * Get File
-         * @description The file, or its companion, as it was uploaded.
+         * @description Download the file, or its companion, as it was uploaded.
          */
         readonly get: operations["get_file_api_captures__capture_id__file_get"];
         readonly put?: never;
@@ -376,7 +376,7 @@ export interface paths {
         };
         /**
          * Get Joint Map
-         * @description The joint map of the capture's skeleton: what was saved, else what is proposed.
+         * @description Return the joint map of the capture's skeleton: the saved one, else the proposal.
          */
         readonly get: operations["get_joint_map_api_captures__capture_id__joint_map_get"];
         /**
@@ -387,7 +387,7 @@ export interface paths {
         readonly post?: never;
         /**
          * Delete Joint Map
-         * @description Go back to the proposal, as a new version.
+         * @description Reset the joint map to the proposal, as a new version.
          */
         readonly delete: operations["delete_joint_map_api_captures__capture_id__joint_map_delete"];
         readonly options?: never;
@@ -404,7 +404,7 @@ export interface paths {
         };
         /**
          * Get Motion
-         * @description Positions over time for a preview: as recorded, or of the capture's skeleton.
+         * @description Return positions over time for a preview, as recorded or of the capture's skeleton.
          */
         readonly get: operations["get_motion_api_captures__capture_id__motion_get"];
         readonly put?: never;
@@ -424,7 +424,7 @@ export interface paths {
         };
         /**
          * Get Retargeted
-         * @description The movement on an avatar, to keep.
+         * @description Download the movement on an avatar as a file.
          */
         readonly get: operations["get_retargeted_api_captures__capture_id__retargeted_get"];
         readonly put?: never;
@@ -444,7 +444,7 @@ export interface paths {
         };
         /**
          * Get Retargeted Motion
-         * @description Positions over time of an avatar's joints, for a preview.
+         * @description Return the positions of an avatar's joints over time, for a preview.
          */
         readonly get: operations["get_retargeted_motion_api_captures__capture_id__retargeted_motion_get"];
         readonly put?: never;
@@ -464,7 +464,7 @@ export interface paths {
         };
         /**
          * Get Verification
-         * @description Whether the movement keeps its characteristics on avatars of these statures.
+         * @description Return whether the movement keeps its characteristics on avatars of these statures.
          */
         readonly get: operations["get_verification_api_captures__capture_id__verification_get"];
         readonly put?: never;
@@ -486,7 +486,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Destroyed
-         * @description Put on record that a copy was destroyed; saying it again changes nothing.
+         * @description Record that a copy was destroyed; repeating it changes nothing.
          */
         readonly post: operations["post_destroyed_api_copies__copy_id__destroyed_post"];
         readonly delete?: never;
@@ -506,7 +506,9 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Pair
-         * @description Use a code up. Guessing is slowed down, and takes no turn at writing.
+         * @description Pair a device by its code, which can be used once.
+         *
+         *     Attempts are rate-limited, and a wrong code never opens a write transaction.
          */
         readonly post: operations["post_pair_api_devices_pair_post"];
         readonly delete?: never;
@@ -524,7 +526,7 @@ export interface paths {
         };
         /**
          * Get Exports
-         * @description The caller's exports, newest first: waiting, under way, ready or failed.
+         * @description Return the caller's exports, newest first: queued, in progress, ready or failed.
          */
         readonly get: operations["get_exports_api_exports_get"];
         readonly put?: never;
@@ -544,14 +546,14 @@ export interface paths {
         };
         /**
          * Get One Export
-         * @description How far one is.
+         * @description Return the progress of one export.
          */
         readonly get: operations["get_one_export_api_exports__export_id__get"];
         readonly put?: never;
         readonly post?: never;
         /**
          * Delete Export
-         * @description Stop making it, or remove the file.
+         * @description Cancel an export, or remove its file.
          */
         readonly delete: operations["delete_export_api_exports__export_id__delete"];
         readonly options?: never;
@@ -568,7 +570,7 @@ export interface paths {
         };
         /**
          * Get Export File
-         * @description The file; a download that broke off goes on where it was (`Range`, `If-Range`).
+         * @description Download the file; an interrupted download can be resumed (`Range`, `If-Range`).
          */
         readonly get: operations["get_export_file_api_exports__export_id__file_get"];
         readonly put?: never;
@@ -588,7 +590,7 @@ export interface paths {
         };
         /**
          * Get Health
-         * @description Whether the server and its database answer.
+         * @description Report whether the server and its database respond.
          */
         readonly get: operations["get_health_api_health_get"];
         readonly put?: never;
@@ -608,7 +610,7 @@ export interface paths {
         };
         /**
          * Get Humanoids
-         * @description The humanoid models of the lab, the newest first.
+         * @description Return the humanoid models of the lab, newest first.
          */
         readonly get: operations["get_humanoids_api_humanoids_get"];
         readonly put?: never;
@@ -632,7 +634,7 @@ export interface paths {
         };
         /**
          * Get Humanoid
-         * @description One model: the body parts it has and lacks, its lengths and convex pieces.
+         * @description Return one humanoid model: the body parts it has and lacks, its lengths and convex pieces.
          */
         readonly get: operations["get_humanoid_api_humanoids__content_hash__get"];
         readonly put?: never;
@@ -652,7 +654,7 @@ export interface paths {
         };
         /**
          * Get Humanoid File
-         * @description The model's file as it was uploaded.
+         * @description Download the model's file as it was uploaded.
          */
         readonly get: operations["get_humanoid_file_api_humanoids__content_hash__file_get"];
         readonly put?: never;
@@ -672,13 +674,13 @@ export interface paths {
         };
         /**
          * Get Instruments
-         * @description The newest version of every instrument.
+         * @description Return the newest version of every instrument.
          */
         readonly get: operations["get_instruments_api_instruments_get"];
         readonly put?: never;
         /**
          * Post Instrument
-         * @description Store a version. Studies that exist keep the wording they were made with.
+         * @description Store an instrument version; existing studies keep the wording that they were made with.
          */
         readonly post: operations["post_instrument_api_instruments_post"];
         readonly delete?: never;
@@ -696,7 +698,7 @@ export interface paths {
         };
         /**
          * Get Instrument
-         * @description One instrument in full, with all its versions.
+         * @description Return one instrument in full, with all its versions.
          */
         readonly get: operations["get_instrument_api_instruments__key__get"];
         readonly put?: never;
@@ -718,7 +720,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Instrument Check
-         * @description Check a file without storing it.
+         * @description Check an instrument file without storing it.
          */
         readonly post: operations["post_instrument_check_api_instruments_check_post"];
         readonly delete?: never;
@@ -738,7 +740,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Score
-         * @description Score answers without storing them, with every step.
+         * @description Score answers without storing them, and return every step.
          */
         readonly post: operations["post_score_api_instruments_score_post"];
         readonly delete?: never;
@@ -756,13 +758,13 @@ export interface paths {
         };
         /**
          * Get Invitations
-         * @description Every invitation, also those used up, the newest first.
+         * @description Return all invitations, including used ones, newest first.
          */
         readonly get: operations["get_invitations_api_invitations_get"];
         readonly put?: never;
         /**
          * Post Invitation
-         * @description Make a link that lets one person make an account with this role.
+         * @description Create a link with which one person can create an account with the given role.
          */
         readonly post: operations["post_invitation_api_invitations_post"];
         readonly delete?: never;
@@ -783,7 +785,7 @@ export interface paths {
         readonly post?: never;
         /**
          * Delete Invitation
-         * @description Take an invitation back.
+         * @description Revoke an invitation.
          */
         readonly delete: operations["delete_invitation_api_invitations__invitation_id__delete"];
         readonly options?: never;
@@ -802,7 +804,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Accept
-         * @description Make the account and log in.
+         * @description Accept an invitation: create the account and log in.
          */
         readonly post: operations["post_accept_api_invitations_accept_post"];
         readonly delete?: never;
@@ -822,7 +824,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Look
-         * @description What an invitation is for.
+         * @description Return the role, note and expiry of an invitation, given its token.
          */
         readonly post: operations["post_look_api_invitations_look_post"];
         readonly delete?: never;
@@ -842,7 +844,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Login
-         * @description Open a login. The token travels in a cookie that no script can read.
+         * @description Log in. The login token is set as a cookie that scripts cannot read.
          */
         readonly post: operations["post_login_api_login_post"];
         readonly delete?: never;
@@ -862,7 +864,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Logout
-         * @description End this login; pages that are open with it are shut out at once.
+         * @description Log out; open pages that use this login lose access immediately.
          */
         readonly post: operations["post_logout_api_logout_post"];
         readonly delete?: never;
@@ -880,7 +882,7 @@ export interface paths {
         };
         /**
          * Get Me
-         * @description Who is signed in; null where nobody is.
+         * @description Return the account that is signed in, or null if none is.
          */
         readonly get: operations["get_me_api_me_get"];
         readonly put?: never;
@@ -901,7 +903,7 @@ export interface paths {
         readonly get?: never;
         /**
          * Put Password
-         * @description Change one's own password; logins elsewhere end.
+         * @description Change the caller's own password, and end all of their other logins.
          */
         readonly put: operations["put_password_api_me_password_put"];
         readonly post?: never;
@@ -920,7 +922,7 @@ export interface paths {
         };
         /**
          * Get Network
-         * @description Addresses, certificate and help page, as they are now.
+         * @description Return the server's current addresses, its certificate and the help page for devices.
          */
         readonly get: operations["get_network_api_network_get"];
         readonly put?: never;
@@ -940,7 +942,7 @@ export interface paths {
         };
         /**
          * Get Session
-         * @description A session as the cockpit shows it.
+         * @description Return a session as the cockpit shows it.
          */
         readonly get: operations["get_session_api_sessions__session_id__get"];
         readonly put?: never;
@@ -960,7 +962,7 @@ export interface paths {
         };
         /**
          * Get Administration
-         * @description The form that is due now, for entry by the operator.
+         * @description Return the form that is due now, for the operator to fill in; null if none is.
          */
         readonly get: operations["get_administration_api_sessions__session_id__administration_get"];
         readonly put?: never;
@@ -980,7 +982,7 @@ export interface paths {
         };
         /**
          * Get Alarms
-         * @description Every alarm that a session had, the newest first.
+         * @description Return all alarms of a session, newest first.
          */
         readonly get: operations["get_alarms_api_sessions__session_id__alarms_get"];
         readonly put?: never;
@@ -1000,7 +1002,7 @@ export interface paths {
         };
         /**
          * Get Answers
-         * @description Every stored form with answers and scores.
+         * @description Return all stored forms of a session with their answers and scores.
          */
         readonly get: operations["get_answers_api_sessions__session_id__answers_get"];
         readonly put?: never;
@@ -1022,10 +1024,10 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Command
-         * @description Do something with a session. A repeated `command_id` changes nothing.
+         * @description Apply a command to a session. A repeated `command_id` changes nothing.
          *
-         *     A command that was decided on an older version is refused as stale, unless it is a note or
-         *     stops something.
+         *     A command that was decided on an older version of the session is rejected as stale, unless it is
+         *     a note or stops something.
          */
         readonly post: operations["post_command_api_sessions__session_id__commands_post"];
         readonly delete?: never;
@@ -1043,7 +1045,7 @@ export interface paths {
         };
         /**
          * Get Consent
-         * @description The newest consent of a session with everything it was given to; null where there is none.
+         * @description Return the latest consent of a session with everything it covers; null if there is none.
          */
         readonly get: operations["get_consent_api_sessions__session_id__consent_get"];
         readonly put?: never;
@@ -1066,7 +1068,7 @@ export interface paths {
         readonly post?: never;
         /**
          * Delete Device
-         * @description Unpair a device: its token stops working at once.
+         * @description Unpair a device: its token stops working immediately.
          */
         readonly delete: operations["delete_device_api_sessions__session_id__devices__device_id__delete"];
         readonly options?: never;
@@ -1083,7 +1085,7 @@ export interface paths {
         };
         /**
          * Get Events
-         * @description The event log, oldest first.
+         * @description Return the event log of a session, oldest first.
          */
         readonly get: operations["get_events_api_sessions__session_id__events_get"];
         readonly put?: never;
@@ -1105,8 +1107,9 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Help Answered
-         * @description Say that somebody went to the participant, who called or had a question; the tablet says so,
-         *     too.
+         * @description Record that somebody went to the participant, who called or had a question.
+         *
+         *     The tablet then shows that, too.
          */
         readonly post: operations["post_help_answered_api_sessions__session_id__help_answered_post"];
         readonly delete?: never;
@@ -1124,11 +1127,11 @@ export interface paths {
         };
         /**
          * Get Live
-         * @description News of a session: `session` on every change, `telemetry` a few times a second, and
-         *     `storage` at first and when the record ceases to be written, or the disk gets low, and
-         *     `background` when something that runs beside the requests fails or works again.
+         * @description Stream live updates of a session until the login ends.
          *
-         *     Ends when the login does.
+         *     Events: `session` on every change; `telemetry` a few times a second; `storage` at the start, and
+         *     when the record can no longer be written or the disk is almost full; `background` when a
+         *     background job fails or recovers.
          */
         readonly get: operations["get_live_api_sessions__session_id__live_get"];
         readonly put?: never;
@@ -1150,7 +1153,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Pairing
-         * @description Show a new code for a device of this session; an older unused code stops working.
+         * @description Create a code to pair a device with this session; an older unused code stops working.
          */
         readonly post: operations["post_pairing_api_sessions__session_id__pairings_post"];
         readonly delete?: never;
@@ -1168,7 +1171,7 @@ export interface paths {
         };
         /**
          * Get Movement
-         * @description Where the joints of participant and avatar were, to be drawn.
+         * @description Return the positions of the joints of participant and avatar over time.
          */
         readonly get: operations["get_movement_api_sessions__session_id__phases__phase_id__movement_get"];
         readonly put?: never;
@@ -1188,7 +1191,7 @@ export interface paths {
         };
         /**
          * Get Replay
-         * @description What happened in a phase that is over, on the phase's own time.
+         * @description Return what happened in a phase that is over, in the phase's time.
          */
         readonly get: operations["get_replay_api_sessions__session_id__phases__phase_id__replay_get"];
         readonly put?: never;
@@ -1208,9 +1211,9 @@ export interface paths {
         };
         /**
          * Get Preflight
-         * @description Every check, made now: devices, signal, storage, latency, and the study's content.
+         * @description Run all pre-flight checks: devices, signal, storage, latency, and the study's content.
          *
-         *     It writes 64 kB to the database and to the data folder, reads them back and removes them.
+         *     This writes 64 kB to the database and to the data folder, reads them back and removes them.
          */
         readonly get: operations["get_preflight_api_sessions__session_id__preflight_get"];
         readonly put?: never;
@@ -1232,7 +1235,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Override
-         * @description Go on although a check is not green, for a reason that goes on record.
+         * @description Record that the session proceeds although a check is not green, and why.
          */
         readonly post: operations["post_override_api_sessions__session_id__preflight_overrides_post"];
         readonly delete?: never;
@@ -1250,7 +1253,7 @@ export interface paths {
         };
         /**
          * Get Receipt
-         * @description Prove from the record what of a session is there; a blinded operator sees no latencies.
+         * @description Compute the receipt of a session from its record; blinded operators see no latencies.
          */
         readonly get: operations["get_receipt_api_sessions__session_id__receipt_get"];
         readonly put?: never;
@@ -1272,10 +1275,10 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Reveal
-         * @description Show a blinded session's condition before it is known, for a reason that goes on record.
+         * @description Show the condition of a blinded session early, for a reason that is recorded.
          *
-         *     Asking again changes nothing. An operator stays blind. Raises Conflict where another session has
-         *     this one's slot by now: its condition would be shown, too.
+         *     Repeating the request changes nothing. Operators stay blinded. Raises Conflict if another
+         *     session has taken this one's slot, because its condition would be revealed, too.
          */
         readonly post: operations["post_reveal_api_sessions__session_id__reveal_post"];
         readonly delete?: never;
@@ -1293,7 +1296,7 @@ export interface paths {
         };
         /**
          * Get Streams
-         * @description How much of each stream of each run of the headset is on disk.
+         * @description Return how much of each stream is on disk, for every epoch of the headset.
          */
         readonly get: operations["get_streams_api_sessions__session_id__streams_get"];
         readonly put?: never;
@@ -1315,7 +1318,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Submission
-         * @description Store a form that the operator filled in from what the participant said.
+         * @description Store a form that the operator filled in with the participant's spoken answers.
          */
         readonly post: operations["post_submission_api_sessions__session_id__submissions_post"];
         readonly delete?: never;
@@ -1335,7 +1338,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Correction
-         * @description Correct an answer: the first one is kept, the scores are computed anew.
+         * @description Correct an answer: the first value is kept, and the scores are computed again.
          */
         readonly post: operations["post_correction_api_sessions__session_id__submissions__submission_id__corrections_post"];
         readonly delete?: never;
@@ -1353,7 +1356,9 @@ export interface paths {
         };
         /**
          * Get Storage
-         * @description Tables, folders, disk, studies and the largest sessions; `anew` measures once more.
+         * @description Return the sizes of tables, folders, disk, studies and the largest sessions.
+         *
+         *     Sizes are cached for a minute; `anew` measures again.
          */
         readonly get: operations["get_storage_api_storage_get"];
         readonly put?: never;
@@ -1373,7 +1378,7 @@ export interface paths {
         };
         /**
          * Get Studies
-         * @description Every study of the caller with its newest version; `archived`: those put away instead.
+         * @description Return the caller's studies in their newest version; `archived`: only archived ones.
          */
         readonly get: operations["get_studies_api_studies_get"];
         readonly put?: never;
@@ -1397,7 +1402,7 @@ export interface paths {
         };
         /**
          * Get Study
-         * @description One study in full; an operator of a blinded study does not get its protocol.
+         * @description Return one study in full; operators of a blinded study do not get its protocol.
          */
         readonly get: operations["get_study_api_studies__key__get"];
         readonly put?: never;
@@ -1419,7 +1424,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Archive
-         * @description Put a study away: it takes no new sessions until it is restored.
+         * @description Archive a study: it takes no new sessions until it is restored.
          */
         readonly post: operations["post_archive_api_studies__key__archive_post"];
         readonly delete?: never;
@@ -1437,7 +1442,7 @@ export interface paths {
         };
         /**
          * Get Codebook
-         * @description What every column of the study's export holds.
+         * @description Return the description of every column of the study's export.
          */
         readonly get: operations["get_codebook_api_studies__key__codebook_get"];
         readonly put?: never;
@@ -1457,7 +1462,7 @@ export interface paths {
         };
         /**
          * Get Copies
-         * @description Copies of the study's data that left the database, newest first, and all backups.
+         * @description Return copies of the study's data that left the database, and all backups, newest first.
          */
         readonly get: operations["get_copies_api_studies__key__copies_get"];
         readonly put?: never;
@@ -1477,9 +1482,9 @@ export interface paths {
         };
         /**
          * Get Dashboard
-         * @description The figures of a study's sessions of one kind, as drawn last; ask again while not current.
+         * @description Return the latest figures of a study's sessions of one kind; repeat while not current.
          *
-         *     The filter chooses sessions and rows before anything is drawn. One group of the figures is there
+         *     The filter selects sessions and rows before anything is drawn. One group of the figures is ready
          *     sooner than all of them.
          */
         readonly get: operations["get_dashboard_api_studies__key__dashboard_get"];
@@ -1500,7 +1505,7 @@ export interface paths {
         };
         /**
          * Get Figure Rows
-         * @description The rows that a figure is drawn from, as CSV; comment lines above them say what they are.
+         * @description Return the rows that a figure is drawn from as CSV, with comment lines that describe them.
          */
         readonly get: operations["get_figure_rows_api_studies__key__dashboard__figure__rows_get"];
         readonly put?: never;
@@ -1520,13 +1525,13 @@ export interface paths {
         };
         /**
          * Get Diff
-         * @description What changed from one version to another.
+         * @description Return the differences between two versions of a study.
          */
         readonly get: operations["get_diff_api_studies__key__diff_get"];
         readonly put?: never;
         /**
          * Post Diff
-         * @description What a draft would change in the newest version.
+         * @description Return the differences of a draft from the newest version.
          */
         readonly post: operations["post_diff_api_studies__key__diff_post"];
         readonly delete?: never;
@@ -1546,7 +1551,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Duplicate
-         * @description A copy under another key, with a ledger of its own.
+         * @description Copy a study under another key, with a ledger of its own.
          */
         readonly post: operations["post_duplicate_api_studies__key__duplicate_post"];
         readonly delete?: never;
@@ -1564,7 +1569,7 @@ export interface paths {
         };
         /**
          * Get Export
-         * @description The study's sessions of one kind as CSV files in a ZIP, sent while it is made.
+         * @description Stream the study's sessions of one kind as CSV files in a ZIP.
          */
         readonly get: operations["get_export_api_studies__key__export_get"];
         readonly put?: never;
@@ -1586,7 +1591,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Export
-         * @description Have a study's sessions of one kind, or one session, made into a ZIP of CSV files.
+         * @description Start an export of sessions of one kind, or of one session, as a ZIP of CSV files.
          */
         readonly post: operations["post_export_api_studies__key__exports_post"];
         readonly delete?: never;
@@ -1604,13 +1609,13 @@ export interface paths {
         };
         /**
          * Get Imports
-         * @description Every import of a study, newest first; undone ones too.
+         * @description Return every import of a study, newest first, including those that were undone.
          */
         readonly get: operations["get_imports_api_studies__key__imports_get"];
         readonly put?: never;
         /**
          * Post Import
-         * @description Take a file in: every form or none.
+         * @description Import a file: all of its forms, or none.
          */
         readonly post: operations["post_import_api_studies__key__imports_post"];
         readonly delete?: never;
@@ -1628,7 +1633,7 @@ export interface paths {
         };
         /**
          * Get Import
-         * @description One import, and what its scores came to.
+         * @description Return one import with the results of its scores.
          */
         readonly get: operations["get_import_api_studies__key__imports__import_id__get"];
         readonly put?: never;
@@ -1648,7 +1653,7 @@ export interface paths {
         };
         /**
          * Get Import Table
-         * @description The forms of an import as CSV; every row says that it is imported.
+         * @description Return the forms of an import as CSV; every row is marked as imported.
          */
         readonly get: operations["get_import_table_api_studies__key__imports__import_id__table_get"];
         readonly put?: never;
@@ -1670,7 +1675,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Undo
-         * @description Take the forms of an import away; who did it and why stays.
+         * @description Delete the forms of an import; keep the import with who undid it and why.
          */
         readonly post: operations["post_undo_api_studies__key__imports__import_id__undo_post"];
         readonly delete?: never;
@@ -1690,7 +1695,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Check
-         * @description What an import would do, with every cell that does not fit; nothing is stored.
+         * @description Report what an import would do, with every invalid cell; nothing is stored.
          */
         readonly post: operations["post_check_api_studies__key__imports_check_post"];
         readonly delete?: never;
@@ -1710,7 +1715,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Erase Imported
-         * @description Take away what all files of a study say of one participant.
+         * @description Erase one participant's answers from all imports of a study.
          */
         readonly post: operations["post_erase_imported_api_studies__key__imports_erase_post"];
         readonly delete?: never;
@@ -1730,7 +1735,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Look
-         * @description What a file holds and probably means; nothing is stored.
+         * @description Preview a file and propose what its columns mean; nothing is stored.
          */
         readonly post: operations["post_look_api_studies__key__imports_look_post"];
         readonly delete?: never;
@@ -1748,9 +1753,9 @@ export interface paths {
         };
         /**
          * Get Ledger
-         * @description Every slot with its attempts; before the first join, the slots as they will be.
+         * @description Return every slot with its attempts; before the first session, the slots as planned.
          *
-         *     In a blinded study only the orders are told that are known by now, and to operators none.
+         *     In a blinded study, only those orders are shown that may be known by now, and none to operators.
          */
         readonly get: operations["get_ledger_api_studies__key__ledger_get"];
         readonly put?: never;
@@ -1770,7 +1775,7 @@ export interface paths {
         };
         /**
          * Get Participants
-         * @description Who took part, newest first, with their sessions; erased ones as tombstones.
+         * @description Return the participants, newest first, with their sessions; erased ones as tombstones.
          */
         readonly get: operations["get_participants_api_studies__key__participants_get"];
         readonly put?: never;
@@ -1790,7 +1795,7 @@ export interface paths {
         };
         /**
          * Get Access
-         * @description Everything about one participant as a ZIP: a page to read, and the data.
+         * @description Download everything about one participant as a ZIP: a page to read, and the data.
          */
         readonly get: operations["get_access_api_studies__key__participants__participant_id__access_get"];
         readonly put?: never;
@@ -1812,7 +1817,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Erasure
-         * @description Erase everything about a participant; what stays is that there were sessions.
+         * @description Erase everything about a participant, except that there were sessions.
          */
         readonly post: operations["post_erasure_api_studies__key__participants__participant_id__erasure_post"];
         readonly delete?: never;
@@ -1830,7 +1835,7 @@ export interface paths {
         };
         /**
          * Get Preregistration
-         * @description What the study declared, what was done, and every deviation.
+         * @description Return what the study declared, what was done, and every deviation.
          */
         readonly get: operations["get_preregistration_api_studies__key__preregistration_get"];
         readonly put?: never;
@@ -1850,7 +1855,9 @@ export interface paths {
         };
         /**
          * Get Preregistration Report
-         * @description The same as a file for a registry; participants are numbered, not named by their codes.
+         * @description Return the preregistration's report as a file for a registry.
+         *
+         *     Participants are numbered, and their codes are left out.
          */
         readonly get: operations["get_preregistration_report_api_studies__key__preregistration_report_get"];
         readonly put?: never;
@@ -1872,7 +1879,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Restore
-         * @description Take a study out again.
+         * @description Restore an archived study.
          */
         readonly post: operations["post_restore_api_studies__key__restore_post"];
         readonly delete?: never;
@@ -1890,13 +1897,13 @@ export interface paths {
         };
         /**
          * Get Sessions
-         * @description The sessions of a study, newest first.
+         * @description Return the sessions of a study, newest first.
          */
         readonly get: operations["get_sessions_api_studies__key__sessions_get"];
         readonly put?: never;
         /**
          * Create Session
-         * @description Join a study: take the next slot of the ledger for a participant.
+         * @description Create a session of a study, which takes the next slot of the ledger.
          */
         readonly post: operations["create_session_api_studies__key__sessions_post"];
         readonly delete?: never;
@@ -1914,9 +1921,9 @@ export interface paths {
         };
         /**
          * Get Statistics
-         * @description The study's questions, answered from the sessions that count; ask again while not current.
+         * @description Return the results of the study's tests on valid sessions; repeat while they are not current.
          *
-         *     It takes no filter: what is tested is not chosen after looking.
+         *     There is no filter, so that what is tested cannot be chosen after seeing the data.
          */
         readonly get: operations["get_statistics_api_studies__key__statistics_get"];
         readonly put?: never;
@@ -1936,13 +1943,13 @@ export interface paths {
         };
         /**
          * Get Suggestions
-         * @description Every suggestion for a study, newest version first.
+         * @description Return all suggestions for a study, those for the newest version first.
          */
         readonly get: operations["get_suggestions_api_studies__key__suggestions_get"];
         readonly put?: never;
         /**
          * Post Suggestion
-         * @description Advise about a version of a study, or about one of its steps.
+         * @description Add a suggestion about a version of a study, or about one of its steps.
          */
         readonly post: operations["post_suggestion_api_studies__key__suggestions_post"];
         readonly delete?: never;
@@ -1982,7 +1989,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Version
-         * @description Make a version of a study; the same content gives the version that has it.
+         * @description Add a version to a study, unless one with the same content exists.
          */
         readonly post: operations["post_version_api_studies__key__versions_post"];
         readonly delete?: never;
@@ -2000,7 +2007,7 @@ export interface paths {
         };
         /**
          * Get Version
-         * @description One version in full.
+         * @description Return one version of a study in full.
          */
         readonly get: operations["get_version_api_studies__key__versions__number__get"];
         readonly put?: never;
@@ -2022,7 +2029,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Check
-         * @description Check a file without storing it.
+         * @description Check a study file without storing it.
          */
         readonly post: operations["post_check_api_studies_check_post"];
         readonly delete?: never;
@@ -2042,7 +2049,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Edit
-         * @description Change values of a text by their paths; comments and layout of the rest stay.
+         * @description Change values of a text by their paths, keeping comments and layout of the rest.
          */
         readonly post: operations["post_edit_api_studies_edit_post"];
         readonly delete?: never;
@@ -2062,7 +2069,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Timeline
-         * @description A dry run of one participant.
+         * @description Return a dry run of one participant's visit.
          */
         readonly post: operations["post_timeline_api_studies_timeline_post"];
         readonly delete?: never;
@@ -2080,7 +2087,7 @@ export interface paths {
         };
         /**
          * Get Schema
-         * @description The JSON schema of study files, from which the editor makes its form.
+         * @description Return the JSON schema of study files, from which the editor builds its form.
          */
         readonly get: operations["get_schema_api_study_schema_get"];
         readonly put?: never;
@@ -2102,7 +2109,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Decision
-         * @description Adopt or decline a suggestion; this is done once.
+         * @description Adopt or decline a suggestion; the decision is final.
          */
         readonly post: operations["post_decision_api_suggestions__suggestion_id__decision_post"];
         readonly delete?: never;
@@ -2122,7 +2129,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Acknowledge
-         * @description Consent given, or instructions read; sending it twice does no harm.
+         * @description Complete a step that was read on the tablet; repeating the request changes nothing.
          */
         readonly post: operations["post_acknowledge_api_tablet_acknowledge_post"];
         readonly delete?: never;
@@ -2142,7 +2149,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Consent
-         * @description A consent with what the study asks for; sending it twice does no harm.
+         * @description Store the participant's consent and complete the step; repeating this changes nothing.
          */
         readonly post: operations["post_consent_api_tablet_consent_post"];
         readonly delete?: never;
@@ -2161,7 +2168,7 @@ export interface paths {
         readonly get?: never;
         /**
          * Put Help
-         * @description Call the experimenter, or take the call back; doing so twice does no harm.
+         * @description Call the experimenter, or cancel the call; repeating the request changes nothing.
          */
         readonly put: operations["put_help_api_tablet_help_put"];
         readonly post?: never;
@@ -2181,7 +2188,7 @@ export interface paths {
         readonly get?: never;
         /**
          * Put Language
-         * @description Go on in another language of the study.
+         * @description Switch the session to another language of the study.
          */
         readonly put: operations["put_language_api_tablet_language_put"];
         readonly post?: never;
@@ -2200,7 +2207,7 @@ export interface paths {
         };
         /**
          * Get Live
-         * @description The screen, again at every change; ends when the tablet is unpaired.
+         * @description Stream the tablet's screen at every change; ends when the tablet is unpaired.
          */
         readonly get: operations["get_live_api_tablet_live_get"];
         readonly put?: never;
@@ -2220,7 +2227,7 @@ export interface paths {
         };
         /**
          * Get Paired
-         * @description The same for a tablet that does not know whether it is paired; that it is not is no error.
+         * @description Return what the tablet should show; null (and not an error) if the tablet is not paired.
          */
         readonly get: operations["get_paired_api_tablet_paired_get"];
         readonly put?: never;
@@ -2241,7 +2248,7 @@ export interface paths {
         readonly get?: never;
         /**
          * Put Question
-         * @description Ask the experimenter about the text on the screen, or take the question back.
+         * @description Tell the experimenter of a question about the text on the screen, or cancel it.
          */
         readonly put: operations["put_question_api_tablet_question_put"];
         readonly post?: never;
@@ -2261,10 +2268,10 @@ export interface paths {
         readonly get?: never;
         /**
          * Put Refusal
-         * @description Refuse to take part, or take the refusal back; each wish counts once, however often it comes.
+         * @description Refuse to take part, or take the refusal back; a repeated `wish_id` changes nothing.
          *
-         *     Until the operator has decided, nobody can go on with the session. Raises NotNow where the
-         *     session is over.
+         *     Until the operator has decided, the session cannot continue. Raises NotNow if the session has
+         *     ended.
          */
         readonly put: operations["put_refusal_api_tablet_refusal_put"];
         readonly post?: never;
@@ -2283,7 +2290,7 @@ export interface paths {
         };
         /**
          * Get State
-         * @description What to show now.
+         * @description Return what the tablet should show now.
          */
         readonly get: operations["get_state_api_tablet_state_get"];
         readonly put?: never;
@@ -2305,7 +2312,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Submission
-         * @description Store a filled-in form; the same form under the same key may come any number of times.
+         * @description Store a filled-in form; it can be resent any number of times under the same key.
          */
         readonly post: operations["post_submission_api_tablet_submissions_post"];
         readonly delete?: never;
@@ -2323,7 +2330,7 @@ export interface paths {
         };
         /**
          * Get Templates
-         * @description Studies to begin with.
+         * @description Return studies that can be used as templates.
          */
         readonly get: operations["get_templates_api_templates_get"];
         readonly put?: never;
@@ -2343,14 +2350,14 @@ export interface paths {
         };
         /**
          * Get Tryout
-         * @description How the newest one is doing; null where there was none since the server was started.
+         * @description Return the latest scripted participant; null if there was none since the server started.
          */
         readonly get: operations["get_tryout_api_tryout_get"];
         readonly put?: never;
         readonly post?: never;
         /**
          * Delete Tryout
-         * @description Stop the one that is running, and end its session.
+         * @description Stop the scripted participant that is running, and end its session.
          */
         readonly delete: operations["delete_tryout_api_tryout_delete"];
         readonly options?: never;
@@ -2369,7 +2376,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Avatar
-         * @description Build the session's physics avatar for this participant and put it on record.
+         * @description Build the session's physics avatar for this participant and record it.
          */
         readonly post: operations["post_avatar_api_vr_avatar_post"];
         readonly delete?: never;
@@ -2387,13 +2394,13 @@ export interface paths {
         };
         /**
          * Get Models
-         * @description The models, the newest first; one that is fitted tells how far it is.
+         * @description Return the models, newest first, with the progress of those that are being fitted.
          */
         readonly get: operations["get_models_api_walking_models_get"];
         readonly put?: never;
         /**
          * Post Model
-         * @description Have a model fitted; the answer comes at once, and the model tells how far it is.
+         * @description Start fitting a model; the response is immediate, and the model shows the progress.
          */
         readonly post: operations["post_model_api_walking_models_post"];
         readonly delete?: never;
@@ -2411,14 +2418,14 @@ export interface paths {
         };
         /**
          * Get Model
-         * @description One model: what it was fitted on and how, and how well it guesses what it did not see.
+         * @description Return one model: its walks and options, and its errors on data that were left out.
          */
         readonly get: operations["get_model_api_walking_models__model_id__get"];
         readonly put?: never;
         readonly post?: never;
         /**
          * Delete Model
-         * @description Delete a model, or give up fitting it.
+         * @description Delete a model, or cancel its fit.
          */
         readonly delete: operations["delete_model_api_walking_models__model_id__delete"];
         readonly options?: never;
@@ -2435,7 +2442,7 @@ export interface paths {
         };
         /**
          * Get Model File
-         * @description The model as a file.
+         * @description Download the model as a file.
          */
         readonly get: operations["get_model_file_api_walking_models__model_id__file_get"];
         readonly put?: never;
@@ -2457,7 +2464,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Prediction
-         * @description How long people take on a path: a distribution, and walks drawn from it.
+         * @description Predict how long people take on a path: a distribution, and walks drawn from it.
          */
         readonly post: operations["post_prediction_api_walking_models__model_id__prediction_post"];
         readonly delete?: never;
@@ -2477,7 +2484,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Resume Model
-         * @description Go on where it was stopped, or try again.
+         * @description Resume a stopped fit, or retry a failed one.
          */
         readonly post: operations["resume_model_api_walking_models__model_id__resume_post"];
         readonly delete?: never;
@@ -2497,7 +2504,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Slice
-         * @description How suitable steering parameters are for such a walk: a slice of the map.
+         * @description Return how suitable steering parameters are for a walk: a slice of the map.
          */
         readonly post: operations["post_slice_api_walking_models__model_id__slice_post"];
         readonly delete?: never;
@@ -2517,7 +2524,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Stop Model
-         * @description Stop fitting; the maps that are finished are kept.
+         * @description Stop fitting a model; its finished maps are kept.
          */
         readonly post: operations["stop_model_api_walking_models__model_id__stop_post"];
         readonly delete?: never;
@@ -2537,7 +2544,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Path
-         * @description The way between two points, or whether a drawn one is free of obstacles.
+         * @description Return the shortest path between two points, or check that a drawn one avoids obstacles.
          */
         readonly post: operations["post_path_api_walking_paths_post"];
         readonly delete?: never;
@@ -2555,7 +2562,7 @@ export interface paths {
         };
         /**
          * Get Populations
-         * @description The documented populations of made-up walkers.
+         * @description Return the documented populations of synthetic walkers.
          */
         readonly get: operations["get_populations_api_walking_populations_get"];
         readonly put?: never;
@@ -2575,13 +2582,13 @@ export interface paths {
         };
         /**
          * Get Scenes
-         * @description The scenes: the lab's own and those that come with the product.
+         * @description Return the scenes: the lab's own and those that come with the product.
          */
         readonly get: operations["get_scenes_api_walking_scenes_get"];
         readonly put?: never;
         /**
          * Post Scene
-         * @description Store a scene file; every problem of it is answered with its line.
+         * @description Store a scene file; every problem of it is reported with its line.
          */
         readonly post: operations["post_scene_api_walking_scenes_post"];
         readonly delete?: never;
@@ -2599,14 +2606,14 @@ export interface paths {
         };
         /**
          * Get Scene
-         * @description One scene: floor, obstacles, places and paths, in metres seen from above.
+         * @description Return one scene: floor, obstacles, places and paths, in metres seen from above.
          */
         readonly get: operations["get_scene_api_walking_scenes__scene_key__get"];
         readonly put?: never;
         readonly post?: never;
         /**
          * Delete Scene
-         * @description Delete a scene that the lab brought in.
+         * @description Delete a scene that the lab uploaded.
          */
         readonly delete: operations["delete_scene_api_walking_scenes__scene_key__delete"];
         readonly options?: never;
@@ -2623,7 +2630,7 @@ export interface paths {
         };
         /**
          * Get Scene File
-         * @description The scene's file, to begin another one with.
+         * @description Download the scene's file, for example as a template for another scene.
          */
         readonly get: operations["get_scene_file_api_walking_scenes__scene_key__file_get"];
         readonly put?: never;
@@ -2643,13 +2650,13 @@ export interface paths {
         };
         /**
          * Get Walk Sets
-         * @description The sets of walks, the newest first.
+         * @description Return the sets of walks, newest first.
          */
         readonly get: operations["get_walk_sets_api_walking_walk_sets_get"];
         readonly put?: never;
         /**
          * Post Walk Set
-         * @description Make walkers up, which is said everywhere, or cut walks from stored captures.
+         * @description Create a set of walks: synthetic ones, which are marked as such, or from captures.
          */
         readonly post: operations["post_walk_set_api_walking_walk_sets_post"];
         readonly delete?: never;
@@ -2667,14 +2674,14 @@ export interface paths {
         };
         /**
          * Get Walk Set
-         * @description One set of walks: who, how many, how long.
+         * @description Return one set of walks: its people, number of walks and durations.
          */
         readonly get: operations["get_walk_set_api_walking_walk_sets__set_id__get"];
         readonly put?: never;
         readonly post?: never;
         /**
          * Delete Walk Set
-         * @description Delete a set of walks; models that were fitted on it stay.
+         * @description Delete a set of walks; models that were fitted to it stay.
          */
         readonly delete: operations["delete_walk_set_api_walking_walk_sets__set_id__delete"];
         readonly options?: never;
@@ -2695,7 +2702,7 @@ export interface paths {
          * Post Tracks
          * @description Store a table of tracks (id, time, x, y), which is the body of the request.
          *
-         *     `stature` may come once for each person, as `A=1.78`: metres.
+         *     `stature` may be given once for each person, as `A=1.78`, in metres.
          */
         readonly post: operations["post_tracks_api_walking_walk_sets_tracks_post"];
         readonly delete?: never;
@@ -2710,7 +2717,7 @@ export interface components {
     schemas: {
         /**
          * Acceptance
-         * @description An invitation accepted under a name and password of one's own choice.
+         * @description A request to accept an invitation, with the user name and password the person chose.
          */
         readonly Acceptance: {
             /** Password */
@@ -2722,7 +2729,7 @@ export interface components {
         };
         /**
          * AccountView
-         * @description Who is signed in.
+         * @description The account that is signed in.
          */
         readonly AccountView: {
             /** Id */
@@ -2737,7 +2744,7 @@ export interface components {
         };
         /**
          * Acknowledgement
-         * @description Consent given or instructions read.
+         * @description A request to complete a step that was read on the tablet.
          */
         readonly Acknowledgement: {
             /** Step Index */
@@ -2745,7 +2752,7 @@ export interface components {
         };
         /**
          * ActiveStretch
-         * @description A stretch in which the phase's clock ran, on both of its times.
+         * @description A span in which the phase's clock ran, in the phase's time and in active time.
          */
         readonly ActiveStretch: {
             /** Begin Active S */
@@ -2759,7 +2766,7 @@ export interface components {
         };
         /**
          * AddressView
-         * @description An address for devices, and the QR code of the tablet's page there.
+         * @description An address for devices, with the QR code of the tablet's page at this address.
          */
         readonly AddressView: {
             /** Tablet Qr Svg */
@@ -2771,7 +2778,7 @@ export interface components {
         };
         /**
          * Administration
-         * @description A form to fill in now: the exact instrument, in the order to show its items.
+         * @description A form to be filled in now: the exact instrument, and the order of its items.
          */
         readonly Administration: {
             /** Instrument */
@@ -2793,11 +2800,10 @@ export interface components {
         };
         /**
          * AlarmView
-         * @description One alarm from its raising to its clearing; `cleared_at` is null while it is open.
+         * @description An alarm of a session; `cleared_at` is null while it is open.
          *
-         *     `value` with its `unit` says how much when it was raised, `client_t_s` when it was on the
-         *     headset's clock. `outcome` says why it was cleared, where there is more to say than that its
-         *     cause was gone.
+         *     `value` with its `unit` quantifies it at the time it was raised, and `client_t_s` is that time
+         *     on the headset's clock. `outcome` says why it was cleared, unless its cause simply ceased.
          */
         readonly AlarmView: {
             /** Cleared At */
@@ -2831,9 +2837,9 @@ export interface components {
         };
         /**
          * AnswerHint
-         * @description Something about a form's answers that the operator may want to know; see `hints`.
+         * @description A hint about a form's answers for the operator; see the module `hints`.
          *
-         *     alike: `items` ratings on one scale are all `value`. fast: half of the `items` ratings took less
+         *     alike: all `items` ratings on one scale are `value`. fast: half of the `items` ratings took less
          *     than `seconds` each. left_out: `items` questions have no answer.
          */
         readonly AnswerHint: {
@@ -2851,7 +2857,7 @@ export interface components {
         };
         /**
          * AnswerProblemView
-         * @description Why an answer cannot be taken.
+         * @description The reason why an answer is invalid.
          */
         readonly AnswerProblemView: {
             /** Item */
@@ -2863,10 +2869,10 @@ export interface components {
         };
         /**
          * AttemptView
-         * @description A session that holds or held a slot.
+         * @description A session that occupies, or once occupied, a slot.
          *
-         *     `reason`: why it was aborted or withdrawn. `shortfalls`: why it was completed and does not count
-         *     (`invalid`); without any it counts, and its slot had been given to somebody else by then.
+         *     `reason`: why it was aborted or withdrawn. `shortfalls`: why it was completed but is not valid
+         *     (`invalid`). If there are none, it is valid, but its slot had been taken by another session.
          */
         readonly AttemptView: {
             /** Closed At */
@@ -2892,9 +2898,10 @@ export interface components {
         };
         /**
          * AuditCheckView
-         * @description Whether every entry is as it was written; `broken_at` is the first that is not.
+         * @description The result of verifying the audit trail; `broken_at` is the first entry that was altered.
          *
-         *     `head` is the newest entry as SEQ:HASH: kept elsewhere, it shows later that the end is missing.
+         *     `head` is the newest entry as SEQ:HASH. If it is also stored elsewhere, it can reveal later that
+         *     entries were removed from the end.
          */
         readonly AuditCheckView: {
             /** Broken At */
@@ -2908,7 +2915,9 @@ export interface components {
         };
         /**
          * AuditPage
-         * @description Entries, newest first; `next_before` asks for the page behind, and is null at the end.
+         * @description Entries of the audit trail, newest first.
+         *
+         *     `next_before` is the value of `before` that requests the next page, and null on the last page.
          */
         readonly AuditPage: {
             /** Entries */
@@ -2918,7 +2927,9 @@ export interface components {
         };
         /**
          * AuditView
-         * @description One act. `actor` is `account:NAME`, a device, or `nobody` before a login.
+         * @description An entry of the audit trail.
+         *
+         *     `actor` is `account:NAME`, a device, or `nobody` for a request without a login.
          */
         readonly AuditView: {
             /** Action */
@@ -2943,7 +2954,7 @@ export interface components {
         };
         /**
          * AvatarCheck
-         * @description Whether a file can be used; `known` are the (key, version) that have its content already.
+         * @description Whether a file can be used; `known` lists each (key, version) with the same content.
          */
         readonly AvatarCheck: {
             readonly configuration?: components["schemas"]["AvatarFile"] | null;
@@ -2969,12 +2980,12 @@ export interface components {
          * AvatarFile
          * @description An avatar's configuration.
          *
-         *     `axes`: those of all body parts that the model has, as in LeftUpperLegX. `hips`: carried with
-         *     the participant's, or welded to them. `target_space`: joints follow the participant's joint
-         *     angles, or parts their orientation in the room. `colliders` holds for all parts but those in
-         *     `part_colliders`. `locked_groups` are held at the angles of `held_deg`, else as in the T-pose.
-         *     `humanoid` is the hash of the model whose body it is, left out for a body of the participant's
-         *     own; `mesh` colliders need one.
+         *     `axes`: those of all body parts that the model has, as in LeftUpperLegX. `hips`: moved with the
+         *     participant's hips, or welded to them. `target_space`: joints follow the participant's joint
+         *     angles, or parts their orientation in the room. `colliders` applies to all parts except those in
+         *     `part_colliders`. `locked_groups` are fixed at the angles of `held_deg`, or else those of the
+         *     T-pose. `humanoid` is the hash of the model whose body it has, left out for a body built from
+         *     the participant's measures; `mesh` colliders need one.
          */
         readonly AvatarFile: {
             /** Axes */
@@ -3035,10 +3046,10 @@ export interface components {
         };
         /**
          * AvatarSummary
-         * @description A configuration in the list, as its newest version is.
+         * @description A configuration in a list, in its newest version.
          *
-         *     `axes` counts its driven axes, `locked_axes` those that cannot move; `sessions` the sessions
-         *     of the reader's studies that used any of its versions' contents.
+         *     `axes` counts its driven axes, `locked_axes` those that cannot move; `sessions` counts the
+         *     sessions of the reader's studies that used any of its versions.
          */
         readonly AvatarSummary: {
             /** Axes */
@@ -3057,7 +3068,7 @@ export interface components {
         };
         /**
          * AvatarText
-         * @description A configuration file as text.
+         * @description The text of a configuration file.
          */
         readonly AvatarText: {
             /** Text */
@@ -3065,7 +3076,7 @@ export interface components {
         };
         /**
          * AvatarVersionDetail
-         * @description A version in full. `report`: what tuning measured and with which settings, if it was tuned.
+         * @description A complete version; `report`: the measurements and settings of its tuning, if it was tuned.
          *
          *     `sessions` counts the sessions of the reader's studies that used this content.
          */
@@ -3102,7 +3113,7 @@ export interface components {
         };
         /**
          * AvatarVersionView
-         * @description One version of a configuration.
+         * @description One version of an avatar configuration, without its content.
          */
         readonly AvatarVersionView: {
             /**
@@ -3126,7 +3137,7 @@ export interface components {
         };
         /**
          * AvatarView
-         * @description A configuration with all its versions, newest first, and the newest in full.
+         * @description A configuration with all its versions, newest first, and the complete newest version.
          */
         readonly AvatarView: {
             /**
@@ -3146,14 +3157,14 @@ export interface components {
         };
         /**
          * AvatarWalkerView
-         * @description How an avatar does it, beside the source.
+         * @description The walk of an avatar, compared with the source.
          *
          *     `leg_ratio` is its leg length over the source's, `length_ratio` and `height_ratio` the same of
          *     mean steps (null without steps). `lifts_agree`: it lifts each foot as often as the source.
          *     Slides are speeds of its feet while the *source's* are down: `slide_m_s` as shown here,
-         *     `slide_before_m_s` before the feet were locked, null where they are not. With locked feet
-         *     `lowered_m` is by how much the hips came down at most, and `out_of_reach` counts frames in which
-         *     a foot could not be held.
+         *     `slide_before_m_s` before the feet were locked, null if they are not. With locked feet,
+         *     `lowered_m` is how far the hips came down at most, and `out_of_reach` counts frames in which
+         *     a foot could not be held in place.
          */
         readonly AvatarWalkerView: {
             /** Foot Slide M S */
@@ -3193,10 +3204,10 @@ export interface components {
         };
         /**
          * AvatarWish
-         * @description Whose body it is: the participant's stature, and what else was measured of it.
+         * @description A request for a physics avatar: the participant's stature and any other lengths measured.
          *
-         *     `segments_m`: lengths by the names of docs/avatar-configuration.md; the others follow from the
-         *     stature.
+         *     `segments_m`: lengths by the names of docs/avatar-configuration.md; lengths left out follow from
+         *     the stature.
          */
         readonly AvatarWish: {
             /**
@@ -3211,7 +3222,7 @@ export interface components {
         };
         /**
          * AxisFile
-         * @description One driven axis. Equal limits lock it.
+         * @description The settings of one driven axis. Equal limits lock it.
          */
         readonly AxisFile: {
             /**
@@ -3242,7 +3253,7 @@ export interface components {
         };
         /**
          * CableView
-         * @description A headset on this machine's USB cable: run `command`, then open `url` in the headset.
+         * @description How to connect a headset by USB: run `command` here, then open `url` in the headset.
          */
         readonly CableView: {
             /** Command */
@@ -3252,7 +3263,7 @@ export interface components {
         };
         /**
          * CalibrationView
-         * @description A stored measurement; `current` marks the one of its equipment that holds.
+         * @description A stored calibration; `current` marks the one in force for its equipment.
          */
         readonly CalibrationView: {
             /**
@@ -3292,7 +3303,7 @@ export interface components {
         };
         /**
          * CaptureChange
-         * @description What is to change; what is left out stays. Another reading reads the file anew.
+         * @description Changes of a capture; missing fields stay. A new `reading` parses the file again.
          */
         readonly CaptureChange: {
             readonly reading?: components["schemas"]["ReadingChoice"] | null;
@@ -3301,7 +3312,9 @@ export interface components {
         };
         /**
          * CapturedPerson
-         * @description A capture, who walks in it, and where it leaves a choice, which tracked body is followed.
+         * @description A capture with the person who walks in it.
+         *
+         *     `body`: which tracked body is followed, if the capture has several.
          */
         readonly CapturedPerson: {
             /** Body */
@@ -3315,10 +3328,10 @@ export interface components {
         };
         /**
          * CaptureListed
-         * @description A capture in the list.
+         * @description A capture in a list.
          *
          *     `format` is a key such as "bvh" or "motive-csv". `tracks` counts its joints, markers or bodies.
-         *     `has_skeleton`: it can be brought onto avatars. `size_bytes` is that of the file.
+         *     `has_skeleton`: it can be retargeted to avatars. `size_bytes` is that of the file.
          */
         readonly CaptureListed: {
             /**
@@ -3358,7 +3371,7 @@ export interface components {
         };
         /**
          * CapturePage
-         * @description Captures, the newest first, and how many there are in all.
+         * @description A page of captures, newest first, and the total number of captures.
          */
         readonly CapturePage: {
             /** Captures */
@@ -3381,10 +3394,10 @@ export interface components {
         };
         /**
          * CaptureSummary
-         * @description What reading a capture found.
+         * @description The summary of a parsed capture.
          *
-         *     `names` are the joints, markers or rigid bodies of the file. `skeleton` is null where none could
-         *     be fitted; `no_skeleton` then says why. `observed` is the share of values that were seen.
+         *     `names` are the joints, markers or rigid bodies of the file. `skeleton` is null if none could be
+         *     fitted; `no_skeleton` then says why. `observed` is the share of values that were seen.
          */
         readonly CaptureSummary: {
             readonly conventions: components["schemas"]["ConventionsView"];
@@ -3400,7 +3413,7 @@ export interface components {
         };
         /**
          * CaptureView
-         * @description A capture with what reading it found. `content_hash` is the SHA-256 of the file.
+         * @description A capture with its summary; `content_hash` is the SHA-256 of the file.
          */
         readonly CaptureView: {
             /**
@@ -3444,7 +3457,7 @@ export interface components {
         };
         /**
          * CellProblem
-         * @description Why something in the file cannot be taken in as it is.
+         * @description A problem that prevents a cell of the file from being imported.
          */
         readonly CellProblem: {
             /** Column */
@@ -3460,7 +3473,7 @@ export interface components {
         };
         /**
          * CensusView
-         * @description How long the planned paths are; a length on an edge belongs to the interval above it.
+         * @description The distribution of path lengths; a length on an edge belongs to the interval above it.
          */
         readonly CensusView: {
             /** Count */
@@ -3480,11 +3493,11 @@ export interface components {
         };
         /**
          * CertificateView
-         * @description The certificate behind https.
+         * @description The certificate of the HTTPS server.
          *
          *     `source` is `authority` (the built-in one, which devices install) or `files` (the lab's own).
          *     `fingerprint` is the SHA-256 that a device shows: of the authority, or of the lab's certificate.
-         *     `uncovered` are addresses of this machine that it is not valid for.
+         *     `uncovered` are addresses of this machine that the certificate is not valid for.
          */
         readonly CertificateView: {
             /** Authority Expires At */
@@ -3508,7 +3521,7 @@ export interface components {
         };
         /**
          * ChainCheck
-         * @description Whether a log verifies; `broken_at` is the first seq that does not.
+         * @description The result of verifying an event log; `broken_at` is the first seq that fails.
          */
         readonly ChainCheck: {
             /** Broken At */
@@ -3520,7 +3533,7 @@ export interface components {
         };
         /**
          * ChangeRequest
-         * @description One change; see `app.protocol.editing.Change`.
+         * @description One change of a study file; see `app.protocol.editing.Change`.
          */
         readonly ChangeRequest: {
             /**
@@ -3541,11 +3554,12 @@ export interface components {
         };
         /**
          * Check
-         * @description One line of the list.
+         * @description A check of the pre-flight list, with its result.
          *
-         *     `wait`: it cannot be told yet, and comes by itself. `value` with its `unit` is what was found,
-         *     `limit` with `expected` what it must keep to. `details` are names and hashes, in no language.
-         *     `override`: the newest one; it counts while the finding is the one it was said of.
+         *     `wait`: it cannot be judged yet, but will be later without any action. `value` with its `unit`
+         *     is what was measured; `limit` with `expected` is what it must comply with. `details` are names
+         *     and hashes, which are not translated. `override`: the latest one; it applies only while the
+         *     check still has the finding that was overridden.
          */
         readonly Check: {
             /**
@@ -3580,7 +3594,7 @@ export interface components {
         };
         /**
          * CheckRequest
-         * @description A file and what its columns mean.
+         * @description A file and its mapping, to be checked.
          */
         readonly CheckRequest: {
             readonly mapping: components["schemas"]["Mapping"];
@@ -3589,10 +3603,10 @@ export interface components {
         };
         /**
          * CheckResult
-         * @description Whether a file can be used, with every problem and its place.
+         * @description The check of a file: whether it is valid, with every problem and its place.
          *
-         *     `tree`: the values of the file as they stand, whenever it can be read at all, so that a form can
-         *     show them while there are problems. `lines`: where each value stands, by its path.
+         *     `tree`: the values of the file, whenever it can be parsed, so that a form can show them while
+         *     there are problems. `lines`: the line of each value, by its path.
          */
         readonly CheckResult: {
             /** Content Hash */
@@ -3623,9 +3637,9 @@ export interface components {
         };
         /**
          * CheckView
-         * @description What an import would do. Nothing was stored. With problems it would be refused.
+         * @description What an import would do; nothing was stored, and with problems it would be rejected.
          *
-         *     `reversed_items`: the instrument's formulas turn them round. `notes`: to be looked at.
+         *     `reversed_items`: those that the instrument's formulas reverse. `notes`: points to check.
          */
         readonly CheckView: {
             /** Conditions */
@@ -3654,10 +3668,10 @@ export interface components {
         };
         /**
          * ClientRun
-         * @description One run of the headset's program in the phase, from its first to its last moment here.
+         * @description One run of the headset's program, from its first to its last moment in the phase.
          *
-         *     `begin_utc`: when it began, by the server's clock; null where that cannot be said.
-         *     `uncertainty_ms`: how well; null where no clock was compared and it is when the message came.
+         *     `begin_utc`: its start by the server's clock; null where it is unknown. `uncertainty_ms`: that
+         *     of `begin_utc`; null if there is no clock probe and `begin_utc` is the arrival of a message.
          */
         readonly ClientRun: {
             /** Begin S */
@@ -3673,7 +3687,7 @@ export interface components {
         };
         /**
          * ColumnSet
-         * @description Columns that make one form: item -> column. `condition`: of all forms of these columns.
+         * @description The columns of one form, item -> column; `condition`: that of all forms in these columns.
          */
         readonly ColumnSet: {
             /** Condition */
@@ -3685,7 +3699,7 @@ export interface components {
         };
         /**
          * ColumnView
-         * @description A column of an export.
+         * @description The codebook entry of one exported column.
          */
         readonly ColumnView: {
             /** Column */
@@ -3703,9 +3717,9 @@ export interface components {
         };
         /**
          * CommandRequest
-         * @description An operator's command, decided on what their page showed (`expected_version`).
+         * @description An operator's command, with the version of the session that their page showed.
          *
-         *     Those of `NEVER_STALE` are taken on any version and may leave it out.
+         *     Commands in `NEVER_STALE` apply to any version and may omit `expected_version`.
          */
         readonly CommandRequest: {
             /** Command Id */
@@ -3728,9 +3742,10 @@ export interface components {
         };
         /**
          * CompletionReceipt
-         * @description A task phase: how many completions are stored, how many follow from its contacts.
+         * @description How many completions of a task phase are stored, and how many follow from its contacts.
          *
-         *     `agree`: the same numbers at the same instants, with the same durations. `reason` says why not.
+         *     `agree`: the same numbers at the same times, with the same durations; otherwise `reason` says
+         *     what differs.
          */
         readonly CompletionReceipt: {
             /** Agree */
@@ -3746,7 +3761,7 @@ export interface components {
         };
         /**
          * ConditionCount
-         * @description A condition of the file; `in_study`: it is one of the study's.
+         * @description The number of forms in a condition of the file; `in_study`: the study has this condition.
          */
         readonly ConditionCount: {
             /** Condition */
@@ -3758,7 +3773,7 @@ export interface components {
         };
         /**
          * ConditionMean
-         * @description A score in a condition, over participants; `low` and `high`: 95 % interval of the mean.
+         * @description A score in one condition, over participants; `low` and `high`: 95 % interval of the mean.
          */
         readonly ConditionMean: {
             /** Condition */
@@ -3776,7 +3791,7 @@ export interface components {
         };
         /**
          * ConsentForm
-         * @description What a consent asks for besides its text.
+         * @description What a consent requires besides its text: statements to tick and a kind of signature.
          */
         readonly ConsentForm: {
             /**
@@ -3789,7 +3804,7 @@ export interface components {
         };
         /**
          * ConsentGiven
-         * @description What the participant did on the tablet; `ticked` names statements by their index.
+         * @description A consent given on the tablet; `ticked` lists the indices of the statements ticked.
          */
         readonly ConsentGiven: {
             /** Name */
@@ -3806,11 +3821,11 @@ export interface components {
         };
         /**
          * ConsentRecord
-         * @description Who agreed to what, and when: everything a printed record shows.
+         * @description Who agreed to what, and when: everything that a printed record shows.
          *
          *     `text` and `statements` are taken from the study version that was shown; `text_matches` says
-         *     that the text still has the hash that was stored with the consent. Of an erased consent only
-         *     `erased` and the time are left.
+         *     whether the text still has the hash stored with the consent. For an erased consent, only
+         *     `erased` and the time remain.
          */
         readonly ConsentRecord: {
             /**
@@ -3868,7 +3883,7 @@ export interface components {
         };
         /**
          * ConventionsView
-         * @description By which conventions a file was read; everything after is y up, right-handed, SI.
+         * @description The conventions of the file; parsed data are y up, right-handed and in SI units.
          */
         readonly ConventionsView: {
             readonly axes: components["schemas"]["ConventionView"];
@@ -3878,7 +3893,7 @@ export interface components {
         };
         /**
          * ConventionView
-         * @description One thing that had to be known to read the file, and who says so.
+         * @description One convention by which the file was parsed, and where it comes from.
          */
         readonly ConventionView: {
             /**
@@ -3891,7 +3906,7 @@ export interface components {
         };
         /**
          * CopyLeft
-         * @description A copy outside the database that may hold what was erased.
+         * @description A copy outside the database that may contain erased data.
          */
         readonly CopyLeft: {
             /**
@@ -3917,7 +3932,7 @@ export interface components {
          * CopyView
          * @description A copy that left the database: an export, an access copy or a backup.
          *
-         *     `place`: a file, or who downloaded it. `bytes` where it is known.
+         *     `place`: a file, or who downloaded it. `bytes` is null if the size is unknown.
          */
         readonly CopyView: {
             /**
@@ -3951,7 +3966,7 @@ export interface components {
         };
         /**
          * CorrectionView
-         * @description A later value of one answer. `previous` is what counted before; null is "left out".
+         * @description A correction of one answer. `previous` is the value before it; null means "left out".
          */
         readonly CorrectionView: {
             /**
@@ -3982,7 +3997,7 @@ export interface components {
         };
         /**
          * CurrentView
-         * @description The current step; `status` is ready or that of its phase.
+         * @description The current step of a session; `status` is `ready` or the status of its phase.
          */
         readonly CurrentView: {
             /** Active S */
@@ -4005,7 +4020,7 @@ export interface components {
         };
         /**
          * DashboardView
-         * @description Figures as they were drawn at `drawn_at`; not `current`: newer data are being drawn.
+         * @description Figures as drawn at `drawn_at`; if not `current`, newer data are being drawn.
          */
         readonly DashboardView: {
             /** Avatar */
@@ -4034,7 +4049,7 @@ export interface components {
         };
         /**
          * Decision
-         * @description What becomes of a suggestion; `adopted_in` is the number of the version that has it.
+         * @description The decision on a suggestion; `adopted_in` is the number of the version that contains it.
          */
         readonly Decision: {
             /** Adopted In */
@@ -4047,9 +4062,10 @@ export interface components {
         };
         /**
          * DeclarationView
-         * @description What is declared, by the first version that said just this; `content_hash` names it.
+         * @description The declaration, with the first version that made it; `content_hash` identifies the version.
          *
-         *     `section` is the study file's own. `frozen_at`: when the first session of that version started.
+         *     `section` is the declaration in the study file. `frozen_at`: when the first session of a version
+         *     with this declaration started.
          */
         readonly DeclarationView: {
             /** Alpha */
@@ -4077,7 +4093,7 @@ export interface components {
         };
         /**
          * DeviationView
-         * @description A difference between what was declared and what was done; notes are none, but told too.
+         * @description A deviation of what was done from what was declared, or a note (`is_note`).
          */
         readonly DeviationView: {
             /**
@@ -4092,7 +4108,7 @@ export interface components {
         };
         /**
          * DeviceView
-         * @description A paired device.
+         * @description A device that is paired with a session.
          */
         readonly DeviceView: {
             /** Connected */
@@ -4116,7 +4132,7 @@ export interface components {
         };
         /**
          * DifferenceView
-         * @description One place that differs; `before` or `after` is null where it was not there.
+         * @description One difference between two study files; `before` or `after` is null if it has no value.
          */
         readonly DifferenceView: {
             /** After */
@@ -4133,9 +4149,9 @@ export interface components {
         };
         /**
          * DiskView
-         * @description The disk of the data folder; `warn_below_bytes` as the pre-flight has it.
+         * @description The disk of the data folder; `warn_below_bytes` is the threshold of the pre-flight check.
          *
-         *     `holds_database` is false where the database is on a server of its own, whose disk nobody sees
+         *     `holds_database` is false if the database is on a database server, whose disk cannot be measured
          *     from here.
          */
         readonly DiskView: {
@@ -4154,9 +4170,9 @@ export interface components {
          * Doubt
          * @description Something in a session's record that cannot be true.
          *
-         *     `phase_id` is None where it is about the session and not about one phase. `kind` is one of
-         *     `KINDS`. `claimed` was said and `possible` is the furthest it can have been, both in `unit`;
-         *     None where no figure says it.
+         *     `phase_id` is None if it concerns the session as a whole. `kind` is one of `KINDS`. `claimed` is
+         *     the reported value and `possible` the furthest possible one, both in `unit`; they are None if no
+         *     figure applies.
          */
         readonly Doubt: {
             /** Claimed */
@@ -4174,7 +4190,7 @@ export interface components {
         };
         /**
          * DraftFile
-         * @description A draft to compare with the newest version.
+         * @description The text of a draft, to compare with the newest version.
          */
         readonly DraftFile: {
             /** Yaml */
@@ -4182,7 +4198,7 @@ export interface components {
         };
         /**
          * DuplicateRequest
-         * @description A copy of a study under another key, with another title if wished, by language.
+         * @description The key of a copy of a study, and optionally its title by language.
          */
         readonly DuplicateRequest: {
             /** Key */
@@ -4194,7 +4210,7 @@ export interface components {
         };
         /**
          * EditedFile
-         * @description The text after the changes, comments and layout kept.
+         * @description The text after the changes, with comments and layout kept.
          */
         readonly EditedFile: {
             /** Yaml */
@@ -4202,7 +4218,7 @@ export interface components {
         };
         /**
          * EditRequest
-         * @description Changes of a form to a file's text, done one after the other.
+         * @description Changes of a file's text from the editor's form, applied one after the other.
          */
         readonly EditRequest: {
             /** Changes */
@@ -4212,7 +4228,7 @@ export interface components {
         };
         /**
          * ErasedImported
-         * @description How many forms went.
+         * @description The number of imported forms that were erased.
          */
         readonly ErasedImported: {
             /** Forms */
@@ -4220,7 +4236,7 @@ export interface components {
         };
         /**
          * EraseImportedRequest
-         * @description Whose imported answers go; `confirm` is the code, typed again.
+         * @description The participant whose imported answers are erased; `confirm` is the code, typed again.
          */
         readonly EraseImportedRequest: {
             /** Confirm */
@@ -4230,7 +4246,7 @@ export interface components {
         };
         /**
          * ErasureRequest
-         * @description Erase everything about a participant. `confirm` is their code, typed again.
+         * @description A request to erase everything about a participant; `confirm` is their code, typed again.
          */
         readonly ErasureRequest: {
             /** Confirm */
@@ -4243,9 +4259,10 @@ export interface components {
         };
         /**
          * ErasureView
-         * @description A tombstone. `removed`: rows by table.
+         * @description A tombstone; `removed` is the number of deleted rows by table.
          *
-         *     `overwritten`: no byte of them is left in the database. Else the next start overwrites them.
+         *     `overwritten`: no byte of them is left in the database; otherwise the next start overwrites
+         *     them.
          */
         readonly ErasureView: {
             /**
@@ -4270,14 +4287,14 @@ export interface components {
         };
         /**
          * ErrorBody
-         * @description The body of every answer that is not a success.
+         * @description The body of every error response.
          */
         readonly ErrorBody: {
             readonly error: components["schemas"]["Refusal"];
         };
         /**
          * EstimateRule
-         * @description The rule by which steps without a set duration are estimated; all in seconds.
+         * @description The rule by which the duration of steps is estimated if the study sets none, in seconds.
          */
         readonly EstimateRule: {
             /** By Hand S */
@@ -4295,7 +4312,7 @@ export interface components {
         };
         /**
          * EventView
-         * @description A row of the event log.
+         * @description An event of a session's log.
          */
         readonly EventView: {
             /**
@@ -4318,12 +4335,12 @@ export interface components {
         };
         /**
          * ExclusionRule
-         * @description Whom the primary test leaves out: a session of which any task phase breaks the rule.
+         * @description A rule that excludes a session from the primary test if any of its task phases violates it.
          *
-         *     complete_session: was not completed. minimum_frame_rate_hz, minimum_share_of_frames: of the
-         *     avatar's recorded frames; the share is active time outside gaps. maximum_latency_error_ms:
-         *     achieved against ordered latency. minimum_active_time_s: of a task phase.
-         *     maximum_straight_lined_forms: forms of a session whose ratings are all alike.
+         *     complete_session: the session was not completed. minimum_frame_rate_hz, minimum_share_of_frames:
+         *     of the avatar's recorded frames; the share is active time outside gaps.
+         *     maximum_latency_error_ms: achieved minus set latency. minimum_active_time_s: of a task phase.
+         *     maximum_straight_lined_forms: forms of a session with identical ratings for all items.
          */
         readonly ExclusionRule: {
             /** Limit */
@@ -4336,7 +4353,7 @@ export interface components {
         };
         /**
          * ExclusionView
-         * @description A session that the primary test leaves out: by which rule, and what was found.
+         * @description A session that the primary test leaves out, with the rule and what was found.
          */
         readonly ExclusionView: {
             /** Participant Code */
@@ -4348,7 +4365,7 @@ export interface components {
         };
         /**
          * ExportTrouble
-         * @description Why a file could not be made, and what to do about it.
+         * @description The reason why an export failed, and what to do about it.
          */
         readonly ExportTrouble: {
             /** Message */
@@ -4358,12 +4375,14 @@ export interface components {
         };
         /**
          * ExportView
-         * @description An export and how far it is.
+         * @description An export and its progress.
          *
-         *     `rows` of movement are written of `rows_total`; other tables are small beside them. `bytes` are
-         *     on the disk; `bytes_expected` is told from the bytes a row has taken so far, `remaining_s` from
-         *     the time, both None while too little is known. `sha256` is of the file. `expires_at`: when the
-         *     server removes it.
+         *     `rows` of `rows_total` rows of movement are written; the other tables are small in comparison.
+         *     `bytes` are on the disk; `bytes_expected` is estimated from the bytes per row so far,
+         *     `remaining_s`
+         *     from the time, both None until there are enough rows. `sha256` is that of the file.
+         *     `expires_at`:
+         *     when the server removes it.
          */
         readonly ExportView: {
             /**
@@ -4417,7 +4436,7 @@ export interface components {
         };
         /**
          * ExportWish
-         * @description What to export: a study's sessions of one kind, or one session of that kind alone.
+         * @description What to export: a study's sessions of one kind, or only one session of that kind.
          */
         readonly ExportWish: {
             /**
@@ -4430,11 +4449,11 @@ export interface components {
         };
         /**
          * Failing
-         * @description Something in the background that has failed, as health and the consoles name it.
+         * @description A background task that has failed, as reported by the health endpoint and the consoles.
          *
-         *     `state`: whether it goes on and is tried again, or has stopped until the server is restarted.
-         *     `times`: how often it failed since it worked last. `error`: the kind of the newest error; what
-         *     it says stands in the log.
+         *     `state`: "failing" if it is retried, "stopped" until the server is restarted. `times`: how often
+         *     it has failed since it last worked. `error`: the class of the newest error; its message is in
+         *     the log.
          */
         readonly Failing: {
             /** Error */
@@ -4461,11 +4480,12 @@ export interface components {
         };
         /**
          * FigureFilter
-         * @description Which sessions and rows are drawn; everything unless named.
+         * @description Which sessions and rows are drawn; by default, all valid rows of all sessions.
          *
          *     `rows`: "valid" leaves out what does not count (sessions that were broken off or are not valid
          *     by the study's rules, superseded and skipped steps), "all" draws it too. `since` and `until`:
-         *     days, both included, on which a session was created, in UTC. `order`: added latencies in ms in
+         *     the first and last day, in UTC, on which a session was created. `order`: added latencies in ms
+         *     in
          *     the order of the blocks, as in "0 125 350".
          */
         readonly FigureFilter: {
@@ -4491,9 +4511,9 @@ export interface components {
         };
         /**
          * FigureView
-         * @description A figure for plotly.js, or in plain words what is missing for it; `n` participants.
+         * @description A figure for plotly.js, or a sentence (`empty`) that says what is missing; `n` participants.
          *
-         *     `wide`: it needs the width of the page.
+         *     `wide`: the figure needs the full width of the page.
          */
         readonly FigureView: {
             /** Caption */
@@ -4520,7 +4540,7 @@ export interface components {
         };
         /**
          * FileColumn
-         * @description A column: its name, the question that stands below it, and some of what is in it.
+         * @description A column of the file: its name, the question below the name, and examples of its values.
          */
         readonly FileColumn: {
             /** Distinct */
@@ -4536,7 +4556,9 @@ export interface components {
         };
         /**
          * FilterChoices
-         * @description What can be chosen from: codes, orders as "0 125 350", limbs, first and last day (UTC).
+         * @description The values that the filter can take.
+         *
+         *     They are participant codes, orders as "0 125 350", limbs, and the first and last day in UTC.
          */
         readonly FilterChoices: {
             /** First Day */
@@ -4552,11 +4574,11 @@ export interface components {
         };
         /**
          * FitChoice
-         * @description How to fit; the defaults are the paper's, but for the reading, which is chosen.
+         * @description Options of a fit; the defaults are the paper's, except that the reading is chosen.
          *
-         *     `steps`: values of each steering parameter, whose cube is the size of a map. `k`: neighbours.
-         *     `entries`: of the blending space, blends included. `reading`: how deviations are read as
-         *     suitability; "chosen" decides it by predicting people who were left out.
+         *     `steps`: values of each steering parameter; a map has their cube as its size. `k`: neighbours.
+         *     `entries`: of the blending space, blends included. `reading`: how deviations are converted to
+         *     suitability; "chosen" selects it by predicting people who were left out.
          */
         readonly FitChoice: {
             /**
@@ -4588,7 +4610,9 @@ export interface components {
         };
         /**
          * FittedOn
-         * @description The set of walks as it was called when the fit was ordered; `id` is null once it is gone.
+         * @description The set of walks that a model was fitted to, with its title at the time of the order.
+         *
+         *     `id` is null if the set was deleted.
          */
         readonly FittedOn: {
             /** Id */
@@ -4603,7 +4627,7 @@ export interface components {
         };
         /**
          * FixedView
-         * @description What a model that does not draw says: one duration, of one steering vector.
+         * @description The prediction of a deterministic model: the duration of one steering vector.
          */
         readonly FixedView: {
             /** Duration S */
@@ -4613,7 +4637,7 @@ export interface components {
         };
         /**
          * FormPreview
-         * @description A form as it would be stored.
+         * @description One form of the previewed file, as it would be stored.
          */
         readonly FormPreview: {
             /** Answered On */
@@ -4637,7 +4661,7 @@ export interface components {
         };
         /**
          * FormulaView
-         * @description A score with its formula, and the range its author states.
+         * @description A score with its formula and the range that its author states.
          */
         readonly FormulaView: {
             /** Formula */
@@ -4657,11 +4681,11 @@ export interface components {
         };
         /**
          * GlanceView
-         * @description The answers of one limb in a few signs each; null where it could not be tested.
+         * @description The results of one limb in brief, each null if it could not be tested.
          *
          *     `differ`: whether the latencies differ at all. `first`: the first latency that differs from the
-         *     smallest one, empty where none does. `trend` along latency, one-sided where one was
-         *     predicted, and the `way` that the measure goes.
+         *     smallest one, empty if none does. `trend`: of the trend along latency, one-sided where a
+         *     direction was predicted. `way`: the direction of the trend.
          */
         readonly GlanceView: {
             /** Differ */
@@ -4677,10 +4701,10 @@ export interface components {
         };
         /**
          * HalfMadeView
-         * @description A file or folder that is not whole: of what kind, where, since when.
+         * @description An unfinished file or folder: its kind, place and start time.
          *
-         *     `going_on`: a command is making it now; else a crash left it, and the next start of the server
-         *     removes it, unless its disk is not there.
+         *     `going_on`: a command is writing it now; otherwise a crash left it, and the next start of the
+         *     server removes it, unless its disk is not connected.
          */
         readonly HalfMadeView: {
             /** Going On */
@@ -4700,10 +4724,10 @@ export interface components {
         };
         /**
          * Health
-         * @description Whether the server and its database answer, and whether the record can be written.
+         * @description The server's health: whether its database responds and the record can be written.
          *
-         *     `status` is degraded while something in the background fails, which `failing` names; `storage`
-         *     speaks for itself. `low_disk`: little space is left in the data folder.
+         *     `status` is degraded while something in the background fails, as listed in `failing`; failures
+         *     of storage are reported only in `storage`. `low_disk`: little space is left in the data folder.
          */
         readonly Health: {
             /** Database */
@@ -4741,7 +4765,7 @@ export interface components {
         };
         /**
          * HeldView
-         * @description Which stop rule holds the session: the limit `stop_at` on a score, or on its rise.
+         * @description The stop rule that holds a session: the limit `stop_at` on a score, or on its rise.
          */
         readonly HeldView: {
             /** Instrument */
@@ -4757,7 +4781,7 @@ export interface components {
         };
         /**
          * HelpView
-         * @description The page, over plain http, on which a device gets the lab's certificate.
+         * @description The help page, over plain HTTP, from which a device installs the lab's certificate.
          */
         readonly HelpView: {
             /** Qr Svg */
@@ -4767,7 +4791,7 @@ export interface components {
         };
         /**
          * HelpWish
-         * @description Whether the experimenter is wanted, for any reason or to answer a question.
+         * @description Whether the participant is calling the experimenter, for any reason or with a question.
          */
         readonly HelpWish: {
             /** Asked */
@@ -4775,11 +4799,12 @@ export interface components {
         };
         /**
          * HumanoidListed
-         * @description A model in the list.
+         * @description A humanoid model in a list.
          *
-         *     `content_hash` is the SHA-256 of its file, by which configurations name it. `stature_m` is its
-         *     own; an avatar has its participant's. `bones_by`: whether VRM's map or the bones' names told
-         *     which is which. Counts are of body parts that the model has, and of those with a convex piece.
+         *     `content_hash` is the SHA-256 of its file, by which configurations refer to it. `stature_m` is
+         *     its own; an avatar has that of its participant. `bones_by`: whether bones were identified by
+         *     VRM's map or by their names. Counts are of body parts that the model has, and of those with a
+         *     convex piece.
          */
         readonly HumanoidListed: {
             /**
@@ -4813,7 +4838,7 @@ export interface components {
         };
         /**
          * HumanoidPage
-         * @description Models, the newest first, and how many there are in all.
+         * @description A page of humanoid models, newest first, and the total number of models.
          */
         readonly HumanoidPage: {
             /** Humanoids */
@@ -4823,11 +4848,11 @@ export interface components {
         };
         /**
          * HumanoidView
-         * @description A model in full.
+         * @description A humanoid model in full.
          *
-         *     `present` and `absent` are the body parts it has and lacks; `simple` has too little skin for a
-         *     piece, so those keep capsules and boxes. `segments_m` are its lengths. `notes` are sentences on
-         *     what was found odd while reading.
+         *     `present` and `absent` are the body parts it has and lacks; those in `simple` have too little
+         *     skin for a convex piece and keep capsules and boxes. `segments_m` are its lengths. `notes` are
+         *     sentences on anything unusual in the file.
          */
         readonly HumanoidView: {
             /** Absent */
@@ -4875,7 +4900,7 @@ export interface components {
         };
         /**
          * ImportDetail
-         * @description An import and what its scores came to.
+         * @description An import with the results of its scores.
          */
         readonly ImportDetail: {
             /** Results */
@@ -4884,7 +4909,7 @@ export interface components {
         };
         /**
          * ImportRequest
-         * @description The same, to be taken in.
+         * @description A file and its mapping, to be imported.
          */
         readonly ImportRequest: {
             /** File Name */
@@ -4895,7 +4920,7 @@ export interface components {
         };
         /**
          * ImportView
-         * @description An import. Undone ones have no forms any more.
+         * @description An import; one that was undone has no forms.
          */
         readonly ImportView: {
             /** Content Hash */
@@ -4929,7 +4954,7 @@ export interface components {
         };
         /**
          * InstrumentChange
-         * @description An instrument whose wording differs: content hashes, null where it is not asked.
+         * @description An instrument whose wording differs: content hashes, null if it is not used.
          */
         readonly InstrumentChange: {
             /** After */
@@ -4941,9 +4966,9 @@ export interface components {
         };
         /**
          * InstrumentCheck
-         * @description Whether a file can be used: every problem with its place, else what it becomes.
+         * @description The check of a file: every problem with its place, or a preview if it is valid.
          *
-         *     `known`: the very content is stored already. `replaces`: there are other contents of this key.
+         *     `known`: the same content is stored already. `replaces`: other contents of this key are stored.
          */
         readonly InstrumentCheck: {
             /** Content Hash */
@@ -4971,9 +4996,9 @@ export interface components {
         };
         /**
          * InstrumentDetail
-         * @description An instrument in full; `versions` from the oldest to the newest.
+         * @description An instrument in full; `versions` are ordered from the oldest to the newest.
          *
-         *     `preview`: a form of it to draw, in the shape in which tablets get their forms.
+         *     `preview`: a form of it, in the format in which tablets get their forms.
          */
         readonly InstrumentDetail: {
             /** Content Hash */
@@ -5016,7 +5041,7 @@ export interface components {
         };
         /**
          * InstrumentFile
-         * @description An instrument as YAML text.
+         * @description The text of an instrument file, in YAML.
          */
         readonly InstrumentFile: {
             /** Yaml */
@@ -5027,8 +5052,8 @@ export interface components {
          * @description The newest version of an instrument in the library.
          *
          *     `version` is the number in the file; `stored_versions` counts the contents stored under the key.
-         *     `minutes` is how long filling it in takes by our rough rule. `used_by`: keys of studies whose
-         *     newest version asks this wording; `used_by_older`: those that ask an older one.
+         *     `minutes` is an estimate of how long filling it in takes. `used_by`: keys of studies whose
+         *     newest version uses this wording; `used_by_older`: those that use an older one.
          */
         readonly InstrumentSummary: {
             /** Content Hash */
@@ -5066,7 +5091,7 @@ export interface components {
         };
         /**
          * InstrumentVersionView
-         * @description One stored content of an instrument, with the studies that ask it.
+         * @description One stored content of an instrument, with the studies that use it.
          */
         readonly InstrumentVersionView: {
             /** Content Hash */
@@ -5085,7 +5110,7 @@ export interface components {
         };
         /**
          * InvitationLook
-         * @description What an invitation is for, before it is accepted.
+         * @description What an invitation grants, as shown before it is accepted.
          */
         readonly InvitationLook: {
             /**
@@ -5103,7 +5128,7 @@ export interface components {
         };
         /**
          * InvitationToken
-         * @description The part of an invitation's link behind the #.
+         * @description The token of an invitation: the part of its link after the #.
          */
         readonly InvitationToken: {
             /** Token */
@@ -5111,7 +5136,7 @@ export interface components {
         };
         /**
          * InvitationView
-         * @description An invitation; its link is told only once, when it is made.
+         * @description An invitation without its link, which is returned only once, on creation.
          */
         readonly InvitationView: {
             /**
@@ -5147,9 +5172,9 @@ export interface components {
         };
         /**
          * InvitedView
-         * @description A fresh invitation with its link; whoever has the link can use it.
+         * @description A new invitation with its link; anyone who has the link can use it.
          *
-         *     `only_here`: no other computer can reach the server, so the link works on this one alone.
+         *     `only_here`: no other computer can reach the server, so the link works only on this one.
          */
         readonly InvitedView: {
             /**
@@ -5189,7 +5214,7 @@ export interface components {
         };
         /**
          * ItemStep
-         * @description An item on its way into the scores: as answered, and as the formulas get it.
+         * @description The value of an item in the scoring: as answered, and as the formulas use it.
          */
         readonly ItemStep: {
             /** Item */
@@ -5206,9 +5231,9 @@ export interface components {
          * @description How one item was answered.
          *
          *     `response_s`: seconds from when the item was the next to be answered (its page was shown, or
-         *     another item of the page was answered) to its first answer, where one was given; of typed
-         *     answers to the end of the first writing. `changes`: how often the answer was changed afterwards;
-         *     typed answers count each return to the field once.
+         *     another item of the page was answered) to its first answer, if one was given; for typed answers,
+         *     to the end of the first typing. `changes`: how often the answer was changed afterwards; for
+         *     typed answers, each return to the field counts once.
          */
         readonly ItemTrace: {
             /** Changes */
@@ -5218,12 +5243,12 @@ export interface components {
         };
         /**
          * JointMapView
-         * @description Which joint of a skeleton plays which part of the body, for every capture of this skeleton.
+         * @description Which joint of a skeleton is which joint of the body, for every capture with this skeleton.
          *
-         *     `version` counts what was saved, 0 before; `chosen` is false while the map is the proposal.
-         *     `sources` tells of each mapped body joint whether its name, its place in the hierarchy, or
-         *     somebody chose it. `usable` is false where too little is mapped to bring it onto an avatar, and
-         *     `missing` says what.
+         *     `version` counts the saved maps, from 0; `chosen` is false while the map is the proposal.
+         *     `sources` says for each mapped body joint whether its name, its place in the hierarchy, or a
+         *     person decided. `usable` is false if too few joints are mapped for retargeting, and `missing`
+         *     says which are needed.
          */
         readonly JointMapView: {
             /** At */
@@ -5267,7 +5292,7 @@ export interface components {
         };
         /**
          * JointMapWish
-         * @description A joint map to save: body joint -> joint of the skeleton, decided on `version`.
+         * @description A joint map to save, body joint -> joint of the skeleton, edited from `version`.
          */
         readonly JointMapWish: {
             /** Joint Map */
@@ -5279,7 +5304,7 @@ export interface components {
         };
         /**
          * LanguageChoice
-         * @description The language to go on in.
+         * @description A request to switch to another language.
          */
         readonly LanguageChoice: {
             /** Language */
@@ -5287,9 +5312,10 @@ export interface components {
         };
         /**
          * LatencyReceipt
-         * @description One phase. Null where it could not be told, with the reason; low and high span 95 %.
+         * @description The achieved latency of one phase with its 95 % interval.
          *
-         *     `off`: by more than 10 ms and more than one frame.
+         *     It is null if it could not be determined; `reason` then says why. `off`: it deviates by more
+         *     than 10 ms and more than one frame.
          */
         readonly LatencyReceipt: {
             /** Achieved Latency High Ms */
@@ -5315,7 +5341,7 @@ export interface components {
         };
         /**
          * LedgerView
-         * @description The counterbalancing ledger of one kind of sessions.
+         * @description The counterbalancing ledger for one kind of session.
          */
         readonly LedgerView: {
             /** Kind */
@@ -5333,7 +5359,10 @@ export interface components {
         };
         /**
          * LeftOutFigures
-         * @description Guessed by neighbours, between nodes by radial basis functions, and from other people.
+         * @description Errors of predicting left-out entries, by what was left out.
+         *
+         *     `neighbours`: an entry, predicted from its neighbours. `nodes`: a node, interpolated by radial
+         *     basis functions. `people`: a person, predicted from other people.
          */
         readonly LeftOutFigures: {
             readonly neighbours: components["schemas"]["LeftOutView"];
@@ -5342,7 +5371,7 @@ export interface components {
         };
         /**
          * LeftOutView
-         * @description Deviations of suitability in percent of its range, over entries that were left out.
+         * @description Errors of predicted suitability in percent of its range, over entries that were left out.
          */
         readonly LeftOutView: {
             /** Entries */
@@ -5373,7 +5402,7 @@ export interface components {
         };
         /**
          * LookRequest
-         * @description A file that is only looked at.
+         * @description A file to preview.
          */
         readonly LookRequest: {
             /** Header Rows */
@@ -5385,10 +5414,10 @@ export interface components {
         };
         /**
          * LookView
-         * @description What a file holds, and a proposal for what it means.
+         * @description The preview of a file, and a proposed mapping.
          *
-         *     `remembered`: the proposal is that of an earlier import. `proposal` has None where no column
-         *     could be told for the participants or for any item.
+         *     `remembered`: the proposal is the mapping of an earlier import. `proposal` is None if no column
+         *     was identified for the participants or for any item.
          */
         readonly LookView: {
             /** Columns */
@@ -5418,9 +5447,10 @@ export interface components {
          *
          *     A tidy file has one set of columns and a column of conditions; a wide one has a set of columns
          *     for each condition. `conditions`: word of the file -> key of a condition of the study. `words`:
-         *     answer in words -> number. Numbers x become multiply * x + add, for scales that count elsewhere
-         *     from 1. `turned`: items that the file has turned round already; they are turned back, since the
-         *     formulas of the instrument turn them.
+         *     answer in words -> number. Numbers x become multiply * x + add, for scales that start at another
+         *     number. `turned`: items that the file has already reverse-scored; they are reversed back,
+         *     because
+         *     the instrument's formulas reverse them.
          */
         readonly Mapping: {
             /**
@@ -5476,7 +5506,7 @@ export interface components {
         };
         /**
          * MeasureView
-         * @description What was asked of one measure; `left_out` says in words who is not in it, and why.
+         * @description The test results of one measure; `left_out` says which participants are left out, and why.
          *
          *     `glance` has a row for each limb whose latencies were compared.
          */
@@ -5500,7 +5530,7 @@ export interface components {
         };
         /**
          * ModelListed
-         * @description A model in a list; `progress` while it is fitted, `trouble` where that failed.
+         * @description A walking model in a list; `progress` while it is fitted, `trouble` if that failed.
          */
         readonly ModelListed: {
             /**
@@ -5537,7 +5567,7 @@ export interface components {
         };
         /**
          * ModelSummary
-         * @description What a fitted model is; `model_hash` is the one that its file names itself by.
+         * @description The summary of a fitted model; `model_hash` is the hash in its file.
          */
         readonly ModelSummary: {
             readonly census: components["schemas"]["CensusView"];
@@ -5567,7 +5597,7 @@ export interface components {
         };
         /**
          * ModelView
-         * @description A model; `content_hash` and `size_bytes` are of its file.
+         * @description A walking model in full; `content_hash` and `size_bytes` are those of its file.
          */
         readonly ModelView: {
             /**
@@ -5611,7 +5641,7 @@ export interface components {
         };
         /**
          * Moment
-         * @description Something that the phase's clock did, and why.
+         * @description A change of the phase's clock, and its cause.
          */
         readonly Moment: {
             /** Active S */
@@ -5628,9 +5658,9 @@ export interface components {
         };
         /**
          * NetworkView
-         * @description How devices reach the server now.
+         * @description How devices currently reach the server.
          *
-         *     `mode` is `loopback` (this machine only), `lan` (also https) or `without_tls` (unencrypted).
+         *     `mode` is `loopback` (this machine only), `lan` (with HTTPS) or `without_tls` (unencrypted).
          */
         readonly NetworkView: {
             /** Addresses */
@@ -5648,7 +5678,7 @@ export interface components {
         };
         /**
          * NewAvatar
-         * @description A configuration under a new key; `title` is what people call it.
+         * @description A configuration to save under a new key; `title` is its display name.
          */
         readonly NewAvatar: {
             readonly configuration: components["schemas"]["AvatarFile"];
@@ -5669,7 +5699,7 @@ export interface components {
         };
         /**
          * NewAvatarVersion
-         * @description A configuration to append; `based_on` is the version that was on the page, 0 for none.
+         * @description A configuration to append; `based_on` is the version that it was edited from, 0 for none.
          */
         readonly NewAvatarVersion: {
             /** Based On */
@@ -5688,9 +5718,9 @@ export interface components {
         };
         /**
          * NewCalibration
-         * @description A measurement of one equipment's own delay from movement to picture.
+         * @description A measurement of the motion-to-photon delay of one piece of equipment.
          *
-         *     `sd_ms` is the standard deviation over the `samples` single measurements.
+         *     `sd_ms` is the standard deviation over the `samples` individual measurements.
          */
         readonly NewCalibration: {
             /** Equipment */
@@ -5716,7 +5746,7 @@ export interface components {
         };
         /**
          * NewCorrection
-         * @description Another value for one answer, and how one knows; null leaves it out.
+         * @description A corrected value of one answer with its reason; null removes the answer.
          */
         readonly NewCorrection: {
             /** Item */
@@ -5728,7 +5758,7 @@ export interface components {
         };
         /**
          * NewInvitation
-         * @description Whom to invite: `studies` null invites to all; `note` says who it is for.
+         * @description A request for an invitation. `studies` null means all studies; `note` says who it is for.
          */
         readonly NewInvitation: {
             /**
@@ -5751,7 +5781,7 @@ export interface components {
         };
         /**
          * NewModel
-         * @description A model to be fitted; `scene` is where tracks were walked, null for the open floor.
+         * @description A model to fit; `scene` is the one in which tracks were walked, null for the open floor.
          */
         readonly NewModel: {
             readonly options?: components["schemas"]["FitChoice"];
@@ -5764,7 +5794,7 @@ export interface components {
         };
         /**
          * NewPairing
-         * @description A wish to pair a device.
+         * @description A request for a code to pair a device.
          */
         readonly NewPairing: {
             /**
@@ -5775,7 +5805,7 @@ export interface components {
         };
         /**
          * NewPassword
-         * @description A change of one's own password; every other login ends.
+         * @description A request to change one's own password; every other login ends.
          */
         readonly NewPassword: {
             /** Current */
@@ -5785,7 +5815,7 @@ export interface components {
         };
         /**
          * NewScene
-         * @description The text of a scene file.
+         * @description The text of a scene file to store.
          */
         readonly NewScene: {
             /** Text */
@@ -5793,7 +5823,7 @@ export interface components {
         };
         /**
          * NewSession
-         * @description A request to join a study.
+         * @description A request to create a session of a study.
          */
         readonly NewSession: {
             /**
@@ -5817,9 +5847,10 @@ export interface components {
         };
         /**
          * NewSuggestion
-         * @description Advice about a version of a study; `about` is a step's key, or empty for the whole.
+         * @description A suggestion about a version of a study.
          *
-         *     With a `session_id` the version is that session's, so `version` may be left out.
+         *     `about` is a step's key, or empty for the whole study. With a `session_id`, the version is that
+         *     of the session, so `version` may be left out.
          */
         readonly NewSuggestion: {
             /**
@@ -5836,7 +5867,7 @@ export interface components {
         };
         /**
          * NewWalkSet
-         * @description Walks to be made or to be cut from captures; tables of tracks are uploaded.
+         * @description A set of walks to synthesise or to cut from captures; tables of tracks are uploaded.
          */
         readonly NewWalkSet: {
             /** Origin */
@@ -5846,7 +5877,7 @@ export interface components {
         };
         /**
          * NoteView
-         * @description A note of the lab.
+         * @description A note that the lab wrote during a session.
          */
         readonly NoteView: {
             /**
@@ -5863,7 +5894,7 @@ export interface components {
         };
         /**
          * ObstacleView
-         * @description Something nobody walks through: a convex outline, metres.
+         * @description An obstacle: a convex outline, in metres.
          */
         readonly ObstacleView: {
             /** Corners M */
@@ -5873,7 +5904,7 @@ export interface components {
         };
         /**
          * Override
-         * @description Somebody goes on all the same, although this was `found`.
+         * @description The decision to proceed although a check had the finding `found`.
          */
         readonly Override: {
             /**
@@ -5893,7 +5924,7 @@ export interface components {
         };
         /**
          * OverrideRequest
-         * @description Go on although a check is not green.
+         * @description A request to proceed although a check is not green.
          */
         readonly OverrideRequest: {
             /**
@@ -5906,7 +5937,7 @@ export interface components {
         };
         /**
          * PairedView
-         * @description A paired device. Only headsets see their token; a tablet holds it in a cookie.
+         * @description A device that was paired. Only headsets receive their token; a tablet has it in a cookie.
          */
         readonly PairedView: {
             /**
@@ -5921,12 +5952,12 @@ export interface components {
         };
         /**
          * PairingView
-         * @description A code that works once, until `expires_at`; `url` and `qr_svg` open the page with it.
+         * @description A single-use pairing code, valid until `expires_at`.
          *
-         *     Both are null where no other device can reach the server. A headset's client is given the
-         *     address of the server and types the code; it has no page to scan, so its `qr_svg` is null.
-         *     `help_url` is the page on which a device that comes for the first
-         *     time gets the lab's certificate; null where there is nothing to install.
+         *     `url` and `qr_svg` open the page with the code; both are null if no other device can reach the
+         *     server. A headset's client is given the address of the server and the code is typed in; it has
+         *     no page to scan, so its `qr_svg` is null. `help_url` is the page from which a new device gets
+         *     the lab's certificate; null if there is nothing to install.
          */
         readonly PairingView: {
             /** Code */
@@ -5952,7 +5983,7 @@ export interface components {
         };
         /**
          * PairRequest
-         * @description A code, typed or scanned.
+         * @description A pairing code, typed or scanned, and the name of the device.
          */
         readonly PairRequest: {
             /** Code */
@@ -5965,7 +5996,7 @@ export interface components {
         };
         /**
          * PairView
-         * @description Two conditions against each other.
+         * @description The comparison of two conditions.
          */
         readonly PairView: {
             /** A */
@@ -5985,7 +6016,7 @@ export interface components {
         };
         /**
          * PaperConsent
-         * @description A consent that was signed on paper: where the sheet is kept, and why on paper.
+         * @description A consent signed on paper: where the sheet is stored, and why paper was used.
          */
         readonly PaperConsent: {
             /** Place */
@@ -6011,7 +6042,7 @@ export interface components {
         };
         /**
          * ParticipantSession
-         * @description One visit.
+         * @description One session of a participant.
          */
         readonly ParticipantSession: {
             /**
@@ -6030,7 +6061,7 @@ export interface components {
         };
         /**
          * ParticipantView
-         * @description Somebody who took part, by pseudonym. `copies`: those that may hold their data.
+         * @description A participant by pseudonym; `copies` are those that may contain their data.
          */
         readonly ParticipantView: {
             /** Code */
@@ -6052,7 +6083,7 @@ export interface components {
         };
         /**
          * PartView
-         * @description Something that takes room; `files`: how many, of a folder.
+         * @description The size of one part of the stored data; `files`: number of files, for a folder.
          */
         readonly PartView: {
             /** Bytes */
@@ -6084,7 +6115,7 @@ export interface components {
         };
         /**
          * PathView
-         * @description A path and its length.
+         * @description A path on the floor and its length in metres.
          */
         readonly PathView: {
             /** Length M */
@@ -6094,7 +6125,7 @@ export interface components {
         };
         /**
          * PersonChange
-         * @description What to change of an account; what is left out stays. `studies` null gives all of them.
+         * @description Changes to an account; omitted fields stay as they are. `studies` null means all studies.
          */
         readonly PersonChange: {
             /** Closed */
@@ -6106,7 +6137,7 @@ export interface components {
         };
         /**
          * PersonView
-         * @description An account as the admin sees it. `studies` is null where all are theirs.
+         * @description An account as an admin sees it. `studies` is null if the account may see all studies.
          */
         readonly PersonView: {
             /**
@@ -6134,14 +6165,15 @@ export interface components {
         };
         /**
          * PhaseView
-         * @description A phase that was prepared, with what happened in it so far.
+         * @description A phase that has been prepared, with what has happened in it so far.
          *
-         *     `side_contacts` counts how often a side turned red, `side_contact_s` sums how long (active s).
+         *     `side_contacts` counts how many times a side turned red; `side_contact_s` is the total duration,
+         *     in seconds of active time.
          *
-         *     The achieved latency is measured once the phase is over: `movement_s` is null until then. It
-         *     comes with its 95 % interval; where nothing can be said it is null and `latency_reason` says
-         *     why. `latency_off`: by more than 10 ms and more than one frame. A blinded operator is only told
-         *     whether it is off.
+         *     The achieved latency is measured once the phase has ended; `movement_s` is null until then. It
+         *     has a 95 % interval; if it cannot be determined, it is null and `latency_reason` says why.
+         *     `latency_off`: whether it deviates by more than 10 ms and more than one frame, which is all that
+         *     a blinded operator is shown.
          */
         readonly PhaseView: {
             /** Achieved High Ms */
@@ -6191,7 +6223,7 @@ export interface components {
         };
         /**
          * PieceView
-         * @description The convex piece of one part: its corners, and how far skin is outside of it at most.
+         * @description The convex piece of one body part: its corners, and how far skin is outside it at most.
          */
         readonly PieceView: {
             /** Corners */
@@ -6203,7 +6235,7 @@ export interface components {
         };
         /**
          * PopulationOrigin
-         * @description Made-up walkers: whom, how often each walks each path, and in which scene.
+         * @description Synthetic walkers: the population, how often each walks each path, and the scene.
          *
          *     `scene` null: the paper's laboratory of sixteen straight and curved walks.
          */
@@ -6235,7 +6267,7 @@ export interface components {
         };
         /**
          * PopulationView
-         * @description A documented population of made-up walkers.
+         * @description A documented population of synthetic walkers.
          */
         readonly PopulationView: {
             /** About */
@@ -6245,10 +6277,10 @@ export interface components {
         };
         /**
          * PredictionAsked
-         * @description How long do people take on this path?
+         * @description A path for which durations are predicted.
          *
-         *     `stature_m` null: the mean of the model's people. `count` walks are drawn with `seed`, the same
-         *     seed gives the same; `shown` of them are followed along the path.
+         *     `stature_m` null: the mean of the model's people. `count` walks are drawn with `seed`, and the
+         *     same seed gives the same walks; `shown` of them are followed along the path.
          */
         readonly PredictionAsked: {
             /**
@@ -6283,11 +6315,12 @@ export interface components {
         };
         /**
          * PredictionView
-         * @description The distribution of durations on a path by P_prob, beside P_stat and P_adapt.
+         * @description The distribution of durations on a path by P_prob, with P_stat and P_adapt for comparison.
          *
          *     `assumed`: dependencies that were not given. `outside`: those beyond the walks that the model
-         *     was fitted on, where it guesses. `lost`: draws that did not arrive and were drawn again.
-         *     `durations_s` are sorted. `kinds`: synthetic where made-up walkers are among the model's people.
+         *     was fitted to, where it extrapolates. `lost`: draws that did not arrive and were drawn again.
+         *     `durations_s` are sorted. `kinds`: includes synthetic if the model's people include synthetic
+         *     ones.
          */
         readonly PredictionView: {
             readonly adapt: components["schemas"]["FixedView"];
@@ -6320,10 +6353,11 @@ export interface components {
         };
         /**
          * Preflight
-         * @description The whole list, made anew. `clear`: nothing has failed, or what did was overridden.
+         * @description The results of all pre-flight checks.
          *
-         *     `asks`: whether a start with failures is asked about. Only sessions with people are: the others
-         *     show the list and never stand in the way.
+         *     `clear`: nothing has failed, or all failures are overridden. `asks`: whether starting in spite
+         *     of failures requires a confirmation. This is the case only for sessions with people; for other
+         *     kinds the list is only shown.
          */
         readonly Preflight: {
             /** Asks */
@@ -6340,8 +6374,10 @@ export interface components {
         };
         /**
          * Preregistration
-         * @description What is declared. `planned_n`: participants in the primary test. `registration`: where it
-         *     was registered, once it was.
+         * @description The declared analysis.
+         *
+         *     `planned_n`: participants in the primary test. `registration`: where it was registered, once it
+         *     has been.
          */
         readonly Preregistration: {
             /**
@@ -6368,7 +6404,7 @@ export interface components {
         };
         /**
          * PreregistrationView
-         * @description Declared, done, and how the two differ. `why_no_result`: instead of a result.
+         * @description What a study declared, what was done, and deviations, with a result or `why_no_result`.
          */
         readonly PreregistrationView: {
             /**
@@ -6397,7 +6433,7 @@ export interface components {
         };
         /**
          * Preview
-         * @description An instrument as a form: its content, and the items in one possible order.
+         * @description An instrument as a form: its content, and one possible order of its items.
          */
         readonly Preview: {
             /** Instrument */
@@ -6419,9 +6455,10 @@ export interface components {
         };
         /**
          * PrimaryResult
-         * @description The declared test, made. `sentence` is for a paper; `holds`: p is at most alpha.
+         * @description The result of the primary test.
          *
-         *     `rows`: single comparisons or the effect, under `columns`.
+         *     `sentence` is for a paper. `holds`: p is at most alpha. `rows`: single comparisons or the
+         *     effect, under `columns`.
          */
         readonly PrimaryResult: {
             /** Columns */
@@ -6439,12 +6476,13 @@ export interface components {
         };
         /**
          * PrimaryTest
-         * @description The one test that the study is about.
+         * @description The single primary test of the study.
          *
-         *     `measure`: a score of an instrument that is asked after a task, contact time (s) or completions.
-         *     `limb`: of which task; "both" is the mean of a participant's tasks. `factor` is the added
-         *     latency. `direction`: of the measure as latency grows; "against_reference" compares each
-         *     condition with `reference` by exact signed-rank tests, and `correction` adjusts for all of them.
+         *     `measure`: a score of an instrument that is answered after a task, contact time (s) or
+         *     completions. `limb`: of which task; "both" is the mean of a participant's tasks. `factor` is the
+         *     added latency. `direction`: of the measure as latency increases; "against_reference" compares
+         *     each condition with `reference` by exact signed-rank tests, and `correction` adjusts for all of
+         *     them.
          */
         readonly PrimaryTest: {
             /**
@@ -6489,7 +6527,9 @@ export interface components {
         };
         /**
          * ProblemView
-         * @description One thing to correct in a file: where, what, what is valid, what to do. Lines from 1.
+         * @description One problem of a file: its place, the message, what is valid, what to do.
+         *
+         *     Lines and columns count from 1.
          */
         readonly ProblemView: {
             /** Column */
@@ -6512,7 +6552,7 @@ export interface components {
         };
         /**
          * ProgressView
-         * @description How far a fit is; `maps_total` is 0 while it is not known.
+         * @description The progress of a fit; `maps_total` is 0 while it is unknown.
          */
         readonly ProgressView: {
             /** Maps */
@@ -6527,7 +6567,7 @@ export interface components {
         };
         /**
          * ProvenanceView
-         * @description Where an instrument comes from, and how far that was checked.
+         * @description The origin of an instrument, and how far it was verified.
          */
         readonly ProvenanceView: {
             /** Licence */
@@ -6541,7 +6581,7 @@ export interface components {
         };
         /**
          * Quantiles
-         * @description Seconds: 50 % of the walks take from p25 to p75, 90 % from p05 to p95.
+         * @description Quantiles of durations in seconds: 50 % of walks take p25 to p75, 90 % take p05 to p95.
          */
         readonly Quantiles: {
             /** P05 */
@@ -6557,7 +6597,7 @@ export interface components {
         };
         /**
          * Range
-         * @description Smallest, middle and largest value, and the mean.
+         * @description Minimum, median, maximum and mean of a quantity.
          */
         readonly Range: {
             /** High */
@@ -6571,10 +6611,10 @@ export interface components {
         };
         /**
          * ReadingChoice
-         * @description What somebody says about a file where the file does not, or says it wrongly.
+         * @description Conventions that a person gives for a file, where the file has none or wrong ones.
          *
-         *     `metres_per_unit`: the length of the file's unit; null to take the file's or a plausible one.
-         *     `up`: the file's upward axis; null to take the file's or its format's.
+         *     `metres_per_unit`: the length of the file's unit; null to use the file's or a plausible one.
+         *     `up`: the file's upward axis; null to use the file's or its format's.
          */
         readonly ReadingChoice: {
             /** Metres Per Unit */
@@ -6584,7 +6624,7 @@ export interface components {
         };
         /**
          * ReadingScoreView
-         * @description A reading and its mean error, CRPS in seconds, on people who were left out.
+         * @description A reading with its mean error (CRPS in seconds) in predicting people who were left out.
          */
         readonly ReadingScoreView: {
             /** Crps S */
@@ -6593,7 +6633,7 @@ export interface components {
         };
         /**
          * ReadingView
-         * @description How deviations are read as suitability.
+         * @description The options by which deviations are converted to suitability.
          */
         readonly ReadingView: {
             /**
@@ -6610,7 +6650,7 @@ export interface components {
         };
         /**
          * Receipt
-         * @description Proof that the form is stored; `duplicate` if it was stored before.
+         * @description Confirmation that a form is stored; `duplicate` if it was already stored before.
          */
         readonly Receipt: {
             /** Duplicate */
@@ -6625,9 +6665,9 @@ export interface components {
         };
         /**
          * Refusal
-         * @description Why something was refused (app.errors): what happened, the value, what is valid, the way on.
+         * @description The reason for an error (app.errors): what happened, the value, what is valid, what to do.
          *
-         *     `details` lists single problems of a file or form, each with its place.
+         *     `details` lists the individual problems of a file or form, each with its place.
          */
         readonly Refusal: {
             /** Code */
@@ -6647,9 +6687,9 @@ export interface components {
         };
         /**
          * RefusalView
-         * @description The participant does not want to take part: said at the consent of this step, at this time.
+         * @description A participant's refusal to take part, given at the consent step `step` at the time `at`.
          *
-         *     `at` is null in a log that was restored without its alarms.
+         *     `at` is null if the event log was restored without its alarms.
          */
         readonly RefusalView: {
             /** At */
@@ -6661,7 +6701,8 @@ export interface components {
          * RefusalWish
          * @description Whether the participant refuses the consent of a step, or takes the refusal back.
          *
-         *     `wish_id` is made at the press: the same wish may come any number of times, also late.
+         *     `wish_id` is generated when the button is pressed, so the request can be resent any number of
+         *     times, even late.
          */
         readonly RefusalWish: {
             /** Refused */
@@ -6673,12 +6714,12 @@ export interface components {
         };
         /**
          * Replay
-         * @description One phase. Latency, contacts, completions and scene are left out of a `participant` view.
+         * @description One phase; a `participant` view has no latency, contacts, completions and scene.
          *
          *     `forms`: scores of the forms filled in after this phase and before the next, in order;
-         *     `administrations` names all of them, with or without scores. `stature_m` is the body's that is
-         *     drawn; where it is not known, a usual one is taken. `time_scale`: seconds of the headset's clock
-         *     per second of the server's.
+         *     `administrations` names all of them, with or without scores. `stature_m` is that of the body
+         *     drawn; if it is unknown, a default is used. `time_scale`: seconds of the headset's clock per
+         *     second of the server's.
          */
         readonly Replay: {
             /** Active */
@@ -6741,7 +6782,7 @@ export interface components {
         };
         /**
          * ReplayCompletion
-         * @description A completed task.
+         * @description A completed task in the replay of a phase.
          */
         readonly ReplayCompletion: {
             /** Active S */
@@ -6757,7 +6798,7 @@ export interface components {
         };
         /**
          * ReplayContact
-         * @description One part of the avatar at one surface; `effect` is what the task made of it.
+         * @description The contact of a body part of the avatar with a surface; `effect`: its effect in the task.
          */
         readonly ReplayContact: {
             /** Begin Active S */
@@ -6781,7 +6822,7 @@ export interface components {
         };
         /**
          * ReplayNote
-         * @description A note of the lab that was written during the phase.
+         * @description A note that the lab wrote during the phase.
          */
         readonly ReplayNote: {
             /**
@@ -6800,7 +6841,7 @@ export interface components {
         };
         /**
          * ReplaySurface
-         * @description A block of the task's scene: its centre and half its size, metres, in the movement's world.
+         * @description A surface of the task's scene: its centre and half its size in metres, in world coordinates.
          *
          *     `kind`: panel, side, target or start. `box` is null for target and start.
          */
@@ -6826,9 +6867,9 @@ export interface components {
         };
         /**
          * ResultView
-         * @description One answer: a sentence for a reader, a table for a reviewer, a line for a paper.
+         * @description The report of one test: a sentence for readers, a table for reviewers, a line for a paper.
          *
-         *     `exploratory`: looked at, not declared. `warnings`: what speaks against relying on it.
+         *     `exploratory`: the test was not preregistered. `warnings`: reasons for caution.
          */
         readonly ResultView: {
             /** Apa */
@@ -6854,7 +6895,7 @@ export interface components {
         };
         /**
          * Retirement
-         * @description Why a measurement must not be used any more.
+         * @description The reason why a calibration must no longer be used.
          */
         readonly Retirement: {
             /** Reason */
@@ -6862,7 +6903,7 @@ export interface components {
         };
         /**
          * Reveal
-         * @description Why the condition of a blinded session must be known before it is over.
+         * @description The reason for showing the condition of a blinded session before the session has ended.
          */
         readonly Reveal: {
             /** Reason */
@@ -6870,7 +6911,7 @@ export interface components {
         };
         /**
          * SampledWalk
-         * @description One walk that was drawn; `xy_m` from 0 in steps of `step_s`, the last point at arrival.
+         * @description One drawn walk; `xy_m` from 0 in steps of `step_s`, the last point at arrival.
          */
         readonly SampledWalk: {
             /** Duration S */
@@ -6912,7 +6953,7 @@ export interface components {
         };
         /**
          * ScenePathView
-         * @description A walk that people are asked for, between two places.
+         * @description A path between two places that people are asked to walk.
          */
         readonly ScenePathView: {
             /** Goal */
@@ -6924,7 +6965,7 @@ export interface components {
         };
         /**
          * SceneView
-         * @description A scene; `bounds_m` is left, near, right, far, x to the right and y ahead.
+         * @description A scene in full; `bounds_m` is left, near, right, far, with x to the right and y ahead.
          */
         readonly SceneView: {
             /** About */
@@ -6956,7 +6997,7 @@ export interface components {
         };
         /**
          * ScoreResult
-         * @description What a score came to. `test` is a sentence for a paper; without one `why_not` says why.
+         * @description The results of a score; `test` is a sentence for a paper, or `why_not` is the reason.
          */
         readonly ScoreResult: {
             /** Left Out */
@@ -6978,9 +7019,9 @@ export interface components {
         };
         /**
          * ScoreStep
-         * @description A score: its formula, the same with the values put in, and what comes out.
+         * @description A score: its formula, the formula with the values inserted, and the result.
          *
-         *     `missing`: items without an answer that leave it without a value.
+         *     `missing`: unanswered items because of which the score has no value.
          */
         readonly ScoreStep: {
             /** Filled In */
@@ -7004,7 +7045,7 @@ export interface components {
         };
         /**
          * ScoreView
-         * @description A score with its name and the range its instrument states.
+         * @description A score with its label and the range that its instrument states.
          */
         readonly ScoreView: {
             /** Key */
@@ -7020,7 +7061,7 @@ export interface components {
         };
         /**
          * SequenceRow
-         * @description How far one order is filled.
+         * @description An order, with how many of its slots are completed, open, and available in total.
          */
         readonly SequenceRow: {
             /** Completed */
@@ -7034,13 +7075,14 @@ export interface components {
         };
         /**
          * SessionAvatar
-         * @description A physics avatar in its study's scene, to be simulated as it stands.
+         * @description A physics avatar in its study's scene, ready to be simulated.
          *
          *     `mjcf` is the MuJoCo model with the boxes of all tasks, each named after its surface; the client
-         *     shows those of the present phase. `model_hash` is the SHA-256 of its bytes and
-         *     `configuration_hash` that of the configuration, both as they are on record. Added latency is set
-         *     while it runs, up to `longest_delay_s`. `standing_hips_m`: how high its hips are when it stands;
-         *     a model may have other legs than the participant, whose hips' height is scaled to it.
+         *     shows those of the current phase. `model_hash` is the SHA-256 of its bytes and
+         *     `configuration_hash` that of the configuration, both as recorded. Added latency is set while the
+         *     simulation runs, up to `longest_delay_s`. `standing_hips_m`: the height of the model's hips when
+         *     it stands; since a model may have other leg lengths than the participant, the participant's hip
+         *     height is scaled to it.
          */
         readonly SessionAvatar: {
             readonly configuration: components["schemas"]["AvatarFile"];
@@ -7059,12 +7101,12 @@ export interface components {
         };
         /**
          * SessionReceipt
-         * @description What a session's record holds and what it lacks.
+         * @description What a session's record contains and what it lacks.
          *
-         *     `complete` is true where `problems` is empty: nothing that was made is missing or damaged, the
-         *     event log's hash chain holds, the stored completions follow from the stored contacts, and there
-         *     are no `doubts`: nothing in it is known to be untrue. A session that still runs may lack what
-         *     its headset has yet to send.
+         *     `complete` is true if `problems` is empty: nothing that was made is missing or damaged, the
+         *     event log's hash chain is intact, the stored completions follow from the stored contacts, and
+         *     there are no `doubts`, that is, nothing in the record is known to be untrue. A session that is
+         *     still running may lack what its headset has yet to send.
          */
         readonly SessionReceipt: {
             /** Achieved Latency */
@@ -7095,7 +7137,7 @@ export interface components {
         };
         /**
          * SessionRoom
-         * @description What one session takes.
+         * @description The disk space used by one session.
          */
         readonly SessionRoom: {
             /** Bytes */
@@ -7119,10 +7161,10 @@ export interface components {
         };
         /**
          * SessionSummary
-         * @description A row of a list of sessions.
+         * @description A row in a list of sessions.
          *
-         *     `shortfalls`: what a completed session lacks by its study's rules; it counts if there are none.
-         *     Null where the study has no rules, or the session is not completed.
+         *     `shortfalls`: the rules of its study that a completed session does not meet; it is valid if
+         *     there are none. Null if the study has no rules, or the session is not completed.
          */
         readonly SessionSummary: {
             /**
@@ -7159,9 +7201,10 @@ export interface components {
         };
         /**
          * SessionView
-         * @description Everything a cockpit shows. `sequence` and latencies are null where the reader is `blinded`.
+         * @description Everything the cockpit shows of a session.
          *
-         *     `alarms`: those that are open, the oldest first.
+         *     `sequence` and latencies are null if the reader is `blinded`. `alarms`: the open alarms, oldest
+         *     first.
          */
         readonly SessionView: {
             /** Alarms */
@@ -7232,7 +7275,7 @@ export interface components {
         };
         /**
          * Shift
-         * @description Numbers x of the file would fit as multiply * x + add.
+         * @description A conversion, multiply * x + add, by which the numbers x of the file would fit the scale.
          */
         readonly Shift: {
             /** Add */
@@ -7244,12 +7287,12 @@ export interface components {
         };
         /**
          * Shortfall
-         * @description One thing that a session lacks in order to count.
+         * @description A rule of the study that a session does not meet.
          *
-         *     `step` is the step's key in the plan and `phase` what the rules call it; both name the phase
-         *     that a form asks about, if it has one. `value` is what was found and `limit` what was asked for:
-         *     seconds of active time, or milliseconds between the achieved and the ordered latency. Neither
-         *     tells the condition.
+         *     `step` is the step's key in the plan and `phase` its name in the rules; for a form, both name
+         *     the phase that the form is about, if there is one. `value` is what was found and `limit` what is
+         *     required: seconds of active time, or milliseconds between the achieved and the set latency.
+         *     Neither reveals the condition.
          */
         readonly Shortfall: {
             /** Block */
@@ -7272,7 +7315,7 @@ export interface components {
         };
         /**
          * SignedInView
-         * @description The answer to a login.
+         * @description The response to a successful login.
          */
         readonly SignedInView: {
             readonly account: components["schemas"]["AccountView"];
@@ -7282,8 +7325,8 @@ export interface components {
          * @description The skeleton of a capture: its file's own, or one that was fitted to markers or bodies.
          *
          *     `parents` are indices into `joints`, -1 for the root. `unfitted` are joints that the markers do
-         *     not show; `residual_m` tells how far the fitted skeleton is from what was recorded (root mean
-         *     square), null for a skeleton of the file; `notes` what was trimmed, bridged or left out.
+         *     not show; `residual_m` is the distance of the fitted skeleton from the recording (root mean
+         *     square), null for a skeleton of the file; `notes` say what was trimmed, bridged or left out.
          */
         readonly SkeletonView: {
             /** Fingerprint */
@@ -7306,7 +7349,7 @@ export interface components {
         };
         /**
          * SliceAsked
-         * @description A slice of the map that answers for these dependencies, one parameter held.
+         * @description The slice of the map for these dependencies, with one parameter (`held`) fixed at `value`.
          */
         readonly SliceAsked: {
             /** Dependencies */
@@ -7322,7 +7365,8 @@ export interface components {
          * SliceView
          * @description Suitability over two parameters; rows of `suitability` are values of y.
          *
-         *     `order`: of a vector's numbers. `largest`: of the whole map, so that slices share a scale.
+         *     `order`: the parameters in the order of a vector's numbers. `largest`: the maximum of the whole
+         *     map, so that slices share a scale.
          */
         readonly SliceView: {
             readonly held: components["schemas"]["ParameterView"];
@@ -7339,7 +7383,7 @@ export interface components {
         };
         /**
          * SlotInfo
-         * @description The session's row of the ledger.
+         * @description The slot of the ledger that a session occupies.
          */
         readonly SlotInfo: {
             /** Block */
@@ -7351,7 +7395,7 @@ export interface components {
         };
         /**
          * SlotRow
-         * @description A slot of the ledger; `sequence` holds latencies in ms, null for who must not know.
+         * @description A slot of the ledger; `sequence` contains latencies in ms, and is null for blind readers.
          */
         readonly SlotRow: {
             /** Attempts */
@@ -7372,7 +7416,7 @@ export interface components {
         };
         /**
          * StatementForm
-         * @description A line to tick, in the participant's language.
+         * @description A statement of a consent that can be ticked, in the participant's language.
          */
         readonly StatementForm: {
             /** Optional */
@@ -7382,7 +7426,7 @@ export interface components {
         };
         /**
          * StatementRecord
-         * @description A line with what became of it; null where that stands on paper.
+         * @description A statement of a consent, with whether it was ticked; null if that is only on paper.
          */
         readonly StatementRecord: {
             /** Optional */
@@ -7394,7 +7438,7 @@ export interface components {
         };
         /**
          * StatisticsView
-         * @description Answers as of `drawn_at`; not `current`: they are being computed anew.
+         * @description Test results as computed at `drawn_at`; if not `current`, newer ones are being computed.
          */
         readonly StatisticsView: {
             /** Alpha */
@@ -7425,7 +7469,7 @@ export interface components {
         };
         /**
          * StepView
-         * @description One step of the procedure; fields that do not apply are null.
+         * @description A step of the procedure; fields that do not apply are null.
          */
         readonly StepView: {
             /** Attempt */
@@ -7468,11 +7512,11 @@ export interface components {
         };
         /**
          * StorageView
-         * @description What takes how much room, measured at `measured_at`, in whole bytes.
+         * @description The use of disk space, measured at `measured_at`, in bytes.
          *
-         *     Sizes of studies and sessions are their tables' own sizes, shared out by the length of their
-         *     rows, so they hold indexes and half-full pages. `sessions` are the largest of `sessions_total`.
-         *     `half_made` leaves out what this server itself is making.
+         *     Sizes of studies and sessions are shares of their tables' sizes by the length of their rows, so
+         *     they include indexes and half-full pages. `sessions` are the largest of `sessions_total`.
+         *     `half_made` leaves out what this server itself is writing.
          */
         readonly StorageView: {
             readonly disk: components["schemas"]["DiskView"];
@@ -7506,10 +7550,10 @@ export interface components {
         };
         /**
          * StoredAnswers
-         * @description One stored form with the answers that count: as given, unless they were corrected since.
+         * @description A stored form with its current answers: as given, unless they were corrected later.
          *
          *     `corrections`: oldest first; the first one's `previous` is the answer as given. `definition`:
-         *     the exact instrument, for the wordings.
+         *     the exact instrument, for the wording.
          */
         readonly StoredAnswers: {
             /** Administration */
@@ -7558,7 +7602,7 @@ export interface components {
         };
         /**
          * StoredScores
-         * @description The scores of one stored form: as numbers by key, and as a page shows them.
+         * @description The scores of a stored form: as numbers by key, and with labels and ranges for display.
          */
         readonly StoredScores: {
             /** Administration */
@@ -7586,13 +7630,13 @@ export interface components {
         };
         /**
          * StreamReceipt
-         * @description One stream of one client run.
+         * @description What is stored and what is missing of one stream in one epoch.
          *
-         *     `sent`: how many frames (or reports) the client made, as far as it could still tell. `gaps`:
-         *     the seqs that are missing, as (first, end). `damaged`: stored frames that can no longer be read;
+         *     `sent`: how many frames (or reports) the client made, as far as it could report it. `gaps`: the
+         *     seqs that are missing, as (first, end). `damaged`: stored frames that can no longer be decoded;
          *     they count as missing. `flagged`: frames with values that no summary uses. `backwards`: readable
-         *     frames that are not later than the one before, or whose time is no number. `sha256` covers every
-         *     bit of every readable frame in the order of seqs, so two copies of a record can be compared.
+         *     frames that are not later than the previous one, or whose time is not a number. `sha256` covers
+         *     every bit of every readable frame in order of seq, so two copies of a record can be compared.
          */
         readonly StreamReceipt: {
             /** Backwards */
@@ -7621,7 +7665,7 @@ export interface components {
         };
         /**
          * StreamView
-         * @description How much of one stream of one run of the headset is on disk.
+         * @description How much of one stream is on disk, for one epoch of the headset.
          */
         readonly StreamView: {
             /** Epoch */
@@ -7637,7 +7681,7 @@ export interface components {
         };
         /**
          * StudyDiff
-         * @description What differs between two versions, or between one and a draft (`to` is then null).
+         * @description The differences between two versions, or between one and a draft (`target` is then null).
          *
          *     `same`: the content is the same, whatever the layout. `new_ledger`: conditions or orders differ,
          *     so that new sessions begin a ledger of their own. `under_way`: sessions that are planned or
@@ -7663,10 +7707,10 @@ export interface components {
         };
         /**
          * StudyFigures
-         * @description What a study asks for: the size of its design and the length of a visit.
+         * @description The summary of a study: the size of its design and the length of a visit.
          *
          *     `slots`: participants until the initial ledger is full. `planned_minutes` is what the protocol
-         *     sets for each visit; `minutes` adds our rough estimate of forms and texts.
+         *     sets for each visit; `minutes` adds an estimate for forms and texts.
          */
         readonly StudyFigures: {
             /** Administrations */
@@ -7690,7 +7734,7 @@ export interface components {
         };
         /**
          * StudyFile
-         * @description A study as YAML text.
+         * @description The text of a study file, in YAML.
          */
         readonly StudyFile: {
             /** Yaml */
@@ -7698,11 +7742,11 @@ export interface components {
         };
         /**
          * StudyRoom
-         * @description What a study takes.
+         * @description The disk space used by a study.
          *
          *     `mean_bytes`: of its `measured` completed sessions with movement, of the kind `measured_kind`:
-         *     people's where there are any, since others may be shorter. `room_for`: how many more of these
-         *     fit before the disk warns; None where nothing was measured, or the database is elsewhere.
+         *     people's if there are any, since others may be shorter. `room_for`: how many more of these
+         *     fit before the disk warning; None if there are none, or the database is elsewhere.
          */
         readonly StudyRoom: {
             /** Bytes */
@@ -7724,7 +7768,7 @@ export interface components {
         };
         /**
          * StudySummary
-         * @description A study in the list.
+         * @description The summary of a study, for the list of studies.
          */
         readonly StudySummary: {
             /** Archived At */
@@ -7753,11 +7797,11 @@ export interface components {
         };
         /**
          * StudyView
-         * @description A study with its newest version in full; an operator of a blinded one gets no protocol.
+         * @description A study with its complete newest version; operators of a blinded one get no protocol.
          *
          *     `phases`: how many timed phases a visit has: practice, free movement and tasks.
-         *     `planned_minutes` is what the protocol sets for each visit; `minutes` adds our rough estimate of
-         *     forms and texts.
+         *     `planned_minutes` is what the protocol sets for each visit; `minutes` adds an estimate for forms
+         *     and texts.
          */
         readonly StudyView: {
             /** Archived At */
@@ -7802,7 +7846,7 @@ export interface components {
         };
         /**
          * SubmissionRequest
-         * @description A filled-in form. The same `idempotency_key` may be sent any number of times.
+         * @description A filled-in form. It can be resent any number of times with the same `idempotency_key`.
          *
          *     `timings`: seconds from the opening of the form to the last change of each answer.
          */
@@ -7834,7 +7878,7 @@ export interface components {
         };
         /**
          * SuggestionView
-         * @description A suggestion with its fate. `about_title`: the name of the step in the study's words.
+         * @description A suggestion with the decision on it. `about_title`: the step's title in the study.
          */
         readonly SuggestionView: {
             /** About */
@@ -7872,21 +7916,20 @@ export interface components {
         };
         /**
          * TabletPaired
-         * @description What the tablet that asks is to show; null where it is not paired.
+         * @description What the requesting tablet should show; null if it is not paired.
          */
         readonly TabletPaired: {
             readonly state: components["schemas"]["TabletState"] | null;
         };
         /**
          * TabletState
-         * @description What the tablet shows now; `next` says what comes next, in the participant's language.
+         * @description What the tablet shows now; `next` is the title of the next step in the chosen language.
          *
-         *     `held`: the participant waits for the experimenter, and nothing on the tablet goes on.
-         *     `refused`: the participant does not want to take part and the experimenter knows; `is_refused`
-         *     says so also where the session has ended since.
-         *     `is_own_text`: `text` belongs to the step, so its title stands above it; else it is the study's
-         *     waiting text.
-         *     `help_asked`, `question_asked`: the experimenter was called and has not come yet.
+         *     `held`: the participant waits for the experimenter, and the tablet cannot continue. `refused`:
+         *     the participant refuses to take part and the experimenter knows; `is_refused` is also true if
+         *     the session has ended since. `is_own_text`: `text` belongs to the step, so the step's title is
+         *     shown above it; otherwise it is the study's waiting text. `help_asked`, `question_asked`: the
+         *     experimenter was called and has not come yet.
          */
         readonly TabletState: {
             readonly administration: components["schemas"]["Administration"] | null;
@@ -7937,7 +7980,7 @@ export interface components {
         };
         /**
          * TemplateView
-         * @description A study to begin with. `key` names the file, not the study in it.
+         * @description A study to use as a template; `key` names the file, not the study in it.
          */
         readonly TemplateView: {
             /** Description */
@@ -7955,7 +7998,7 @@ export interface components {
         };
         /**
          * TimelineRequest
-         * @description A dry run of one participant: by slot of the ledger, or by the order's place in the list.
+         * @description A dry run of one participant: by slot of the ledger, or by the index of the order.
          */
         readonly TimelineRequest: {
             /**
@@ -7972,9 +8015,9 @@ export interface components {
         };
         /**
          * TimelineStep
-         * @description A step of the visit; times in seconds from its begin. `estimated`: by a rule of ours.
+         * @description A step of the visit; times in seconds from its start, `estimated` if the study sets none.
          *
-         *     `text` and `title` are in the language asked for. `condition_label` is that of the study.
+         *     `text` and `title` are in the requested language. `condition_label` is that of the study.
          */
         readonly TimelineStep: {
             /** Block */
@@ -8017,7 +8060,7 @@ export interface components {
         };
         /**
          * TimelineView
-         * @description One participant's visit. `replicate` counts from 1.
+         * @description The dry run of one participant's visit; `replicate` counts from 1.
          */
         readonly TimelineView: {
             /** Language */
@@ -8044,7 +8087,7 @@ export interface components {
         };
         /**
          * ToePathView
-         * @description The way of one foot's ball (the toe joint) in metres; figure 9 of the paper.
+         * @description The path of the ball of one foot (the toe joint) in metres; figure 9 of the paper.
          *
          *     `forward_m` is along the walk, `height_m` above the ground; `start_height_m` in the first frame.
          */
@@ -8063,7 +8106,7 @@ export interface components {
         };
         /**
          * TracksOrigin
-         * @description A table of tracks that was brought in.
+         * @description Walks cut from an uploaded table of tracks.
          */
         readonly TracksOrigin: {
             /** File Name */
@@ -8084,7 +8127,7 @@ export interface components {
         };
         /**
          * TryoutTrouble
-         * @description Why it ended early, and what to do about it.
+         * @description Why a scripted participant ended early, and what to do about it.
          */
         readonly TryoutTrouble: {
             /** Message */
@@ -8094,9 +8137,10 @@ export interface components {
         };
         /**
          * TryoutView
-         * @description The newest tryout. `session_id` is there once the session is; `step` says where it is.
+         * @description The latest scripted participant.
          *
-         *     `speed`: how many times faster than a person. `mine`: whether the reader began it.
+         *     `session_id` is null until its session is created; `step` is the step it has reached. `speed`:
+         *     how many times faster than a person. `mine`: whether the reader started it.
          */
         readonly TryoutView: {
             /** Mine */
@@ -8125,7 +8169,7 @@ export interface components {
         };
         /**
          * TryoutWish
-         * @description In which language the scripted participant answers.
+         * @description A request to start a scripted participant, with the language in which it answers.
          */
         readonly TryoutWish: {
             /** Language */
@@ -8133,7 +8177,7 @@ export interface components {
         };
         /**
          * TryRequest
-         * @description Answers to score, by the instrument in a text or by the newest stored one of that key.
+         * @description Answers to score, by the instrument in `yaml` or by the newest stored one with `key`.
          */
         readonly TryRequest: {
             /** Answers */
@@ -8147,7 +8191,7 @@ export interface components {
         };
         /**
          * TryResult
-         * @description The scoring of one filled-in form, step by step; `problems` are answers that do not fit.
+         * @description The scoring of one completed form, step by step; `problems` are invalid answers.
          */
         readonly TryResult: {
             /** Items */
@@ -8161,7 +8205,7 @@ export interface components {
         };
         /**
          * UndoRequest
-         * @description Why an import is undone.
+         * @description The reason for undoing an import.
          */
         readonly UndoRequest: {
             /** Reason */
@@ -8169,11 +8213,11 @@ export interface components {
         };
         /**
          * VerificationView
-         * @description The source and every avatar.
+         * @description The verification of a movement: the source and every avatar.
          *
          *     `lifts_agree`: every avatar lifts each foot as often as the source.
-         *     `largest_timing_difference_s`: between the same lift or contact of any two bodies; null where
-         *     they do not agree. `unmapped_body_joints` keep their T-pose on every avatar.
+         *     `largest_timing_difference_s`: between the same lift or contact of any two bodies; null if the
+         *     lifts do not agree. `unmapped_body_joints` keep their T-pose on every avatar.
          */
         readonly VerificationView: {
             /** Avatars */
@@ -8198,7 +8242,7 @@ export interface components {
         };
         /**
          * VersionDetail
-         * @description One version in full.
+         * @description One version of a study in full.
          */
         readonly VersionDetail: {
             /** Content Hash */
@@ -8220,7 +8264,7 @@ export interface components {
         };
         /**
          * VersionView
-         * @description One version of a study.
+         * @description One version of a study, without its content.
          */
         readonly VersionView: {
             /** Content Hash */
@@ -8237,11 +8281,11 @@ export interface components {
         };
         /**
          * WalkerView
-         * @description How one body, the source or an avatar, does the movement.
+         * @description The walk of one body, the source or an avatar.
          *
          *     `leg_length_m` is thigh plus shin, `thigh_share` the thigh's part of it. Means are null without
-         *     a whole step. `foot_slide_m_s` is the mean speed of its feet over the ground while they are
-         *     down, null where none is.
+         *     a complete step. `foot_slide_m_s` is the mean speed of its feet over the ground while they are
+         *     down, null if none is.
          */
         readonly WalkerView: {
             /** Foot Slide M S */
@@ -8263,7 +8307,7 @@ export interface components {
         };
         /**
          * WalkSetView
-         * @description A set of walks. `kind` says whether people walked or a program.
+         * @description A set of walks; `kind` says whether they are of people or synthetic.
          */
         readonly WalkSetView: {
             /**
@@ -8290,10 +8334,10 @@ export interface components {
         };
         /**
          * WalksSummary
-         * @description What is in a set of walks.
+         * @description The summary of a set of walks.
          *
-         *     `cut_by_recording`: walks that a recording begins or ends in. `missing_dependencies`: those that
-         *     only some walks have, so that no model can depend on them.
+         *     `cut_by_recording`: walks during which a recording begins or ends. `missing_dependencies`: those
+         *     that only some walks have, so that no model can depend on them.
          */
         readonly WalksSummary: {
             readonly census: components["schemas"]["CensusView"];
@@ -8316,8 +8360,8 @@ export interface components {
          * WalkStepView
          * @description One lift of a foot, from leaving the ground to the next contact.
          *
-         *     `length_m` is the ball's way forward, `height_m` from its lowest to its highest place,
-         *     `contact_height_m` above the ground as it comes down.
+         *     `length_m` is how far the ball moves forward, `height_m` from its lowest to its highest
+         *     position, `contact_height_m` its height above the ground at the contact.
          */
         readonly WalkStepView: {
             /** Contact Height M */
@@ -8338,7 +8382,7 @@ export interface components {
         };
         /**
          * WhoView
-         * @description Who is signed in; null where nobody is, which is no error.
+         * @description The account that is signed in; null (and not an error) if none is.
          */
         readonly WhoView: {
             readonly account: components["schemas"]["AccountView"] | null;
@@ -8361,7 +8405,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -8379,7 +8423,7 @@ export interface operations {
                     readonly "application/json": readonly components["schemas"]["PersonView"][];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -8405,7 +8449,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -8423,7 +8467,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["PersonView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -8445,7 +8489,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -8461,7 +8505,7 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -8486,7 +8530,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -8504,7 +8548,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["AuditPage"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -8524,7 +8568,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -8542,7 +8586,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["AuditCheckView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -8562,7 +8606,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -8580,7 +8624,7 @@ export interface operations {
                     readonly "application/json": readonly components["schemas"]["AvatarSummary"][];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -8604,7 +8648,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -8622,7 +8666,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["AvatarView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -8644,7 +8688,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -8662,7 +8706,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["AvatarView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -8689,7 +8733,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -8714,7 +8758,7 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -8740,7 +8784,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -8758,7 +8802,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["AvatarView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -8781,7 +8825,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -8799,7 +8843,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["AvatarVersionDetail"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -8822,7 +8866,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -8840,7 +8884,7 @@ export interface operations {
                     readonly "application/json": unknown;
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -8864,7 +8908,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -8882,7 +8926,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["AvatarCheck"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -8902,7 +8946,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -8920,7 +8964,7 @@ export interface operations {
                     readonly "application/json": readonly components["schemas"]["CalibrationView"][];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -8944,7 +8988,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -8962,7 +9006,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["CalibrationView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -8988,7 +9032,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9006,7 +9050,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["CalibrationView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9029,7 +9073,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9047,7 +9091,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["CapturePage"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9077,7 +9121,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9104,7 +9148,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["CaptureView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9126,7 +9170,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9144,7 +9188,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["CaptureView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9166,7 +9210,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9182,7 +9226,7 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9208,7 +9252,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9226,7 +9270,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["CaptureView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9250,7 +9294,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9268,7 +9312,7 @@ export interface operations {
                     readonly "application/octet-stream": string;
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9290,7 +9334,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9308,7 +9352,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["JointMapView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9334,7 +9378,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9352,7 +9396,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["JointMapView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9376,7 +9420,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9394,7 +9438,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["JointMapView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9418,7 +9462,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9427,7 +9471,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
-            /** @description Positions for a preview: docs/captures.md tells their form. */
+            /** @description Positions for a preview: docs/captures.md describes their format. */
             readonly 200: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9436,7 +9480,7 @@ export interface operations {
                     readonly "application/octet-stream": string;
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9462,7 +9506,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9481,7 +9525,7 @@ export interface operations {
                     readonly "text/plain": string;
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9506,7 +9550,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9524,7 +9568,7 @@ export interface operations {
                     readonly "application/octet-stream": string;
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9549,7 +9593,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9567,7 +9611,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["VerificationView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9589,7 +9633,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9607,7 +9651,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["CopyView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9631,7 +9675,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9649,7 +9693,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["PairedView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9669,7 +9713,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9687,7 +9731,7 @@ export interface operations {
                     readonly "application/json": readonly components["schemas"]["ExportView"][];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9709,7 +9753,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9727,7 +9771,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["ExportView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9749,7 +9793,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9765,7 +9809,7 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9787,7 +9831,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9805,7 +9849,7 @@ export interface operations {
                     readonly "application/zip": unknown;
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9825,7 +9869,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9843,7 +9887,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["Health"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9866,7 +9910,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9884,7 +9928,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["HumanoidPage"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9910,7 +9954,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9937,7 +9981,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["HumanoidView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9959,7 +10003,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9977,7 +10021,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["HumanoidView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -9999,7 +10043,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10017,7 +10061,7 @@ export interface operations {
                     readonly "application/octet-stream": string;
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10037,7 +10081,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10055,7 +10099,7 @@ export interface operations {
                     readonly "application/json": readonly components["schemas"]["InstrumentSummary"][];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10079,7 +10123,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10097,7 +10141,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["InstrumentDetail"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10119,7 +10163,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10137,7 +10181,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["InstrumentDetail"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10161,7 +10205,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10179,7 +10223,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["InstrumentCheck"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10203,7 +10247,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10221,7 +10265,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["TryResult"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10241,7 +10285,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10259,7 +10303,7 @@ export interface operations {
                     readonly "application/json": readonly components["schemas"]["InvitationView"][];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10283,7 +10327,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10301,7 +10345,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["InvitedView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10323,7 +10367,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10339,7 +10383,7 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10363,7 +10407,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10381,7 +10425,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["SignedInView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10405,7 +10449,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10423,7 +10467,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["InvitationLook"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10447,7 +10491,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10465,7 +10509,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["SignedInView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10485,7 +10529,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10501,7 +10545,7 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10521,7 +10565,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10539,7 +10583,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["WhoView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10563,7 +10607,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10579,7 +10623,7 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10599,7 +10643,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10617,7 +10661,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["NetworkView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10639,7 +10683,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10657,7 +10701,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["SessionView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10679,7 +10723,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10697,7 +10741,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["Administration"] | null;
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10719,7 +10763,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10737,7 +10781,7 @@ export interface operations {
                     readonly "application/json": readonly components["schemas"]["AlarmView"][];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10759,7 +10803,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10777,7 +10821,7 @@ export interface operations {
                     readonly "application/json": readonly components["schemas"]["StoredAnswers"][];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10803,7 +10847,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10821,7 +10865,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["SessionView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10843,7 +10887,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10861,7 +10905,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["ConsentRecord"] | null;
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10884,7 +10928,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10900,7 +10944,7 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10922,7 +10966,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10940,7 +10984,7 @@ export interface operations {
                     readonly "application/json": readonly components["schemas"]["EventView"][];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10962,7 +11006,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -10978,7 +11022,7 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11000,7 +11044,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11018,7 +11062,7 @@ export interface operations {
                     readonly "text/event-stream": unknown;
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11044,7 +11088,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11062,7 +11106,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["PairingView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11087,7 +11131,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11105,14 +11149,14 @@ export interface operations {
                     readonly "application/octet-stream": string;
                 };
             };
-            /** @description The movement is the one that is there already. */
+            /** @description The movement has not changed. */
             readonly 304: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content?: never;
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11135,7 +11179,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11153,7 +11197,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["Replay"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11175,7 +11219,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11193,7 +11237,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["Preflight"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11219,7 +11263,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11237,7 +11281,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["Check"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11259,7 +11303,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11277,7 +11321,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["SessionReceipt"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11303,7 +11347,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11321,7 +11365,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["SessionView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11343,7 +11387,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11361,7 +11405,7 @@ export interface operations {
                     readonly "application/json": readonly components["schemas"]["StreamView"][];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11387,7 +11431,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11405,7 +11449,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["Receipt"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11432,7 +11476,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11450,7 +11494,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["StoredAnswers"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11472,7 +11516,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11490,7 +11534,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["StorageView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11512,7 +11556,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11530,7 +11574,7 @@ export interface operations {
                     readonly "application/json": readonly components["schemas"]["StudySummary"][];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11554,7 +11598,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11572,7 +11616,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["StudyView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11594,7 +11638,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11612,7 +11656,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["StudyView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11634,7 +11678,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11652,7 +11696,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["StudyView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11674,7 +11718,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11692,7 +11736,7 @@ export interface operations {
                     readonly "application/json": readonly components["schemas"]["ColumnView"][];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11714,7 +11758,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11732,7 +11776,7 @@ export interface operations {
                     readonly "application/json": readonly components["schemas"]["CopyView"][];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11763,7 +11807,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11781,7 +11825,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["DashboardView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11812,7 +11856,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11830,7 +11874,7 @@ export interface operations {
                     readonly "text/csv": unknown;
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11855,7 +11899,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11873,7 +11917,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["StudyDiff"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11899,7 +11943,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11917,7 +11961,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["StudyDiff"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11943,7 +11987,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11961,7 +12005,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["StudyView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -11985,7 +12029,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12003,7 +12047,7 @@ export interface operations {
                     readonly "application/zip": unknown;
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12029,7 +12073,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12047,7 +12091,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["ExportView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12069,7 +12113,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12087,7 +12131,7 @@ export interface operations {
                     readonly "application/json": readonly components["schemas"]["ImportView"][];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12113,7 +12157,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12131,7 +12175,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["ImportView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12154,7 +12198,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12172,7 +12216,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["ImportDetail"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12195,7 +12239,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12213,7 +12257,7 @@ export interface operations {
                     readonly "text/csv": unknown;
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12240,7 +12284,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12258,7 +12302,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["ImportView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12284,7 +12328,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12302,7 +12346,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["CheckView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12328,7 +12372,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12346,7 +12390,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["ErasedImported"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12372,7 +12416,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12390,7 +12434,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["LookView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12414,7 +12458,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12432,7 +12476,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["LedgerView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12454,7 +12498,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12472,7 +12516,7 @@ export interface operations {
                     readonly "application/json": readonly components["schemas"]["ParticipantView"][];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12495,7 +12539,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12513,7 +12557,7 @@ export interface operations {
                     readonly "application/zip": unknown;
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12540,7 +12584,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12558,7 +12602,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["ErasureView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12582,7 +12626,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12600,7 +12644,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["PreregistrationView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12625,7 +12669,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12644,7 +12688,7 @@ export interface operations {
                     readonly "text/markdown": unknown;
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12666,7 +12710,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12684,7 +12728,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["StudyView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12708,7 +12752,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12726,7 +12770,7 @@ export interface operations {
                     readonly "application/json": readonly components["schemas"]["SessionSummary"][];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12752,7 +12796,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12770,7 +12814,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["SessionView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12794,7 +12838,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12812,7 +12856,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["StatisticsView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12834,7 +12878,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12852,7 +12896,7 @@ export interface operations {
                     readonly "application/json": readonly components["schemas"]["SuggestionView"][];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12878,7 +12922,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12896,7 +12940,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["SuggestionView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12922,7 +12966,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12940,7 +12984,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["TryoutView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12966,7 +13010,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -12984,7 +13028,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["StudyView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13007,7 +13051,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13025,7 +13069,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["VersionDetail"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13049,7 +13093,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13067,7 +13111,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["CheckResult"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13091,7 +13135,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13109,7 +13153,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["EditedFile"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13133,7 +13177,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13151,7 +13195,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["TimelineView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13171,7 +13215,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13191,7 +13235,7 @@ export interface operations {
                     };
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13217,7 +13261,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13235,7 +13279,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["SuggestionView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13259,7 +13303,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13277,7 +13321,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["TabletState"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13301,7 +13345,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13319,7 +13363,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["TabletState"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13343,7 +13387,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13361,7 +13405,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["TabletState"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13385,7 +13429,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13403,7 +13447,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["TabletState"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13423,7 +13467,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13441,7 +13485,7 @@ export interface operations {
                     readonly "text/event-stream": unknown;
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13461,7 +13505,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13479,7 +13523,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["TabletPaired"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13503,7 +13547,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13521,7 +13565,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["TabletState"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13545,7 +13589,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13563,7 +13607,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["TabletState"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13583,7 +13627,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13601,7 +13645,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["TabletState"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13625,7 +13669,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13643,7 +13687,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["Receipt"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13663,7 +13707,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13681,7 +13725,7 @@ export interface operations {
                     readonly "application/json": readonly components["schemas"]["TemplateView"][];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13701,7 +13745,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13719,7 +13763,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["TryoutView"] | null;
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13739,7 +13783,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13757,7 +13801,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["TryoutView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13781,7 +13825,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13799,7 +13843,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["SessionAvatar"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13819,7 +13863,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13837,7 +13881,7 @@ export interface operations {
                     readonly "application/json": readonly components["schemas"]["ModelListed"][];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13861,7 +13905,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13879,7 +13923,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["ModelView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13901,7 +13945,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13919,7 +13963,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["ModelView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13941,7 +13985,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13957,7 +14001,7 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13979,7 +14023,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -13997,7 +14041,7 @@ export interface operations {
                     readonly "application/octet-stream": string;
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -14023,7 +14067,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -14041,7 +14085,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["PredictionView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -14063,7 +14107,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -14081,7 +14125,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["ModelView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -14107,7 +14151,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -14125,7 +14169,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["SliceView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -14147,7 +14191,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -14165,7 +14209,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["ModelView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -14189,7 +14233,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -14207,7 +14251,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["PathView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -14227,7 +14271,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -14245,7 +14289,7 @@ export interface operations {
                     readonly "application/json": readonly components["schemas"]["PopulationView"][];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -14265,7 +14309,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -14283,7 +14327,7 @@ export interface operations {
                     readonly "application/json": readonly components["schemas"]["SceneListed"][];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -14307,7 +14351,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -14325,7 +14369,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["SceneView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -14347,7 +14391,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -14365,7 +14409,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["SceneView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -14387,7 +14431,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -14403,7 +14447,7 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -14425,7 +14469,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -14443,7 +14487,7 @@ export interface operations {
                     readonly "application/octet-stream": string;
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -14463,7 +14507,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -14481,7 +14525,7 @@ export interface operations {
                     readonly "application/json": readonly components["schemas"]["WalkSetView"][];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -14505,7 +14549,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -14523,7 +14567,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["WalkSetView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -14545,7 +14589,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -14563,7 +14607,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["WalkSetView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -14585,7 +14629,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -14601,7 +14645,7 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -14632,7 +14676,7 @@ export interface operations {
             };
         };
         readonly responses: {
-            /** @description Refused, with the reason and the way out. */
+            /** @description Refused, with the reason and the remedy. */
             readonly "4XX": {
                 headers: {
                     readonly [name: string]: unknown;
@@ -14650,7 +14694,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["WalkSetView"];
                 };
             };
-            /** @description Cannot be stored now, so nothing was promised. */
+            /** @description Cannot be stored now; nothing was stored. */
             readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;

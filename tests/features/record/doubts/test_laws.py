@@ -90,7 +90,7 @@ def test_every_kind_that_is_found_is_explained() -> None:
     """Each doubt has words, and its kind a meaning."""
     (doubt,) = doubts_about(with_reports(STARTED, report("time_up", 11.0, 60.0)))[:1]
     assert isinstance(doubt, Doubt)
-    assert (doubt.kind in KINDS, doubt.message != "") == (True, True)
+    assert (doubt.kind in KINDS, doubt.words != "") == (True, True)
 
 
 @pytest.mark.parametrize(
@@ -251,4 +251,4 @@ def test_a_count_is_within_reason_as_long_as_a_headset_can_have_made_it() -> Non
 def test_what_the_server_saw_itself_is_told_in_its_own_words() -> None:
     """Two observations are two doubts about the session."""
     seen = replace(HONEST, observed=("one thing", "another"))
-    assert [one.message for one in doubts_about(seen)] == ["another", "one thing"]
+    assert [one.words for one in doubts_about(seen)] == ["another", "one thing"]
