@@ -1,1 +1,1 @@
-"""Features against real databases."""
+"""Tests of the features, against real databases."""

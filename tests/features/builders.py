@@ -1,7 +1,7 @@
-"""Studies with sessions, written straight into the database: the same rows every time.
+"""Builders that write studies and sessions directly into the database, with reproducible rows.
 
 A session goes through the shipped study: forms, free movement, three blocks of a hand and a foot
-phase with their questionnaires. `redone` steps are there twice, the first attempt voided.
+phase with their questionnaires. Steps in `redone` occur twice, with the first attempt voided.
 """
 
 from collections.abc import Sequence
@@ -32,13 +32,13 @@ ENDED = ("completed", "aborted", "withdrawn")
 
 
 def build_study(db: Session) -> str:
-    """The shipped studies and instruments; the key of the latency study."""
+    """Store the shipped studies and instruments; return the key of the latency study."""
     add_shipped(db, NOW)
     return STUDY
 
 
 def build_session(db: Session, spec: SessionSpec, study: str = STUDY) -> StudySession:
-    """A session with its forms, phases, contacts, completions, joint errors and events."""
+    """Store a session with its forms, phases, contacts, completed tasks, errors and events."""
     version = newest_version(db, study_by_key(db, study))
     slot = take_slot(db, version, protocol_of(version), spec.kind, NOW)
     participant = Participant(
@@ -80,7 +80,7 @@ def build_session(db: Session, spec: SessionSpec, study: str = STUDY) -> StudySe
 
 
 def as_physics(db: Session, session: StudySession) -> None:
-    """Give a session the product's own physics avatar instead of a delayed copy."""
+    """Give a session the shipped physics avatar instead of a delayed copy."""
     session.avatar = "physics"
     session.avatar_configuration_hash = version_of(db, SHIPPED, None).content_hash
 

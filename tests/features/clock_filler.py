@@ -1,4 +1,4 @@
-"""Clock readings written straight into the database."""
+"""Builders that write clock probes directly into the database."""
 
 from datetime import UTC, datetime, timedelta
 
@@ -36,9 +36,10 @@ def store_probes(
 
 
 def steady_probes(begin: datetime) -> ClockProbes:
-    """A probe every 5 s for 10 minutes, 2 ms each way, the third lost; the client's 0 is `begin`.
+    """Return a probe every 5 s for 10 minutes, 2 ms each way, the third lost.
 
-    The server's monotonic clock is 5000 s ahead, its wall clock is read 10 ms after an answer.
+    The client's clock is 0 at `begin`, the server's monotonic clock is 5000 s ahead, and its wall
+    clock is read 10 ms after an answer.
     """
     sent_s = 0.2503 + 5.00371 * np.arange(120, dtype=np.float64)
     received_s = sent_s + 5000.002

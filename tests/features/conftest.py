@@ -1,4 +1,4 @@
-"""Applications for tests over HTTP, on both engines."""
+"""Fixtures with running applications for tests over HTTP, on both engines."""
 
 from collections.abc import Iterator
 
@@ -11,14 +11,14 @@ from tests.support.sqlite import fresh_sqlite
 
 @pytest.fixture
 def fresh_lab(database_url: str) -> Iterator[Lab]:
-    """An application on an empty database, for this test alone."""
+    """Yield an application on an empty database, for one test alone."""
     with running_lab(database_url) as lab:
         yield lab
 
 
 @pytest.fixture(scope="module", params=["sqlite", "postgresql"])
 def lab(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Lab]:
-    """An application shared by a module: each test joins sessions of its own."""
+    """Yield an application shared by the tests of a module; each creates its own sessions."""
     if request.param == "postgresql":
         with fresh_postgres() as url, running_lab(url) as running:
             yield running

@@ -1,4 +1,4 @@
-"""A running application in this process, with an operator signed in, for tests over HTTP."""
+"""A running application in this process with a signed-in operator, for tests over HTTP."""
 
 import secrets
 import uuid
@@ -29,50 +29,50 @@ Json = dict[str, Any]
 
 @dataclass(frozen=True)
 class Lab:
-    """The application and its operator's calls. `operator` is signed in by a bearer token."""
+    """A running application; its client `operator` is signed in as admin by a bearer token."""
 
     app: FastAPI
     operator: TestClient
 
     @property
     def context(self) -> AppContext:
-        """The parts of the running application."""
+        """The context of the running application."""
         context = self.app.state.context
         assert isinstance(context, AppContext)
         return context
 
     @property
     def database(self) -> Database:
-        """Its database, for looking behind the interface."""
+        """The application's database, for checks that bypass the interface."""
         return self.context.database
 
     def stranger(self) -> TestClient:
-        """A client with cookies of its own, not signed in, on the same event loop."""
+        """Return a client that is not signed in, with its own cookies and the same event loop."""
         client = TestClient(self.app)
         client.portal = self.operator.portal
         return client
 
     def try_join(self, **fields: Any) -> Response:
-        """Ask for a session."""
+        """Request a new session and return the response, whatever it is."""
         return self.operator.post(f"/api/studies/{STUDY}/sessions", json=fields)
 
     def join(self, **fields: Any) -> Json:
-        """A new session, as the cockpit shows it."""
+        """Create a session and return it as the cockpit shows it."""
         view: Json = ok(self.try_join(**fields))
         return view
 
     def view(self, session_id: str) -> Json:
-        """The session now."""
+        """Return the current state of a session as the cockpit shows it."""
         view: Json = ok(self.operator.get(f"/api/sessions/{session_id}"))
         return view
 
     def events(self, session_id: str) -> list[Json]:
-        """The event log."""
+        """Return the event log of a session."""
         events: list[Json] = ok(self.operator.get(f"/api/sessions/{session_id}/events"))
         return events
 
     def try_command(self, view: Json, kind: str, **fields: Any) -> Response:
-        """Send a command decided on `view`."""
+        """Send a command decided on `view` and return the response, whatever it is."""
         body = {
             "command_id": str(uuid.uuid4()),
             "expected_version": view["version"],
@@ -82,12 +82,12 @@ class Lab:
         return self.operator.post(f"/api/sessions/{view['id']}/commands", json=body)
 
     def command(self, view: Json, kind: str, **fields: Any) -> Json:
-        """Send a command that is accepted; the session after it."""
+        """Send a command that must be accepted and return the session after it."""
         after: Json = ok(self.try_command(view, kind, **fields))
         return after
 
     def skip_to(self, view: Json, step_key: str) -> Json:
-        """Start the session if need be, and skip every step before `step_key`."""
+        """Start the session if it is planned, and skip every step before `step_key`."""
         if view["status"] == "planned":
             view = self.command(view, "start")
         while view["steps"][view["current"]["index"]]["key"] != step_key:
@@ -95,30 +95,30 @@ class Lab:
         return view
 
     def show_code(self, session_id: str, device: str) -> str:
-        """A fresh pairing code."""
+        """Return a new pairing code."""
         path = f"/api/sessions/{session_id}/pairings"
         return str(ok(self.operator.post(path, json={"device": device}))["code"])
 
     def tablet(self, session_id: str) -> TestClient:
-        """A tablet that is paired with the session; its client holds the cookie."""
+        """Return the client of a tablet that is paired with the session by its cookie."""
         client = self.stranger()
         ok(client.post("/api/devices/pair", json={"code": self.show_code(session_id, "tablet")}))
         return client
 
     def headset_token(self, session_id: str) -> str:
-        """The token of a headset that is paired with the session."""
+        """Pair a headset with the session and return its token."""
         code = self.show_code(session_id, "headset")
         return str(ok(self.stranger().post("/api/devices/pair", json={"code": code}))["token"])
 
 
 def ok(response: Response) -> Any:
-    """What a successful answer holds."""
+    """Return the JSON body of a response that must be successful."""
     assert response.is_success, response.text
     return response.json() if response.content else None
 
 
 def error(response: Response, status: int, code: str) -> Json:
-    """The error of a refused request, which must have this status and code."""
+    """Return the error of a refused request, which must have this status and code."""
     assert response.status_code == status, response.text
     refusal: Json = response.json()["error"]
     assert refusal["code"] == code, refusal
@@ -129,9 +129,9 @@ def error(response: Response, status: int, code: str) -> Json:
 def running_lab(
     database_url: str, clock: Clock | None = None, data_dir: Path | None = None
 ) -> Iterator[Lab]:
-    """Start the application on `database_url` and stop it afterwards.
+    """Run the application on `database_url` for the duration of the block.
 
-    Without a `data_dir` its data folder is one of its own, which goes with it.
+    Without a `data_dir` it uses a temporary data folder.
     """
     with TemporaryDirectory(prefix="reembody-lab-") as own_folder:
         settings = Settings(
@@ -156,5 +156,5 @@ def _running(app: FastAPI) -> Iterator[Lab]:
 
 
 def key() -> str:
-    """A fresh idempotency key."""
+    """Return a new idempotency key."""
     return secrets.token_hex(16)

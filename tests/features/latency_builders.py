@@ -1,4 +1,4 @@
-"""Phases whose movement is stored as a headset would leave it, with a latency that is known."""
+"""Builders of phases with stored movement of known latency."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,15 +24,15 @@ def store_movement(
     clock_s: float = 0.0,
     movement: Movement | None = None,
 ) -> None:
-    """Both streams of a run of the client: two seconds without a phase, then the phase.
+    """Store both streams of one run of the client: two seconds before the phase, then the phase.
 
-    `clock_s` is what the run's clock shows at its first frame.
+    `clock_s` is the run's clock at its first frame.
     """
     rng = np.random.default_rng(epoch)
     times_s = np.arange(0.0, HISTORY_S + duration_s, 1.0 / RATE_HZ)
     run = delayed_copy(times_s, (movement or made_movement(rng))(times_s), latency_s)
     before = len(run.target_times_s) - len(run.actual_times_s)
-    # Before the phase the avatar is stored too; what it did there does not matter.
+    # Before the phase the avatar is stored too; its movement there does not matter.
     actual = np.concatenate((run.target_rotations[:before], run.actual_rotations))
     for stream, rotations in (
         (StreamName.TARGET, run.target_rotations),
@@ -50,7 +50,7 @@ def store_stream(
     rotations: NDArray[np.float64],
     before: int,
 ) -> None:
-    """Rotations (n, 22, 4) as stored: the first `before` frames without a phase, all active."""
+    """Store rotations (n, 22, 4) as active frames; the first `before` frames have no phase."""
     values = np.zeros((len(times_s), VALUES_PER_FRAME), np.float32)
     values[:, 3:] = rotations.reshape(len(times_s), -1)
     db.add(
@@ -88,7 +88,7 @@ def store_stream(
 
 
 def measured(phase: Phase, achieved_s: float | None, *, flagged: bool = False) -> PhaseLatency:
-    """A row as it is stored; without a latency it has a reason."""
+    """Return a latency row of a phase; without a latency it has a reason."""
     return PhaseLatency(
         session_id=phase.session_id,
         phase_id=phase.phase_id,

@@ -1,4 +1,4 @@
-"""Stored movement of a session: chunks and batches as the telemetry writer would leave them."""
+"""Builders of stored movement: chunks and batches as the telemetry writer stores them."""
 
 from collections.abc import Sequence
 
@@ -15,7 +15,7 @@ RATE_HZ = 90
 
 
 def moving_values(count: int, seed: int) -> NDArray[np.float32]:
-    """Plausible frames (count, 91): a root near the middle and unit quaternions that turn."""
+    """Return plausible frames (count, 91): a root near the origin and random unit quaternions."""
     rng = np.random.default_rng(seed)
     rotations = rng.normal(size=(count, 22, 4))
     rotations /= np.linalg.norm(rotations, axis=-1, keepdims=True)
@@ -36,7 +36,7 @@ def store_chunks(
     phase_id: int = 1,
     per_chunk: int = RATE_HZ,
 ) -> None:
-    """Frames `values` (n, 91) at `seqs` (n), rising; a gap in the seqs begins a new chunk."""
+    """Store frames `values` (n, 91) at increasing `seqs` (n); a gap starts a new chunk."""
     _stream(db, session_id, stream, epoch, int(seqs[-1]) + 1, len(seqs))
     for begin, end in _runs(seqs, per_chunk):
         times_s = np.asarray(seqs[begin:end], np.float64) / RATE_HZ
@@ -68,7 +68,7 @@ def store_batch(
     epoch: int = 1,
     phase_id: int = 1,
 ) -> None:
-    """Frames that were not folded into a chunk yet."""
+    """Store frames that have not been folded into a chunk yet."""
     count = len(values)
     message = encode_batch(
         stream,
@@ -117,7 +117,7 @@ def _stream(
 
 
 def _runs(seqs: Sequence[int], longest: int) -> list[tuple[int, int]]:
-    """(begin, end) of consecutive seqs, none longer than a chunk."""
+    """Return (begin, end) of runs of consecutive seqs, each at most `longest` long."""
     runs, begin = [], 0
     for at in range(1, len(seqs) + 1):
         if at == len(seqs) or seqs[at] != seqs[at - 1] + 1 or at - begin == longest:

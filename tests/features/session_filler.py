@@ -1,6 +1,6 @@
-"""What happens in a built session: its phases with what they came to, and its forms.
+"""The content of a built session: phases with their results, and forms.
 
-A session is some two thousand rows and most tests of results build a few, so its rows are inserted
+A session has about two thousand rows and most tests of results build several, so rows are inserted
 table by table, without an object for each.
 """
 
@@ -40,7 +40,7 @@ NOW = datetime(2026, 3, 2, 9, 30, tzinfo=UTC)
 
 @dataclass(frozen=True)
 class SessionSpec:
-    """What makes a session different from the next."""
+    """The properties in which built sessions differ."""
 
     code: str
     kind: str = "people"
@@ -55,17 +55,17 @@ class SessionSpec:
 
 @dataclass
 class Filler:
-    """Fills a session step by step; every run of a phase gets the next phase_id."""
+    """Fill a session step by step; every attempt of a phase gets the next phase_id."""
 
     db: Session
     session: StudySession
     spec: SessionSpec
     phase_id: int = 0
     rows: dict[type[Base], list[dict[str, Any]]] = field(default_factory=dict)
-    """What is to be inserted, those tables first that others refer to."""
+    """The rows to insert by table; tables that others refer to come first."""
 
     def fill(self, plan: Sequence[Step]) -> None:
-        """Add the rows of every step, and the readings of the one client run's clock."""
+        """Store the rows of every step, and the clock probes of a single run of the client."""
         store_probes(self.db, self.session.id, steady_probes(NOW))
         for step in plan:
             for attempt in (1, 2) if step.key in self.spec.redone else (1,):
@@ -112,7 +112,7 @@ class Filler:
         self._joint_error_courses(step)
 
     def _task_rows(self, step: Step) -> None:
-        """Two parts at one side, overlapping: 1..3 s and 2..4 s, so red for 3 s; one panel."""
+        """Add two overlapping contacts at a side (1-3 s, 2-4 s: 3 s in red) and one at a panel."""
         for surface, kind, side, part, begin_s, end_s in (
             (f"{step.limb}/2/left", "side", "left", "LeftHand", 1.0, 3.0),
             (f"{step.limb}/2/left", "side", "left", "LeftLowerArm", 2.0, 4.0),
@@ -168,7 +168,7 @@ class Filler:
                     )
 
     def _joint_error_courses(self, step: Step) -> None:
-        """All bins alike: the mean of the joints, and their 5400 samples evenly over the bins."""
+        """Add constant courses: the mean over the joints, with 5400 samples spread evenly."""
         bins = math.ceil((step.duration_s or 0.0) / COURSE_BIN_S)
         mean = float(np.mean([self.spec.joint_error_rad(step, joint) for joint in ERROR_JOINTS]))
         for reference in ("present", "command"):
@@ -242,5 +242,5 @@ class Filler:
 
 
 def stable_id(*parts: object) -> str:
-    """An id that is the same every time."""
+    """Return an id that depends only on `parts`."""
     return hashlib.sha256(repr(parts).encode()).hexdigest()[:32]

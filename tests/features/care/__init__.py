@@ -1,1 +1,1 @@
-"""Tests of the wing `care`."""
+"""Tests of the features in `app/features/care`."""

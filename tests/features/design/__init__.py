@@ -1,1 +1,1 @@
-"""Tests of the wing `design`."""
+"""Tests of the features in `app/features/design`."""

@@ -1,1 +1,1 @@
-"""Tests of the wing `people`."""
+"""Tests of the features in `app/features/people`."""

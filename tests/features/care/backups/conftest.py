@@ -1,4 +1,4 @@
-"""Filled databases on both engines, and ways to look at them."""
+"""Fixtures with filled databases, for the tests of backups."""
 
 from collections.abc import Iterator
 
@@ -10,7 +10,7 @@ from tests.support.filled import fill
 
 @pytest.fixture
 def database(database_url: str) -> Iterator[Database]:
-    """A database with rows in every table."""
+    """Yield a database with rows in every table, once on each engine."""
     opened = open_database(database_url)
     fill(opened.engine)
     yield opened
@@ -19,7 +19,7 @@ def database(database_url: str) -> Iterator[Database]:
 
 @pytest.fixture
 def sqlite(sqlite_url: str) -> Iterator[Database]:
-    """A filled SQLite database."""
+    """Yield a SQLite database with rows in every table."""
     opened = open_database(sqlite_url)
     fill(opened.engine)
     yield opened

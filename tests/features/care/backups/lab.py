@@ -1,4 +1,4 @@
-"""Backing up and restoring in few words, with a clock that stands still."""
+"""Short calls for backing up and restoring with a fixed clock."""
 
 from datetime import UTC, datetime
 from pathlib import Path
@@ -19,12 +19,12 @@ CLOCK = Clock(utc_now=lambda: NOW)
 
 
 def make(database: Database, to: Path, **options: Any) -> BackedUp:
-    """Back up."""
+    """Back up a database to a file with the fixed clock."""
     return back_up(database, to, clock=CLOCK, **options)
 
 
 def put_back(database: Database, path: Path, *, replace: bool = False, **options: Any) -> Restored:
-    """Restore; what is replaced goes beside the backup."""
+    """Restore a backup; what it replaces is backed up to the folder `kept` next to it."""
     keep_in = path.parent / "kept"
     with checked_backup(path, keep_in) as backup:
         return restore(database, backup, keep_in=keep_in, clock=CLOCK, replace=replace, **options)

@@ -1,4 +1,4 @@
-"""A backup holds everything of one moment, and there is never half of one."""
+"""Tests of backups: each is a consistent snapshot, and an incomplete file never remains."""
 
 import shutil
 import sqlite3
@@ -20,12 +20,12 @@ from tests.support.filled import ROWS, contents, fill, tables_of
 
 
 def left_in(folder: Path) -> list[str]:
-    """Everything in a folder, hidden or not, but for the database that is backed up."""
+    """Return the names of all files in a folder, hidden ones too, except the source database's."""
     return sorted(path.name for path in folder.iterdir() if "reembody.sqlite" not in path.name)
 
 
 def test_a_backup_holds_every_row_of_every_table(database: Database, tmp_path: Path) -> None:
-    """Read back with SQLAlchemy's types, it is what the database is."""
+    """A backup that is read back contains every row of every table of the database."""
     done = make(database, tmp_path / "all.reembody")
     copy = open_database(f"sqlite:///{tmp_path / 'all.reembody'}")
     held = contents(copy.engine)
@@ -36,7 +36,7 @@ def test_a_backup_holds_every_row_of_every_table(database: Database, tmp_path: P
     assert held.keys() == names
     expected = contents(database.engine)
     if not database.is_sqlite:
-        # SQLite has no zones and no truths; both are compared as SQLite has them.
+        # SQLite stores neither time zones nor booleans; both are compared as SQLite stores them.
         expected = {
             name: [
                 {
@@ -52,8 +52,10 @@ def test_a_backup_holds_every_row_of_every_table(database: Database, tmp_path: P
     assert done.size_bytes == (tmp_path / "all.reembody").stat().st_size
 
 
-def test_a_backup_says_what_it_is(database: Database, tmp_path: Path) -> None:
-    """When, from what, in which schema; and only we may read it."""
+def test_a_backups_manifest_states_time_engine_and_schema(
+    database: Database, tmp_path: Path
+) -> None:
+    """A backup states its time, engine, schema and checksum; only its owner may read the file."""
     done = make(database, tmp_path / "all.reembody")
     with closing(sqlite3.connect(tmp_path / "all.reembody")) as connection:
         manifest = read_manifest(connection)
@@ -67,7 +69,7 @@ def test_a_backup_says_what_it_is(database: Database, tmp_path: Path) -> None:
 def test_both_engines_give_the_same_checksum(
     sqlite_url: str, postgres_url: str, tmp_path: Path
 ) -> None:
-    """Equal rows, equal checksum; another value somewhere, another checksum."""
+    """Equal rows give equal checksums on both engines; one changed value gives another checksum."""
     found = []
     for at, url in enumerate((sqlite_url, postgres_url)):
         opened = open_database(url)
@@ -82,8 +84,8 @@ def test_both_engines_give_the_same_checksum(
     assert found[0] != found[1]
 
 
-def test_what_is_written_meanwhile_is_not_in_it(database: Database, tmp_path: Path) -> None:
-    """One moment: rows that come while tables are copied are for the next backup."""
+def test_rows_written_during_a_backup_are_not_in_it(database: Database, tmp_path: Path) -> None:
+    """A backup is a snapshot: rows written while its tables are copied are not in it."""
     alone = make(database, tmp_path / "alone.reembody")
     tables = iter(range(1000, 2000))
 
@@ -100,8 +102,10 @@ def test_what_is_written_meanwhile_is_not_in_it(database: Database, tmp_path: Pa
 
 
 @pytest.mark.parametrize("there", ["file", "folder", "link"])
-def test_nothing_is_written_over(sqlite: Database, tmp_path: Path, there: str) -> None:
-    """Whatever has the name keeps it."""
+def test_a_backup_never_overwrites_an_existing_path(
+    sqlite: Database, tmp_path: Path, there: str
+) -> None:
+    """A backup to the path of an existing file, folder or link is refused and changes nothing."""
     place = tmp_path / "taken.reembody"
     if there == "file":
         place.write_text("mine")
@@ -115,17 +119,17 @@ def test_nothing_is_written_over(sqlite: Database, tmp_path: Path, there: str) -
     assert there != "file" or place.read_text() == "mine"
 
 
-def test_a_missing_folder_is_not_made(sqlite: Database, tmp_path: Path) -> None:
-    """A disk that is not plugged in must not become a folder on another."""
+def test_a_backup_does_not_create_a_missing_folder(sqlite: Database, tmp_path: Path) -> None:
+    """A backup to a missing folder is refused: the folder may be a disk that is not plugged in."""
     with pytest.raises(NotFound, match="no folder"):
         make(sqlite, tmp_path / "usb" / "all.reembody")
     assert left_in(tmp_path) == []
 
 
-def test_a_full_disk_leaves_no_half_file(
+def test_a_full_disk_leaves_no_incomplete_backup(
     sqlite: Database, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Whichever table it is that does not fit any more."""
+    """A backup that fills the disk leaves no file, whichever table no longer fits."""
     for pages in (140, 160, 180):
         monkeypatch.setattr(
             "app.features.care.backups.writing._FOR_ONE_WRITER",
@@ -144,10 +148,10 @@ def _an_event(database: Database) -> dict[str, object]:
         return dict(db.execute(select(SessionEvent.__table__).limit(1)).mappings().one())
 
 
-def test_room_that_will_not_do_is_left_alone(
+def test_a_backup_without_enough_disk_space_is_not_begun(
     database: Database, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The server may need that disk: it is not filled to the brim first."""
+    """A backup is refused before it writes if the disk has too little space for it."""
     usage = shutil.disk_usage(tmp_path)
     monkeypatch.setattr(shutil, "disk_usage", lambda _: usage._replace(free=60_000_000))
     with pytest.raises(NotDurable, match="60 MB left"):
@@ -155,8 +159,8 @@ def test_room_that_will_not_do_is_left_alone(
     assert left_in(tmp_path) == []
 
 
-def test_a_database_without_tables_is_told_apart(tmp_path: Path) -> None:
-    """An empty backup of the wrong place would be worse than none."""
+def test_a_database_without_our_tables_is_not_backed_up(tmp_path: Path) -> None:
+    """Backing up a database without Reembody's tables is refused: the backup would be empty."""
     wrong = open_database(f"sqlite:///{tmp_path / 'wrong.sqlite'}")
     with pytest.raises(NotFound, match="no Reembody database"):
         make(wrong, tmp_path / "all.reembody")
@@ -164,8 +168,8 @@ def test_a_database_without_tables_is_told_apart(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("revision", EACH_OLDER)
-def test_an_older_schema_is_backed_up_as_it_is(tmp_path: Path, revision: str) -> None:
-    """The way back from a migration."""
+def test_an_older_schema_is_backed_up_unchanged(tmp_path: Path, revision: str) -> None:
+    """A database with an older schema is backed up without being migrated."""
     bench = SqliteBench(tmp_path)
     with bench.copy(older_database(bench, revision).url) as url:
         old = open_database(url)

@@ -1,4 +1,4 @@
-"""What a backup holds is looked at before it goes into place, whatever its checksums say."""
+"""Tests that a backup's content is validated before it is restored, even if its checksums match."""
 
 import shutil
 import sqlite3
@@ -25,7 +25,7 @@ from tests.support.sqlite import fresh_sqlite
 
 
 def forged(path: Path, *statements: str) -> Path:
-    """A backup that was changed and sealed again: every checksum in it fits."""
+    """Change a backup with SQL statements and recompute all its checksums, so that they match."""
     with closing(sqlite3.connect(path)) as connection:
         connection.execute("PRAGMA ignore_check_constraints=ON")
         for statement in statements:
@@ -66,10 +66,10 @@ def forged(path: Path, *statements: str) -> Path:
         ("UPDATE sessions SET study_id = 'nobody'", "refer to nothing"),
     ],
 )
-def test_tables_and_values_that_are_not_ours_are_refused(
+def test_unknown_tables_and_invalid_values_are_refused(
     sqlite: Database, tmp_path: Path, statement: str, said: str
 ) -> None:
-    """In words, with nothing changed."""
+    """A backup with unknown tables, columns, views, triggers or invalid values is not restored."""
     make(sqlite, tmp_path / "all.reembody")
     before = contents(sqlite.engine)
     with pytest.raises(InvalidInput, match=said):
@@ -80,7 +80,7 @@ def test_tables_and_values_that_are_not_ours_are_refused(
 
 @pytest.fixture
 def lab(tmp_path: Path) -> Iterator[Lab]:
-    """An installation with a session whose chain verifies."""
+    """Yield an installation with an active session whose event chain verifies."""
     (tmp_path / "lab").mkdir()
     with running_lab(fresh_sqlite(tmp_path / "lab" / "reembody.sqlite")) as running:
         credentials = {"username": "admin", "password": PASSWORD}
@@ -98,10 +98,13 @@ def lab(tmp_path: Path) -> Iterator[Lab]:
         ("UPDATE audit_head SET seq = seq + 1", "the audit trail"),
     ],
 )
-def test_roles_and_chains_that_do_not_fit_are_refused(
+def test_unknown_roles_and_broken_chains_are_refused(
     lab: Lab, database_url: str, tmp_path: Path, statement: str, said: str
 ) -> None:
-    """Before they are committed, on both engines; a record is taken only by who insists."""
+    """A backup with an unknown role or a broken chain is refused on both engines.
+
+    A broken chain is accepted with `even_though_altered`; an unknown role never is.
+    """
     make(lab.database, tmp_path / "all.reembody")
     backup = forged(tmp_path / "all.reembody", statement)
     target = open_database(database_url)
@@ -117,8 +120,8 @@ def test_roles_and_chains_that_do_not_fit_are_refused(
     target.close()
 
 
-def test_a_whole_record_is_taken(lab: Lab, database_url: str, tmp_path: Path) -> None:
-    """On both engines."""
+def test_an_intact_record_is_restored(lab: Lab, database_url: str, tmp_path: Path) -> None:
+    """A backup of a real installation passes the check of its content on both engines."""
     make(lab.database, tmp_path / "all.reembody")
     target = open_database(database_url)
     done = put_back(
@@ -128,8 +131,8 @@ def test_a_whole_record_is_taken(lab: Lab, database_url: str, tmp_path: Path) ->
     target.close()
 
 
-def test_the_backup_before_a_restore_that_failed_is_gone(lab: Lab, tmp_path: Path) -> None:
-    """What was to be replaced is still there: nobody needs one copy of people's data more."""
+def test_a_failed_restore_deletes_its_safety_backup(lab: Lab, tmp_path: Path) -> None:
+    """A restore that fails deletes the backup that it made first, since nothing was replaced."""
     make(lab.database, tmp_path / "all.reembody")
     forged(tmp_path / "all.reembody", "UPDATE accounts SET role = 'superadmin'")
     with pytest.raises(InvalidInput):
@@ -146,7 +149,7 @@ def test_the_backup_before_a_restore_that_failed_is_gone(lab: Lab, tmp_path: Pat
 ALTERED_LOG, ALTERED_HASH = "not what its log leads to", "not the hash of its canonical_json"
 ONLY_ALTERED = (ALTERED_LOG, ALTERED_HASH)
 LIES = {
-    "a snapshot that is no state": (
+    "an unreadable snapshot": (
         "UPDATE sessions SET snapshot = '{}'",
         r"sessions \w{32} has the snapshot {}, which cannot be read",
     ),
@@ -158,26 +161,26 @@ LIES = {
         "UPDATE sessions SET snapshot = json_remove(snapshot, '$.steps[0]')",
         "not of the [0-9]+ steps of its plan",
     ),
-    "a status that there is not": (
+    "an unknown status": (
         "UPDATE sessions SET status = 'flying'",
         "has the status 'flying', not one of planned, active",
     ),
-    "a status that the log does not tell": (
+    "a status that the log contradicts": (
         "UPDATE sessions SET status = 'completed'",
         "not of completed and version 1",
     ),
-    "a status that snapshot and log tell differently": (
+    "a status on which snapshot and log differ": (
         "UPDATE sessions SET status='planned', snapshot=json_set(snapshot,'$.status','planned')",
         ALTERED_LOG,
     ),
-    "a language that the study has not": ("UPDATE sessions SET language = 'xx'", "no texts"),
+    "a language that the study does not have": ("UPDATE sessions SET language = 'xx'", "no texts"),
     "a clock that runs backwards": ("UPDATE sessions SET time_scale = -1", "time_scale = 1.0"),
-    "shortfalls that are none": (
+    "unreadable shortfalls": (
         "UPDATE sessions SET shortfalls = '[5]'",
         r"the shortfalls \[5\], which cannot be read",
     ),
-    "a session that holds no slot": ("DELETE FROM slot_attempts", "study_version_id"),
-    "a study that is none": (
+    "a session without a slot": ("DELETE FROM slot_attempts", "study_version_id"),
+    "an unreadable study": (
         "UPDATE study_versions SET canonical_json = '{}'",
         r"study_versions \w{32} has the canonical_json '{}', which cannot be read",
     ),
@@ -193,13 +196,13 @@ LIES = {
         "UPDATE study_versions SET instruments = '[]'",
         r"the instruments \[\], not an object",
     ),
-    "a version that was never counted to": (
+    "a version number out of range": (
         "UPDATE study_versions SET number = 9223372036854775807",
         "number is out of range",
     ),
     "a version after a gap": ("UPDATE study_versions SET number = 7", "not numbered from 1 on"),
     "a key that is a path": ("UPDATE studies SET key = '../../x'", r"the key '../../x', not"),
-    "a wording that is none": (
+    "an unreadable instrument": (
         "UPDATE instrument_versions SET canonical_json = '[]'",
         r"canonical_json '\[\]', which cannot be read",
     ),
@@ -212,15 +215,15 @@ LIES = {
         "the sequence 5, not a list",
     ),
     "an order of lists": ("UPDATE ledger_slots SET sequence = '[[],{}]'", "the sequence"),
-    "blocks that were never made": ("UPDATE ledgers SET blocks = blocks + 1", "ledgers"),
+    "ledger blocks that do not exist": ("UPDATE ledgers SET blocks = blocks + 1", "ledgers"),
     "a design of no study": ("UPDATE ledgers SET design_hash = 'x'", "the design of no version"),
-    "an avatar that is none": ("UPDATE avatar_versions SET canonical_json = '{}'", "avatar_versi"),
+    "an unreadable avatar": ("UPDATE avatar_versions SET canonical_json = '{}'", "avatar_versi"),
     "a NUL in a name": (
         "UPDATE accounts SET username = 'op' || char(0) || 'x'",
         "username holds a NUL character",
     ),
-    "a name that none may have": ("UPDATE accounts SET username = '../x'", "no user name"),
-    "a password's hash that is none": (
+    "an invalid user name": ("UPDATE accounts SET username = '../x'", "no user name"),
+    "an invalid password hash": (
         "UPDATE accounts SET password_hash = 'x'",
         "no hash of a password",
     ),
@@ -228,19 +231,19 @@ LIES = {
         "UPDATE accounts SET password_hash = replace(password_hash, 'm=', 'm=42949')",
         "no hash of a password",
     ),
-    "a login for ever": (
+    "a login that never expires": (
         "UPDATE login_tokens SET expires_at = '9999-12-31 23:59:59.999999'",
         "expires_at is outside 1970 to 2199",
     ),
-    "a login for what is unknown": ("UPDATE login_tokens SET purpose = 'all'", "purpose 'all'"),
-    "a participant who is nobody": ("UPDATE participants SET kind = 'gods'", "kind 'gods'"),
+    "a login with an unknown purpose": ("UPDATE login_tokens SET purpose = 'all'", "purpose 'all'"),
+    "a participant of an unknown kind": ("UPDATE participants SET kind = 'gods'", "kind 'gods'"),
     "a participant with a name": ("UPDATE participants SET code = 'Eva Maier'", "no code of a"),
 }
 
 
 @pytest.fixture(scope="module")
 def backed_up(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Database, Path]]:
-    """An installation with a session that runs, and a backup of it; nothing changes either."""
+    """Yield an installation with an active session, and a backup of it; tests change neither."""
     folder = tmp_path_factory.mktemp("lies")
     with running_lab(fresh_sqlite(folder / "reembody.sqlite"), data_dir=folder) as running:
         ok(running.operator.post("/api/login", json={"username": "admin", "password": PASSWORD}))
@@ -253,9 +256,10 @@ def backed_up(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Databa
 def test_content_that_this_program_cannot_have_written_is_refused(
     backed_up: tuple[Database, Path], tmp_path: Path, lie: str
 ) -> None:
-    """Its checksums fit; table, row and value are named, and every row is as it was before.
+    """A backup whose content this program cannot have written is refused, and no row changes.
 
-    What cannot be read is refused also where an altered record is taken.
+    Its checksums match. The error names table, row and value. Content that cannot be read is
+    refused even where an altered record is accepted.
     """
     statement, said = LIES[lie]
     database, whole = backed_up
@@ -275,10 +279,8 @@ def test_content_that_this_program_cannot_have_written_is_refused(
     assert not list(tmp_path.glob("kept/*"))
 
 
-def test_what_opens_the_door_lasts_no_longer_than_if_it_were_made_now(
-    lab: Lab, tmp_path: Path
-) -> None:
-    """A login, a pairing code and an invitation for ten years; what ends sooner stays."""
+def test_restored_credentials_expire_no_later_than_new_ones(lab: Lab, tmp_path: Path) -> None:
+    """Restored logins, pairing codes and invitations expire no later than ones issued now."""
     with lab.database.reading() as db:
         session_id = db.scalar(select(StudySession.id))
     ok(lab.operator.post(f"/api/sessions/{session_id}/pairings", json={"device": "tablet"}))

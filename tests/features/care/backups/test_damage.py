@@ -1,4 +1,4 @@
-"""A damaged backup is noticed before anything is touched."""
+"""Tests that a damaged backup is detected before a restore changes anything."""
 
 import sqlite3
 from contextlib import closing
@@ -22,7 +22,7 @@ EVERY_PAGE, SOME_PAGES = 1, 12
 
 @pytest.fixture
 def backup(tmp_path: Path) -> Path:
-    """A backup that is whole, of a database whose pages are well filled."""
+    """Return an intact backup of a database whose pages are well filled."""
     source = open_database(fresh_sqlite(tmp_path / "source.sqlite"))
     fill(source.engine, rows=60)
     path = make(source, tmp_path / "all.reembody").path
@@ -31,7 +31,7 @@ def backup(tmp_path: Path) -> Path:
 
 
 def refused(path: Path) -> bool:
-    """Whether a file is not taken; one that is taken must hold what was backed up."""
+    """Return whether opening a backup file is refused as invalid."""
     try:
         with opened_backup(path):
             return False
@@ -40,32 +40,32 @@ def refused(path: Path) -> bool:
 
 
 def content(path: Path) -> object:
-    """Everything in the tables of a backup that was taken."""
+    """Return the manifest and tables of a backup that opens."""
     with opened_backup(path) as backup:
         return backup.manifest, backup.tables
 
 
 @pytest.mark.parametrize("keep", [0, 15, 100, PAGE, 50 * PAGE, -PAGE, -1])
-def test_a_file_that_was_cut_off_is_refused(backup: Path, keep: int) -> None:
-    """Wherever it ends."""
+def test_a_truncated_backup_is_refused(backup: Path, keep: int) -> None:
+    """A truncated backup is refused, whatever its length."""
     data = backup.read_bytes()
     backup.write_bytes(data[:keep])
     assert refused(backup)
 
 
-def test_a_page_that_was_overwritten_is_noticed(backup: Path) -> None:
-    """With zeros or noise: refused, or nothing was in it."""
+def test_an_overwritten_page_is_detected(backup: Path) -> None:
+    """A backup with a page of zeros or noise is refused, unless its rows are unaffected."""
     overwrite(backup, SOME_PAGES)
 
 
 @pytest.mark.long
-def test_every_page_that_was_overwritten_is_noticed(backup: Path) -> None:
-    """The same with all of them."""
+def test_every_overwritten_page_is_detected(backup: Path) -> None:
+    """Overwriting any single page of a backup makes it refused or leaves its rows unaffected."""
     overwrite(backup, EVERY_PAGE)
 
 
 def overwrite(backup: Path, step: int) -> None:
-    """Overwrite one page after the other, each in a whole file."""
+    """Overwrite one page at a time of a backup; require that it is refused or reads the same."""
     rng = np.random.default_rng(6)
     data = backup.read_bytes()
     whole = content(backup)
@@ -77,25 +77,25 @@ def overwrite(backup: Path, step: int) -> None:
         if refused(backup):
             noticed += 1
         else:
-            # An index, or an unused page: the rows are all there.
+            # The page belongs to an index or is unused: all rows are intact.
             assert content(backup) == whole
     note(29, "backup, page overwritten", "refused", f"{noticed} of {len(pages)}")
     note(29, "backup, page overwritten", "wrong rows taken", 0)
 
 
-def test_a_flipped_bit_never_gets_through(backup: Path) -> None:
-    """Refused, or it was a bit that no row needs."""
+def test_a_flipped_bit_never_changes_restored_rows(backup: Path) -> None:
+    """A backup with a flipped bit is refused, unless its rows are unaffected."""
     flip_bits(backup, FLIPS)
 
 
 @pytest.mark.long
-def test_many_flipped_bits_never_get_through(backup: Path) -> None:
-    """The same with many more."""
+def test_many_flipped_bits_never_change_restored_rows(backup: Path) -> None:
+    """Each of thousands of flipped bits makes a backup refused or leaves its rows unaffected."""
     flip_bits(backup, MANY_FLIPS)
 
 
 def flip_bits(backup: Path, flips: int) -> None:
-    """Flip one bit after the other, each in a whole file."""
+    """Flip one random bit at a time of a backup; require that it is refused or reads the same."""
     rng = np.random.default_rng(29)
     data = backup.read_bytes()
     whole = content(backup)
@@ -127,8 +127,8 @@ def flip_bits(backup: Path, flips: int) -> None:
         "ALTER TABLE accounts RENAME COLUMN role TO roles",
     ],
 )
-def test_an_edited_file_is_refused(backup: Path, change: str) -> None:
-    """By whatever tool."""
+def test_an_edited_backup_is_refused(backup: Path, change: str) -> None:
+    """A backup whose rows, manifest or tables were edited with SQL is refused."""
     with closing(sqlite3.connect(backup)) as connection:
         connection.execute(change)
         connection.commit()
@@ -136,7 +136,7 @@ def test_an_edited_file_is_refused(backup: Path, change: str) -> None:
 
 
 def test_a_file_of_another_kind_is_refused(sqlite: Database, tmp_path: Path) -> None:
-    """A text, and a database that is no backup."""
+    """A text file and a database that is not a backup are refused as backups."""
     (tmp_path / "some.txt").write_text("a text " * 1000)
     assert refused(tmp_path / "some.txt")
     sqlite.close()
@@ -144,10 +144,10 @@ def test_a_file_of_another_kind_is_refused(sqlite: Database, tmp_path: Path) -> 
 
 
 @pytest.mark.one_engine
-def test_nothing_is_touched_by_a_damaged_one(
+def test_restoring_a_damaged_backup_changes_nothing(
     backup: Path, database: Database, tmp_path: Path
 ) -> None:
-    """Neither the database, nor the file, nor the folder."""
+    """Restoring a damaged backup leaves the database, the backup file and its folder unchanged."""
     before = contents(database.engine)
     with closing(sqlite3.connect(backup)) as connection:
         connection.execute("UPDATE accounts SET role = 'admin'")

@@ -1,4 +1,4 @@
-"""Checksums can be computed again with anybody's tools."""
+"""Tests that a backup's checksums can be recomputed by hand."""
 
 import hashlib
 from pathlib import Path
@@ -13,12 +13,12 @@ from tests.features.care.backups.lab import NOW, make
 
 
 def sha256(text: str) -> str:
-    """Of a text in ASCII."""
+    """Return the SHA-256 of an ASCII text in hexadecimal digits."""
     return hashlib.sha256(text.encode("ascii")).hexdigest()
 
 
 def test_a_tables_checksum_is_that_of_its_lines(sqlite_url: str, tmp_path: Path) -> None:
-    """By hand: names, then rows by primary key, each a line of compact JSON."""
+    """A table's checksum is the SHA-256 of its column names and rows as lines of compact JSON."""
     database = open_database(sqlite_url)
     with database.writing() as db:
         for id_, key in (("b", "zwei"), ("a", "naïve")):
@@ -38,6 +38,6 @@ def test_a_tables_checksum_is_that_of_its_lines(sqlite_url: str, tmp_path: Path)
 
 
 def test_the_whole_checksum_is_that_of_the_tables() -> None:
-    """By hand: the revision, and for each table its rows and its checksum, sorted by name."""
+    """A backup's checksum is the SHA-256 of its revision and each table's rows and checksum."""
     tables = {"b": TableDigest(2, "cd"), "a": TableDigest(1, "ef")}
     assert overall("0001", tables) == sha256('["0001",{"a":[1,"ef"],"b":[2,"cd"]}]\n')

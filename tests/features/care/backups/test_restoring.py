@@ -1,4 +1,4 @@
-"""A restore gives back exactly what was backed up, or changes nothing."""
+"""Tests of restoring: it gives back exactly what was backed up, or changes nothing."""
 
 import hashlib
 from pathlib import Path
@@ -19,8 +19,10 @@ from tests.features.lab import Lab
 from tests.support.filled import contents
 
 
-def test_around_both_engines_and_back(sqlite: Database, postgres_url: str, tmp_path: Path) -> None:
-    """SQLite to PostgreSQL to SQLite: every row and every checksum is the same."""
+def test_restoring_across_engines_and_back_keeps_every_row(
+    sqlite: Database, postgres_url: str, tmp_path: Path
+) -> None:
+    """Restoring from SQLite to PostgreSQL and back keeps every row and every checksum."""
     before = contents(sqlite.engine)
     first = make(sqlite, tmp_path / "1.reembody")
     postgres = open_database(postgres_url)
@@ -34,8 +36,8 @@ def test_around_both_engines_and_back(sqlite: Database, postgres_url: str, tmp_p
     assert contents(sqlite.engine) == before
 
 
-def test_what_is_replaced_is_kept(database: Database, tmp_path: Path) -> None:
-    """The backup that is made before is the database as it was."""
+def test_the_replaced_database_is_backed_up_first(database: Database, tmp_path: Path) -> None:
+    """A restore that replaces a database first backs it up as it was."""
     make(database, tmp_path / "old.reembody")
     with database.writing() as db:
         db.execute(update(Account).values(role="new role"))
@@ -46,8 +48,10 @@ def test_what_is_replaced_is_kept(database: Database, tmp_path: Path) -> None:
     assert put_back(database, done.before, replace=True).sha256 == new.sha256
 
 
-def test_nothing_is_replaced_unasked(database: Database, tmp_path: Path) -> None:
-    """A database that is not empty stays as it is, and no backup of it is made."""
+def test_a_database_with_rows_is_replaced_only_on_request(
+    database: Database, tmp_path: Path
+) -> None:
+    """Without `replace`, a restore refuses a non-empty database and makes no backup of it."""
     make(database, tmp_path / "all.reembody")
     before = contents(database.engine)
     with pytest.raises(Conflict, match="not empty") as refused:
@@ -60,7 +64,7 @@ def test_nothing_is_replaced_unasked(database: Database, tmp_path: Path) -> None
 def test_a_restore_that_fails_changes_nothing(
     database: Database, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Also behind the last row: it is one transaction."""
+    """A restore that fails after its last row is rolled back completely: it is one transaction."""
     make(database, tmp_path / "all.reembody")
     with database.writing() as db:
         db.execute(update(Account).values(role="new role"))
@@ -75,10 +79,10 @@ def test_a_restore_that_fails_changes_nothing(
     assert contents(database.engine) == before
 
 
-def test_rows_that_do_not_come_out_alike_are_refused(
+def test_a_restore_that_loses_rows_is_rolled_back(
     database: Database, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """What is in the database afterwards is read again, not believed."""
+    """A restore reads the written rows back and rolls back if they do not match the backup."""
     make(database, tmp_path / "all.reembody")
     before = contents(database.engine)
 
@@ -96,7 +100,7 @@ def test_rows_that_do_not_come_out_alike_are_refused(
 def test_an_older_backup_is_migrated_in_a_copy(
     database_url: str, tmp_path: Path, revision: str
 ) -> None:
-    """The database gets what migrating gives; the file stays as it is, byte for byte."""
+    """Restoring an older backup gives the migrated database; the backup file is unchanged."""
     bench = SqliteBench(tmp_path)
     older = older_database(bench, revision)
     with bench.copy(older.url) as url:
@@ -115,15 +119,15 @@ def test_an_older_backup_is_migrated_in_a_copy(
     assert restored == older.new.contents
 
 
-def test_a_missing_file_is_said_to_be_missing(sqlite: Database, tmp_path: Path) -> None:
-    """And nothing is made in its place."""
+def test_restoring_a_missing_file_is_reported(sqlite: Database, tmp_path: Path) -> None:
+    """Restoring a missing file is reported as such, and no file is created at its path."""
     with pytest.raises(NotFound, match="no file"):
         put_back(sqlite, tmp_path / "nothing.reembody")
     assert not (tmp_path / "nothing.reembody").exists()
 
 
-def test_active_sessions_hold_it_up(fresh_lab: Lab, tmp_path: Path) -> None:
-    """They are listed; only who insists goes on, and their headsets must be paired again."""
+def test_active_sessions_block_a_restore(fresh_lab: Lab, tmp_path: Path) -> None:
+    """A restore refuses and lists active sessions; forced, it unpairs their headsets."""
     session = fresh_lab.join(participant_code="P-014")
     fresh_lab.command(session, "start")
     headset = fresh_lab.operator.post(
@@ -145,10 +149,10 @@ def test_active_sessions_hold_it_up(fresh_lab: Lab, tmp_path: Path) -> None:
         assert db.scalar(select(StudySession.status)) == "active"
 
 
-def test_a_running_application_goes_on_with_what_was_restored(
+def test_a_running_application_continues_with_the_restored_data(
     fresh_lab: Lab, tmp_path: Path
 ) -> None:
-    """Logins, sessions and balance are those of the backup; what came later is gone."""
+    """After a restore the running application has exactly the sessions and ledger of the backup."""
     kept = fresh_lab.join(participant_code="before")
     make(fresh_lab.database, tmp_path / "all.reembody")
     later = fresh_lab.join(participant_code="later")
@@ -161,8 +165,8 @@ def test_a_running_application_goes_on_with_what_was_restored(
     assert started["status"] == "active"
 
 
-def test_no_table_numbers_its_rows_by_itself(database: Database) -> None:
-    """Neither engine keeps a counter that a restore would have to set."""
+def test_no_table_uses_an_automatic_row_counter(database: Database) -> None:
+    """Neither engine keeps an automatic row counter that a restore would have to set."""
     counters = (
         "SELECT name FROM sqlite_master WHERE name = 'sqlite_sequence'"
         if database.is_sqlite
@@ -175,7 +179,7 @@ def test_no_table_numbers_its_rows_by_itself(database: Database) -> None:
 def test_a_newer_programs_backup_is_refused(
     sqlite: Database, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """It says which version reads it."""
+    """A backup from a newer program version is refused with the version that can read it."""
     make(sqlite, tmp_path / "all.reembody")
     monkeypatch.setattr("app.features.care.backups.reading.all_revisions", lambda: ("0001",))
     monkeypatch.setattr("app.features.care.backups.reading.newest_revision", lambda: "0001")

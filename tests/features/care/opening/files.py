@@ -1,4 +1,4 @@
-"""SQLite databases as they are left by a process that ended well, or was killed."""
+"""SQLite databases as a process leaves them when it closes normally or is killed."""
 
 import os
 import signal
@@ -29,11 +29,11 @@ UNDECODABLE = (
     "UPDATE sqlite_master SET sql = CAST(x'435245415445205441424c4520ff' || sql AS TEXT) "
     "WHERE name = 'accounts'"
 )
-"""A table's definition becomes one that SQLite quotes in an error, and that is no UTF-8."""
+"""SQL that puts invalid UTF-8 into a table definition, which SQLite quotes in errors."""
 
 
 def filled(file: Path, rows: int = 60) -> Path:
-    """A database of ours with rows everywhere, closed as it should be."""
+    """Create a closed Reembody database with rows in every table; return its path."""
     opened = open_database(fresh_sqlite(file))
     fill(opened.engine, rows=rows)
     opened.close()
@@ -41,26 +41,26 @@ def filled(file: Path, rows: int = 60) -> Path:
 
 
 def killed(file: Path, *, rows: int = 40, page_size: int = 4096) -> Path:
-    """Let a process commit rows one by one and kill it: everything is in the log."""
+    """Run a process that commits rows and kills itself, which leaves all rows in the WAL."""
     arguments = [sys.executable, "-c", KILLED, str(file), str(page_size), str(rows)]
     assert subprocess.run(arguments, check=False).returncode == -signal.SIGKILL
     return file
 
 
 def log(file: Path) -> Path:
-    """Its write-ahead log."""
+    """Return the path of a database's write-ahead log."""
     return Path(f"{os.fspath(file)}-wal")
 
 
 def flip(file: Path, at: int) -> None:
-    """Turn one bit of a file."""
+    """Flip the lowest bit of one byte of a file."""
     data = bytearray(file.read_bytes())
     data[at] ^= 1
     file.write_bytes(data)
 
 
 def edited(file: Path, statement: str) -> None:
-    """Change what is in a database, by force."""
+    """Execute a statement on a database with SQLite's schema and check protections off."""
     with closing(sqlite3.connect(file, isolation_level=None)) as connection:
         connection.execute("PRAGMA writable_schema=ON")
         connection.execute("PRAGMA ignore_check_constraints=ON")

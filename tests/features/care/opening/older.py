@@ -1,4 +1,4 @@
-"""Filled databases of older schemas, made once in a run; tests work on copies of them."""
+"""Filled databases with older schemas, made once per test run; tests work on copies of them."""
 
 import pickle
 from dataclasses import dataclass
@@ -17,18 +17,18 @@ FEW = (OLDER[0], OLDER[len(OLDER) // 2], OLDER[-1])
 EACH_OLDER = [
     pytest.param(revision, marks=() if revision in FEW else pytest.mark.long) for revision in OLDER
 ]
-"""Every older revision, for a test's parameters: the first, one in the middle and the last in the
-short form, whose migrations pass through all others."""
+"""Every older revision, as test parameters; a short run uses the first, a middle one and the last,
+whose migrations pass through all others."""
 
 
 @dataclass(frozen=True)
 class Older:
-    """An older database.
+    """A database with an older schema.
 
     Attributes:
-        url: where it is; `Bench.copy` copies it, and nobody may open it.
-        old: what it is.
-        new: what the migrations alone make of it.
+        url: its address; tests copy it with `Bench.copy` and must not open it.
+        old: its contents and schema.
+        new: its contents and schema after the migrations.
     """
 
     url: str
@@ -37,7 +37,7 @@ class Older:
 
 
 def older_database(bench: Bench, revision: str) -> Older:
-    """The one of that revision, on the engine of `bench`."""
+    """Return the database of that revision on the engine of `bench`; make it if it is missing."""
     engine = "sqlite" if isinstance(bench, SqliteBench) else "postgresql"
     with once(f"older-{engine}-{revision}") as mark:
         if mark:

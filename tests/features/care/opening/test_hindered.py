@@ -1,6 +1,6 @@
-"""A healthy database stays where it is, whatever keeps a start from it, and so does what it means.
+"""Tests that a healthy database that cannot be opened now stays in place and unchanged.
 
-Refusals of the disk itself are made to happen in tests/faults/test_io_faults.py.
+Errors of the disk itself are simulated in tests/faults/test_io_faults.py.
 """
 
 import errno
@@ -34,33 +34,33 @@ connection = sqlite3.connect(sys.argv[1], isolation_level=None)
 connection.execute("PRAGMA locking_mode=EXCLUSIVE")
 connection.execute("BEGIN EXCLUSIVE")
 connection.execute("DELETE FROM login_tokens WHERE 0")
-print("held", flush=True)
+print("locked_elsewhere", flush=True)
 sys.stdin.read()
 """
 
 
 @pytest.fixture
 def file(tmp_path: Path) -> Path:
-    """A database of ours that is whole."""
+    """Return the path of an intact Reembody database."""
     return filled(tmp_path / "reembody.sqlite")
 
 
 @contextmanager
-def held(file: Path) -> Iterator[None]:
-    """Another process has it all to itself."""
+def locked_elsewhere(file: Path) -> Iterator[None]:
+    """Lock a database exclusively from another process for the duration of the block."""
     with subprocess.Popen(
         [sys.executable, "-c", HOLD, str(file)], stdin=subprocess.PIPE, stdout=subprocess.PIPE
     ) as other:
         assert other.stdout is not None
-        assert other.stdout.readline() == b"held\n"
+        assert other.stdout.readline() == b"locked_elsewhere\n"
         yield
         other.communicate()
 
 
-def test_a_database_that_somebody_holds_is_left_alone(file: Path, tmp_path: Path) -> None:
-    """One sentence, and nothing is moved; afterwards it is an ordinary start."""
+def test_a_locked_database_is_left_in_place(file: Path, tmp_path: Path) -> None:
+    """A database locked by another process is reported and not moved; later it opens normally."""
     settings = Settings(data_dir=tmp_path)
-    with held(file):
+    with locked_elsewhere(file):
         assert is_open_elsewhere(file)
         with pytest.raises(NotDurable, match=r"locked"):
             prepare_database(settings, CLOCK, to_write=True)
@@ -69,10 +69,10 @@ def test_a_database_that_somebody_holds_is_left_alone(file: Path, tmp_path: Path
 
 
 @pytest.mark.parametrize("number", [errno.EIO, errno.EACCES, errno.EROFS, errno.ESTALE])
-def test_a_file_that_cannot_be_read_is_not_damaged(
+def test_an_unreadable_file_is_not_treated_as_damaged(
     file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int
 ) -> None:
-    """Nothing is known of it, so nothing is done with it."""
+    """A database file that the system does not let us read is left in place, not quarantined."""
     honest = Path.open
 
     def refusing(self: Path, *arguments: object, **more: object) -> object:
@@ -87,15 +87,15 @@ def test_a_file_that_cannot_be_read_is_not_damaged(
     prepare_database(Settings(data_dir=tmp_path), CLOCK)
 
 
-def test_a_folder_in_its_place_is_said(tmp_path: Path) -> None:
-    """And left."""
+def test_a_folder_in_place_of_the_database_is_reported(tmp_path: Path) -> None:
+    """A folder at the path of the database file is reported as unreadable."""
     (tmp_path / "reembody.sqlite").mkdir()
     with pytest.raises(NotDurable, match="cannot be read"):
         prepare_database(Settings(data_dir=tmp_path), CLOCK)
 
 
-def test_a_link_into_a_disk_that_is_not_there_is_said(tmp_path: Path) -> None:
-    """No new database takes the link's place."""
+def test_a_dangling_link_to_the_database_is_reported(tmp_path: Path) -> None:
+    """A link to a database on a missing disk is reported, and no new database replaces it."""
     file = tmp_path / "reembody.sqlite"
     file.symlink_to(tmp_path / "unplugged" / "reembody.sqlite")
     with pytest.raises(Conflict, match=r"the link reembody\.sqlite"):
@@ -105,7 +105,7 @@ def test_a_link_into_a_disk_that_is_not_there_is_said(tmp_path: Path) -> None:
 
 
 def test_damage_that_makes_messages_undecodable_is_damage(file: Path, tmp_path: Path) -> None:
-    """SQLite quotes what it cannot understand, and the driver cannot decode that."""
+    """A database whose damage makes SQLite's error message undecodable is quarantined."""
     edited(file, UNDECODABLE)
     with pytest.raises(Damaged) as refused:
         prepare_database(Settings(data_dir=tmp_path), CLOCK)
@@ -133,24 +133,24 @@ def test_damage_that_makes_messages_undecodable_is_damage(file: Path, tmp_path: 
 def test_content_that_this_program_never_writes_is_damage(
     file: Path, statement: str, said: str
 ) -> None:
-    """Where SQLite's own check finds nothing."""
+    """Content that this program never writes counts as damage, even if SQLite's check passes."""
     edited(file, statement)
     assert said in (damage_of(file) or "")
 
 
 @pytest.mark.parametrize("at", [16, 18, 19, 21, 44, 56])
-def test_a_damaged_header_is_damage(file: Path, at: int) -> None:
-    """Also where SQLite reads on, and only writing would fail."""
+def test_a_damaged_header_is_detected(file: Path, at: int) -> None:
+    """A damaged file header counts as damage, even if SQLite can still read the file."""
     data = bytearray(file.read_bytes())
     data[at] ^= 0x60
     file.write_bytes(data)
     assert damage_of(file) is not None
 
 
-def test_a_large_files_rows_are_read_when_asked(
+def test_a_large_files_rows_are_checked_only_on_request(
     file: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """After a start that failed, and before a restore."""
+    """The rows of a large database are checked only with `every_row`."""
     monkeypatch.setattr("app.features.care.opening.inspection.ROWS_READ_BYTES", 0)
     edited(file, "UPDATE accounts SET created_at = 'once'")
     assert damage_of(file) is None
@@ -158,8 +158,8 @@ def test_a_large_files_rows_are_read_when_asked(
 
 
 @pytest.mark.parametrize("trace", ["erasures.jsonl", "backups/1.reembody", "export/codebook.csv"])
-def test_a_missing_database_is_said_where_there_was_one(tmp_path: Path, trace: str) -> None:
-    """An unplugged disk or another folder must not look like a first start."""
+def test_a_missing_database_is_reported_where_one_was_used(tmp_path: Path, trace: str) -> None:
+    """A start without a database is refused if the data folder shows that there was one."""
     (tmp_path / trace).parent.mkdir(exist_ok=True)
     (tmp_path / trace).touch()
     settings = Settings(data_dir=tmp_path)
@@ -171,8 +171,8 @@ def test_a_missing_database_is_said_where_there_was_one(tmp_path: Path, trace: s
     prepare_database(settings, CLOCK)
 
 
-def test_the_same_on_postgresql(tmp_path: Path) -> None:
-    """An empty database on the server beside backups in the data folder."""
+def test_an_empty_postgresql_database_is_reported_where_one_was_used(tmp_path: Path) -> None:
+    """A start with an empty PostgreSQL database is refused if the data folder shows earlier use."""
     (tmp_path / "erasures.jsonl").touch()
     with PostgresBench(running_cluster()).empty() as url:
         settings = Settings(data_dir=tmp_path, database_url=url)
@@ -181,8 +181,8 @@ def test_the_same_on_postgresql(tmp_path: Path) -> None:
         prepare_database(settings, CLOCK, new_database=True)
 
 
-def test_a_log_without_its_database_is_kept_from_the_new_one(tmp_path: Path) -> None:
-    """SQLite would replay it into whatever file has that name."""
+def test_a_leftover_log_is_quarantined_before_a_new_database(tmp_path: Path) -> None:
+    """A leftover write-ahead log is quarantined, lest SQLite replay it into a new database."""
     file = killed(filled(tmp_path / "reembody.sqlite"))
     log = Path(f"{file}-wal")
     content = log.read_bytes()
@@ -196,11 +196,11 @@ def test_a_log_without_its_database_is_kept_from_the_new_one(tmp_path: Path) -> 
     assert kept.read_bytes() == content
 
 
-def test_a_database_that_was_begun_for_a_block_goes_if_it_fails(tmp_path: Path) -> None:
-    """One that was there before stays."""
+def test_a_database_created_for_a_failed_block_is_removed(tmp_path: Path) -> None:
+    """A database created for a block that fails is removed; one that existed before stays."""
     settings = Settings(data_dir=tmp_path)
     with pytest.raises(NotADirectoryError), created_if_missing(settings, CLOCK):
-        # It is there: what fails is that it is no folder.
+        # The file exists; the error comes from treating it as a folder.
         list((tmp_path / "reembody.sqlite").iterdir())
     assert list(tmp_path.iterdir()) == []
     prepare_database(settings, CLOCK)
@@ -209,8 +209,8 @@ def test_a_database_that_was_begun_for_a_block_goes_if_it_fails(tmp_path: Path) 
     assert (tmp_path / "reembody.sqlite").is_file()
 
 
-def test_a_file_whose_log_was_not_copied_is_not_taken_for_whole(tmp_path: Path) -> None:
-    """SQLite says nothing when that fails at the end: somebody who reads is enough."""
+def test_a_migrated_file_with_an_unmerged_log_is_refused(tmp_path: Path) -> None:
+    """Migrating a file fails if an open reader keeps its log from being merged into it."""
     file = tmp_path / "reembody.sqlite"
     migrate_file(file)
     other = tmp_path / "other.sqlite"

@@ -1,4 +1,4 @@
-"""What is wrong with a database file is noticed without changing it."""
+"""Tests that damage of a database file is detected without changing the file."""
 
 import sqlite3
 import subprocess
@@ -22,12 +22,12 @@ STEPS = [5, pytest.param(1, marks=pytest.mark.long)]
 
 @pytest.fixture
 def file(tmp_path: Path) -> Path:
-    """A database of ours that is whole."""
+    """Return the path of an intact Reembody database."""
     return filled(tmp_path / "reembody.sqlite")
 
 
 def overwritten(file: Path, step: int, *, noise: bool) -> Iterator[tuple[int, str | None]]:
-    """What is said of the file with one page after the other overwritten."""
+    """Overwrite one page at a time; yield its number and the damage that is reported."""
     rng = np.random.default_rng(6)
     data = file.read_bytes()
     with file.open("r+b", buffering=0) as written:
@@ -40,20 +40,20 @@ def overwritten(file: Path, step: int, *, noise: bool) -> Iterator[tuple[int, st
 
 
 def ends_of_blobs(file: Path) -> set[int]:
-    """Pages that hold the last part of a long value: they begin with no number of a next page."""
+    """Return the pages that hold the end of a long value: their next-page number is zero."""
     data = file.read_bytes()
     pages = range(len(data) // PAGE)
     return {page for page in pages if data[page * PAGE : page * PAGE + 4] == bytes(4)}
 
 
-def test_a_whole_database_is_taken(file: Path, tmp_path: Path) -> None:
-    """Closed as it should be, and left by a crash with everything in its log."""
+def test_an_intact_database_passes(file: Path, tmp_path: Path) -> None:
+    """An intact database passes, whether it was closed normally or left by a killed process."""
     assert damage_of(file) is None
     assert damage_of(killed(tmp_path / "killed.sqlite")) is None
 
 
-def test_looking_changes_nothing(tmp_path: Path) -> None:
-    """Neither the file nor its log, whole or damaged."""
+def test_inspecting_a_database_changes_nothing(tmp_path: Path) -> None:
+    """Inspecting an intact or damaged database changes neither its file nor its log."""
     file = killed(filled(tmp_path / "reembody.sqlite"))
     for place in (None, 200, 3 * PAGE + 1):
         if place is not None:
@@ -65,16 +65,16 @@ def test_looking_changes_nothing(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("step", STEPS)
-def test_a_page_of_noise_is_noticed(file: Path, step: int) -> None:
-    """One page after the other, each in a file that is whole but for it."""
+def test_a_page_of_noise_is_detected(file: Path, step: int) -> None:
+    """A page overwritten with noise is detected wherever it is in the file."""
     found = dict(overwritten(file, step, noise=True))
     note(6, "a page of noise", "noticed", count(found))
     assert [page for page, damage in found.items() if damage is None] == []
 
 
 @pytest.mark.parametrize("step", STEPS)
-def test_a_page_of_zeros_is_noticed(file: Path, step: int) -> None:
-    """Every page but those that hold only the end of a long value: see the next test."""
+def test_a_page_of_zeros_is_detected(file: Path, step: int) -> None:
+    """A page overwritten with zeros is detected, except one with only the end of a long value."""
     ends = ends_of_blobs(file)
     found = dict(overwritten(file, step, noise=False))
     unnoticed = {page for page, damage in found.items() if damage is None}
@@ -83,10 +83,10 @@ def test_a_page_of_zeros_is_noticed(file: Path, step: int) -> None:
     assert unnoticed <= ends
 
 
-def test_a_changed_value_is_not_noticed_here(file: Path) -> None:
-    """Honestly: the structure is checked, not what is in the rows.
+def test_a_changed_value_is_not_detected_by_inspection(file: Path) -> None:
+    """A changed byte inside a value is not detected: only the structure of the file is checked.
 
-    Events have their hash chain, movement the checksum of its chunk, backups one for each table.
+    Event logs have their hash chain, movement chunks and backed-up tables their checksums.
     """
     data = file.read_bytes()
     place = data.index(bytes(range(256)) * 3)
@@ -95,21 +95,21 @@ def test_a_changed_value_is_not_noticed_here(file: Path) -> None:
 
 
 @pytest.mark.parametrize("length", [0, 1, 15, 16, 99, 100, PAGE - 1, PAGE, 9 * PAGE, -PAGE, -1])
-def test_a_file_that_was_cut_off_is_noticed(file: Path, length: int) -> None:
-    """Wherever it ends; SQLite itself takes an empty file for a new database."""
+def test_a_truncated_file_is_detected(file: Path, length: int) -> None:
+    """A truncated database file is detected at any length, even if it is empty."""
     file.write_bytes(file.read_bytes()[:length])
     assert damage_of(file) is not None
 
 
 @pytest.mark.parametrize("start", [b"\0" * 16, b"PK\x03\x04" + b"x" * 12, b"SQLite format 4\0"])
-def test_a_garbled_beginning_is_noticed(file: Path, start: bytes) -> None:
-    """Whatever it looks like instead."""
+def test_a_wrong_file_signature_is_detected(file: Path, start: bytes) -> None:
+    """A file that does not begin with SQLite's signature is reported as not being a database."""
     file.write_bytes(start + file.read_bytes()[16:])
     assert damage_of(file) == "it is not a SQLite database"
 
 
-def test_a_damaged_log_is_noticed(file: Path) -> None:
-    """Also if SQLite would work with what is left."""
+def test_a_damaged_log_is_detected(file: Path) -> None:
+    """A damaged write-ahead log is detected, even if SQLite would accept what is left of it."""
     killed(file)
     assert damage_of(file) is None
     flip(log(file), 5 * PAGE)
@@ -119,24 +119,24 @@ def test_a_damaged_log_is_noticed(file: Path) -> None:
     assert damage_of(file) == "the beginning of its log is damaged"
 
 
-def test_a_torn_log_is_what_a_power_failure_leaves(file: Path) -> None:
-    """It is taken."""
+def test_a_log_torn_by_a_power_failure_passes(file: Path) -> None:
+    """A log with a torn end, as a power failure leaves it, is not damage."""
     killed(file)
     log(file).write_bytes(log(file).read_bytes()[:-5000])
-    Path(f"{file}-shm").unlink()  # what was never flushed was never noted there either
+    Path(f"{file}-shm").unlink()  # an index never lists frames that were not flushed
     assert damage_of(file) is None
 
 
 @pytest.mark.parametrize("length", [0, 20, 32, 9 * PAGE, -5000, -1])
-def test_a_log_that_lost_its_committed_end_is_noticed(file: Path, length: int) -> None:
-    """Its index notes what was flushed: SQLite alone would go on without it, and say nothing."""
+def test_a_log_without_its_committed_end_is_detected(file: Path, length: int) -> None:
+    """A log shorter than its index says is detected; SQLite would silently ignore the loss."""
     killed(file)
     log(file).write_bytes(log(file).read_bytes()[:length])
     assert "cannot be read" in (damage_of(file) or "")
 
 
-def test_an_index_that_is_torn_or_anothers_says_nothing(file: Path, tmp_path: Path) -> None:
-    """Only one that fits the log is believed."""
+def test_a_torn_or_foreign_index_is_ignored(file: Path, tmp_path: Path) -> None:
+    """A log index that is torn or belongs to another log is ignored."""
     killed(file)
     index = Path(f"{file}-shm")
     whole = index.read_bytes()
@@ -152,7 +152,7 @@ def test_an_index_that_is_torn_or_anothers_says_nothing(file: Path, tmp_path: Pa
 def test_a_large_file_is_checked_only_after_an_unclean_end(
     file: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """What costs too much at every start is done when there is a reason."""
+    """A large database is checked in full only if it was not closed normally."""
     monkeypatch.setattr(inspection, "ALWAYS_CHECKED_BYTES", 10 * PAGE)
     data = file.read_bytes()
     page = 30 * PAGE
@@ -163,7 +163,7 @@ def test_a_large_file_is_checked_only_after_an_unclean_end(
 
 
 def test_another_programs_database_is_known_by_its_tables(file: Path, tmp_path: Path) -> None:
-    """Ours is not foreign, nor is one without tables."""
+    """Another program's database is recognised by its tables; ours and an empty one pass."""
     other, new = tmp_path / "other.sqlite", tmp_path / "new.sqlite"
     with closing(sqlite3.connect(other)) as connection:
         connection.execute("CREATE TABLE bookmarks (x)")
@@ -174,8 +174,8 @@ def test_another_programs_database_is_known_by_its_tables(file: Path, tmp_path: 
     assert foreign_tables(new) == []
 
 
-def test_a_page_that_the_disk_does_not_give_is_no_damage(file: Path) -> None:
-    """SQLite reports both as a finding; only what was read and is wrong is damage."""
+def test_a_disk_read_error_is_not_damage(file: Path) -> None:
+    """A page that the disk fails to read raises an OSError and does not count as damage."""
     words = "*** in database main ***\nPage 90: unable to get the page. error code="
     with pytest.raises(OSError, match="Input/output error"):
         inspection._require_read(file, f"{words}8458")
@@ -183,8 +183,8 @@ def test_a_page_that_the_disk_does_not_give_is_no_damage(file: Path) -> None:
     inspection._require_read(file, "row 7 missing from index ix_events")
 
 
-def test_whoever_has_it_open_is_noticed(file: Path) -> None:
-    """A server that runs, even while it does nothing."""
+def test_a_database_open_in_another_process_is_detected(file: Path) -> None:
+    """A database that another process has open is detected, even while that process is idle."""
     assert not is_open_elsewhere(file)
     program = (
         "import sqlite3, sys\n"
@@ -204,6 +204,6 @@ def test_whoever_has_it_open_is_noticed(file: Path) -> None:
 
 
 def count(found: dict[int, str | None]) -> str:
-    """How many of how many were noticed."""
+    """Return in how many of the cases damage was detected, as "n of m"."""
     noticed = sum(damage is not None for damage in found.values())
     return f"{noticed} of {len(found)}"

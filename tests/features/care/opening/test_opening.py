@@ -1,4 +1,4 @@
-"""Before anything works with a database it is begun, migrated or refused, never lost."""
+"""Tests that a database is created, migrated or refused before use, and never lost."""
 
 import os
 import signal
@@ -34,22 +34,22 @@ CLOCK = Clock(utc_now=lambda: NOW)
 
 @pytest.fixture(params=["sqlite", "postgresql"])
 def bench(request: pytest.FixtureRequest, tmp_path: Path) -> Bench:
-    """Where databases are made."""
+    """Return a bench that makes databases, once for each engine."""
     return SqliteBench(tmp_path) if request.param == "sqlite" else PostgresBench(running_cluster())
 
 
 def settings_for(url: str, folder: Path) -> Settings:
-    """An installation on this database."""
+    """Return the settings of an installation with this database and data folder."""
     return Settings(database_url=url, data_dir=folder)
 
 
 def backups_in(folder: Path) -> list[Path]:
-    """The backups that were made on our own account."""
+    """Return the backups that the program made automatically in a data folder."""
     return sorted((folder / "backups").glob("*.reembody"))
 
 
-def test_where_there_is_none_a_database_is_begun(bench: Bench, tmp_path: Path) -> None:
-    """It has the newest schema; opening it again does nothing."""
+def test_a_missing_database_is_created(bench: Bench, tmp_path: Path) -> None:
+    """A missing database is created with the newest schema; preparing it again does nothing."""
     with bench.empty() as url:
         settings = settings_for(url, tmp_path)
         prepare_database(settings, CLOCK)
@@ -62,7 +62,7 @@ def test_where_there_is_none_a_database_is_begun(bench: Bench, tmp_path: Path) -
 def test_an_older_database_is_backed_up_and_migrated(
     bench: Bench, tmp_path: Path, revision: str
 ) -> None:
-    """The backup is the database as it was; then it is the same as migrated by hand."""
+    """An older database is backed up as it was, then migrated to the newest schema."""
     older = older_database(bench, revision)
     with bench.copy(older.url) as url:
         kept = prepare_database(settings_for(url, tmp_path), CLOCK)
@@ -80,7 +80,7 @@ def test_an_older_database_is_backed_up_and_migrated(
 def test_without_a_backup_nothing_is_migrated(
     bench: Bench, tmp_path: Path, revision: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A full disk leaves the older database as it was."""
+    """An older database is not migrated if the disk has no space for its backup."""
     monkeypatch.setattr("app.features.care.backups.writing.SPARE_BYTES", 10**18)
     older = older_database(bench, revision)
     with bench.copy(older.url) as url:
@@ -89,8 +89,8 @@ def test_without_a_backup_nothing_is_migrated(
         assert found(url) == older.old
 
 
-def test_a_newer_programs_database_is_left_alone(bench: Bench, tmp_path: Path) -> None:
-    """Refused with both revisions named, and not a row is changed."""
+def test_a_newer_programs_database_is_refused(bench: Bench, tmp_path: Path) -> None:
+    """A database with a newer schema is refused with both revisions named, and stays unchanged."""
     with bench.empty() as url:
         migrate(url)
         database = open_database(url)
@@ -105,8 +105,8 @@ def test_a_newer_programs_database_is_left_alone(bench: Bench, tmp_path: Path) -
         assert found(url) == before
 
 
-def test_another_programs_database_is_left_alone(bench: Bench, tmp_path: Path) -> None:
-    """We do not put our tables beside somebody else's."""
+def test_another_programs_database_is_refused(bench: Bench, tmp_path: Path) -> None:
+    """A database with another program's tables is refused and stays unchanged."""
     with bench.empty() as url:
         database = open_database(url)
         with database.writing() as db:
@@ -118,8 +118,8 @@ def test_another_programs_database_is_left_alone(bench: Bench, tmp_path: Path) -
         assert found(url) == before
 
 
-def test_a_damaged_database_is_put_away_and_none_is_begun_in_silence(tmp_path: Path) -> None:
-    """Not at this start and not at the next; only when somebody says so."""
+def test_a_damaged_database_is_quarantined_and_not_replaced_silently(tmp_path: Path) -> None:
+    """A damaged database is quarantined; no new one is made until `new_database` is given."""
     file = filled(tmp_path / "reembody.sqlite")
     file.write_bytes(b"\0" * 5000 + file.read_bytes()[5000:])
     damaged = file.read_bytes()
@@ -139,7 +139,7 @@ def test_a_damaged_database_is_put_away_and_none_is_begun_in_silence(tmp_path: P
 
 
 def test_the_newest_backup_is_named(tmp_path: Path) -> None:
-    """Whoever reads the message should not have to look for it."""
+    """The error about a damaged database names the newest backup."""
     (tmp_path / "backups").mkdir()
     for at, name in enumerate(("old.reembody", "new.reembody")):
         (tmp_path / "backups" / name).touch()
@@ -150,8 +150,8 @@ def test_the_newest_backup_is_named(tmp_path: Path) -> None:
     assert "new.reembody" in refused.value.remedy
 
 
-def test_a_good_file_in_its_place_resolves_it(tmp_path: Path) -> None:
-    """A repaired database, or a restored one, is what somebody decided for."""
+def test_an_intact_file_in_place_resolves_the_quarantine(tmp_path: Path) -> None:
+    """An intact database in place of the quarantined one resolves the quarantine."""
     file = filled(tmp_path / "reembody.sqlite")
     good = file.read_bytes()
     file.write_bytes(good[:5000])
@@ -166,8 +166,8 @@ def test_a_good_file_in_its_place_resolves_it(tmp_path: Path) -> None:
     assert not file.exists()
 
 
-def test_an_empty_database_in_its_place_does_not(tmp_path: Path) -> None:
-    """Half a restore is no decision: nobody has an account in it."""
+def test_an_empty_database_does_not_resolve_the_quarantine(tmp_path: Path) -> None:
+    """An empty database in place of the quarantined one does not resolve the quarantine."""
     file = filled(tmp_path / "reembody.sqlite")
     file.write_bytes(file.read_bytes()[:5000])
     settings = Settings(data_dir=tmp_path)
@@ -179,8 +179,8 @@ def test_an_empty_database_in_its_place_does_not(tmp_path: Path) -> None:
         prepare_database(settings, CLOCK)
 
 
-def test_a_killed_beginning_is_begun_again(tmp_path: Path) -> None:
-    """There is never half of a new database, whenever the process dies."""
+def test_creating_a_database_survives_being_killed(tmp_path: Path) -> None:
+    """A start that is killed while creating the database leaves no partial one behind."""
     program = (
         "import os, signal, sys, threading\n"
         "from pathlib import Path\n"
@@ -204,8 +204,8 @@ def test_a_killed_beginning_is_begun_again(tmp_path: Path) -> None:
         assert found(f"sqlite:///{folder / 'reembody.sqlite'}").revision == NEWEST
 
 
-def test_a_missing_database_is_not_made_by_reading_it(tmp_path: Path) -> None:
-    """A backup of the wrong folder says so."""
+def test_reading_does_not_create_a_missing_database(tmp_path: Path) -> None:
+    """Opening a missing database for reading is refused and creates no file."""
     with pytest.raises(NotFound, match="there is no database"):
         existing_database(Settings(data_dir=tmp_path))
     assert list(tmp_path.iterdir()) == []

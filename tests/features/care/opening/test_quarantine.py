@@ -1,4 +1,4 @@
-"""A damaged database is put away whole, and an interruption loses no part of it."""
+"""Tests that quarantine moves a damaged database with all its files, even if interrupted."""
 
 from datetime import UTC, datetime
 from pathlib import Path
@@ -12,24 +12,24 @@ NOW = datetime(2026, 11, 21, 6, 11, 8, 123456, UTC)
 
 @pytest.fixture
 def file(tmp_path: Path) -> Path:
-    """A database with all that may belong to it, each with its own content."""
+    """Return the path of a database with all its side files, each with different content."""
     file = tmp_path / "reembody.sqlite"
     for suffix in SUFFIXES:
         Path(f"{file}{suffix}").write_text(f"content of {suffix}")
     return file
 
 
-def held(folder: Path) -> dict[str, str]:
-    """What lies in a folder, but for the note."""
+def contents_of(folder: Path) -> dict[str, str]:
+    """Return the text of every file in a folder, without the quarantine's note."""
     return {path.name: path.read_text() for path in folder.iterdir() if path.suffix != ".txt"}
 
 
-def test_everything_goes_and_nothing_is_changed(file: Path, tmp_path: Path) -> None:
-    """Into a folder named by the moment, with a note that says why."""
-    before = held(tmp_path)
+def test_quarantine_moves_every_file_unchanged(file: Path, tmp_path: Path) -> None:
+    """Quarantine moves all files unchanged to a timestamped folder, with a note of the reason."""
+    before = contents_of(tmp_path)
     place = Quarantine(file).put_away("it is damaged", NOW)
     assert place == tmp_path / "quarantine" / "20261121T061108.123456Z"
-    assert held(place) == before
+    assert contents_of(place) == before
     assert "Why: it is damaged." in (place / "unresolved.txt").read_text()
     assert [path.name for path in tmp_path.iterdir()] == ["quarantine"]
 
@@ -38,8 +38,8 @@ def test_everything_goes_and_nothing_is_changed(file: Path, tmp_path: Path) -> N
 def test_an_interrupted_move_is_finished(
     file: Path, tmp_path: Path, moved: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """However far it came: the database and its log are never apart for good."""
-    before, honest, done = held(tmp_path), Path.rename, 0
+    """A move to quarantine that was interrupted after any file is finished by the next start."""
+    before, honest, done = contents_of(tmp_path), Path.rename, 0
 
     def interrupted(self: Path, target: Path) -> Path:
         nonlocal done
@@ -55,11 +55,11 @@ def test_an_interrupted_move_is_finished(
     assert Quarantine(file).unresolved() == []
     Quarantine(file).finish()
     (place,) = Quarantine(file).unresolved()
-    assert held(place) == before
+    assert contents_of(place) == before
 
 
-def test_it_stays_unresolved_until_somebody_decides(file: Path) -> None:
-    """Also over several; what is resolved stays where it is."""
+def test_a_quarantine_stays_unresolved_until_resolved(file: Path) -> None:
+    """Quarantines stay unresolved until `resolve`, which leaves their files in place."""
     quarantine = Quarantine(file)
     assert quarantine.unresolved() == []
     first = quarantine.put_away("once", NOW)

@@ -1,6 +1,6 @@
-"""The log is read as SQLite reads it, and lost transactions are noticed.
+"""Tests that the write-ahead log is read as SQLite reads it, and lost transactions are detected.
 
-The oracle is SQLite itself: it tells how many frames of a log it takes.
+The reference is SQLite itself, which reports how many frames of a log it uses.
 """
 
 import shutil
@@ -18,7 +18,7 @@ ROWS = 40
 
 
 def taken_by_sqlite(file: Path, folder: Path) -> int:
-    """How many frames of the log SQLite works with, on a copy."""
+    """Return how many frames of the log SQLite uses, measured on a copy."""
     folder.mkdir()
     copy = folder / file.name
     shutil.copyfile(file, copy)
@@ -29,8 +29,8 @@ def taken_by_sqlite(file: Path, folder: Path) -> int:
 
 
 @pytest.mark.parametrize("page_size", [512, 4096, 65536])
-def test_a_log_left_by_a_crash_is_in_order(tmp_path: Path, page_size: int) -> None:
-    """Every frame is taken, and nothing lies behind."""
+def test_a_log_left_by_a_crash_is_valid(tmp_path: Path, page_size: int) -> None:
+    """Every frame of a log left by a killed process is usable, at any page size."""
     file = killed(tmp_path / "some.sqlite", page_size=page_size)
     report = inspect_log(log(file))
     assert report == LogReport(
@@ -40,8 +40,8 @@ def test_a_log_left_by_a_crash_is_in_order(tmp_path: Path, page_size: int) -> No
     assert not report.damaged
 
 
-def test_a_torn_end_is_no_damage(tmp_path: Path) -> None:
-    """Cut off anywhere, as a power failure does: as many frames as SQLite takes, no alarm."""
+def test_a_torn_end_is_not_damage(tmp_path: Path) -> None:
+    """A log truncated anywhere is not damaged, and has as many usable frames as SQLite finds."""
     file = killed(tmp_path / "some.sqlite")
     whole = log(file).read_bytes()
     rng = np.random.default_rng(3)
@@ -52,12 +52,12 @@ def test_a_torn_end_is_no_damage(tmp_path: Path) -> None:
         assert report.usable == max(0, taken_by_sqlite(file, tmp_path / str(at))), length
 
 
-def test_damage_is_told_from_a_torn_end(tmp_path: Path) -> None:
-    """A flipped bit anywhere but in the last two transactions; SQLite drops them in silence."""
+def test_damage_is_distinguished_from_a_torn_end(tmp_path: Path) -> None:
+    """A flipped bit before the last two transactions is damage; SQLite would drop them silently."""
     file = killed(tmp_path / "some.sqlite", rows=ROWS)
     whole = log(file).read_bytes()
     rng = np.random.default_rng(4)
-    # The two longest rows take less than 8 frames.
+    # The two longest rows take fewer than 8 frames.
     end = len(whole) - 8 * (FRAME_HEADER + 4096)
     for at, place in enumerate(rng.integers(HEADER, end, size=12)):
         log(file).write_bytes(whole)
@@ -67,8 +67,8 @@ def test_damage_is_told_from_a_torn_end(tmp_path: Path) -> None:
         assert report.usable == taken_by_sqlite(file, tmp_path / str(at)), place
 
 
-def test_sectors_that_were_never_written_are_no_damage(tmp_path: Path) -> None:
-    """Behind a torn end: headers with the log's salts, and anything for all the rest."""
+def test_unwritten_sectors_are_not_damage(tmp_path: Path) -> None:
+    """Frames after a torn end that have the log's salts but random content are not damage."""
     file = killed(tmp_path / "some.sqlite", rows=ROWS)
     whole = log(file).read_bytes()
     frame = FRAME_HEADER + 4096
@@ -85,8 +85,8 @@ def test_sectors_that_were_never_written_are_no_damage(tmp_path: Path) -> None:
     assert report.usable == taken_by_sqlite(file, tmp_path / "copy")
 
 
-def test_a_damaged_beginning_is_damage(tmp_path: Path) -> None:
-    """SQLite would take the whole log for empty."""
+def test_a_damaged_log_header_is_damage(tmp_path: Path) -> None:
+    """A damaged log header counts as damage; SQLite would treat the whole log as empty."""
     file = killed(tmp_path / "some.sqlite")
     for place in (0, 9, 20, 31):
         whole = log(file).read_bytes()
@@ -95,8 +95,8 @@ def test_a_damaged_beginning_is_damage(tmp_path: Path) -> None:
         log(file).write_bytes(whole)
 
 
-def test_what_an_earlier_log_left_behind_is_no_damage(tmp_path: Path) -> None:
-    """A log that was begun anew has old frames at its end, under other salts."""
+def test_frames_of_an_earlier_log_are_not_damage(tmp_path: Path) -> None:
+    """Frames that an earlier log left at the end of a restarted one are not damage."""
     file = killed(tmp_path / "some.sqlite", rows=30)
     with closing(sqlite3.connect(file)) as connection:
         connection.execute("PRAGMA wal_checkpoint(RESTART)")
@@ -112,14 +112,14 @@ def test_what_an_earlier_log_left_behind_is_no_damage(tmp_path: Path) -> None:
 
 
 def inspect_log_of_copy(file: Path, folder: Path) -> LogReport:
-    """Look at a log that this process has open, through a copy."""
+    """Inspect a copy of a log that this process has open."""
     folder.mkdir()
     shutil.copyfile(log(file), folder / "some-wal")
     return inspect_log(folder / "some-wal")
 
 
-def test_no_log_is_in_order(tmp_path: Path) -> None:
-    """Missing or empty."""
+def test_a_missing_or_empty_log_is_not_damage(tmp_path: Path) -> None:
+    """A missing or empty write-ahead log is not damage."""
     (tmp_path / "empty-wal").touch()
     assert not inspect_log(tmp_path / "empty-wal").damaged
     assert not inspect_log(tmp_path / "missing-wal").damaged

@@ -1,4 +1,4 @@
-"""One owner for the data: what its lock survives, what ends it, and what it says of the owner."""
+"""Tests of data ownership: one process at a time, its lock, and what is reported of the owner."""
 
 import os
 import shutil
@@ -53,7 +53,7 @@ print("worker", worker.pid, flush=True)
 
 @contextmanager
 def holder(settings: Settings, more: str = "") -> Iterator[tuple[int, list[int]]]:
-    """Another process that owns the data: its id, and those of the workers it began."""
+    """Run another process that owns the data; yield its process id and those of its workers."""
     arguments = [str(settings.data_dir), settings.database_url]
     process = subprocess.Popen(
         [sys.executable, "-c", HOLDER.format(more=more), *arguments],
@@ -78,12 +78,15 @@ def holder(settings: Settings, more: str = "") -> Iterator[tuple[int, list[int]]
 
 @pytest.fixture
 def settings(tmp_path: Path) -> Settings:
-    """Data that nobody has."""
+    """Return the settings of a data folder that no process owns."""
     return Settings(data_dir=tmp_path / "data")
 
 
-def test_the_second_is_refused_with_process_port_machine_and_time(settings: Settings) -> None:
-    """And goes on as soon as the first has let go; a folder made for nothing else goes with it."""
+def test_a_second_owner_is_refused_with_details_of_the_first(settings: Settings) -> None:
+    """A second owner is refused with the first one's process, port, machine and start time.
+
+    It succeeds once the first has released the data; a folder created only for the lock is removed.
+    """
     with own_data(settings, port=8321), pytest.raises(Owned) as refused:
         own_data(settings, port=8400)
     said = refused.value.message
@@ -99,10 +102,10 @@ def test_the_second_is_refused_with_process_port_machine_and_time(settings: Sett
 
 
 @pytest.mark.parametrize("more", ["", FORKS, SPAWNS])
-def test_a_killed_owner_holds_nothing_although_its_worker_lives(
+def test_a_killed_owners_lock_is_free_although_its_worker_lives(
     settings: Settings, more: str
 ) -> None:
-    """No forked or spawned worker keeps the lock of a dead server, or loses it before."""
+    """A killed owner's lock is free although a forked or spawned worker of it still runs."""
     with holder(settings, more) as (pid, workers):
         with pytest.raises(Owned, match=f"process id {pid} on port 4711"):
             own_data(settings)
@@ -115,15 +118,15 @@ def test_a_killed_owner_holds_nothing_although_its_worker_lives(
 
 @pytest.mark.parametrize("more", [FORKS, SPAWNS])
 def test_an_owner_keeps_its_lock_when_a_worker_ends(settings: Settings, more: str) -> None:
-    """Whatever the worker inherited or closed."""
+    """An owner keeps its lock when a forked or spawned worker of it ends."""
     with holder(settings, more) as (_, workers):
         os.kill(workers.pop(), signal.SIGKILL)
         with pytest.raises(Owned):
             own_data(settings)
 
 
-def test_every_path_to_a_folder_leads_to_one_lock(tmp_path: Path, settings: Settings) -> None:
-    """A link to the folder, a link to the file of the database, a path through another folder."""
+def test_every_path_to_the_data_leads_to_one_lock(tmp_path: Path, settings: Settings) -> None:
+    """A data folder has one lock, through whatever link or path it or its database is opened."""
     settings.data_dir.mkdir()
     (tmp_path / "link").symlink_to(settings.data_dir)
     (settings.data_dir / "reembody.sqlite").touch()
@@ -136,12 +139,12 @@ def test_every_path_to_a_folder_leads_to_one_lock(tmp_path: Path, settings: Sett
             Settings(data_dir=tmp_path / "other" / ".." / "data"),
             Settings(data_dir=other, database_url=f"sqlite:///{tmp_path}/data/reembody.sqlite"),
             Settings(data_dir=other, database_url=f"sqlite:///{other}/linked.sqlite"),
-            # The folder alone is enough: it holds exports and fits of whoever has it.
+            # The folder alone is enough: its exports and fits belong to the owner.
             Settings(data_dir=tmp_path / "data", database_url=f"sqlite:///{other}/own.sqlite"),
         ):
             with pytest.raises(Owned):
                 own_data(same)
-        # What was refused half-way holds nothing.
+        # A refused owner releases the locks that it already had.
         with own_data(Settings(data_dir=other)):
             pass
 
@@ -151,8 +154,10 @@ def test_every_path_to_a_folder_leads_to_one_lock(tmp_path: Path, settings: Sett
 def test_a_database_with_a_second_hard_link_is_refused(
     tmp_path: Path, settings: Settings, suffix: str, opened: str
 ) -> None:
-    """Also through a symbolic link, and for what lies beside the database. The other name is said,
-    nothing is made, and a copy in its place is taken.
+    """A database file with a second hard link is refused, also when opened by a symbolic link.
+
+    The same holds for its `-wal` and `-shm` files. The error gives the other path, no lock is
+    created, and a copy in place of the second link is accepted.
     """
     settings.data_dir.mkdir()
     other = tmp_path / "other"
@@ -178,8 +183,8 @@ def test_a_database_with_a_second_hard_link_is_refused(
         pass
 
 
-def test_other_names_that_are_far_away_are_only_counted(tmp_path: Path, settings: Settings) -> None:
-    """They are not looked for through the whole disk; how to find them is said."""
+def test_distant_hard_links_are_only_counted(tmp_path: Path, settings: Settings) -> None:
+    """Hard links far from the data folder are counted, and the error says how to find them."""
     settings.data_dir.mkdir()
     file = settings.data_dir / "reembody.sqlite"
     file.touch()
@@ -191,8 +196,8 @@ def test_other_names_that_are_far_away_are_only_counted(tmp_path: Path, settings
     assert f"-inum {file.stat().st_ino}" in refused.value.remedy
 
 
-def test_a_command_is_waited_for_and_a_server_is_not(settings: Settings) -> None:
-    """A server that starts while somebody verifies a session does not fail."""
+def test_an_owner_waits_for_a_command_but_not_for_a_server(settings: Settings) -> None:
+    """A new owner waits for a command that has the lock, but not for a server."""
     first = own_data(settings, "verify")
     threading.Timer(0.3, first.release).start()
     with own_data(settings):
@@ -202,8 +207,8 @@ def test_a_command_is_waited_for_and_a_server_is_not(settings: Settings) -> None
         assert time.monotonic() - began_s < 2.0
 
 
-def test_a_lock_file_that_was_removed_is_made_and_held_again(settings: Settings) -> None:
-    """`rm -r data/*` beside a running server: its watch takes the new file before anybody else."""
+def test_a_removed_lock_file_is_recreated(settings: Settings) -> None:
+    """An owner whose lock file was removed recreates and locks it at its next check."""
     background = Background(Clock())
     with own_data(settings) as own:
         watch = OwnerWatch(own, background, _never)
@@ -214,8 +219,8 @@ def test_a_lock_file_that_was_removed_is_made_and_held_again(settings: Settings)
     assert background.failing() == ()
 
 
-def test_an_owner_whose_data_another_has_taken_ends(settings: Settings) -> None:
-    """Health names it, and the server is asked to end: two are worse than none."""
+def test_an_owner_that_lost_its_data_shuts_down(settings: Settings) -> None:
+    """A server whose data another process has taken reports it in its health and shuts down."""
     background, ended = Background(Clock()), []
     with own_data(settings) as own:
         watch = OwnerWatch(own, background, lambda: ended.append(True))
@@ -226,8 +231,8 @@ def test_an_owner_whose_data_another_has_taken_ends(settings: Settings) -> None:
     assert [one.name for one in background.failing()] == ["owner"]
 
 
-def test_a_full_disk_keeps_nobody_from_owning(settings: Settings) -> None:
-    """The text may be missing then; the lock counts, and says so without the text."""
+def test_a_lock_without_its_text_still_counts(settings: Settings) -> None:
+    """A lock file without text, as a full disk leaves it, still refuses a second owner."""
     settings.data_dir.mkdir()
     owner = Owner.myself("serve", 1)
     held = FolderLock(settings.data_dir, owner)
@@ -237,15 +242,19 @@ def test_a_full_disk_keeps_nobody_from_owning(settings: Settings) -> None:
     held.release()
 
 
-def test_a_path_that_is_a_file_is_refused_in_a_sentence(tmp_path: Path) -> None:
-    """A data folder cannot be made there."""
+def test_a_data_folder_that_is_a_file_is_refused(tmp_path: Path) -> None:
+    """A data folder whose path is a file is refused with a readable error."""
     (tmp_path / "file").touch()
     with pytest.raises(NotDurable, match="cannot be locked"):
         own_data(Settings(data_dir=tmp_path / "file"))
 
 
-def test_what_reads_works_beside_an_owner_who_has_prepared(tmp_path: Path) -> None:
-    """It prepares nothing then; beside one who is still at it, it says so."""
+def test_a_reader_works_beside_an_owner_that_has_prepared(tmp_path: Path) -> None:
+    """A reading command works beside an owner once the owner has prepared the database.
+
+    Without an owner it prepares the database itself; beside one that is still preparing it is
+    refused.
+    """
     settings, prepared = Settings(data_dir=tmp_path), []
 
     def read() -> None:
@@ -265,7 +274,7 @@ def test_what_reads_works_beside_an_owner_who_has_prepared(tmp_path: Path) -> No
 def test_a_postgres_database_has_one_owner_whatever_the_folder(
     tmp_path: Path, postgres_url: str
 ) -> None:
-    """A lock of a session of its own: refused with process and port, free once it is killed."""
+    """A PostgreSQL database has one owner, whatever the data folders, until that is killed."""
     first = Settings(data_dir=tmp_path / "a", database_url=postgres_url)
     second = Settings(data_dir=tmp_path / "b", database_url=postgres_url)
     with holder(first) as (pid, _):
@@ -278,10 +287,8 @@ def test_a_postgres_database_has_one_owner_whatever_the_folder(
             pass
 
 
-def test_a_lost_lock_of_postgres_is_taken_again_or_given_up(
-    tmp_path: Path, postgres_url: str
-) -> None:
-    """Where the connection was ended; if somebody was quicker, this server ends."""
+def test_a_lost_postgres_lock_is_retaken_or_given_up(tmp_path: Path, postgres_url: str) -> None:
+    """A server that lost its PostgreSQL lock retakes it, or shuts down if another has it."""
     background, ended = Background(Clock()), []
     own = own_data(Settings(data_dir=tmp_path / "a", database_url=postgres_url))
     other = Settings(data_dir=tmp_path / "b", database_url=postgres_url)
@@ -325,7 +332,7 @@ def _wait_for_end(pid: int) -> None:
     give_up_s = time.monotonic() + 10.0
     while time.monotonic() < give_up_s:
         process = Path(f"/proc/{pid}")
-        # Its first thread may be gone before the others, who still hold its files.
+        # Its first thread may end before the others, which still hold its files open.
         if not process.exists() or (
             "State:\tZ" in (process / "status").read_text()
             and len(list((process / "task").iterdir())) == 1

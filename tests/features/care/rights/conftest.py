@@ -1,4 +1,4 @@
-"""The real server on each engine, as the headset's tests run it, for participants' rights."""
+"""The real server on each engine, as in the tests of the headset, for participants' rights."""
 
 from tests.features.record.headset.conftest import site
 

@@ -1,4 +1,4 @@
-"""Copies that leave the database are on record, and an erasure lists them."""
+"""Tests that copies of the data are recorded, and that an erasure lists them."""
 
 import io
 import json
@@ -20,14 +20,14 @@ from tests.platform.test_incomplete_files import KILLED
 
 
 def copies(site: Site) -> list[Json]:
-    """The copies of the study, newest first."""
+    """Return the recorded copies of the study, newest first."""
     listed: list[Json] = ok(site.operator.get(f"/api/studies/{STUDY}/copies"))
     return listed
 
 
 @pytest.mark.one_engine
-def test_every_way_out_is_on_record(site: Site, tmp_path: Path) -> None:
-    """An export in the browser and by command, a backup, a participant's own copy."""
+def test_every_kind_of_copy_is_recorded(site: Site, tmp_path: Path) -> None:
+    """Browser export, command-line export, backup and a participant's own copy are all recorded."""
     visit = make_visit(site, "copied-1")
     before = len(copies(site))
     ok_bytes(site, f"/api/studies/{STUDY}/export?kind=people")
@@ -49,8 +49,12 @@ def test_every_way_out_is_on_record(site: Site, tmp_path: Path) -> None:
     assert {one["id"] for one in made} <= {one["id"] for one in held}
 
 
-def test_an_erasure_lists_the_copies_that_may_hold_the_data(site: Site) -> None:
-    """Not those of other kinds of sessions, nor of other people; each is marked once."""
+def test_an_erasure_lists_the_copies_that_may_contain_the_data(site: Site) -> None:
+    """An erasure lists the copies that may contain the participant's data, and no others.
+
+    Copies of other kinds of sessions or of other participants are left out. Marking a copy as
+    destroyed twice has no further effect.
+    """
     visit, other = make_visit(site, "copied-2"), make_visit(site, "copied-3")
     ok_bytes(site, f"/api/studies/{STUDY}/export?kind=simulated")
     ok_bytes(site, f"/api/studies/{STUDY}/export?kind=all")
@@ -69,11 +73,11 @@ def test_an_erasure_lists_the_copies_that_may_hold_the_data(site: Site) -> None:
     error(site.operator.post("/api/copies/nothing/destroyed"), 404, "not_found")
 
 
-def test_an_erasure_knows_what_is_half_made(site: Site, tmp_path: Path) -> None:
-    """What a crash left goes; what is being made saw them, and is listed as a copy."""
+def test_an_erasure_covers_incomplete_files(site: Site, tmp_path: Path) -> None:
+    """An erasure deletes incomplete files left by a crash and lists an unfinished export."""
     visit = make_visit(site, "copied-6")
     site.command(visit.session_id, "withdraw", reason="enough")
-    # Notes lie beside the database, which is not in the server's data folder here.
+    # Notes are stored next to the database, which is not in the server's data folder here.
     file = site.database.engine.url.database if site.database.is_sqlite else None
     data = Path(file).parent if file else site.server.data_dir
     subprocess.run(
@@ -92,8 +96,8 @@ def test_an_erasure_knows_what_is_half_made(site: Site, tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_participants_own_copy_holds_everything_in_their_words(site: Site) -> None:
-    """A page with wordings, answers, scores, notes and consent, and the data with every sample."""
+def test_a_participants_own_copy_contains_all_their_data(site: Site) -> None:
+    """A participant's own copy contains all of their answers, notes, consent and samples."""
     visit, other = make_visit(site, "copied-4"), make_visit(site, "copied-5")
     site.command(visit.session_id, "note", text="<script>alert(1)</script>")
     content = ok_bytes(site, f"/api/studies/{STUDY}/participants/{visit.participant_id}/access")
@@ -117,7 +121,7 @@ def test_a_participants_own_copy_holds_everything_in_their_words(site: Site) -> 
 
 
 def ok_bytes(site: Site, path: str) -> bytes:
-    """The body of a download that went well."""
+    """Return the body of a successful download."""
     answer = site.operator.get(path)
     assert answer.is_success, answer.text
     return answer.content

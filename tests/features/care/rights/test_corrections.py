@@ -1,4 +1,4 @@
-"""Correcting answers: the first one is kept, the newest counts everywhere."""
+"""Tests of corrections: the first answer is kept, and the newest counts everywhere."""
 
 import csv
 import io
@@ -19,13 +19,13 @@ from tests.features.record.headset.site import Site
 
 
 def forms(site: Site, visit: Visit) -> dict[str, Json]:
-    """The stored forms of a visit, by instrument."""
+    """Return the stored forms of a visit, by instrument."""
     stored = ok(site.operator.get(f"/api/sessions/{visit.session_id}/answers"))
     return {form["instrument"]: form for form in stored}
 
 
 def correct(site: Site, visit: Visit, form: Json, item: str, value: object) -> Json:
-    """Correct an answer for a reason; the form afterwards."""
+    """Correct an answer with a reason; return the corrected form."""
     path = f"/api/sessions/{visit.session_id}/submissions/{form['submission_id']}/corrections"
     body = {"item": item, "value": value, "reason": "They said so afterwards."}
     after: Json = ok(site.operator.post(path, json=body))
@@ -33,14 +33,14 @@ def correct(site: Site, visit: Visit, form: Json, item: str, value: object) -> J
 
 
 def exported(site: Site, name: str) -> list[dict[str, str]]:
-    """A table of a new export."""
+    """Return the rows of one table of a new export."""
     archive = site.operator.get(f"/api/studies/{STUDY}/export?kind=people").content
     with zipfile.ZipFile(io.BytesIO(archive)) as files:
         return list(csv.DictReader(io.StringIO(files.read(f"{name}.csv").decode())))
 
 
 def test_the_newest_value_counts_and_every_earlier_one_is_kept(site: Site) -> None:
-    """In the answers, in the scores, in the log, and in an export; the answer row never changes."""
+    """A corrected answer has its newest value in forms and exports; earlier values are kept."""
     visit = make_visit(site, "corrected-1")
     form = forms(site, visit)["karas2020"]
     item = "q1"
@@ -67,8 +67,8 @@ def test_the_newest_value_counts_and_every_earlier_one_is_kept(site: Site) -> No
     assert kept[0]["by"] == "account:admin"
 
 
-def test_scores_are_those_of_the_answers_that_count(site: Site) -> None:
-    """Computed anew by the instrument's formulas; the first ones follow from the answer rows."""
+def test_scores_are_recomputed_from_corrected_answers(site: Site) -> None:
+    """Scores are recomputed from corrected answers; the stored answers give the first scores."""
     visit = make_visit(site, "corrected-2")
     form = forms(site, visit)["karas2020"]
     item = "q1"
@@ -88,7 +88,7 @@ def test_scores_are_those_of_the_answers_that_count(site: Site) -> None:
 
 @pytest.mark.one_engine
 def test_the_headset_uses_corrected_demographics(site: Site) -> None:
-    """A left-hander who was taken for a right-hander gets the mirrored boxes."""
+    """The headset gets a participant's handedness as corrected."""
     visit = make_visit(site, "corrected-3")
     form = forms(site, visit)["demographics"]
     with site.database.reading() as db:
@@ -101,8 +101,8 @@ def test_the_headset_uses_corrected_demographics(site: Site) -> None:
 
 
 @pytest.mark.one_engine
-def test_the_log_holds_only_a_salted_hash(site: Site) -> None:
-    """Value and reason stand beside it, and the hash is theirs."""
+def test_the_event_log_has_only_a_salted_hash_of_a_correction(site: Site) -> None:
+    """The event log has only a salted hash of a correction's value and reason."""
     visit = make_visit(site, "corrected-4")
     form = forms(site, visit)["demographics"]
     correct(site, visit, form, "occupation", "a secret agent")
@@ -118,8 +118,8 @@ def test_the_log_holds_only_a_salted_hash(site: Site) -> None:
 
 
 @pytest.mark.one_engine
-def test_what_is_not_an_answer_is_refused(site: Site) -> None:
-    """Out of range, of another kind, of no such item, without a reason, or no change at all."""
+def test_an_invalid_correction_is_refused(site: Site) -> None:
+    """A correction with an invalid value or item, no reason, or no change is refused."""
     visit = make_visit(site, "corrected-5")
     form = forms(site, visit)["karas2020"]
     item = "q1"
@@ -141,8 +141,8 @@ def test_what_is_not_an_answer_is_refused(site: Site) -> None:
 
 
 @pytest.mark.one_engine
-def test_an_answer_can_be_taken_out(site: Site) -> None:
-    """Then it counts as left out, and scores that need it have no value."""
+def test_an_answer_can_be_removed_by_a_correction(site: Site) -> None:
+    """An answer corrected to null counts as left out, and scores that need it have no value."""
     visit = make_visit(site, "corrected-7")
     form = forms(site, visit)["karas2020"]
     item = "q1"

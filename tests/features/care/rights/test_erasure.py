@@ -1,4 +1,4 @@
-"""Erasing a participant: what goes, what stays, and when it is refused."""
+"""Tests of erasure: what is removed, what remains, and when it is refused."""
 
 import hashlib
 import json
@@ -38,19 +38,22 @@ from tests.features.record.headset.site import Site
 
 
 def mine(code: str) -> str:
-    """A code that holds the canary and is not taken yet."""
+    """Return a participant code that contains the canary."""
     return f"{CANARY}-{code}"
 
 
 def withdrawn(site: Site, code: str) -> Visit:
-    """A visit that its participant broke off."""
+    """Return a visit whose participant withdrew."""
     visit = make_visit(site, mine(code))
     site.command(visit.session_id, "withdraw", reason=f"{visit.code} hurts")
     return visit
 
 
 def test_nothing_of_the_person_is_left_in_any_table(site: Site) -> None:
-    """Every text, JSON and byte column of every table is searched; the skeleton stays."""
+    """After an erasure no text, JSON or byte column of any table contains the participant's data.
+
+    The session with its status, its event chain and the audit trail remain.
+    """
     visit = withdrawn(site, "tables")
     assert len(in_tables(visit, site.database.engine)) >= 5
     erased = erase(site, visit, "withdrawn")
@@ -74,8 +77,8 @@ def test_nothing_of_the_person_is_left_in_any_table(site: Site) -> None:
 
 
 @pytest.mark.one_engine
-def test_no_hash_can_be_tried_out(site: Site) -> None:
-    """A few answers on a scale of seven could be guessed from a bare hash; salts are gone."""
+def test_erased_answers_cannot_be_guessed_from_their_hash(site: Site) -> None:
+    """After an erasure the salts are gone, so answers cannot be guessed from the hashes left."""
     visit = make_visit(site, mine("salt"))
     with site.database.reading() as db:
         forms = db.scalars(
@@ -87,7 +90,7 @@ def test_no_hash_can_be_tried_out(site: Site) -> None:
         karas = next(form for form in answers if form["instrument"] == "karas2020")
         stored = next(form for form in forms if form.id == karas["submission_id"])
         event = _event_of(site, visit, stored.id)
-        # With the salt the hash tells the answers: that is why it must go.
+        # With the salt the answers can be guessed from the hash: this is why salts must be erased.
         guesses = list(_guesses(karas["answers"]))
         assert event["content_hash"] in {_hash(stored.salt or "", one) for one in guesses}
     site.command(visit.session_id, "withdraw", reason="enough")
@@ -132,7 +135,7 @@ def _event_of(site: Site, visit: Visit, submission_id: str) -> Json:
 
 
 def _guesses(answers: Json) -> Iterator[Json]:
-    """What somebody would try who knows all but the first answer."""
+    """Yield every possible form with the first answer varied and all others known."""
     first = next(item for item, value in answers.items() if isinstance(value, float))
     whole = {
         item: int(value) if isinstance(value, float) else value for item, value in answers.items()
@@ -146,8 +149,8 @@ def _hash(salt: str, answers: Json) -> str:
 
 
 @pytest.mark.one_engine
-def test_it_is_refused_while_a_session_runs_and_for_another_code(site: Site) -> None:
-    """Nothing has changed then; afterwards it can be done once."""
+def test_an_erasure_is_refused_while_a_session_runs(site: Site) -> None:
+    """An erasure is refused during a session, for a wrong code or reason, and a second time."""
     visit = make_visit(site, mine("rules"))
     path = f"/api/studies/{STUDY}/participants/{visit.participant_id}/erasure"
     body = {"confirm": visit.code, "reason_code": "requested"}
@@ -163,8 +166,8 @@ def test_it_is_refused_while_a_session_runs_and_for_another_code(site: Site) -> 
     error(site.operator.post(path, json=again), 409, "conflict")
 
 
-def test_nothing_comes_back_afterwards(site: Site) -> None:
-    """No note, no correction, no reconnecting headset, no new session under the old tombstone."""
+def test_no_data_can_be_added_after_an_erasure(site: Site) -> None:
+    """After an erasure notes, corrections, headset data and new sessions for it are refused."""
     visit = withdrawn(site, "after")
     forms = ok(site.operator.get(f"/api/sessions/{visit.session_id}/answers"))
     erase(site, visit)
@@ -189,8 +192,8 @@ def test_nothing_comes_back_afterwards(site: Site) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_session_that_was_only_planned_is_over_with_it(site: Site) -> None:
-    """Its slot is free again, and nobody can start it under a tombstone."""
+def test_an_erasure_ends_a_planned_session(site: Site) -> None:
+    """Erasing the participant of a planned session ends that session as withdrawn."""
     session_id = site.join(kind="people", participant_code=mine("planned"))
     visit = Visit(session_id, participant_of(site, session_id)["id"], mine("planned"))
     erase(site, visit, "mistake")
@@ -200,8 +203,8 @@ def test_a_session_that_was_only_planned_is_over_with_it(site: Site) -> None:
     assert types == ["session_ended", "data_erased"]
 
 
-def test_a_completed_session_takes_nothing_more_either(site: Site) -> None:
-    """Not from a headset that brings what it kept, although a finished session usually does."""
+def test_a_completed_session_accepts_no_data_after_an_erasure(site: Site) -> None:
+    """After an erasure a completed session refuses data that its headset still has."""
     session_id = site.join(kind="people", participant_code=mine("done"))
     view = site.command(session_id, "start")
     site.command(session_id, "complete_step", paper_consent=SHEET)
@@ -218,10 +221,10 @@ def test_a_completed_session_takes_nothing_more_either(site: Site) -> None:
     assert in_tables(visit, site.database.engine) == {}
 
 
-def test_a_mark_that_cannot_be_removed_fails_nothing(
+def test_an_erasure_mark_that_cannot_be_removed_is_tolerated(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """What was done stays done; the bytes are overwritten once more at the next start."""
+    """An erasure mark that cannot be deleted raises no error and is cleared by a later attempt."""
     settings = Settings(data_dir=tmp_path)
     mark_erasure(settings)
 

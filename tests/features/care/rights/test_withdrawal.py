@@ -1,4 +1,4 @@
-"""Withdrawing stops the recording at once."""
+"""Tests that a withdrawal stops the recording immediately."""
 
 import json
 
@@ -13,7 +13,7 @@ from tests.wire.samples import message, standing
 
 
 def frames_of(site: Site, session_id: str) -> tuple[int, int]:
-    """How many frames of a session are stored, and how far its streams are said to be."""
+    """Return the stored frames of a session, and the number that its streams report."""
     with site.database.reading() as db:
         stored = sum(
             db.scalar(
@@ -33,8 +33,8 @@ def frames_of(site: Site, session_id: str) -> tuple[int, int]:
     return stored, told or 0
 
 
-def test_movement_that_comes_after_it_is_refused_and_not_stored(site: Site) -> None:
-    """The headset hears that it is over, then why nothing more is taken; others go on."""
+def test_movement_after_a_withdrawal_is_refused(site: Site) -> None:
+    """Movement sent after a withdrawal is refused; other sessions are unaffected."""
     visit, other = make_visit(site, "gone-1"), make_visit(site, "stays-1")
     with site.headset(visit.headset_token) as headset, site.headset(other.headset_token) as beside:
         site.command(visit.session_id, "withdraw", reason="enough")
@@ -52,8 +52,8 @@ def test_movement_that_comes_after_it_is_refused_and_not_stored(site: Site) -> N
 
 
 @pytest.mark.one_engine
-def test_a_headset_that_comes_back_is_told_at_its_hello(site: Site) -> None:
-    """What it kept in its journal is not taken either."""
+def test_a_headset_reconnecting_after_a_withdrawal_is_refused(site: Site) -> None:
+    """A headset that reconnects after a withdrawal is refused at its hello."""
     visit = make_visit(site, "gone-2")
     site.command(visit.session_id, "withdraw", reason="enough")
     with site.socket(visit.headset_token) as socket:
@@ -62,8 +62,8 @@ def test_a_headset_that_comes_back_is_told_at_its_hello(site: Site) -> None:
 
 
 @pytest.mark.one_engine
-def test_an_aborted_session_still_takes_what_its_headset_kept(site: Site) -> None:
-    """The lab broke it off, not the participant: nothing is lost."""
+def test_an_aborted_session_accepts_its_headsets_backlog(site: Site) -> None:
+    """A session that the lab aborted still stores the movement that its headset had kept."""
     visit = make_visit(site, "aborted-1")
     site.command(visit.session_id, "abort", reason="the headset failed")
     with site.headset(visit.headset_token) as headset:
@@ -72,8 +72,8 @@ def test_an_aborted_session_still_takes_what_its_headset_kept(site: Site) -> Non
 
 
 @pytest.mark.one_engine
-def test_the_tablet_shows_the_last_screen_and_is_asked_nothing_more(site: Site) -> None:
-    """A form that was under way is not taken any more."""
+def test_the_tablet_shows_the_final_screen_after_a_withdrawal(site: Site) -> None:
+    """After a withdrawal the tablet shows the final screen and its form is refused."""
     visit = make_visit(site, "gone-3")
     path = f"/api/sessions/{visit.session_id}"
     code = ok(site.operator.post(f"{path}/pairings", json={"device": "tablet"}))["code"]

@@ -1,4 +1,4 @@
-"""A visit that leaves a canary wherever a participant leaves something, and the search for it."""
+"""A visit that leaves a canary text wherever a participant leaves data, and searches for it."""
 
 import hashlib
 import io
@@ -37,7 +37,7 @@ SHEET = {"place": "Folder A, sheet 12", "reason": "No tablet in this test"}
 
 @dataclass(frozen=True)
 class Visit:
-    """A visit. Whatever its participant left behind holds their code, and frames `height_m`."""
+    """A visit; its texts contain the participant's code and its frames their `height_m`."""
 
     session_id: str
     participant_id: str
@@ -46,17 +46,17 @@ class Visit:
 
     @property
     def needles(self) -> tuple[bytes, bytes]:
-        """What to search for: the code, and two numbers side by side in single precision."""
+        """What to search for: the code, and its `height_m` twice in single precision."""
         return self.code.encode(), np.float32(height_m(self.code)).tobytes() * 2
 
 
 def height_m(code: str) -> float:
-    """A height of the hips that nobody has: its bits mark the frames of a participant."""
+    """Return an impossible hip height (m) that marks the frames of a participant's code."""
     return 1000.0 + int(hashlib.sha256(code.encode()).hexdigest()[:6], 16) / 7919
 
 
 def make_visit(site: Site, code: str = CANARY) -> Visit:
-    """Notes, answers, names, touches and movement of somebody who is in the middle of a session."""
+    """Run part of a session with notes, answers, device names, contacts and movement of a code."""
     session_id = site.join(kind="people", participant_code=code)
     _pair_tablet(site, session_id, name=code)
     site.command(session_id, "start")
@@ -79,13 +79,13 @@ def make_visit(site: Site, code: str = CANARY) -> Visit:
 
 
 def participant_of(site: Site, session_id: str) -> Json:
-    """The participant of a session, as the page lists them."""
+    """Return the participant of a session, as the participants page lists them."""
     listed: list[Json] = ok(site.operator.get(f"/api/studies/{STUDY}/participants"))
     return next(one for one in listed if session_id in [own["id"] for own in one["sessions"]])
 
 
 def submit(site: Site, session_id: str, **given: object) -> Json:
-    """Fill in the form that is due; the items that are not given get their lowest answer."""
+    """Submit the form that is due; items that are not given get their lowest answer."""
     due = ok(site.operator.get(f"/api/sessions/{session_id}/administration"))
     body = _filled(due, given)
     receipt: Json = ok(site.operator.post(f"/api/sessions/{session_id}/submissions", json=body))
@@ -108,7 +108,7 @@ def _pair_tablet(site: Site, session_id: str, name: str) -> None:
 
 
 def _refused_form(site: Site, session_id: str, code: str) -> None:
-    """Other answers to the form that is stored: they are kept beside it."""
+    """Submit other answers to a form that is already stored; they are kept as a refused form."""
     forms = ok(site.operator.get(f"/api/sessions/{session_id}/answers"))
     body = {
         "idempotency_key": key(),
@@ -155,7 +155,7 @@ def _frames(code: str) -> "np.ndarray[tuple[int, int], np.dtype[np.float32]]":
 
 
 def in_files(visit: Visit, paths: Iterable[Path]) -> dict[str, int]:
-    """How often a visit is found in files, whatever they are; those without it are left out."""
+    """Return how often a visit's data occur in each file; files without them are left out."""
     found = {}
     for path in paths:
         if path.is_file():
@@ -166,7 +166,7 @@ def in_files(visit: Visit, paths: Iterable[Path]) -> dict[str, int]:
 
 
 def in_bytes(visit: Visit, data: bytes) -> int:
-    """How often a visit is found in some bytes, also inside of an archive."""
+    """Return how often a visit's data occur in some bytes, including inside ZIP archives."""
     count = sum(data.count(needle) for needle in visit.needles)
     if data[:4] == b"PK\x03\x04":
         printed = f"{height_m(visit.code):.2f}".encode()
@@ -179,7 +179,7 @@ def in_bytes(visit: Visit, data: bytes) -> int:
 
 
 def in_tables(visit: Visit, engine: Engine) -> dict[str, int]:
-    """In how many rows a visit is found, by table and column: every text, JSON and byte string."""
+    """Return in how many rows a visit's data occur, by table and text, JSON or byte column."""
     found: dict[str, int] = {}
     with engine.connect() as connection:
         for table in _tables(engine):
@@ -197,7 +197,7 @@ def in_tables(visit: Visit, engine: Engine) -> dict[str, int]:
 
 
 def _tables(engine: Engine) -> list[Table]:
-    """As the database tells of them, asked once: a test never changes the schema."""
+    """Return the tables of the database, cached because tests never change the schema."""
     url = str(engine.url)
     if url not in _REFLECTED:
         metadata = MetaData()
@@ -210,7 +210,7 @@ _REFLECTED: dict[str, list[Table]] = {}
 
 
 def _places(visit: Visit, column: Column[Any], dialect: str) -> Iterator[ColumnElement[int]]:
-    """Where each needle is in a column, counted from 1; nothing for a column of numbers."""
+    """Yield the 1-based position of each needle in a column; nothing for numeric columns."""
     if isinstance(column.type, LargeBinary):
         find = func.instr if dialect == "sqlite" else func.position
         for needle in visit.needles:

@@ -1,1 +1,1 @@
-"""What takes how much room."""
+"""Tests of disk usage."""

@@ -1,4 +1,4 @@
-"""What takes how much room, on both engines: sums that fit, shares that follow, a forecast."""
+"""Tests of disk usage on both engines: totals, shares of studies and sessions, and the forecast."""
 
 import pytest
 from sqlalchemy import text
@@ -15,8 +15,8 @@ FRAMES = {"ROOM-1": 1800, "ROOM-2": 900, "ROOM-3": 0}
 
 
 @pytest.fixture(scope="module")
-def room(lab: Lab) -> Json:
-    """What is told of three completed sessions of people, with unlike lengths of movement."""
+def usage(lab: Lab) -> Json:
+    """Return the disk usage of three completed sessions with different amounts of movement."""
     with lab.database.writing() as db:
         for code, frames in FRAMES.items():
             session = build_session(db, SessionSpec(code))
@@ -28,62 +28,62 @@ def room(lab: Lab) -> Json:
     return told
 
 
-def test_every_table_belongs_somewhere() -> None:
-    """A table of a new migration has to be named, once."""
+def test_every_table_is_in_exactly_one_group() -> None:
+    """Every table of the database is listed in exactly one group of the disk usage."""
     named = [table for family in FAMILIES.values() for table in family]
     assert sorted(named) == sorted({*Base.metadata.tables, "alembic_version"})
     assert len(FAMILY_OF) == len(named)
 
 
-def test_the_parts_make_the_whole(lab: Lab, room: Json) -> None:
-    """Tables and unused pages are the file, to the byte, on SQLite; PostgreSQL tells its own."""
-    parts = {part["place"]: part["bytes"] for part in room["parts"]}
+def test_the_parts_add_up_to_the_database_size(lab: Lab, usage: Json) -> None:
+    """On SQLite, tables and unused pages add up to the size of the database file."""
+    parts = {part["place"]: part["bytes"] for part in usage["parts"]}
     assert parts.keys() >= FAMILIES.keys()
-    if room["engine"] == "sqlite":
+    if usage["engine"] == "sqlite":
         with lab.database.reading() as db:
             pages = int(db.scalar(text("PRAGMA page_count")) or 0)
             size = int(db.scalar(text("PRAGMA page_size")) or 0)
         inside = sum(parts[place] for place in parts if place in (*FAMILIES, "unused"))
-        assert (room["method"], inside) == ("dbstat", pages * size)
+        assert (usage["method"], inside) == ("dbstat", pages * size)
     else:
         with lab.database.reading() as db:
             told = db.scalar(text("SELECT pg_total_relation_size('telemetry_chunks')"))
-        assert room["method"] == "pg_total_relation_size"
+        assert usage["method"] == "pg_total_relation_size"
         assert told is not None
         assert parts["samples"] >= told
 
 
-def test_a_session_takes_what_was_recorded_in_it(room: Json) -> None:
-    """Twice the movement takes about twice the room, and all sessions are in the study's sum."""
-    sizes = {row["participant_code"]: row["bytes"] for row in room["sessions"]}
+def test_a_sessions_size_follows_its_recorded_movement(usage: Json) -> None:
+    """Twice the movement takes about twice the space; sessions add up to their study's size."""
+    sizes = {row["participant_code"]: row["bytes"] for row in usage["sessions"]}
     moved = {code: sizes[code] - sizes["ROOM-3"] for code in FRAMES}
     assert moved["ROOM-1"] == pytest.approx(2 * moved["ROOM-2"], rel=0.1)
-    (study,) = (row for row in room["studies"] if row["key"] == STUDY)
+    (study,) = (row for row in usage["studies"] if row["key"] == STUDY)
     assert study["bytes"] == pytest.approx(sum(sizes.values()), abs=len(sizes))
-    assert [row["bytes"] for row in room["sessions"]] == sorted(sizes.values(), reverse=True)
-    assert room["sessions_total"] == len(FRAMES)
+    assert [row["bytes"] for row in usage["sessions"]] == sorted(sizes.values(), reverse=True)
+    assert usage["sessions_total"] == len(FRAMES)
 
 
-def test_the_forecast_is_the_free_room_over_the_mean(lab: Lab, room: Json) -> None:
-    """Free space above the pre-flight's threshold by the mean of the sessions with movement.
+def test_the_forecast_is_free_space_over_mean_session_size(lab: Lab, usage: Json) -> None:
+    """The forecast is the free space above the threshold, divided by the mean size of a session.
 
-    One without movement is a fraction of the size of the next, and would promise room for many.
+    Sessions without movement are left out of the mean: they are a fraction of the size of the next.
     """
-    disk = room["disk"]
+    disk = usage["disk"]
     assert disk["warn_below_bytes"] == lab.context.settings.low_disk_bytes
-    (study,) = (row for row in room["studies"] if row["key"] == STUDY)
+    (study,) = (row for row in usage["studies"] if row["key"] == STUDY)
     assert (study["measured"], study["measured_kind"]) == (2, "people")
-    sizes = {row["participant_code"]: row["bytes"] for row in room["sessions"]}
+    sizes = {row["participant_code"]: row["bytes"] for row in usage["sessions"]}
     assert study["mean_bytes"] == pytest.approx((sizes["ROOM-1"] + sizes["ROOM-2"]) / 2, abs=1)
-    if room["engine"] == "postgresql":
+    if usage["engine"] == "postgresql":
         assert (disk["holds_database"], study["room_for"]) == (False, None)
         return
     left = disk["free_bytes"] - disk["warn_below_bytes"]
     assert study["room_for"] == pytest.approx(left / study["mean_bytes"], rel=1e-3)
 
 
-def test_a_full_disk_is_told_with_no_room_left(lab: Lab, room: Json) -> None:
-    """Below the threshold nothing more fits, and the page is warned."""
+def test_a_full_disk_is_reported_with_no_sessions_left(lab: Lab, usage: Json) -> None:
+    """Below the threshold the disk usage reports low space and space for no further session."""
     storage = lab.context.storage
     before, storage.free_bytes = storage.free_bytes, lambda _: 1000
     try:
@@ -93,20 +93,20 @@ def test_a_full_disk_is_told_with_no_room_left(lab: Lab, room: Json) -> None:
     assert told["disk"]["is_low"] is True
     (study,) = (row for row in told["studies"] if row["key"] == STUDY)
     assert study["room_for"] in (0, None)
-    assert told["measured_at"] == room["measured_at"]
+    assert told["measured_at"] == usage["measured_at"]
 
 
-def test_without_dbstat_the_whole_is_still_told(
-    lab: Lab, room: Json, monkeypatch: pytest.MonkeyPatch
+def test_without_dbstat_the_total_is_still_reported(
+    lab: Lab, usage: Json, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A SQLite that has no such table gives the pages of the database; sessions then have none.
+    """A SQLite without `dbstat` still reports the database's total size, without parts.
 
-    PostgreSQL knows its sizes in another way, and goes on telling them.
+    PostgreSQL measures its sizes in another way and is not affected.
     """
     monkeypatch.setattr(tables, "_DBSTAT", text("SELECT name, pgsize FROM no_dbstat"))
     told: Json = ok(lab.operator.get("/api/storage", params={"anew": True}))
     parts = {part["place"]: part["bytes"] for part in told["parts"]}
-    if room["engine"] != "sqlite":
+    if usage["engine"] != "sqlite":
         assert told["method"] == "pg_total_relation_size"
         return
     assert told["method"] == "page_counts"

@@ -1,4 +1,4 @@
-"""The library of instruments over HTTP: reading, checking, storing versions, trying the scoring."""
+"""Tests of the instrument library over HTTP: reading, checking, storing versions and scoring."""
 
 import pytest
 
@@ -28,13 +28,13 @@ EXPERT = dict(
 
 
 def score(lab: Lab, **wish: object) -> Json:
-    """The scoring of a form that is not stored."""
+    """Return the scores of a form that is not stored."""
     result: Json = ok(lab.operator.post("/api/instruments/score", json=wish))
     return result
 
 
-def test_the_library_tells_source_licence_and_use(lab: Lab) -> None:
-    """Every shipped instrument, with where it comes from and who asks it."""
+def test_the_library_lists_source_licence_and_use(lab: Lab) -> None:
+    """The library lists every shipped instrument with its licence and the studies that use it."""
     library = {one["key"]: one for one in ok(lab.operator.get("/api/instruments"))}
     files = sorted((study_configs_dir() / "instruments").glob("*.yaml"))
     assert len(library) == len(files)
@@ -45,8 +45,8 @@ def test_the_library_tells_source_licence_and_use(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_an_instrument_in_full_can_be_drawn(lab: Lab) -> None:
-    """Items, formulas and a form in the shape in which tablets get theirs."""
+def test_an_instrument_has_a_preview_of_its_form(lab: Lab) -> None:
+    """An instrument has a preview of its form, with items and formulas as tablets receive them."""
     detail = ok(lab.operator.get("/api/instruments/karas2020"))
     assert len(detail["preview"]["item_order"]) == 15
     assert detail["preview"]["item_order"][-1] == "problems"
@@ -57,8 +57,8 @@ def test_an_instrument_in_full_can_be_drawn(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_check_previews_or_tells_every_problem(lab: Lab) -> None:
-    """A formula with an unknown name is told with its path and line."""
+def test_a_check_returns_a_preview_or_the_problems(lab: Lab) -> None:
+    """A check of an instrument returns a preview, or each problem with its path and line."""
     fine = ok(lab.operator.post("/api/instruments/check", json={"yaml": OWN}))
     assert (fine["ok"], fine["known"], fine["replaces"]) == (True, False, False)
     assert fine["preview"]["scores"][0]["formula"] == "(calm - tense) / 2"
@@ -73,7 +73,7 @@ def test_a_check_previews_or_tells_every_problem(lab: Lab) -> None:
 
 @pytest.mark.one_engine
 def test_the_experts_answers_score_as_printed(lab: Lab) -> None:
-    """Table 7.2 of Karas (2020): 8, 7, 4 and 1.04, with the recoded values on the way."""
+    """The expert's answers in Karas (2020), table 7.2, give the printed scores 8, 7, 4 and 1.04."""
     result = score(lab, key="karas2020", answers=EXPERT)
     values = {one["key"]: one["value"] for one in result["scores"]}
     assert (values["ownership"], values["agency"], values["location"]) == (8, 7, 4)
@@ -85,8 +85,11 @@ def test_the_experts_answers_score_as_printed(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_half_filled_form_says_what_is_missing(lab: Lab) -> None:
-    """A score without value names its items, through other scores too; a bad answer is told."""
+def test_a_score_without_value_names_the_missing_items(lab: Lab) -> None:
+    """A score without a value names the items it lacks, also those needed by other scores.
+
+    An answer outside the scale is reported as a problem.
+    """
     result = score(lab, yaml=OWN, answers={"calm": 5, "tense": 9, "note": "because"})
     ease, twice = result["scores"]
     assert (ease["value"], ease["missing"], ease["filled_in"]) == (None, ["tense"], "(2 - ?) / 2")
@@ -98,8 +101,8 @@ def test_a_half_filled_form_says_what_is_missing(lab: Lab) -> None:
     error(lab.operator.post("/api/instruments/score", json=wish), 422, "invalid_input")
 
 
-def test_a_new_wording_leaves_the_old_one_to_its_studies(fresh_lab: Lab) -> None:
-    """The stored study still asks the shipped wording; a new version of it asks the new one."""
+def test_a_stored_study_keeps_its_instruments_wording(fresh_lab: Lab) -> None:
+    """A stored study keeps its instrument's wording; its next version uses the newest wording."""
     shipped = ok(fresh_lab.operator.get("/api/instruments/karas2020"))
     changed = (
         shipped["yaml"]

@@ -1,4 +1,4 @@
-"""Writing a study over HTTP: templates, checks with figures, changes of a form, dry runs."""
+"""Tests of editing a study over HTTP: templates, checks, form edits and dry runs."""
 
 import pytest
 
@@ -8,13 +8,13 @@ from tests.features.lab import STUDY, Json, Lab, error, ok
 
 @pytest.fixture(scope="module")
 def yaml(lab: Lab) -> str:
-    """The shipped study's file."""
+    """Return the text of the shipped study's file."""
     return str(ok(lab.operator.get(f"/api/studies/{STUDY}"))["yaml"])
 
 
 @pytest.mark.one_engine
-def test_templates_are_offered_and_not_studies(lab: Lab) -> None:
-    """Four beginnings, each of which checks out; only the shipped study is stored."""
+def test_templates_are_valid_and_are_not_stored_studies(lab: Lab) -> None:
+    """Four templates are offered and pass the check; only the shipped study is stored."""
     templates = ok(lab.operator.get("/api/templates"))
     assert templates[0]["key"] == STUDY
     assert len(templates) == 4
@@ -25,8 +25,8 @@ def test_templates_are_offered_and_not_studies(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_check_tells_what_a_study_asks_for(lab: Lab, yaml: str) -> None:
-    """Three latencies in all 3! orders, twice: 12 people, 7 forms each, 9 minutes set."""
+def test_a_check_summarises_orders_slots_forms_and_duration(lab: Lab, yaml: str) -> None:
+    """Checking the shipped study finds 3 conditions, 6 orders, 12 slots, 7 forms, 9 minutes."""
     summary = ok(lab.operator.post("/api/studies/check", json={"yaml": yaml}))["summary"]
     assert {key: summary[key] for key in ("conditions", "orders", "slots", "administrations")} == {
         "conditions": 3,
@@ -39,8 +39,8 @@ def test_a_check_tells_what_a_study_asks_for(lab: Lab, yaml: str) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_visit_takes_as_long_wherever_one_asks(lab: Lab, yaml: str) -> None:
-    """The study's overview, the editor and the dry run give one figure."""
+def test_the_duration_of_a_visit_is_the_same_everywhere(lab: Lab, yaml: str) -> None:
+    """The study's overview, the editor and the dry run give the same duration of a visit."""
     study = ok(lab.operator.get(f"/api/studies/{STUDY}"))
     summary = ok(lab.operator.post("/api/studies/check", json={"yaml": yaml}))["summary"]
     run = ok(lab.operator.post("/api/studies/timeline", json={"yaml": yaml}))
@@ -50,8 +50,8 @@ def test_a_visit_takes_as_long_wherever_one_asks(lab: Lab, yaml: str) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_broken_file_still_has_its_values(lab: Lab, yaml: str) -> None:
-    """A form can show what is there while there are problems, and where each value stands."""
+def test_an_invalid_file_still_returns_its_values_and_lines(lab: Lab, yaml: str) -> None:
+    """The check of an invalid study file still returns its values and their line numbers."""
     broken = edit(yaml, ("latency_ms: 125", "latency_ms: -125"))
     answer = ok(lab.operator.post("/api/studies/check", json={"yaml": broken}))
     assert not answer["ok"]
@@ -62,8 +62,8 @@ def test_a_broken_file_still_has_its_values(lab: Lab, yaml: str) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_form_changes_a_text_and_nothing_else(lab: Lab, yaml: str) -> None:
-    """One line differs; a change that does not fit is refused with its path."""
+def test_an_edit_changes_only_its_own_line(lab: Lab, yaml: str) -> None:
+    """An edit from the form changes only its own line; one that does not fit is refused."""
     path = ["conditions", 1, "latency_ms"]
     body = {"yaml": yaml, "changes": [{"path": path, "value": 200}]}
     after = ok(lab.operator.post("/api/studies/edit", json=body))["yaml"]
@@ -76,8 +76,8 @@ def test_a_form_changes_a_text_and_nothing_else(lab: Lab, yaml: str) -> None:
     assert refusal["details"][0]["path"] == "conditions[7]"
 
 
-def test_a_dry_run_is_the_slot_that_is_given_out(fresh_lab: Lab) -> None:
-    """The first participant's session has the order, and the steps, of the dry run of slot 0."""
+def test_a_dry_run_of_slot_0_matches_the_first_session(fresh_lab: Lab) -> None:
+    """A dry run of slot 0 has the order and steps of the first participant's session."""
     yaml = ok(fresh_lab.operator.get(f"/api/studies/{STUDY}"))["yaml"]
     dry: Json = ok(fresh_lab.operator.post("/api/studies/timeline", json={"yaml": yaml, "slot": 0}))
     session = fresh_lab.join()
@@ -89,7 +89,7 @@ def test_a_dry_run_is_the_slot_that_is_given_out(fresh_lab: Lab) -> None:
 
 @pytest.mark.one_engine
 def test_a_dry_run_of_any_slot_and_order(lab: Lab, yaml: str) -> None:
-    """Slots beyond the first ledger are those it would grow by; an order is found by its place."""
+    """A dry run works for slots beyond the current ledger and for every order of the design."""
 
     def run(**wish: object) -> Json:
         body = {"yaml": yaml, **wish}

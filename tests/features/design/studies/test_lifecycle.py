@@ -1,4 +1,4 @@
-"""Versions compared, studies copied, put away and taken out again."""
+"""Tests of comparing versions, and of duplicating, archiving and restoring studies."""
 
 import pytest
 
@@ -9,18 +9,18 @@ PATH = f"/api/studies/{STUDY}"
 
 
 def yaml_of(lab: Lab) -> str:
-    """The newest file."""
+    """Return the file of the study's newest version."""
     return str(ok(lab.operator.get(PATH))["yaml"])
 
 
 def add(lab: Lab, *changes: tuple[str, str]) -> None:
-    """A version with words replaced."""
+    """Store a new version of the study with some text replaced."""
     body = {"yaml": edit(yaml_of(lab), *changes)}
     ok(lab.operator.post(f"{PATH}/versions", json=body))
 
 
 def diff(lab: Lab, source: int, target: int) -> Json:
-    """What changed between two versions."""
+    """Return the differences between two versions of the study."""
     answer = lab.operator.get(f"{PATH}/diff", params={"from": source, "to": target})
     found: Json = ok(answer)
     return found
@@ -28,7 +28,7 @@ def diff(lab: Lab, source: int, target: int) -> Json:
 
 @pytest.mark.one_engine
 def test_a_diff_says_whether_balance_is_affected(fresh_lab: Lab) -> None:
-    """Another wording keeps the ledger; another latency begins a new one."""
+    """A diff reports that another latency needs a new ledger, and that other wording does not."""
     add(fresh_lab, ("Acting through", "Living through"))
     add(fresh_lab, ("latency_ms: 125", "latency_ms: 200"))
     words, latency = diff(fresh_lab, 1, 2), diff(fresh_lab, 2, 3)
@@ -45,7 +45,7 @@ def test_a_diff_says_whether_balance_is_affected(fresh_lab: Lab) -> None:
 
 @pytest.mark.one_engine
 def test_a_draft_is_compared_with_the_newest_version(fresh_lab: Lab) -> None:
-    """A comment changes nothing; sessions that keep their version are counted."""
+    """A draft is compared with the newest version; sessions that keep their version are counted."""
     fresh_lab.join()
     same = ok(fresh_lab.operator.post(f"{PATH}/diff", json={"yaml": "# x\n" + yaml_of(fresh_lab)}))
     assert (same["same"], same["changes"], same["target"]) == (True, [], None)
@@ -55,7 +55,7 @@ def test_a_draft_is_compared_with_the_newest_version(fresh_lab: Lab) -> None:
 
 
 def test_every_version_can_be_read(fresh_lab: Lab) -> None:
-    """The old file stays, with the wordings of the instruments it asks."""
+    """An earlier version can be read, with the wordings of its instruments."""
     first = yaml_of(fresh_lab)
     add(fresh_lab, ("Acting through", "Living through"))
     version = ok(fresh_lab.operator.get(f"{PATH}/versions/1"))
@@ -64,8 +64,8 @@ def test_every_version_can_be_read(fresh_lab: Lab) -> None:
     error(fresh_lab.operator.get(f"{PATH}/versions/3"), 404, "not_found")
 
 
-def test_a_duplicate_is_a_study_of_its_own(fresh_lab: Lab) -> None:
-    """Another key and title, the same comments; the first study is as it was."""
+def test_a_duplicate_is_an_independent_study(fresh_lab: Lab) -> None:
+    """A duplicated study has its own key and title and the same comments."""
     wish = {"key": "second", "title": {"en": "A second study"}}
     copy = ok(fresh_lab.operator.post(f"{PATH}/duplicate", json=wish))
     assert (copy["key"], copy["title"], copy["version"]) == ("second", "A second study", 1)
@@ -77,8 +77,8 @@ def test_a_duplicate_is_a_study_of_its_own(fresh_lab: Lab) -> None:
     error(fresh_lab.operator.post(f"{PATH}/duplicate", json=wish), 422, "invalid_config")
 
 
-def test_an_archived_study_takes_nobody(fresh_lab: Lab) -> None:
-    """It leaves the list, refuses sessions with the way out, and comes back with its ledger."""
+def test_an_archived_study_refuses_new_sessions(fresh_lab: Lab) -> None:
+    """An archived study is not listed and refuses sessions; restored, it continues its ledger."""
     view = fresh_lab.command(fresh_lab.join(), "start")
     refusal = error(fresh_lab.operator.post(f"{PATH}/archive"), 409, "not_now")
     assert (refusal["value"], refusal["valid"]) == (1, 0)

@@ -1,4 +1,4 @@
-"""Study files over HTTP: problems with their place, versions by content."""
+"""Tests of study files over HTTP: problems with their position, and versions by content."""
 
 from typing import Any
 
@@ -14,12 +14,12 @@ BOMB = "a0: &a0 [x, x]\n" + "\n".join(
 
 @pytest.fixture(scope="module")
 def yaml(lab: Lab) -> str:
-    """The shipped study's file as the interface gives it."""
+    """Return the text of the shipped study's file as the interface returns it."""
     return str(ok(lab.operator.get(f"/api/studies/{STUDY}"))["yaml"])
 
 
 def edit(yaml: str, *changes: tuple[str, str]) -> str:
-    """The file with words replaced."""
+    """Return a study file with some text replaced."""
     for old, new in changes:
         assert old in yaml
         yaml = yaml.replace(old, new, 1)
@@ -27,7 +27,7 @@ def edit(yaml: str, *changes: tuple[str, str]) -> str:
 
 
 def rows(lab: Lab) -> tuple[int, int]:
-    """How many studies and versions are stored."""
+    """Return how many studies and versions are stored."""
     with lab.database.reading() as db:
         return db.query(Study).count(), db.query(StudyVersion).count()
 
@@ -41,10 +41,10 @@ def rows(lab: Lab) -> tuple[int, int]:
         ("replicates: 2", "replicates: two", "orders.replicates"),
     ],
 )
-def test_a_problem_is_told_with_its_place(
+def test_a_problem_is_reported_with_its_position(
     lab: Lab, yaml: str, old: str, new: str, path: str
 ) -> None:
-    """Path, line and column of an unknown key, a negative latency and a wrong type."""
+    """An unknown key, a negative latency or a wrong type is reported with path and position."""
     file = edit(yaml, (old, new))
     answer = lab.operator.post(f"/api/studies/{STUDY}/versions", json={"yaml": file})
     refusal = error(answer, 422, "invalid_config")
@@ -58,8 +58,8 @@ def test_a_problem_is_told_with_its_place(
 
 
 @pytest.mark.one_engine
-def test_all_problems_are_told_at_once(lab: Lab, yaml: str) -> None:
-    """Nobody has to mend a file line by line."""
+def test_all_problems_are_reported_together(lab: Lab, yaml: str) -> None:
+    """All problems of a study file are reported in one answer."""
     file = edit(yaml, ("latency_ms: 125", "latency_ms: -1"), ("seed: 20200415", "seed: -1"))
     refusal = error(lab.operator.post("/api/studies", json={"yaml": file}), 422, "invalid_config")
     assert len(refusal["details"]) == 2
@@ -68,7 +68,7 @@ def test_all_problems_are_told_at_once(lab: Lab, yaml: str) -> None:
 @pytest.mark.one_engine
 @pytest.mark.parametrize("file", [BOMB, "[" * 1000, "a: !!python/object:os.system x", ""])
 def test_a_hostile_file_is_refused_before_it_grows(lab: Lab, file: str) -> None:
-    """Aliases, depth and tags are limited while reading."""
+    """A YAML file with expanding aliases, deep nesting or tags is refused while it is read."""
     before = rows(lab)
     answer = lab.operator.post("/api/studies", json={"yaml": file})
     assert error(answer, 422, "invalid_config")["details"][0]["line"] >= 1
@@ -76,8 +76,8 @@ def test_a_hostile_file_is_refused_before_it_grows(lab: Lab, file: str) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_file_that_is_no_text_is_refused(lab: Lab) -> None:
-    """A NUL character is refused before the file is read, and nothing is stored."""
+def test_a_study_file_with_a_nul_character_is_refused(lab: Lab) -> None:
+    """A study file with a NUL character is refused and nothing is stored."""
     before = rows(lab)
     answer = lab.operator.post("/api/studies", json={"yaml": "key: a\x00b"})
     assert "NUL" in error(answer, 422, "invalid_input")["message"]
@@ -86,7 +86,7 @@ def test_a_file_that_is_no_text_is_refused(lab: Lab) -> None:
 
 @pytest.mark.one_engine
 def test_checking_stores_nothing(lab: Lab, yaml: str) -> None:
-    """A good file gets its hash, a bad one its problems, and nothing is kept of either."""
+    """Checking a valid or invalid study file stores nothing."""
     before = rows(lab)
     check = "/api/studies/check"
     fine = ok(lab.operator.post(check, json={"yaml": edit(yaml, ("seed: 20200415", "seed: 3"))}))
@@ -97,7 +97,7 @@ def test_checking_stores_nothing(lab: Lab, yaml: str) -> None:
 
 
 def test_the_same_content_is_the_same_version(fresh_lab: Lab) -> None:
-    """Comments and layout make no new version; a changed word does."""
+    """A file that differs only in comments is the same version; other content is a new one."""
     study = ok(fresh_lab.operator.get(f"/api/studies/{STUDY}"))
     again = _version(fresh_lab, "# a comment\n" + study["yaml"])
     assert again["versions"] == study["versions"]
@@ -107,7 +107,7 @@ def test_the_same_content_is_the_same_version(fresh_lab: Lab) -> None:
 
 
 def test_a_version_is_frozen_from_its_first_start(fresh_lab: Lab) -> None:
-    """Joining does not freeze it; starting does, and it stays as it is."""
+    """A version is frozen when its first session starts, not when a session is created."""
     path = f"/api/studies/{STUDY}"
     view = fresh_lab.join()
     before = ok(fresh_lab.operator.get(path))
@@ -123,7 +123,7 @@ def test_a_version_is_frozen_from_its_first_start(fresh_lab: Lab) -> None:
 
 @pytest.mark.one_engine
 def test_a_session_keeps_the_version_it_joined(fresh_lab: Lab) -> None:
-    """A new version does not change a session that is under way."""
+    """A session keeps the study version it was created with when a new version is stored."""
     view = fresh_lab.join()
     yaml = ok(fresh_lab.operator.get(f"/api/studies/{STUDY}"))["yaml"]
     _version(fresh_lab, edit(yaml, ("duration_s: 120", "duration_s: 30")))
@@ -133,7 +133,7 @@ def test_a_session_keeps_the_version_it_joined(fresh_lab: Lab) -> None:
 
 
 def test_a_study_is_created_once(fresh_lab: Lab) -> None:
-    """A second study of that key is a clash; under another key it is a new study."""
+    """Creating a second study with the same key is refused; under another key it is a new study."""
     yaml = ok(fresh_lab.operator.get(f"/api/studies/{STUDY}"))["yaml"]
     error(fresh_lab.operator.post("/api/studies", json={"yaml": yaml}), 409, "conflict")
     other = edit(yaml, (f"key: {STUDY}", "key: another"))
@@ -144,7 +144,7 @@ def test_a_study_is_created_once(fresh_lab: Lab) -> None:
 
 @pytest.mark.one_engine
 def test_a_version_belongs_to_its_study(lab: Lab, yaml: str) -> None:
-    """A file of another study is refused with both keys."""
+    """A version whose file has another study's key is refused, and both keys are reported."""
     file = edit(yaml, (f"key: {STUDY}", "key: stray"))
     answer = lab.operator.post(f"/api/studies/{STUDY}/versions", json={"yaml": file})
     refusal = error(answer, 409, "conflict")
@@ -152,8 +152,8 @@ def test_a_version_belongs_to_its_study(lab: Lab, yaml: str) -> None:
 
 
 @pytest.mark.one_engine
-def test_an_unknown_study_is_not_found_and_the_known_are_named(lab: Lab) -> None:
-    """The refusal lists the keys there are."""
+def test_an_unknown_study_is_not_found_and_the_existing_are_named(lab: Lab) -> None:
+    """The error for an unknown study lists the keys of the existing studies."""
     refusal = error(lab.operator.get("/api/studies/nothing"), 404, "not_found")
     assert STUDY in refusal["valid"]
 

@@ -1,4 +1,4 @@
-"""Logging in and out, and what is kept of it."""
+"""Tests of logging in and out, and of what is stored about it."""
 
 import logging
 from datetime import UTC, datetime, timedelta
@@ -21,12 +21,12 @@ from tests.features.lab import PASSWORD, Lab, error, ok, running_lab
 
 
 def log_in(client: TestClient, username: str = "admin", password: str = PASSWORD) -> Response:
-    """Try to log in."""
+    """Send a login request."""
     return client.post("/api/login", json={"username": username, "password": password})
 
 
-def test_a_login_opens_the_console(lab: Lab) -> None:
-    """The cookie of a login is enough from then on."""
+def test_a_logins_cookie_authenticates_later_requests(lab: Lab) -> None:
+    """The cookie of a login authenticates later requests."""
     client = lab.stranger()
     assert ok(log_in(client))["account"]["username"] == "admin"
     assert ok(client.get("/api/me"))["account"]["role"] == "admin"
@@ -34,14 +34,14 @@ def test_a_login_opens_the_console(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_nobody_is_signed_in_at_first(lab: Lab) -> None:
-    """Asking who is there is no error."""
+def test_a_new_client_is_not_signed_in(lab: Lab) -> None:
+    """A client that has not logged in gets an empty account from `/api/me`, not an error."""
     assert ok(lab.stranger().get("/api/me")) == {"account": None}
 
 
 @pytest.mark.one_engine
 def test_a_wrong_password_and_an_unknown_user_get_the_same_answer(lab: Lab) -> None:
-    """Nobody can find out which names exist."""
+    """A wrong password and an unknown user name get the same answer, so names cannot be probed."""
     wrong = log_in(lab.stranger(), password="not this one")
     unknown = log_in(lab.stranger(), username="nobody")
     error(wrong, 401, "not_signed_in")
@@ -51,15 +51,15 @@ def test_a_wrong_password_and_an_unknown_user_get_the_same_answer(lab: Lab) -> N
 
 @pytest.mark.one_engine
 def test_the_cookie_is_out_of_reach_of_scripts_and_other_sites(lab: Lab) -> None:
-    """HttpOnly and SameSite=Strict."""
+    """The login cookie is HttpOnly and SameSite=Strict."""
     cookie = log_in(lab.stranger()).headers["set-cookie"].lower()
     assert cookie.startswith("reembody_login=")
     assert "httponly" in cookie
     assert "samesite=strict" in cookie
 
 
-def test_logging_out_ends_the_login_at_once(lab: Lab) -> None:
-    """The token is worth nothing any more, also to who kept a copy."""
+def test_logging_out_revokes_the_token_immediately(lab: Lab) -> None:
+    """Logging out revokes the login's token immediately, also for a copy of the cookie."""
     client, thief = lab.stranger(), lab.stranger()
     log_in(client)
     thief.cookies.update(client.cookies)
@@ -70,8 +70,8 @@ def test_logging_out_ends_the_login_at_once(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_script_can_log_its_token_out(lab: Lab) -> None:
-    """A bearer token is revoked like a cookie."""
+def test_a_bearer_token_can_be_logged_out(lab: Lab) -> None:
+    """Logging out with a bearer token revokes that token."""
     script = lab.stranger()
     script.headers["authorization"] = f"Bearer {_token(lab)}"
     assert script.get("/api/studies").status_code == 200
@@ -80,8 +80,8 @@ def test_a_script_can_log_its_token_out(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_new_login_ends_the_one_before(lab: Lab) -> None:
-    """Logging in again on the same browser makes a new token and revokes the old."""
+def test_a_new_login_revokes_the_previous_one(lab: Lab) -> None:
+    """Logging in again in the same browser revokes the previous login's token."""
     client, thief = lab.stranger(), lab.stranger()
     log_in(client)
     thief.cookies.update(client.cookies)
@@ -91,7 +91,7 @@ def test_a_new_login_ends_the_one_before(lab: Lab) -> None:
 
 
 def test_a_login_expires(lab: Lab) -> None:
-    """After its hours a token opens nothing."""
+    """A login's token is refused after its lifetime."""
     token, now = _token(lab), datetime.now(UTC)
     with lab.database.reading() as db:
         assert account_of_token(db, token, now).username == "admin"
@@ -99,8 +99,8 @@ def test_a_login_expires(lab: Lab) -> None:
             account_of_token(db, token, now + timedelta(hours=2))
 
 
-def test_no_token_and_no_password_is_stored_in_clear(lab: Lab) -> None:
-    """The tables of accounts hold hashes only."""
+def test_tokens_and_passwords_are_stored_as_hashes_only(lab: Lab) -> None:
+    """The tables of accounts and logins contain hashes only, no token or password in clear text."""
     client = lab.stranger()
     log_in(client)
     with lab.database.reading() as db:
@@ -112,8 +112,8 @@ def test_no_token_and_no_password_is_stored_in_clear(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_guessing_is_slowed_down(fresh_lab: Lab) -> None:
-    """After ten wrong passwords even the right one has to wait."""
+def test_password_guessing_is_rate_limited(fresh_lab: Lab) -> None:
+    """After ten wrong passwords even the right one is refused for a while."""
     client = fresh_lab.stranger()
     for _ in range(10):
         error(log_in(client, password="guess"), 401, "not_signed_in")
@@ -122,8 +122,8 @@ def test_guessing_is_slowed_down(fresh_lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_getting_it_right_forgets_the_wrong_ones(fresh_lab: Lab) -> None:
-    """Nine slips, a login, and nine slips more do not shut anybody out."""
+def test_a_successful_login_resets_the_failed_attempts(fresh_lab: Lab) -> None:
+    """A successful login resets the count of failed attempts."""
     client = fresh_lab.stranger()
     for _ in range(2):
         for _ in range(9):
@@ -132,10 +132,10 @@ def test_getting_it_right_forgets_the_wrong_ones(fresh_lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_first_start_makes_a_random_password_and_tells_it_once(
+def test_a_first_start_generates_a_password_and_reports_it_once(
     database_url: str, tmp_path: Path
 ) -> None:
-    """Without REEMBODY_ADMIN_PASSWORD each installation gets its own."""
+    """Without REEMBODY_ADMIN_PASSWORD the first start generates a password and reports it once."""
     told: list[str] = []
     settings = Settings(data_dir=tmp_path, database_url=database_url, admin_password=None)
     for _ in range(2):
@@ -146,10 +146,10 @@ def test_a_first_start_makes_a_random_password_and_tells_it_once(
 
 
 @pytest.mark.one_engine
-def test_a_given_password_is_not_told(
+def test_a_configured_password_is_never_printed_or_logged(
     database_url: str, tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """With REEMBODY_ADMIN_PASSWORD nothing is printed or logged."""
+    """A password set by REEMBODY_ADMIN_PASSWORD is never printed or logged."""
     told: list[str] = []
     secret = SecretStr(PASSWORD)
     settings = Settings(data_dir=tmp_path, database_url=database_url, admin_password=secret)
@@ -163,7 +163,7 @@ def test_a_given_password_is_not_told(
 
 
 def test_a_later_start_does_not_change_the_password(database_url: str, tmp_path: Path) -> None:
-    """The variable makes the first account; it never overwrites one."""
+    """A later start with another REEMBODY_ADMIN_PASSWORD does not change the stored password."""
     with running_lab(database_url):
         pass
     other = SecretStr("another one")
@@ -173,8 +173,8 @@ def test_a_later_start_does_not_change_the_password(database_url: str, tmp_path:
         error(log_in(client, password="another one"), 401, "not_signed_in")
 
 
-def test_the_record_survives_a_restart(database_url: str) -> None:
-    """Sessions are there again after the server was started anew."""
+def test_a_session_survives_a_restart(database_url: str) -> None:
+    """A session is unchanged after the server has restarted."""
     with running_lab(database_url) as lab:
         view = lab.command(lab.join(), "start")
     with running_lab(database_url) as lab:
@@ -182,8 +182,8 @@ def test_the_record_survives_a_restart(database_url: str) -> None:
     assert again == view
 
 
-def test_a_running_clock_is_paused_when_the_server_was_away(database_url: str) -> None:
-    """A phase that ran when the server died is paused at its start, and says why."""
+def test_a_running_phase_is_paused_after_a_restart(database_url: str) -> None:
+    """A phase that was running when the server stopped is paused when it starts again."""
     from app.features.record.sessions.engine.commands import Report
     from app.features.record.sessions.service import apply_command
     from app.platform.access import session_by_id
@@ -202,13 +202,13 @@ def test_a_running_clock_is_paused_when_the_server_was_away(database_url: str) -
 
 
 def test_settings_place_the_database_in_the_data_folder(tmp_path: Path) -> None:
-    """Without an address the embedded database is used."""
+    """Without a database URL the settings use a SQLite file in the data folder."""
     url = Settings(data_dir=tmp_path, database_url="").resolved_database_url
     assert url == f"sqlite:///{tmp_path.resolve()}/reembody.sqlite"
 
 
-def test_time_is_the_applications_own(database_url: str) -> None:
-    """A clock that is handed in is what the record is stamped with."""
+def test_timestamps_come_from_the_applications_clock(database_url: str) -> None:
+    """Timestamps in the record come from the clock that was passed to the application."""
     then = datetime(2030, 1, 2, 3, 4, 5, tzinfo=UTC)
     with running_lab(database_url, Clock(utc_now=lambda: then)) as lab:
         assert lab.join()["created_at"] == "2030-01-02T03:04:05Z"

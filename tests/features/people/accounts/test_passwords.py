@@ -1,4 +1,4 @@
-"""Passwords: which may be chosen, and how many are looked at together."""
+"""Tests of passwords: which are accepted, and how many are hashed at a time."""
 
 import threading
 import time
@@ -39,8 +39,8 @@ from app.features.people.accounts.passwords import (
         "correctpassword",
     ],
 )
-def test_what_everybody_tries_first_is_refused(password: str) -> None:
-    """Common passwords, their variations, rows of keys and dates; and the answer repeats none."""
+def test_common_passwords_are_refused(password: str) -> None:
+    """Common passwords and their variations are refused, and the error does not repeat them."""
     with pytest.raises(InvalidInput) as refused:
         require_good(password, "mara")
     assert password not in str(refused.value.as_json())
@@ -56,26 +56,26 @@ def test_what_everybody_tries_first_is_refused(password: str) -> None:
         "longer than that one",
     ],
 )
-def test_a_few_words_are_enough(password: str) -> None:
-    """Words in a row of one's own, or random characters."""
+def test_uncommon_phrases_and_random_passwords_are_accepted(password: str) -> None:
+    """A few uncommon words, or random characters, are accepted as a password."""
     require_good(password, "mara")
 
 
 def test_an_estimate_of_a_long_password_does_not_take_long() -> None:
-    """The slowest password that may be sent is estimated like a shorter one."""
+    """Estimating the strength of the slowest password of the maximum length succeeds."""
     slow = "4@8({[<369&#!1/|0$5+7%2" * 8
     require_good(slow[:MAX_LENGTH], "mara")
 
 
 def test_too_long_a_password_is_not_hashed() -> None:
-    """Whoever calls: the length is bounded where the work is done."""
+    """A password above the maximum length is refused by both hashing and verification."""
     for work in (hash_password, lambda password: is_password(None, password)):
         with pytest.raises(InvalidInput, match="201 characters"):
             work("x" * (MAX_LENGTH + 1))
 
 
-def test_passwords_are_looked_at_one_at_a_time() -> None:
-    """One is worked on, some wait, and everybody else is told at once to come again."""
+def test_passwords_are_hashed_one_at_a_time() -> None:
+    """Passwords are hashed one at a time; a full queue answers 503 with a retry time."""
     queue, started, go_on = PasswordQueue(waiting=2), threading.Event(), threading.Event()
     running = [0]
     most = [0]
@@ -103,8 +103,8 @@ def test_passwords_are_looked_at_one_at_a_time() -> None:
     assert queue.run(lambda: "free again") == "free again"
 
 
-def test_what_fails_leaves_its_place() -> None:
-    """An error does not hold a turn for ever."""
+def test_failed_work_frees_its_place_in_the_queue() -> None:
+    """Work that raises an error frees its place in the password queue."""
     queue = PasswordQueue(waiting=0)
 
     def fail() -> None:
@@ -115,10 +115,10 @@ def test_what_fails_leaves_its_place() -> None:
             queue.run(fail)
 
 
-def test_what_is_a_hash_does_not_hang_on_what_hashes_cost_here(
+def test_a_hash_is_recognised_whatever_its_cost_parameters(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """A backup of a lab is restored where passwords are made cheaply, too; a dear one nowhere."""
+    """A hash with other cost parameters is recognised, unless its cost is excessive."""
     theirs = PasswordHasher().hash("correct horse battery")
     monkeypatch.setattr(passwords, "_HASHER", PasswordHasher(1, 64, 1))
     assert is_hash(theirs)

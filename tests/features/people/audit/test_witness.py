@@ -1,4 +1,4 @@
-"""The head of the audit trail, kept outside, shows that the trail's end was cut or written anew."""
+"""Tests that a head of the audit trail stored elsewhere reveals a cut or rewritten trail."""
 
 import json
 from collections.abc import Iterator
@@ -24,7 +24,7 @@ NOW = datetime(2026, 5, 4, 12, tzinfo=UTC)
 
 @pytest.fixture
 def database(database_url: str, monkeypatch: pytest.MonkeyPatch) -> Iterator[Database]:
-    """The database of this machine, with a study and three entries in its trail."""
+    """Yield the configured database, with a study and three entries in its audit trail."""
     monkeypatch.setenv("REEMBODY_DATABASE_URL", database_url)
     database = open_database(database_url)
     with database.writing() as db:
@@ -35,7 +35,7 @@ def database(database_url: str, monkeypatch: pytest.MonkeyPatch) -> Iterator[Dat
 
 
 def append(database: Database, entries: int) -> str:
-    """Put more on the trail; its head behind them."""
+    """Append entries to the audit trail and return its head."""
     for _ in range(entries):
         with database.writing() as db:
             record(db, actor="account:admin", action="test.done", now=NOW)
@@ -44,7 +44,7 @@ def append(database: Database, entries: int) -> str:
 
 
 def cut(database: Database, last: int) -> None:
-    """Remove everything behind `last`, and set the head back, as a forger would."""
+    """Delete all entries after `last` and reset the head, as a forger would."""
     with database.writing() as db:
         db.execute(delete(AuditEntry).where(AuditEntry.seq > last))
         left = db.get_one(AuditEntry, last)
@@ -52,7 +52,7 @@ def cut(database: Database, last: int) -> None:
 
 
 def test_a_head_is_found_while_the_trail_grows(database: Database) -> None:
-    """The trail of then is the beginning of the trail of now."""
+    """An earlier head is still found in an audit trail that has grown since."""
     head = append(database, 0)
     append(database, 4)
     found = VERIFY.figures("--head", head)["audit"]
@@ -60,8 +60,8 @@ def test_a_head_is_found_while_the_trail_grows(database: Database) -> None:
     assert (found["entries"], found["heads"]) == (7, [{"head": head, "found": True}])
 
 
-def test_a_cut_tail_is_found_with_a_head_from_outside(database: Database) -> None:
-    """What is left verifies by itself, and only the head that was kept elsewhere tells."""
+def test_a_truncated_trail_is_detected_by_a_later_head(database: Database) -> None:
+    """A truncated audit trail verifies by itself, but not against a head from its removed end."""
     early, late = append(database, 0), append(database, 2)
     cut(database, 4)
     assert VERIFY.run().exit_code == 0
@@ -71,8 +71,8 @@ def test_a_cut_tail_is_found_with_a_head_from_outside(database: Database) -> Non
     assert f"Head {late} is not in it" in result.stdout
 
 
-def test_a_trail_that_was_written_anew_is_found(database: Database) -> None:
-    """As many entries as before, but others."""
+def test_a_rewritten_trail_is_detected_by_a_head(database: Database) -> None:
+    """An audit trail whose last entries were rewritten does not verify against an earlier head."""
     head = append(database, 2)
     cut(database, 3)
     with database.writing() as db:
@@ -82,8 +82,8 @@ def test_a_trail_that_was_written_anew_is_found(database: Database) -> None:
     assert VERIFY.run("--head", head).exit_code == 1
 
 
-def test_an_entry_that_was_changed_is_named_without_a_session(database: Database) -> None:
-    """The trail is checked where no session is named."""
+def test_verify_reports_a_changed_audit_entry(database: Database) -> None:
+    """Verifying without naming a session reports a changed entry of the audit trail."""
     with database.writing() as db:
         db.execute(update(AuditEntry).where(AuditEntry.seq == 2).values(action="test.changed"))
     result = VERIFY.run()
@@ -92,7 +92,7 @@ def test_an_entry_that_was_changed_is_named_without_a_session(database: Database
 
 
 def test_backup_and_export_print_the_head(database: Database, tmp_path: Path) -> None:
-    """Each as it was when it was made, though to put them on record may lengthen the trail."""
+    """Export and backup print the head of the audit trail as of their snapshot."""
     head = append(database, 0)
     assert export_to_folder(STUDY, tmp_path / "out", Activity("")).endswith(f"audit head {head}")
     made = Invoked("backup").run(tmp_path / "a.reembody")
@@ -104,13 +104,13 @@ def test_backup_and_export_print_the_head(database: Database, tmp_path: Path) ->
 @pytest.mark.one_engine
 @pytest.mark.usefixtures("database")
 @pytest.mark.parametrize("text", ["", "3", "3:", "3:abc", "x:" + 64 * "0", "3:" + 65 * "0"])
-def test_what_is_no_head_is_refused_with_how_one_looks(text: str) -> None:
-    """Also one that was copied incompletely."""
+def test_an_invalid_head_is_refused_with_its_format(text: str) -> None:
+    """An invalid or incomplete head is refused, and the expected format is shown."""
     assert "SEQ:HASH" in VERIFY.refusal("--head", text)
 
 
-def test_a_head_is_read_as_it_is_written() -> None:
-    """With spaces around it, in capitals, and shortened to what may be typed from paper."""
+def test_a_head_is_parsed_leniently() -> None:
+    """A head is parsed with spaces around it, in capitals, or with 16 digits of its hash."""
     head = TrailHead(12, "ab" * 32)
     assert TrailHead.parse(f" {head}\n") == TrailHead.parse(str(head).upper()) == head
     assert TrailHead.parse(f"12:{head.hash[:16]}").hash == head.hash[:16]
@@ -119,6 +119,6 @@ def test_a_head_is_read_as_it_is_written() -> None:
 
 
 def test_the_head_of_an_empty_trail_is_in_every_trail(database: Database) -> None:
-    """An export from before the first entry proves nothing, and is not taken for a forgery."""
+    """The head of an empty audit trail is found in every trail."""
     assert VERIFY.figures("--head", f"0:{FIRST_HASH}")["audit"]["ok"]
     assert append(database, 0).startswith("3:")
