@@ -1,1 +1,1 @@
-"""Tests of the wing `record`."""
+"""Tests of the features in `app/features/record`."""

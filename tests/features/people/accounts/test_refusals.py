@@ -33,7 +33,7 @@ def refusals(fresh_lab: Lab) -> RefusedSignIns:
 
 
 def test_many_refused_logins_make_two_rows(fresh_lab: Lab) -> None:
-    """The first refused login is recorded immediately, the rest as one count at the window's end."""
+    """The first refused login is recorded immediately, later ones as a count per window."""
     client = fresh_lab.stranger()
     answers = [log_in(client, f"name{at % 20}", "a wrong guess").status_code for at in range(60)]
     assert (answers.count(401), answers.count(429)) == (30, 30)

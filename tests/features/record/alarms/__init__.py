@@ -1,1 +1,1 @@
-"""The watch over the headset, and its alarms on the record."""
+"""Tests of the watch over the headset and of the alarms in the record."""

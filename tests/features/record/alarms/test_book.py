@@ -1,4 +1,4 @@
-"""Alarms open once, and close when their cause has been gone for a while."""
+"""Tests that an alarm is raised once and cleared once its condition has been absent for a while."""
 
 from app.features.record.alarms.alarm import SEVERITIES, Condition, OpenAlarms
 from tests.features.record.alarms.watched import at
@@ -7,7 +7,7 @@ GAP = Condition("gap", "a gap", "target", 0.5, "s")
 
 
 def test_an_alarm_is_raised_once_however_often_it_is_reported() -> None:
-    """And keeps the newest condition, with the time of the first."""
+    """An alarm is raised once; later reports update its condition and keep its start time."""
     book = OpenAlarms(3.0)
     first = list(book.report(GAP, at(0.0)))
     again = list(book.report(Condition("gap", "a longer gap", "target", 2.0, "s"), at(1.0)))
@@ -17,7 +17,7 @@ def test_an_alarm_is_raised_once_however_often_it_is_reported() -> None:
 
 
 def test_an_alarm_is_cleared_when_nothing_was_reported_for_a_while() -> None:
-    """Three seconds after the last report, not after the first."""
+    """An alarm is cleared three seconds after the last report of its condition."""
     book = OpenAlarms(3.0)
     list(book.report(GAP, at(0.0)))
     list(book.report(GAP, at(2.0)))
@@ -27,8 +27,8 @@ def test_an_alarm_is_cleared_when_nothing_was_reported_for_a_while() -> None:
     assert book.open == ()
 
 
-def test_what_comes_and_goes_raises_one_alarm() -> None:
-    """No flicker: a condition every two seconds is one alarm."""
+def test_an_intermittent_condition_raises_one_alarm() -> None:
+    """A condition that recurs every two seconds raises one alarm, not several."""
     book = OpenAlarms(3.0)
     changes = []
     for second in range(0, 20, 2):
@@ -36,16 +36,16 @@ def test_what_comes_and_goes_raises_one_alarm() -> None:
     assert [change.state for change in changes] == ["raised"]
 
 
-def test_each_stream_has_alarms_of_its_own() -> None:
-    """A gap in one says nothing of the other."""
+def test_each_stream_has_its_own_alarms() -> None:
+    """A gap in one stream does not keep the alarm of the other stream open."""
     book = OpenAlarms(3.0)
     list(book.report(GAP, at(0.0)))
     list(book.report(Condition("gap", "a gap", "actual"), at(2.0)))
     assert [change.condition.stream for change in book.clear_expired(at(3.0))] == ["target"]
 
 
-def test_closing_clears_everything_and_says_why() -> None:
-    """As when the socket closes."""
+def test_closing_clears_every_alarm_with_a_reason() -> None:
+    """Closing the book clears every open alarm with the given reason."""
     book = OpenAlarms(3.0)
     list(book.report(GAP, at(0.0)))
     (cleared,) = book.close("it is over", at(1.0))
@@ -54,7 +54,7 @@ def test_closing_clears_everything_and_says_why() -> None:
 
 
 def test_every_alarm_has_a_severity() -> None:
-    """Only silence, loss, and a person who is unwell, calls or refuses: all cannot wait."""
+    """Only lost data and a participant who is unwell, calls, asks or refuses are critical."""
     losing = {"silent", "disconnected", "storage", "writer_failed"}
     critical = {code for code, severity in SEVERITIES.items() if severity == "critical"}
     of_person = {"stop_rule_met", "help_asked", "question_asked", "consent_refused"}

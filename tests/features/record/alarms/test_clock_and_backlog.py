@@ -1,4 +1,4 @@
-"""How well the headset's clock is known, and how much is not on disk yet."""
+"""Tests of the uncertainty of the headset's clock, and of data that are not on disk yet."""
 
 import pytest
 
@@ -7,7 +7,7 @@ from tests.features.record.alarms.watched import TREMBLING, Watched, at, state, 
 
 
 def reading(sent_s: float, trip_s: float, *, held_s: float = 0.001) -> Probed:
-    """An exchange that took `trip_s` on the client's clock, `held_s` of it in the server."""
+    """Return a probe with a round trip of `trip_s`, of which the server took `held_s`."""
     received_ns = int(5e9)
     return Probed(
         client_sent_s=sent_s,
@@ -18,7 +18,7 @@ def reading(sent_s: float, trip_s: float, *, held_s: float = 0.001) -> Probed:
 
 
 def unanswered(sent_s: float) -> Probed:
-    """An exchange that timed out."""
+    """Return a probe that was not answered."""
     return Probed(
         client_sent_s=sent_s,
         server_received_ns=None,
@@ -28,14 +28,17 @@ def unanswered(sent_s: float) -> Probed:
 
 
 def quiet(time_scale: float = 1.0) -> Watched:
-    """A watch while nothing is recorded."""
+    """Return a watch of a session that is not recording."""
     watched = Watched(time_scale)
     watched.watch.update_state(state(recording=False), at(0.0))
     return watched
 
 
 def test_the_uncertainty_is_half_of_the_smallest_round_trip_of_the_last_minute() -> None:
-    """What the server held it for does not count; after a minute it is forgotten."""
+    """The clock's uncertainty is half the shortest round trip of the last minute.
+
+    The time that the server took to answer is subtracted.
+    """
     watched = quiet()
     assert watched.watch.signal(at(0.0))["clock_uncertainty_ms"] is None
     watched.watch.probed(reading(0.0, 0.005), at(0.0))
@@ -47,15 +50,17 @@ def test_the_uncertainty_is_half_of_the_smallest_round_trip_of_the_last_minute()
 
 @pytest.mark.parametrize("time_scale", [0.5, 1.0, 20.0, 100.0])
 def test_a_round_trip_is_measured_in_real_time(time_scale: float) -> None:
-    """However fast the client's clock runs."""
+    """A round trip is converted to real time, at whatever time scale the client runs."""
     watched = quiet(time_scale)
     watched.watch.probed(reading(0.0, 0.005 * time_scale), at(0.0))
     assert watched.watch.signal(at(0.0))["clock_uncertainty_ms"] == pytest.approx(2.0)
 
 
 @pytest.mark.parametrize(("trip_s", "codes"), [(0.020, []), (0.023, ["clock_uncertain"])])
-def test_more_than_ten_milliseconds_are_told(trip_s: float, codes: list[str]) -> None:
-    """As little as it matters inside one clock, it matters between two."""
+def test_a_clock_uncertainty_above_ten_milliseconds_raises_an_alarm(
+    trip_s: float, codes: list[str]
+) -> None:
+    """A clock uncertainty above 10 ms raises an alarm."""
     watched = quiet()
     watched.watch.probed(reading(0.0, trip_s), at(0.0))
     watched.check(0.5)
@@ -63,8 +68,8 @@ def test_more_than_ten_milliseconds_are_told(trip_s: float, codes: list[str]) ->
 
 
 @pytest.mark.parametrize("useless", [unanswered(1.0), reading(1.0, -0.5)])
-def test_a_clock_without_a_usable_reading_is_unknown(useless: Probed) -> None:
-    """Readings that timed out, or cannot be, do not count."""
+def test_a_clock_without_a_usable_probe_is_unknown(useless: Probed) -> None:
+    """Unanswered and impossible probes do not count; without valid ones an alarm is raised."""
     watched = quiet()
     for second in range(15):
         watched.watch.probed(useless, at(float(second)))
@@ -79,20 +84,23 @@ def test_a_clock_without_a_usable_reading_is_unknown(useless: Probed) -> None:
 
 
 def produced(frames: int, epoch: int = 1) -> Produced:
-    """The client has made so many frames of both streams."""
+    """Return a message that the client has made so many frames of both streams."""
     return Produced(epoch=epoch, streams={"target": frames, "actual": frames, "reports": 0})
 
 
 def stored(frames: int, epoch: int = 1) -> tuple[StreamPosition, ...]:
-    """So many are on disk."""
+    """Return stored positions of both streams after so many frames."""
     return tuple(
         StreamPosition(stream=name, epoch=epoch, next_seq=frames) for name in ("target", "actual")
     )
 
 
 @pytest.mark.parametrize("time_scale", [1.0, 20.0])
-def test_a_backlog_is_what_was_made_and_is_not_stored(time_scale: float) -> None:
-    """In real seconds: a client twenty times as fast makes twenty times as many frames in one."""
+def test_the_backlog_is_what_was_made_but_not_stored(time_scale: float) -> None:
+    """The backlog is the time of frames that were made but not stored, in real seconds.
+
+    A client that runs twenty times as fast makes twenty times as many frames per second.
+    """
     watched = quiet(time_scale)
     watched.play(TREMBLING.part(slice(0, 900)))
     watched.watch.backlog.acknowledged(at(0.0).monotonic_s, waiting=False)
@@ -110,7 +118,7 @@ def test_a_backlog_is_what_was_made_and_is_not_stored(time_scale: float) -> None
 
 
 def test_a_backlog_of_an_earlier_run_counts_too() -> None:
-    """The journal of a client that was restarted still holds frames of the run before."""
+    """Frames of an earlier run of the client that are still in its journal count as backlog."""
     watched = Watched()
     watched.watch = type(watched.watch).of(welcome(positions=stored(900)), watched.limits, at(0.0))
     watched.watch.produced(produced(1800, epoch=1))
@@ -118,8 +126,8 @@ def test_a_backlog_of_an_earlier_run_counts_too() -> None:
     assert watched.watch.signal(at(0.0))["behind_s"] == pytest.approx(11.0)
 
 
-def test_a_disk_that_does_not_answer_is_a_backlog() -> None:
-    """Though the server stops reading, so that nobody tells how much there is."""
+def test_data_waiting_for_the_disk_raise_the_backlog_alarm() -> None:
+    """Data that wait for the disk raise the backlog alarm while the server does not read."""
     watched = quiet()
     watched.watch.backlog.submitted(at(0.0).monotonic_s)
     for second in range(1, 12):

@@ -1,4 +1,4 @@
-"""Alarms on the record: added, never changed, and read as one story."""
+"""Tests that alarms are appended to the record and read back as one history."""
 
 from collections.abc import Iterator
 from datetime import timedelta
@@ -27,32 +27,32 @@ SILENT = Condition("silent", "silent for 3 s", None, 3.0, "s")
 
 @pytest.fixture
 def session(lab: Lab, request: pytest.FixtureRequest) -> StudySession:
-    """A session without alarms."""
+    """Return a session without alarms."""
     with lab.database.writing() as db:
         return build_session(db, SessionSpec(stable_id(request.node.name)[:12]))
 
 
 @pytest.fixture
 def db(lab: Lab, session: StudySession) -> Iterator[Session]:
-    """A transaction, after the one that made the session."""
+    """Yield a write transaction that begins after the session was stored."""
     with lab.database.writing() as db:
         yield db
 
 
 def raised(condition: Condition, second: float) -> Change:
-    """An alarm begins."""
+    """Return the change that raises an alarm."""
     return Change("raised", condition, at(second).utc)
 
 
 def cleared(condition: Condition, second: float) -> Change:
-    """An alarm ends."""
+    """Return the change that clears an alarm."""
     return Change("cleared", condition, at(second).utc)
 
 
 def test_an_alarm_is_open_from_its_raising_to_its_clearing(
     db: Session, session: StudySession
 ) -> None:
-    """Two rows, one story."""
+    """An alarm is open from the time it is raised until the time it is cleared."""
     assert store_change(db, session.id, raised(GAP, 1.0))
     (alarm,) = open_alarms(db, session.id)
     assert (alarm.code, alarm.severity, alarm.stream) == ("gap", "warning", "target")
@@ -64,16 +64,16 @@ def test_an_alarm_is_open_from_its_raising_to_its_clearing(
     assert (told.since, told.cleared_at, told.outcome) == (at(1.0).utc, at(5.0).utc, None)
 
 
-def test_the_same_change_twice_is_stored_once(db: Session, session: StudySession) -> None:
-    """Two sockets of one session may raise the same alarm; what is not open cannot be cleared."""
+def test_a_repeated_change_is_stored_once(db: Session, session: StudySession) -> None:
+    """Raising an open alarm or clearing one that is not open stores nothing."""
     assert not store_change(db, session.id, cleared(GAP, 0.0))
     changes = [raised(GAP, 1.0), raised(GAP, 2.0), cleared(GAP, 3.0), cleared(GAP, 4.0)]
     assert [store_change(db, session.id, one) for one in changes] == [True, False, True, False]
     assert len(alarm_history(db, session)) == 1
 
 
-def test_the_newest_story_comes_first(db: Session, session: StudySession) -> None:
-    """And each clearing belongs to the raising before it."""
+def test_the_alarm_history_lists_the_newest_first(db: Session, session: StudySession) -> None:
+    """The alarm history lists the newest first, each with the time it was cleared."""
     for change in (
         raised(GAP, 1.0),
         raised(SILENT, 2.0),
@@ -89,10 +89,10 @@ def test_the_newest_story_comes_first(db: Session, session: StudySession) -> Non
     assert [one.code for one in open_alarms(db, session.id)] == ["gap"]
 
 
-def test_a_wall_clock_that_is_set_back_does_not_turn_the_story_round(
+def test_a_wall_clock_set_back_keeps_the_order_of_alarms(
     db: Session, session: StudySession
 ) -> None:
-    """What is cleared stays cleared, and may be raised again."""
+    """An alarm cleared at an earlier wall-clock time than it was raised at is still cleared."""
     store_change(db, session.id, raised(GAP, 3600.0))
     store_change(db, session.id, cleared(GAP, 2.0))
     assert open_alarms(db, session.id) == []
@@ -104,8 +104,8 @@ def test_a_wall_clock_that_is_set_back_does_not_turn_the_story_round(
     assert [row.state for row in rows] == ["raised", "cleared", "raised"]
 
 
-def test_clearing_all_says_why(db: Session, session: StudySession) -> None:
-    """Of those that were open, and of nothing else."""
+def test_clearing_all_alarms_stores_the_reason(db: Session, session: StudySession) -> None:
+    """Clearing all alarms of a session clears only the open ones and stores the reason."""
     store_change(db, session.id, raised(GAP, 1.0))
     store_change(db, session.id, raised(SILENT, 1.0))
     store_change(db, session.id, cleared(SILENT, 2.0))
@@ -121,18 +121,18 @@ def test_clearing_all_says_why(db: Session, session: StudySession) -> None:
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), None])
-def test_what_is_no_number_is_stored_as_nothing(
+def test_a_value_that_json_cannot_express_is_stored_as_null(
     db: Session, session: StudySession, value: float | None
 ) -> None:
-    """JSON has no word for it; a long message is cut."""
+    """An alarm's value that is not finite is stored as null, and a long message is shortened."""
     store_change(db, session.id, raised(Condition("jump", "x" * 999, "actual", value), 1.0))
     (alarm,) = open_alarms(db, session.id)
     assert (alarm.value, len(alarm.message)) == (None, 400)
 
 
 @pytest.mark.one_engine
-def test_the_history_is_told_over_http(lab: Lab, session: StudySession) -> None:
-    """To whoever is signed in."""
+def test_the_alarm_history_needs_a_login(lab: Lab, session: StudySession) -> None:
+    """The alarm history of a session is readable over HTTP by signed-in accounts only."""
     with lab.database.writing() as db:
         store_change(db, session.id, raised(GAP, 1.0))
     path = f"/api/sessions/{session.id}/alarms"
@@ -142,8 +142,8 @@ def test_the_history_is_told_over_http(lab: Lab, session: StudySession) -> None:
     assert lab.operator.get("/api/sessions/none/alarms").status_code == 404
 
 
-def test_a_server_that_starts_again_clears_what_was_open(database_url: str) -> None:
-    """It cannot know whether the cause is still there, and says so."""
+def test_a_server_restart_clears_open_alarms(database_url: str) -> None:
+    """A server that restarts clears the open alarms with the reason that it had stopped."""
     with running_lab(database_url) as before:
         session_id = before.join()["id"]
         with before.database.writing() as db:

@@ -1,4 +1,4 @@
-"""A headset that says nothing though its socket is open."""
+"""Tests of a headset that sends nothing although its socket is open."""
 
 import pytest
 
@@ -9,19 +9,19 @@ SECOND = TREMBLING.part(slice(0, 90))
 
 
 def running(time_scale: float = 1.0) -> Watched:
-    """A watch while a phase's clock runs."""
+    """Return a watch of a session with a running phase."""
     watched = Watched(time_scale)
     watched.watch.update_state(state(phase=order()), at(0.0))
     return watched
 
 
 def lost_at(watched: Watched) -> list[float]:
-    """When a running phase was given up."""
+    """Return the times at which the watch declared the running phase lost."""
     return [now_s for now_s, result in watched.checks if result.phase_is_lost]
 
 
-def test_silence_is_noticed_after_three_seconds_and_stops_the_phase_once() -> None:
-    """Within a look of the limit, and again only if the phase runs on without frames."""
+def test_silence_stops_the_phase_once_after_three_seconds() -> None:
+    """After three seconds of silence an alarm is raised and the phase is declared lost once."""
     watched = running()
     ended_s = watched.play(SECOND)
     watched.wait(ended_s, 3.5)
@@ -34,7 +34,7 @@ def test_silence_is_noticed_after_three_seconds_and_stops_the_phase_once() -> No
 
 
 def test_a_phase_that_was_resumed_without_frames_is_stopped_again() -> None:
-    """The alarm never cleared, and the phase still must not run unseen."""
+    """A phase that is resumed while no frames arrive is declared lost a second time."""
     watched = running()
     ended_s = watched.wait(watched.play(SECOND), 5.0)
     watched.watch.update_state(state(phase=order(status="paused")), at(ended_s))
@@ -44,16 +44,16 @@ def test_a_phase_that_was_resumed_without_frames_is_stopped_again() -> None:
     assert watched.told == [("silent", "raised")]
 
 
-def test_silence_is_over_when_frames_flow() -> None:
-    """Cleared three seconds after the first frame."""
+def test_the_silence_alarm_is_cleared_when_frames_arrive() -> None:
+    """The alarm of a silent headset is cleared when its frames arrive again."""
     watched = running()
     silent_s = watched.wait(watched.play(SECOND), 10.0)
     watched.play(TREMBLING.part(slice(90, 540)), begin_s=silent_s)
     assert ("silent", "cleared") in watched.told
 
 
-def test_nothing_is_expected_while_nothing_is_recorded() -> None:
-    """Before the avatar appears and after the debriefing a headset may be quiet."""
+def test_silence_raises_no_alarm_while_nothing_is_recorded() -> None:
+    """A silent headset raises no alarm while the session is not recording."""
     watched = Watched()
     watched.watch.update_state(state(recording=False), at(0.0))
     watched.wait(0.0, 10.0)
@@ -65,8 +65,8 @@ def test_nothing_is_expected_while_nothing_is_recorded() -> None:
     assert watched.told == [("silent", "raised")]
 
 
-def test_a_server_that_slept_blames_nobody() -> None:
-    """A look that comes much too late starts the waiting anew."""
+def test_a_delayed_check_does_not_count_as_silence() -> None:
+    """A check that comes far too late, as after a suspension, restarts the waiting time."""
     watched = running()
     ended_s = watched.play(SECOND)
     watched.check(ended_s + 60.0)
@@ -77,8 +77,8 @@ def test_a_server_that_slept_blames_nobody() -> None:
     assert ("silent", "raised") in watched.told
 
 
-def test_a_server_that_has_stopped_reading_blames_nobody() -> None:
-    """While too many messages wait for the disk the headset cannot be heard."""
+def test_no_silence_is_reported_while_the_server_does_not_read() -> None:
+    """While the server has stopped reading the socket, no silence is reported."""
     watched = running()
     ended_s = watched.play(SECOND)
     for turn in range(1, 20):
@@ -88,7 +88,7 @@ def test_a_server_that_has_stopped_reading_blames_nobody() -> None:
 
 
 def test_frames_on_another_socket_of_the_session_count() -> None:
-    """A new headset streams while the old one's socket hangs half open."""
+    """Frames on another socket of the same session count, as after a change of headset."""
     watched = running()
     for turn in range(1, 30):
         watched.watch.silence.frame_arrived(at(0.5 * turn).monotonic_s)
@@ -97,8 +97,8 @@ def test_frames_on_another_socket_of_the_session_count() -> None:
 
 
 @pytest.mark.parametrize(("time_scale", "limit_s"), [(1.0, 3.0), (20.0, 30.0), (100.0, 30.0)])
-def test_a_client_faster_than_life_may_wait_longer(time_scale: float, limit_s: float) -> None:
-    """It waits for the server, and owes nobody a steady stream."""
+def test_an_accelerated_client_may_be_silent_for_longer(time_scale: float, limit_s: float) -> None:
+    """A client that runs faster than real time is reported as silent only after 30 seconds."""
     watched = running(time_scale=time_scale)
     watched.wait(0.0, limit_s - 0.5)
     assert watched.told == [("clock_unknown", "raised")] * (limit_s > 16.0)
@@ -106,15 +106,15 @@ def test_a_client_faster_than_life_may_wait_longer(time_scale: float, limit_s: f
     assert watched.told[-1] == ("silent", "raised")
 
 
-def test_the_limit_is_an_argument() -> None:
-    """Tests need not wait for three seconds."""
+def test_the_silence_limit_can_be_set() -> None:
+    """The limit after which a headset counts as silent can be set."""
     watched = Watched(limits=WatchLimits(silent_s=0.2, check_every_s=0.05))
     watched.wait(0.0, 0.25)
     assert watched.told == [("silent", "raised")]
 
 
-def test_a_headset_that_has_ceased_to_send_has_no_frame_rate() -> None:
-    """The figure of before would be a lie; where nothing is wanted, there is none to tell."""
+def test_a_silent_headset_has_a_frame_rate_of_zero() -> None:
+    """A headset that has stopped sending has a frame rate of zero, and none while not recording."""
     watched = running()
     assert watched.watch.signal(at(0.0))["frame_rate_hz"] == 0.0
     ended_s = watched.play(TREMBLING.part(slice(0, 450)))

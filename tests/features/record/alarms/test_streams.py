@@ -1,4 +1,4 @@
-"""What is found in the frames while they come."""
+"""Tests of the faults that are found in frames as they arrive."""
 
 import json
 
@@ -17,7 +17,7 @@ UPSIDE_DOWN = np.array((0.0, 1.0, 0.0, 0.0))
 
 
 def told(recording: Recording, time_scale: float = 1.0) -> set[tuple[str, str | None]]:
-    """The alarms that were raised: (code, stream), but for those of the clock."""
+    """Return (code, stream) of every alarm raised by a recording, without those of the clock."""
     watched = Watched(time_scale)
     watched.play(recording)
     raised = {change.condition.key for change in watched.changes if change.state == "raised"}
@@ -26,14 +26,14 @@ def told(recording: Recording, time_scale: float = 1.0) -> set[tuple[str, str | 
 
 @pytest.mark.parametrize("time_scale", [1.0, 20.0, 100.0])
 @pytest.mark.parametrize("sound", [generated(1), generated(2), MINUTE])
-def test_sound_movement_raises_nothing_at_any_speed(sound: Recording, time_scale: float) -> None:
-    """Generated and trembling, in real time and a hundred times faster."""
+def test_valid_movement_raises_no_alarm_at_any_speed(sound: Recording, time_scale: float) -> None:
+    """Valid movement raises no alarm, in real time or a hundred times faster."""
     assert told(sound, time_scale) == set()
 
 
 @pytest.mark.parametrize("time_scale", [1.0, 20.0])
 def test_each_fault_raises_its_alarm_and_no_other(time_scale: float) -> None:
-    """In both streams, as the frames of both were spoilt."""
+    """Each fault in both streams raises its own alarm in both, and no other alarm."""
     both = set(StreamName)
 
     def raised_by(bad: Recording) -> set[str]:
@@ -58,8 +58,8 @@ def test_each_fault_raises_its_alarm_and_no_other(time_scale: float) -> None:
     assert raised_by(slow) == {"low_frame_rate"}
 
 
-def test_an_alarm_says_what_and_where() -> None:
-    """The joint by its name, for how long, and when on the client's clock."""
+def test_an_alarm_states_joint_duration_and_time() -> None:
+    """An alarm names the joint, the duration and the time on the client's clock."""
     frozen = MINUTE.copy()
     frozen.rotations[2000:2600, HEAD] = frozen.rotations[2000, HEAD]
     watched = Watched()
@@ -76,15 +76,15 @@ def test_an_alarm_says_what_and_where() -> None:
 
 @pytest.mark.parametrize(("from_hz", "to_hz", "raised"), [(90, 72, False), (90, 60, True)])
 def test_a_display_rate_is_not_a_low_frame_rate(from_hz: int, to_hz: int, raised: bool) -> None:  # noqa: FBT001 - by name
-    """72 of 90 Hz may be meant; 60 of 90 Hz is not what the study began with."""
+    """A drop from 90 Hz to the display rate of 72 Hz raises no alarm; one to 60 Hz does."""
     slow = MINUTE.copy()
     slow.times_s[:2000] = np.arange(2000) / from_hz
     slow.times_s[2000:] = slow.times_s[1999] + (1.0 + np.arange(len(slow) - 2000)) / to_hz
     assert (("low_frame_rate", StreamName.TARGET) in told(slow)) is raised
 
 
-def test_small_gaps_are_counted_and_raise_nothing() -> None:
-    """An operator is not called for 60 ms; the card shows them."""
+def test_short_gaps_are_counted_without_an_alarm() -> None:
+    """Gaps of about 60 ms are counted in the signal but raise no alarm."""
     stuttering = MINUTE.copy()
     for first in range(1000, 1500, 100):
         stuttering.times_s[first:] += 0.05
@@ -96,8 +96,8 @@ def test_small_gaps_are_counted_and_raise_nothing() -> None:
     assert signal["gap_s"] == pytest.approx(5 * (0.05 + 1 / 90), abs=0.02)
 
 
-def test_counts_begin_anew_with_each_phase() -> None:
-    """The card tells of the phase that is on."""
+def test_the_gap_count_restarts_with_each_phase() -> None:
+    """The count of gaps restarts with each phase."""
     gap = MINUTE.copy()
     gap.times_s[500:] += 0.5
     watched = Watched()
@@ -109,8 +109,8 @@ def test_counts_begin_anew_with_each_phase() -> None:
     assert watched.watch.signal(at(12.0))["gaps"] == 0
 
 
-def test_what_is_sent_again_is_judged_once() -> None:
-    """Neither an overlap nor a batch behind a hole makes time run backwards."""
+def test_resent_frames_are_checked_once() -> None:
+    """Resent and out-of-order frames are not checked again and raise no alarm."""
     watched = Watched()
     for first in range(0, 900, 9):
         for _ in range(2):
@@ -120,8 +120,8 @@ def test_what_is_sent_again_is_judged_once() -> None:
     assert watched.watch.signal(at(10.0))["frame_rate_hz"] == pytest.approx(90.0, abs=0.5)
 
 
-def test_an_avatar_whose_delay_is_set_anew_does_not_jump() -> None:
-    """Between phases the actual pose may change at once; the participant's may not."""
+def test_a_change_of_delay_between_phases_is_not_a_jump() -> None:
+    """A sudden change of pose between phases is a jump in the target, not in the actual stream."""
     for stream, raised in ((StreamName.TARGET, ["jump"]), (StreamName.ACTUAL, [])):
         moved = MINUTE.copy()
         moved.rotations[450:, HEAD] = rot.multiply(
@@ -135,8 +135,8 @@ def test_an_avatar_whose_delay_is_set_anew_does_not_jump() -> None:
         assert [change.condition.code for change in watched.changes][:1] == raised
 
 
-def test_a_run_that_went_before_does_not_mix_with_the_newer_one() -> None:
-    """Late frames of an earlier epoch have a clock of their own."""
+def test_late_frames_of_an_earlier_epoch_raise_no_alarm() -> None:
+    """Late frames of an earlier epoch, which has its own clock, raise no alarm."""
     watched = Watched()
     for first in range(0, 450, 9):
         watched.changes += watched.watch.batch(
@@ -146,8 +146,8 @@ def test_a_run_that_went_before_does_not_mix_with_the_newer_one() -> None:
     assert watched.told == []
 
 
-def test_whatever_comes_is_told_in_numbers() -> None:
-    """Frames may hold anything; what the console hears is valid JSON."""
+def test_invalid_frames_give_a_signal_of_valid_json() -> None:
+    """Frames with non-finite or extreme values give a signal and alarms in valid JSON."""
     rng = np.random.default_rng(3)
     odd = MINUTE.part(slice(0, 900)).copy()
     late = rng.random(len(odd)) < 0.2

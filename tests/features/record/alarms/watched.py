@@ -1,4 +1,4 @@
-"""A watch without a server: batches of a moving body, told at chosen moments."""
+"""A quality watch without a server, which receives batches of a moving body at chosen times."""
 
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
@@ -18,12 +18,12 @@ TREMBLING = jitter(generated(1), np.random.default_rng(5))
 
 
 def at(seconds: float) -> Moment:
-    """So many seconds after the beginning."""
+    """Return the moment so many seconds after the beginning."""
     return Moment(1000.0 + seconds, BEGAN + timedelta(seconds=seconds))
 
 
 def order(phase_id: int = 1, status: str = "running") -> PhaseOrder:
-    """A phase under way."""
+    """Return a phase in progress as the headset receives it."""
     return PhaseOrder(
         phase_id=phase_id,
         kind="task",
@@ -41,7 +41,7 @@ def order(phase_id: int = 1, status: str = "running") -> PhaseOrder:
 
 
 def state(*, recording: bool = True, phase: PhaseOrder | None = None) -> HeadsetState:
-    """Where the session stands."""
+    """Return a session state as the headset receives it."""
     return HeadsetState(
         version=1,
         status="active",
@@ -55,7 +55,7 @@ def state(*, recording: bool = True, phase: PhaseOrder | None = None) -> Headset
 
 
 def welcome(time_scale: float = 1.0, **fields: Any) -> Welcome:
-    """What the headset was told first."""
+    """Return the server's first message to the headset."""
     values: dict[str, Any] = {
         "protocol": 1,
         "session_id": "s",
@@ -84,7 +84,7 @@ def batch(
     seq_first: int | None = None,
     phase_id: int = 1,
 ) -> Batch:
-    """Some frames of a recording as they travel."""
+    """Return frames of a recording as a batch that was encoded and decoded."""
     part = recording.part(slice(first, first + count))
     values = np.concatenate((part.positions_m, part.rotations.reshape(count, -1)), axis=1)
     return decode_batch(
@@ -104,7 +104,7 @@ def batch(
 
 @dataclass
 class Watched:
-    """A watch with what it said, driven in real time or in that of a fast client."""
+    """A quality watch with the changes that it reported, in real time or that of a fast client."""
 
     time_scale: float = 1.0
     limits: WatchLimits = field(default_factory=WatchLimits)
@@ -117,11 +117,11 @@ class Watched:
 
     @property
     def told(self) -> list[tuple[str, str]]:
-        """Every change in order: (code, state)."""
+        """Every change as (code, state), in order."""
         return [(change.condition.code, change.state) for change in self.changes]
 
     def play(self, recording: Recording, *, begin_s: float = 0.0) -> float:
-        """Send both streams as they would come, looking up in between; when it was over."""
+        """Send both streams of a recording, checking at intervals; return the time at its end."""
         now_s, checked_s = begin_s, begin_s
         for first in range(0, len(recording) - PER_BATCH + 1, PER_BATCH):
             now_s = begin_s + float(np.nan_to_num(first / 90.0)) / self.time_scale
@@ -135,14 +135,14 @@ class Watched:
         return now_s
 
     def check(self, now_s: float, *, reading: bool = True) -> CheckResult:
-        """Look up once."""
+        """Run one check of the watch at a time and store its result."""
         result = self.watch.check(at(now_s), reading=reading)
         self.changes += result.changes
         self.checks.append((now_s, result))
         return result
 
     def wait(self, begin_s: float, for_s: float) -> float:
-        """Look up for a while without a word from the headset; when it was over."""
+        """Run the checks of `for_s` seconds without any message; return the time at the end."""
         step_s = self.watch.limits.check_every_s
         for turn in range(1, round(for_s / step_s) + 1):
             self.check(begin_s + turn * step_s)
@@ -150,7 +150,7 @@ class Watched:
 
 
 def there_and_back(recording: Recording) -> Recording:
-    """Twice as long: the body goes back the way it came."""
+    """Return a recording of twice the length, in which the body moves back the way it came."""
     length_s = len(recording) / 90.0
     return Recording(
         np.concatenate((recording.times_s, recording.times_s + length_s)),

@@ -1,4 +1,4 @@
-"""How slow the equipment is: appended, never edited, and part of every export."""
+"""Tests of calibrations of the equipment's own latency: appended, never edited, always exported."""
 
 from pathlib import Path
 
@@ -21,19 +21,19 @@ MEASURED: Json = {
 
 
 def add(lab: Lab, **changes: object) -> Json:
-    """Record a measurement."""
+    """Store a measurement of the equipment's latency."""
     stored: Json = ok(lab.operator.post("/api/calibrations", json={**MEASURED, **changes}))
     return stored
 
 
 def listed(lab: Lab) -> list[Json]:
-    """Every measurement."""
+    """Return every measurement, as listed by the interface."""
     told: list[Json] = ok(lab.operator.get("/api/calibrations"))
     return told
 
 
-def test_milliseconds_at_the_edge_are_seconds_inside(fresh_lab: Lab) -> None:
-    """And come back as they were written."""
+def test_a_calibration_is_stored_in_seconds(fresh_lab: Lab) -> None:
+    """A calibration is given in milliseconds, stored in seconds and returned in milliseconds."""
     stored = add(fresh_lab)
     assert {key: stored[key] for key in MEASURED} == MEASURED
     assert (stored["current"], stored["by"]) == (True, "account:admin")
@@ -43,8 +43,8 @@ def test_milliseconds_at_the_edge_are_seconds_inside(fresh_lab: Lab) -> None:
         assert row.sd_s == pytest.approx(0.0027, abs=1e-12)
 
 
-def test_the_newest_measurement_of_each_equipment_holds(fresh_lab: Lab) -> None:
-    """By its date, not by when it was entered."""
+def test_the_latest_measurement_of_each_equipment_is_current(fresh_lab: Lab) -> None:
+    """The current calibration of each equipment is the one that was measured last."""
     newest = add(fresh_lab, measured_on="2026-04-01")
     older = add(fresh_lab, measured_on="2026-01-01")
     other = add(fresh_lab, equipment="Another headset")
@@ -57,8 +57,8 @@ def test_the_newest_measurement_of_each_equipment_holds(fresh_lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_mistake_is_retired_and_stays(fresh_lab: Lab) -> None:
-    """The one before it holds again; a second reason is refused."""
+def test_a_retired_calibration_stays_listed(fresh_lab: Lab) -> None:
+    """A calibration can be retired once; it stays listed and the previous one becomes current."""
     before = add(fresh_lab, measured_on="2026-01-01")
     wrong = add(fresh_lab)
     path = f"/api/calibrations/{wrong['id']}/retire"
@@ -89,15 +89,15 @@ def test_a_mistake_is_retired_and_stays(fresh_lab: Lab) -> None:
         {"surprise": 1},
     ],
 )
-def test_what_cannot_have_been_measured_is_refused(lab: Lab, change: Json) -> None:
-    """Nothing below zero, nothing in the future, nothing without a method."""
+def test_an_invalid_calibration_is_refused(lab: Lab, change: Json) -> None:
+    """A calibration with impossible numbers, a future date or without a method is refused."""
     answer = lab.operator.post("/api/calibrations", json={**MEASURED, **change})
     assert answer.status_code == 422
 
 
 @pytest.mark.one_engine
-def test_every_export_carries_the_measurements(fresh_lab: Lab, tmp_path: Path) -> None:
-    """Whatever the study: latency is added on top of them."""
+def test_every_export_contains_the_calibrations(fresh_lab: Lab, tmp_path: Path) -> None:
+    """Every export contains the calibrations, whatever the study."""
     add(fresh_lab, note="after the driver's update")
     with fresh_lab.database.reading() as db:
         table = calibrations_table(db)

@@ -1,4 +1,4 @@
-"""Pairing tablets and headsets: a code works once, a token opens one session."""
+"""Tests of pairing tablets and headsets: a code works once, and a token opens one session."""
 
 from concurrent.futures import ThreadPoolExecutor
 from datetime import UTC, datetime, timedelta
@@ -13,19 +13,19 @@ from tests.features.lab import Lab, error, ok, running_lab
 
 
 def use(client: TestClient, code: str, **fields: str) -> Response:
-    """Type a code into a device."""
+    """Pair a device by its code."""
     return client.post("/api/devices/pair", json={"code": code, **fields})
 
 
 def everything_stored(lab: Lab) -> str:
-    """The whole database as text."""
+    """Return the content of the whole database as text."""
     with lab.database.reading() as db:
         tables = inspect(lab.database.engine).get_table_names()
         return repr([db.execute(text(f'SELECT * FROM "{table}"')).all() for table in tables])  # noqa: S608 - our own tables
 
 
 def test_a_code_pairs_a_tablet(lab: Lab) -> None:
-    """The tablet gets a cookie that no script can read, and no token in the answer."""
+    """A pairing code gives a tablet an HttpOnly cookie and no token in the answer."""
     session_id = lab.join()["id"]
     tablet = lab.stranger()
     answer = use(tablet, lab.show_code(session_id, "tablet"), name="iPad")
@@ -38,7 +38,7 @@ def test_a_code_pairs_a_tablet(lab: Lab) -> None:
 
 
 def test_a_code_works_once(lab: Lab) -> None:
-    """A second tablet with the same code hears that it was used, and the first goes on."""
+    """A second tablet with a used code is refused, and the first stays paired."""
     session_id = lab.join()["id"]
     code = lab.show_code(session_id, "tablet")
     first, second = lab.stranger(), lab.stranger()
@@ -49,7 +49,7 @@ def test_a_code_works_once(lab: Lab) -> None:
 
 
 def test_of_many_tablets_with_one_code_one_is_paired(lab: Lab) -> None:
-    """Eight at the same moment: one holder, seven refusals."""
+    """Of eight tablets that use one code at the same time, exactly one is paired."""
     session_id = lab.join()["id"]
     code = lab.show_code(session_id, "tablet")
     tablets = [lab.stranger() for _ in range(8)]
@@ -60,7 +60,7 @@ def test_of_many_tablets_with_one_code_one_is_paired(lab: Lab) -> None:
 
 
 def test_a_new_code_replaces_the_old_tablet(lab: Lab) -> None:
-    """Taking over is a deed of the operator: then the old cookie opens nothing."""
+    """Pairing a tablet with a new code revokes the cookie of the previous tablet."""
     session_id = lab.join()["id"]
     old = lab.tablet(session_id)
     new = lab.tablet(session_id)
@@ -70,8 +70,8 @@ def test_a_new_code_replaces_the_old_tablet(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_showing_a_code_alone_replaces_nobody(lab: Lab) -> None:
-    """The old tablet goes on until the new code is used."""
+def test_showing_a_code_does_not_unpair_the_tablet(lab: Lab) -> None:
+    """Showing a new code does not unpair the tablet until the code is used."""
     session_id = lab.join()["id"]
     tablet = lab.tablet(session_id)
     lab.show_code(session_id, "tablet")
@@ -79,8 +79,8 @@ def test_showing_a_code_alone_replaces_nobody(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_newer_code_ends_an_older_one(lab: Lab) -> None:
-    """Only the code on the screen works."""
+def test_a_newer_code_invalidates_the_older_one(lab: Lab) -> None:
+    """Showing a new pairing code invalidates the older one."""
     session_id = lab.join()["id"]
     older, newer = (lab.show_code(session_id, "tablet") for _ in range(2))
     error(use(lab.stranger(), older), 410, "gone")
@@ -89,7 +89,7 @@ def test_a_newer_code_ends_an_older_one(lab: Lab) -> None:
 
 @pytest.mark.one_engine
 def test_a_headset_and_a_tablet_do_not_replace_each_other(lab: Lab) -> None:
-    """A session has one of each."""
+    """A session has a tablet and a headset at the same time; pairing one keeps the other."""
     session_id = lab.join()["id"]
     tablet = lab.tablet(session_id)
     lab.headset_token(session_id)
@@ -98,8 +98,8 @@ def test_a_headset_and_a_tablet_do_not_replace_each_other(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_headsets_token_is_no_tablets(lab: Lab) -> None:
-    """Neither as a bearer token nor as a cookie."""
+def test_a_headsets_token_does_not_open_the_tablet(lab: Lab) -> None:
+    """A headset's token opens nothing of the tablet, as a bearer token or as a cookie."""
     token = lab.headset_token(lab.join()["id"])
     device = lab.stranger()
     error(
@@ -113,7 +113,7 @@ def test_a_headsets_token_is_no_tablets(lab: Lab) -> None:
 
 @pytest.mark.one_engine
 def test_a_tablet_sees_its_own_session_only(lab: Lab) -> None:
-    """Each cookie leads to the session it was paired with, whatever is asked for."""
+    """A tablet's cookie opens only the session that it was paired with."""
     ids = [lab.join()["id"] for _ in range(2)]
     tablets = [lab.tablet(session_id) for session_id in ids]
     seen = [ok(tablet.get("/api/tablet/state"))["session_id"] for tablet in tablets]
@@ -121,8 +121,8 @@ def test_a_tablet_sees_its_own_session_only(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_revoked_device_is_out_at_once(lab: Lab) -> None:
-    """The operator unpairs it and its cookie opens nothing."""
+def test_an_unpaired_device_is_refused_immediately(lab: Lab) -> None:
+    """A tablet that the operator unpairs is refused immediately."""
     session_id = lab.join()["id"]
     tablet = lab.tablet(session_id)
     device_id = lab.view(session_id)["devices"][0]["id"]
@@ -132,7 +132,7 @@ def test_a_revoked_device_is_out_at_once(lab: Lab) -> None:
 
 @pytest.mark.one_engine
 def test_a_device_is_revoked_in_its_own_session_only(lab: Lab) -> None:
-    """Another session's device is not found there."""
+    """Unpairing a device through another session is refused as not found."""
     session_id, other = lab.join()["id"], lab.join()["id"]
     tablet = lab.tablet(session_id)
     device_id = lab.view(session_id)["devices"][0]["id"]
@@ -143,19 +143,19 @@ def test_a_device_is_revoked_in_its_own_session_only(lab: Lab) -> None:
 
 @pytest.mark.one_engine
 def test_an_unknown_code_is_not_found(lab: Lab) -> None:
-    """No session waits for it."""
+    """An unknown pairing code is refused as not found."""
     error(use(lab.stranger(), "XXX-XXX"), 404, "not_found")
 
 
 @pytest.mark.one_engine
-def test_a_code_may_be_typed_carelessly(lab: Lab) -> None:
-    """Lower case, spaces and dashes do not matter."""
+def test_a_code_may_be_typed_in_lower_case_with_spaces(lab: Lab) -> None:
+    """A pairing code is accepted in lower case and with spaces or without dashes."""
     code = lab.show_code(lab.join()["id"], "tablet")
     ok(use(lab.stranger(), f" {code.lower().replace('-', ' ')} "))
 
 
 def test_a_code_expires(database_url: str) -> None:
-    """After ten minutes it is too old."""
+    """A pairing code expires after ten minutes."""
     now = [datetime(2030, 1, 1, tzinfo=UTC)]
     with running_lab(database_url, Clock(utc_now=lambda: now[0])) as lab:
         code = lab.show_code(lab.join()["id"], "tablet")
@@ -164,8 +164,8 @@ def test_a_code_expires(database_url: str) -> None:
 
 
 @pytest.mark.one_engine
-def test_guessing_codes_is_slowed_down(fresh_lab: Lab) -> None:
-    """After twenty tries even a good code has to wait."""
+def test_guessing_codes_is_rate_limited(fresh_lab: Lab) -> None:
+    """After twenty wrong pairing codes even a valid one is refused for a while."""
     code = fresh_lab.show_code(fresh_lab.join()["id"], "tablet")
     device = fresh_lab.stranger()
     for number in range(20):
@@ -174,7 +174,7 @@ def test_guessing_codes_is_slowed_down(fresh_lab: Lab) -> None:
 
 
 def test_codes_and_tokens_are_stored_as_hashes_only(fresh_lab: Lab) -> None:
-    """No table holds a code or a token that would open anything."""
+    """No table contains a pairing code or a token in clear text."""
     session_id = fresh_lab.join()["id"]
     code = fresh_lab.show_code(session_id, "tablet")
     tablet = fresh_lab.stranger()
@@ -194,14 +194,14 @@ def test_codes_and_tokens_are_stored_as_hashes_only(fresh_lab: Lab) -> None:
 @pytest.mark.one_engine
 @pytest.mark.parametrize("device", ["phone", "", None])
 def test_only_tablets_and_headsets_pair(lab: Lab, device: str | None) -> None:
-    """Any other device is refused by field."""
+    """A pairing code for any other device than a tablet or a headset is refused."""
     path = f"/api/sessions/{lab.join()['id']}/pairings"
     error(lab.operator.post(path, json={"device": device}), 422, "invalid_input")
 
 
 @pytest.mark.one_engine
 def test_the_link_opens_the_tablets_page_with_the_code(lab: Lab) -> None:
-    """What the QR code holds is the address and the code, drawn as SVG."""
+    """A pairing has a link to the tablet's page with the code, also as a QR code in SVG."""
     path = f"/api/sessions/{lab.join()['id']}/pairings"
     shown = ok(lab.operator.post(path, json={"device": "tablet"}))
     assert shown["url"] == f"http://testserver/tablet?code={shown['code']}"
@@ -210,7 +210,7 @@ def test_the_link_opens_the_tablets_page_with_the_code(lab: Lab) -> None:
 
 @pytest.mark.one_engine
 def test_no_device_is_sent_to_its_own_localhost(lab: Lab) -> None:
-    """Where only this machine reaches the server there is a code, but no address and no QR code."""
+    """If only its own machine reaches the server, a pairing has no link and no QR code."""
     path = f"/api/sessions/{lab.join()['id']}/pairings"
     here = {"host": "localhost:8321"}
     for device in ("tablet", "headset"):

@@ -1,1 +1,1 @@
-"""Doubts about what a headset says."""
+"""Tests of doubts about what a headset reports."""

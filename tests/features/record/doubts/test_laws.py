@@ -1,4 +1,4 @@
-"""The laws, one by one: what they let pass and what they do not."""
+"""Tests of each law about a headset's reports: what it accepts and what it doubts."""
 
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
@@ -26,12 +26,12 @@ NOON = datetime(2026, 3, 1, 12, tzinfo=UTC)
 
 
 def report(what: str, t_s: float, active_s: float, epoch: int = 1) -> ClockReport:
-    """What a headset told of phase 1."""
+    """Return a headset's report about the clock of phase 1."""
     return ClockReport(1, epoch, what, t_s, active_s, accepted=True)
 
 
 def moment(kind: str, at_s: float, active_s: float | None = None, wall_s: float = 0.0) -> Moment:
-    """An event of it at so many seconds, the wall clock `wall_s` off."""
+    """Return an event of the phase, `at_s` seconds in, with a wall clock that is `wall_s` off."""
     utc = NOON + timedelta(seconds=at_s + wall_s)
     return Moment(kind, 100.0 + at_s, utc, active_s, clock_stopped=active_s is not None)
 
@@ -67,27 +67,27 @@ HONEST = SessionClaims(
 
 
 def doubts(**changed: object) -> list[tuple[int | None, str]]:
-    """Phase and kind of what is doubted once these claims are made of the phase."""
+    """Return (phase, kind) of each doubt about a session whose phase has these claims."""
     return named(replace(HONEST, phases=(replace(PHASE, **changed),)))  # type: ignore[arg-type]  # any claim
 
 
 def named(claims: SessionClaims) -> list[tuple[int | None, str]]:
-    """Phase and kind of every doubt."""
+    """Return (phase, kind) of each doubt about these claims."""
     return [(one.phase_id, one.kind) for one in doubts_about(claims)]
 
 
 def with_reports(*reports: ClockReport) -> SessionClaims:
-    """The session with these reports of its clock."""
+    """Return the consistent session with these reports of its clock instead."""
     return replace(HONEST, reports=reports)
 
 
-def test_an_honest_session_is_not_doubted() -> None:
-    """Nothing is found where everything hangs together."""
+def test_a_consistent_session_raises_no_doubt() -> None:
+    """A session whose claims are consistent raises no doubt."""
     assert doubts_about(HONEST) == ()
 
 
-def test_every_kind_that_is_found_is_explained() -> None:
-    """Each doubt has words, and its kind a meaning."""
+def test_every_doubt_has_a_message_and_a_documented_kind() -> None:
+    """A doubt has a message, and its kind is documented."""
     (doubt,) = doubts_about(with_reports(STARTED, report("time_up", 11.0, 60.0)))[:1]
     assert isinstance(doubt, Doubt)
     assert (doubt.kind in KINDS, doubt.words != "") == (True, True)
@@ -106,13 +106,13 @@ def test_every_kind_that_is_found_is_explained() -> None:
         ((STARTED, report("walk_back_started", 20.0, 10.0)), "walk_back"),
     ],
 )
-def test_a_clock_that_cannot_be_is_doubted(reports: tuple[ClockReport, ...], kind: str) -> None:
-    """Active time passes with the headset's clock while it runs, and not at all while it stands."""
+def test_an_impossible_clock_is_doubted(reports: tuple[ClockReport, ...], kind: str) -> None:
+    """Active time that does not pass with the headset's running clock is doubted."""
     assert (1, kind) in named(with_reports(*reports))
 
 
-def test_a_client_that_takes_over_may_learn_how_far_the_other_had_come() -> None:
-    """Until it runs itself, its active time is what the server tells it."""
+def test_a_new_client_may_continue_from_the_servers_active_time() -> None:
+    """A client that takes over a paused phase may continue from the server's active time."""
     taken = (
         STARTED,
         report("paused", 3.0, 20.0, epoch=2),
@@ -122,21 +122,21 @@ def test_a_client_that_takes_over_may_learn_how_far_the_other_had_come() -> None
     assert "active_time_headset" not in {kind for _, kind in named(with_reports(*taken))}
 
 
-def test_late_is_no_lie() -> None:
-    """A journal that comes ten minutes later, all at once, tells what can have been."""
+def test_a_late_journal_is_not_doubted() -> None:
+    """Reports that arrive ten minutes late and all together are not doubted."""
     late = (CALLED, moment("phase_paused", 600.0, 40.0), moment("phase_frozen", 600.1, 60.0))
     assert doubts(moments=late) == []
 
 
 def test_more_time_than_passed_at_the_server_is_doubted() -> None:
-    """60 s of active time cannot be over 8 s after the phase was called."""
+    """60 s of active time, 8 s after the phase was prepared, are doubted."""
     assert doubts(moments=(CALLED, moment("phase_frozen", 8.0, 60.0))) == [
         (1, "active_time_server")
     ]
 
 
-def test_a_confirmed_pause_is_no_active_time() -> None:
-    """Until the operator lets it go on the headset stands, by its own word."""
+def test_time_in_a_confirmed_pause_is_not_active_time() -> None:
+    """Active time claimed for a pause that the headset confirmed is doubted."""
     paused = (
         CALLED,
         moment("phase_paused", 20.0, 15.0),
@@ -147,8 +147,8 @@ def test_a_confirmed_pause_is_no_active_time() -> None:
 
 
 @pytest.mark.parametrize("wall_s", [-3600.0, 3600.0])
-def test_a_wall_clock_that_is_set_accuses_nobody(wall_s: float) -> None:
-    """The server's monotonic clock goes on."""
+def test_a_wall_clock_change_is_not_doubted(wall_s: float) -> None:
+    """A change of the server's wall clock raises no doubt, as its monotonic clock continues."""
     assert doubts(moments=(CALLED, moment("phase_frozen", 65.0, 60.0, wall_s))) == []
 
 
@@ -161,7 +161,7 @@ def test_a_wall_clock_that_is_set_accuses_nobody(wall_s: float) -> None:
 def test_no_honest_clock_is_doubted(
     drift: float, scale: float, late_s: float, wall_s: float
 ) -> None:
-    """Whatever the drift, the pace of a simulated session, the delay and the wall clock."""
+    """A correct clock raises no doubt, whatever its drift, time scale, delay and wall clock."""
     real_s = 5.0 + 60.0 / (1.0 + drift) / scale + late_s
     frozen = moment("phase_frozen", real_s, 60.0, wall_s)
     phase = replace(PHASE, moments=(CALLED, frozen))
@@ -182,8 +182,8 @@ def test_no_honest_clock_is_doubted(
         ({"epoch": 2}, "contact_time"),
     ],
 )
-def test_a_contact_that_cannot_be_is_doubted(changed: dict[str, int], kind: str) -> None:
-    """It ends after it began, touches what is there, and lies in the phase's active time."""
+def test_an_impossible_contact_is_doubted(changed: dict[str, int], kind: str) -> None:
+    """A contact with reversed times, an unknown surface or a time outside the phase is doubted."""
     contacts = PHASE.contacts[0]._replace(**changed)
     assert doubts(contacts=(contacts,), completed=()) == [(1, kind)]
 
@@ -200,14 +200,14 @@ def test_a_contact_that_cannot_be_is_doubted(changed: dict[str, int], kind: str)
         ({"number": 7}, "completion_count"),
     ],
 )
-def test_a_completion_that_cannot_be_is_doubted(changed: dict[str, int], kind: str) -> None:
-    """It takes a person's time, lies in the phase's, and is of its boxes."""
+def test_an_impossible_completed_task_is_doubted(changed: dict[str, int], kind: str) -> None:
+    """A completed task that is too fast, outside the phase or of unknown boxes is doubted."""
     first, second = PHASE.completed
     assert (1, kind) in doubts(completed=(first, second._replace(**changed)))  # type: ignore[arg-type]  # any claim
 
 
-def test_completions_need_a_task_and_its_target() -> None:
-    """None in free movement, and no more than the target was touched."""
+def test_completed_tasks_need_a_task_phase_and_its_target() -> None:
+    """Completed tasks are doubted in free movement, or if they outnumber touches of the target."""
     assert doubts(kind="free_roam", boxes=0, contacts=()) == [(1, "completion_place")]
     untouched = PHASE.contacts[0]._replace(completing=0)
     assert doubts(contacts=(untouched,)) == [(1, "completion_count")]
@@ -221,19 +221,21 @@ def test_completions_need_a_task_and_its_target() -> None:
         (Coverage(9000, 100.0, 0.0, 0), "active_time_frames"),
     ],
 )
-def test_frames_that_tell_another_time_are_doubted(coverage: Coverage, kind: str) -> None:
-    """What is active is in the frames, and what is in the frames is active."""
+def test_active_time_that_disagrees_with_the_frames_is_doubted(
+    coverage: Coverage, kind: str
+) -> None:
+    """Active time that disagrees with the time covered by frames is doubted."""
     assert doubts(coverage=coverage) == [(1, kind)]
 
 
-def test_a_gap_in_the_frames_is_no_lie() -> None:
-    """Half of them lost in the middle, and a clock that was asleep in between."""
+def test_a_gap_in_the_frames_is_not_doubted() -> None:
+    """Lost frames, and a clock that was suspended, raise no doubt."""
     assert doubts(coverage=Coverage(2700, 60.0, 30.0, 0)) == []
     assert doubts(coverage=Coverage(5400, 400.0, 340.0, 0)) == []
 
 
-def test_runs_are_those_that_were_numbered() -> None:
-    """1, 2, 3 were given one after the other; 0 and 7 never."""
+def test_an_epoch_that_was_not_assigned_is_doubted() -> None:
+    """An epoch that the server did not assign is doubted."""
     streams = [StreamClaim("reports", epoch, 1, 1, 10.0) for epoch in (0, 1, 2, 7)]
     for wrong in (0, 7):
         kept = tuple(one for one in streams if one.epoch in (1, 2, wrong))
@@ -241,14 +243,14 @@ def test_runs_are_those_that_were_numbered() -> None:
         assert (found.phase_id, found.kind, found.claimed) == (None, "epoch", wrong)
 
 
-def test_a_count_is_within_reason_as_long_as_a_headset_can_have_made_it() -> None:
-    """An hour of a fast headset that was offline all the time is; a million in a minute is not."""
+def test_a_frame_count_is_possible_if_a_headset_can_make_it() -> None:
+    """A frame count is possible if a fast headset could have made it in the elapsed time."""
     assert not exceeds_possible(144 * 3600, 3600.0)
     assert exceeds_possible(1_000_000, 60.0)
     assert not exceeds_possible(1_000_000, 60.0, time_scale=20.0)
 
 
-def test_what_the_server_saw_itself_is_told_in_its_own_words() -> None:
-    """Two observations are two doubts about the session."""
+def test_the_servers_own_observations_become_doubts() -> None:
+    """Each observation by the server itself becomes a doubt with its message."""
     seen = replace(HONEST, observed=("one thing", "another"))
     assert [one.words for one in doubts_about(seen)] == ["another", "one thing"]

@@ -1,4 +1,4 @@
-"""A real server for a module, on each engine."""
+"""Fixtures with a real server per module, on each engine."""
 
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager
@@ -18,7 +18,7 @@ from tests.support.sqlite import fresh_sqlite
 def site(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[Site]:
-    """The server with its operator signed in; each test joins sessions of its own."""
+    """Yield a server with a signed-in operator; each test creates its own sessions."""
     with running_site(request.param, tmp_path_factory.mktemp("site"), {}) as site:
         yield site
 
@@ -27,7 +27,7 @@ def site(
 def quick_site(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[Site]:
-    """The same, but a headset counts as silent after a second."""
+    """Yield a server that counts a headset as silent after one second."""
     quick = {"REEMBODY_HEADSET_SILENT_S": "1"}
     with running_site(request.param, tmp_path_factory.mktemp("site"), quick) as site:
         yield site
@@ -35,7 +35,7 @@ def quick_site(
 
 @contextmanager
 def running_site(engine: str, folder: Path, settings: Mapping[str, str]) -> Iterator[Site]:
-    """A server on an engine, with `REEMBODY_*` settings."""
+    """Run a server on an engine with these `REEMBODY_*` settings for the duration of the block."""
     with ExitStack() as stack:
         if engine == "postgresql":
             url = stack.enter_context(fresh_postgres())

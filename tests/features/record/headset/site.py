@@ -1,4 +1,4 @@
-"""A real server with an operator, and headsets that speak to it over real sockets."""
+"""A real server with an operator, and headsets that connect to it by real sockets."""
 
 import json
 import uuid
@@ -20,7 +20,7 @@ HELLO: Json = {"type": "hello", "protocol": 1, "client": "test"}
 
 @dataclass
 class Headset:
-    """One open socket; everything it was told so far is in `heard`."""
+    """An open headset socket; `heard` has every message that it received."""
 
     socket: ClientConnection
     welcome: Json = field(default_factory=dict)
@@ -29,15 +29,15 @@ class Headset:
 
     @property
     def epoch(self) -> int:
-        """The number of this run of the client."""
+        """The epoch of this run of the client."""
         return int(self.welcome["epoch"])
 
     def say(self, message: Json | bytes) -> None:
-        """Send JSON or a batch."""
+        """Send a JSON message or a batch."""
         self.socket.send(message if isinstance(message, bytes) else json.dumps(message))
 
     def hear(self, kind: str, matching: Callable[[Json], bool] = lambda _: True) -> Json:
-        """The next message of a kind that matches; fails after 10 s."""
+        """Return the next message of a kind that matches; fail after 10 s without a message."""
         while True:
             message: Json = json.loads(self.socket.recv(timeout=10.0))
             self.heard.append(message)
@@ -45,7 +45,7 @@ class Headset:
                 return message
 
     def hear_any(self, kinds: tuple[str, ...]) -> Json:
-        """The next message of one of these kinds."""
+        """Return the next message of any of these kinds."""
         while True:
             message: Json = json.loads(self.socket.recv(timeout=10.0))
             self.heard.append(message)
@@ -53,7 +53,7 @@ class Headset:
                 return message
 
     def acknowledged(self, stream: str, next_seq: int) -> Json:
-        """Wait until all of `seq < next_seq` of a stream is acknowledged."""
+        """Wait until every `seq < next_seq` of a stream is acknowledged."""
 
         def matches(ack: Json) -> bool:
             return {"stream": stream, "epoch": self.epoch, "next_seq": next_seq} in ack["positions"]
@@ -61,7 +61,7 @@ class Headset:
         return self.hear("ack", matches)
 
     def report(self, **body: Any) -> None:
-        """Send a report under the next seq."""
+        """Send a report with the next seq."""
         seq, self.next_report = self.next_report, self.next_report + 1
         self.say({"type": "report", "epoch": self.epoch, "seq": seq, "body": body})
 
@@ -73,24 +73,24 @@ class Headset:
 
 @dataclass(frozen=True)
 class Site:
-    """The server, its operator's HTTP client, and its database seen from outside."""
+    """A server, its operator's HTTP client, and direct access to its database."""
 
     server: LiveServer
     operator: httpx2.Client
     database: Database
 
     def join(self, **fields: Any) -> str:
-        """A new session's id."""
+        """Create a session and return its id."""
         view = ok(self.operator.post(f"/api/studies/{STUDY}/sessions", json=fields))
         return str(view["id"])
 
     def view(self, session_id: str) -> Json:
-        """The session now."""
+        """Return the current state of a session."""
         view: Json = ok(self.operator.get(f"/api/sessions/{session_id}"))
         return view
 
     def command(self, session_id: str, kind: str, **fields: Any) -> Json:
-        """Send a command that is accepted."""
+        """Send a command that must be accepted and return the session after it."""
         body = {
             "command_id": str(uuid.uuid4()),
             "expected_version": self.view(session_id)["version"],
@@ -101,13 +101,13 @@ class Site:
         return view
 
     def skip_to(self, session_id: str, step_key: str) -> None:
-        """Start, and skip every step before `step_key`."""
+        """Start a session and skip every step before `step_key`."""
         view = self.command(session_id, "start")
         while view["steps"][view["current"]["index"]]["key"] != step_key:
             view = self.command(session_id, "skip", reason="not in this test")
 
     def token(self, session_id: str) -> str:
-        """Pair a headset; its token."""
+        """Pair a headset with a session and return its token."""
         path = f"/api/sessions/{session_id}/pairings"
         code = ok(self.operator.post(path, json={"device": "headset"}))["code"]
         with self.server.client() as device:
@@ -115,7 +115,7 @@ class Site:
 
     @contextmanager
     def socket(self, token: str | None, **arguments: Any) -> Iterator[ClientConnection]:
-        """A socket that has not said hello."""
+        """Open a headset socket that has not sent its hello."""
         bearer = [] if token is None else [f"bearer.{token}"]
         url = self.server.url.replace("http", "ws") + "/api/vr/stream"
         offered: Any = [SUBPROTOCOL, *bearer]
@@ -124,7 +124,7 @@ class Site:
 
     @contextmanager
     def headset(self, token: str, epoch: int | None = None) -> Iterator[Headset]:
-        """A headset that was welcomed."""
+        """Open a headset socket that has sent its hello and been welcomed."""
         with self.socket(token) as socket:
             headset = Headset(socket)
             headset.say({**HELLO, "epoch": epoch})
@@ -134,7 +134,7 @@ class Site:
 
 @contextmanager
 def open_site(server: LiveServer) -> Iterator[Site]:
-    """A running server on its embedded SQLite, with its operator signed in."""
+    """Yield a running server on its SQLite database, with its operator signed in."""
     with server.client() as operator:
         ok(operator.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
         database = open_database(f"sqlite:///{server.data_dir / 'reembody.sqlite'}")

@@ -1,4 +1,4 @@
-"""A headset that streams a moving body in real time, stops, and goes on."""
+"""A headset that streams a moving body in real time, pauses and continues."""
 
 import threading
 import time
@@ -19,7 +19,7 @@ SOUND = generated(1)
 
 @dataclass
 class Streamer:
-    """Sends both streams of a body; `t_s` is the headset's clock, `active_s` the phase's."""
+    """Send both streams of a body; `t_s` is the headset's clock, `active_s` the phase's."""
 
     headset: Headset
     phase_id: int = 0
@@ -29,7 +29,7 @@ class Streamer:
     last_sent_s: float = 0.0
 
     def stream(self, for_s: float, *, running: bool = True, at_once: bool = False) -> None:
-        """Send `for_s` of frames, at the pace of a headset unless `at_once`."""
+        """Send frames of `for_s` seconds, in real time unless `at_once`."""
         began_s, frames = time.monotonic(), round(for_s * RATE_HZ)
         for done in range(0, frames, PER_BATCH):
             self.send_batch(running=running)
@@ -38,7 +38,7 @@ class Streamer:
                 time.sleep(max(0.0, due_s - time.monotonic()))
 
     def send_batch(self, *, running: bool = True) -> None:
-        """One batch of each stream."""
+        """Send one batch of each stream."""
         picked = (self.seq + np.arange(PER_BATCH)) % len(SOUND)
         values = np.concatenate(
             (SOUND.positions_m[picked], SOUND.rotations[picked].reshape(PER_BATCH, -1)), axis=1
@@ -64,9 +64,10 @@ class Streamer:
 
     @contextmanager
     def streaming(self, *, running: bool = False, probing: bool = False) -> Iterator[None]:
-        """Go on beside what the block does; the block may listen but not speak.
+        """Stream in a thread during the block, which may receive messages but not send them.
 
-        `probing`, it exchanges readings of the clocks too; then the block may not listen either.
+        With `probing` it also exchanges clock probes; then the block may not receive messages
+        either.
         """
         over = threading.Event()
 
@@ -85,21 +86,21 @@ class Streamer:
             thread.join()
 
     def probe(self) -> None:
-        """Exchange readings of the clocks, as a headset does once a second."""
+        """Exchange one clock probe, as a headset does once a second."""
         self.headset.say({"type": "probe", "client_sent_s": self.t_s})
         answer = self.headset.hear("probe")
         self.headset.say({**answer, "type": "probed", "client_received_s": self.t_s + 0.004})
 
 
 def materialised(site: Site, **fields: str) -> str:
-    """A session whose avatar is about to appear."""
+    """Return a session whose current step is entering the body."""
     session_id = site.join(**fields)
     site.skip_to(session_id, "materialise")
     return session_id
 
 
 def in_free_movement(site: Site, session_id: str, headset: Headset) -> Streamer:
-    """The avatar has appeared and the phase's clock runs."""
+    """Enter the body and start the clock of the free movement; return its streamer."""
     headset.reported(kind="materialised", t_s=1.0)
     site.command(session_id, "begin_phase")
     state = headset.hear("state", lambda state: state["phase"] is not None)

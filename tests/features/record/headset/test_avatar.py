@@ -1,4 +1,4 @@
-"""The physics avatar of a session: built for the participant, recorded, and handed to a headset."""
+"""Tests of a session's physics avatar: built for the participant, recorded, sent to the headset."""
 
 import json
 from dataclasses import replace
@@ -25,26 +25,29 @@ PROTOCOLS = "reembody.v1"
 
 @pytest.fixture
 def session(fresh_lab: Lab) -> Json:
-    """A session of a study whose avatar has both hands in a cast."""
+    """Return a session of a study whose avatar has its left fingers locked."""
     new(fresh_lab, "soft", CAST)
     ok(fresh_lab.operator.post("/api/studies", json={"yaml": study("{key: soft, version: 1}")}))
     view: Json = ok(fresh_lab.operator.post(f"/api/studies/{KEY}/sessions", json={"kind": "test"}))
     return view
 
 
-def ask(lab: Lab, token: str, body: Json) -> Response:
-    """A paired headset asks for its avatar."""
+def request_avatar(lab: Lab, token: str, body: Json) -> Response:
+    """Request the avatar as a paired headset."""
     bearer = {"authorization": f"Bearer {token}"}
     return lab.stranger().post("/api/vr/avatar", json=body, headers=bearer)
 
 
 @pytest.mark.one_engine
-def test_the_model_is_the_configuration_at_the_stature_in_the_studys_boxes(
+def test_the_avatar_model_has_the_stature_and_the_studys_surfaces(
     fresh_lab: Lab, session: Json
 ) -> None:
-    """MuJoCo loads it; every surface of both tasks is in it; both hashes are on record."""
+    """The avatar's model has the requested stature and every surface of both tasks.
+
+    MuJoCo loads it, and the configuration and both hashes are in the record.
+    """
     token = fresh_lab.headset_token(session["id"])
-    told = ok(ask(fresh_lab, token, {"stature_m": STATURE_M}))
+    told = ok(request_avatar(fresh_lab, token, {"stature_m": STATURE_M}))
     assert told["stature_m"] == 1.732
     assert told["configuration_hash"] == session["avatar_configuration_hash"]
     file = AvatarFile.model_validate(told["configuration"])
@@ -65,40 +68,42 @@ def test_the_model_is_the_configuration_at_the_stature_in_the_studys_boxes(
     assert body["stature_m"] == 1.732
 
 
-def test_asking_again_records_nothing_new(fresh_lab: Lab, session: Json) -> None:
-    """Unless another body is asked for: then both are known, in their order."""
+def test_a_repeated_avatar_request_records_nothing_new(fresh_lab: Lab, session: Json) -> None:
+    """Requesting the same avatar again records nothing; one of another stature is recorded."""
     token = fresh_lab.headset_token(session["id"])
     for stature_m in (1.7, 1.7, 1.8, 1.8):
-        ok(ask(fresh_lab, token, {"stature_m": stature_m}))
+        ok(request_avatar(fresh_lab, token, {"stature_m": stature_m}))
     types = [event["type"] for event in fresh_lab.events(session["id"])]
     assert types == ["avatar_built", "avatar_built"]
 
 
 @pytest.mark.one_engine
-def test_measured_segments_count(fresh_lab: Lab, session: Json) -> None:
-    """A longer thigh is another model; a length that no body has is refused with its reason."""
+def test_measured_segment_lengths_change_the_model(fresh_lab: Lab, session: Json) -> None:
+    """A measured segment length changes the model; an impossible one is refused with its value."""
     token = fresh_lab.headset_token(session["id"])
-    usual = ok(ask(fresh_lab, token, {"stature_m": 1.7}))
-    measured = ok(ask(fresh_lab, token, {"stature_m": 1.7, "segments_m": {"thigh": 0.45}}))
+    usual = ok(request_avatar(fresh_lab, token, {"stature_m": 1.7}))
+    measured = ok(
+        request_avatar(fresh_lab, token, {"stature_m": 1.7, "segments_m": {"thigh": 0.45}})
+    )
     assert measured["model_hash"] != usual["model_hash"]
     wrong = {"stature_m": 1.7, "segments_m": {"thigh": 2.9}}
-    refusal = error(ask(fresh_lab, token, wrong), 422, "invalid_input")
+    refusal = error(request_avatar(fresh_lab, token, wrong), 422, "invalid_input")
     assert "thigh" in refusal["message"]
     assert refusal["value"] == {"stature_m": 1.7, "thigh": 2.9}
 
 
 @pytest.mark.one_engine
-def test_a_delayed_copy_needs_no_model(lab: Lab) -> None:
-    """It is said so, and nothing is recorded."""
+def test_a_delayed_copy_has_no_avatar_model(lab: Lab) -> None:
+    """The avatar of a session with a delayed copy is refused, and nothing is recorded."""
     view = lab.join(kind="test")
-    refused = ask(lab, lab.headset_token(view["id"]), {"stature_m": 1.7})
+    refused = request_avatar(lab, lab.headset_token(view["id"]), {"stature_m": 1.7})
     assert error(refused, 409, "conflict")["value"] == "delayed_copy"
     assert lab.events(view["id"]) == []
 
 
 @pytest.mark.one_engine
 def test_a_client_that_cannot_show_the_avatar_is_refused(fresh_lab: Lab, session: Json) -> None:
-    """Nothing is recorded as physics that was not; one that can is welcome."""
+    """A client that cannot show the physics avatar is refused; one that can is welcomed."""
     token = fresh_lab.headset_token(session["id"])
     refusal = greet(fresh_lab.stranger(), token, {})
     assert (refusal["type"], refusal["code"]) == ("error", "conflict")
@@ -108,7 +113,7 @@ def test_a_client_that_cannot_show_the_avatar_is_refused(fresh_lab: Lab, session
 
 
 def greet(client: TestClient, token: str, fields: Json) -> Json:
-    """What a headset hears after its hello."""
+    """Return the server's answer to a headset's hello."""
     protocols = [PROTOCOLS, f"bearer.{token}"]
     with client.websocket_connect("/api/vr/stream", subprotocols=protocols) as socket:
         socket.send_json({"type": "hello", "protocol": 1, "client": "test", **fields})
@@ -117,15 +122,15 @@ def greet(client: TestClient, token: str, fields: Json) -> Json:
 
 
 @pytest.mark.one_engine
-def test_a_humanoid_model_lends_its_body(fresh_lab: Lab) -> None:
-    """Its pieces of skin, its four fingers and its own legs, scaled to the stature."""
+def test_an_avatar_takes_its_body_from_a_humanoid_model(fresh_lab: Lab) -> None:
+    """An avatar built from a humanoid model has its meshes, fingers and leg length."""
     file = humanoid_file(Model(parts=without("LeftLittle", "RightLittle")))
     stored = ok(fresh_lab.operator.post("/api/humanoids?name=figure.glb", content=file))
     skin = replace(default_configuration(), humanoid=stored["content_hash"], colliders="mesh")
     new(fresh_lab, "soft", skin)
     ok(fresh_lab.operator.post("/api/studies", json={"yaml": study("{key: soft, version: 1}")}))
     view = ok(fresh_lab.operator.post(f"/api/studies/{KEY}/sessions", json={"kind": "test"}))
-    told = ok(ask(fresh_lab, fresh_lab.headset_token(view["id"]), {"stature_m": 1.7}))
+    told = ok(request_avatar(fresh_lab, fresh_lab.headset_token(view["id"]), {"stature_m": 1.7}))
     body = PhysicsAvatar(told["mjcf"])
     assert body.model.nmesh > 0
     assert "LeftRingDistal" in body.parts

@@ -1,4 +1,4 @@
-"""What a headset's reports do, and that they do it once."""
+"""Tests of what a headset's reports change, and that each takes effect once."""
 
 import time
 
@@ -22,14 +22,14 @@ COMPLETION: Json = {
 
 
 def running(site: Site) -> tuple[str, str]:
-    """A session whose free movement can be called, and its headset's token."""
+    """Return a session whose free movement can be started, and its headset's token."""
     session_id = site.join()
     site.skip_to(session_id, "free_roam")
     return session_id, site.token(session_id)
 
 
 def begin(site: Site, session_id: str, headset: Headset) -> int:
-    """Call the phase; the headset starts its clock. The phase's id."""
+    """Start the phase, let the headset start its clock, and return the phase's id."""
     site.command(session_id, "begin_phase")
     state = headset.hear("state", lambda state: state["phase"] is not None)
     phase_id = int(state["phase"]["phase_id"])
@@ -37,8 +37,8 @@ def begin(site: Site, session_id: str, headset: Headset) -> int:
     return phase_id
 
 
-def test_a_report_that_does_not_fit_is_kept_and_does_not_count(site: Site) -> None:
-    """It is stored with the refusal, told back, acknowledged, and changes nothing."""
+def test_an_invalid_report_is_stored_as_refused(site: Site) -> None:
+    """A report that does not fit the session is stored with its refusal and changes nothing."""
     session_id, token = running(site)
     with site.headset(token) as headset:
         headset.report(kind="phase", phase_id=1, what="ended", t_s=1.0, active_s=0.0)
@@ -52,7 +52,7 @@ def test_a_report_that_does_not_fit_is_kept_and_does_not_count(site: Site) -> No
 
 
 def test_contacts_and_completions_of_a_phase_are_counted(site: Site) -> None:
-    """They are in the phase's row of the cockpit."""
+    """Contacts and completed tasks are counted in their phase in the cockpit."""
     session_id, token = running(site)
     with site.headset(token) as headset:
         phase_id = begin(site, session_id, headset)
@@ -65,8 +65,8 @@ def test_contacts_and_completions_of_a_phase_are_counted(site: Site) -> None:
 
 @pytest.mark.one_engine
 @pytest.mark.parametrize("body", [CONTACT_REPORT, COMPLETION])
-def test_nothing_is_counted_for_a_phase_that_is_not_there(site: Site, body: Json) -> None:
-    """A contact or completion of an unknown phase is refused and kept as a report."""
+def test_reports_of_an_unknown_phase_are_refused(site: Site, body: Json) -> None:
+    """A contact or completed task of an unknown phase is refused and not counted."""
     session_id = site.join()
     with site.headset(site.token(session_id)) as headset:
         headset.report(**body, phase_id=7)
@@ -77,7 +77,7 @@ def test_nothing_is_counted_for_a_phase_that_is_not_there(site: Site, body: Json
 
 
 def test_a_completion_reported_twice_counts_once(site: Site) -> None:
-    """The second under the same number is refused, and the session goes on."""
+    """A second completed task with the same number is refused."""
     session_id, token = running(site)
     with site.headset(token) as headset:
         phase_id = begin(site, session_id, headset)
@@ -88,8 +88,8 @@ def test_a_completion_reported_twice_counts_once(site: Site) -> None:
     assert site.view(session_id)["phases"][0]["completions"] == 2
 
 
-def test_the_same_report_sent_again_is_acknowledged_and_nothing_else(site: Site) -> None:
-    """Reports are idempotent by seq, like frames."""
+def test_a_resent_report_is_acknowledged_without_effect(site: Site) -> None:
+    """A report resent with the same seq is acknowledged and has no further effect."""
     session_id, token = running(site)
     with site.headset(token) as headset:
         phase_id = begin(site, session_id, headset)
@@ -101,7 +101,7 @@ def test_the_same_report_sent_again_is_acknowledged_and_nothing_else(site: Site)
 
 @pytest.mark.one_engine
 def test_losing_the_headset_pauses_at_the_last_time_on_disk(site: Site) -> None:
-    """The clock stops where the telemetry ends."""
+    """Losing the headset pauses the phase at the last active time that is on disk."""
     session_id, token = running(site)
     with site.headset(token) as headset:
         phase_id = begin(site, session_id, headset)
@@ -116,7 +116,7 @@ def test_losing_the_headset_pauses_at_the_last_time_on_disk(site: Site) -> None:
 
 
 def test_a_whole_phase_ends_with_its_joint_errors(site: Site) -> None:
-    """When the freeze is over the phase counts and its summary is computed."""
+    """A phase that is carried through counts, and its joint errors are computed."""
     from app.wire import StreamName
 
     session_id, token = running(site)
@@ -142,7 +142,7 @@ def test_a_whole_phase_ends_with_its_joint_errors(site: Site) -> None:
 
 
 def joint_errors(site: Site, session_id: str) -> list[JointErrorRow]:
-    """The summary rows of a session."""
+    """Return the joint error rows of a session."""
     with site.database.reading() as db:
         query = select(JointErrorRow).where(JointErrorRow.session_id == session_id)
         return list(db.scalars(query))

@@ -1,6 +1,6 @@
-"""A headset that is taken off or falls asleep: its socket stays open, and nothing comes any more.
+"""Tests of a headset that is taken off: its socket stays open and no data arrive.
 
-`pytest -m long --long` waits a minute with the limit of three seconds that is usual.
+`pytest -m long --long` waits for a minute with the default limit of three seconds.
 """
 
 import sys
@@ -20,18 +20,18 @@ QUALITY_WITHIN_S = 20.0
 
 
 def paused(headset: Headset) -> Json:
-    """The state in which the phase stands."""
+    """Wait for the state in which the phase is paused."""
     return headset.hear("state", lambda state: state["phase"]["status"] == "paused")
 
 
 def alarms(site: Site, session_id: str) -> list[Json]:
-    """Every alarm of the session, newest first."""
+    """Return every alarm of the session, newest first."""
     history: list[Json] = ok(site.operator.get(f"/api/sessions/{session_id}/alarms"))
     return history
 
 
 def cleared(site: Site, session_id: str, code: str, within_s: float = 8.0) -> Json:
-    """Wait until an alarm was cleared."""
+    """Wait until an alarm is cleared, and return it."""
     deadline_s = time.monotonic() + within_s
     while time.monotonic() < deadline_s:
         for alarm in alarms(site, session_id):
@@ -42,9 +42,9 @@ def cleared(site: Site, session_id: str, code: str, within_s: float = 8.0) -> Js
 
 
 def fall_asleep(site: Site, headset: Headset, session_id: str, for_s: float) -> tuple[float, float]:
-    """A second of movement, then nothing for `for_s`; the rest of the phase after a resume.
+    """Stream for a second, send nothing for `for_s`, then resume and finish the phase.
 
-    Returns after how many seconds the phase stood, and how long its frames have a gap.
+    Returns after how many seconds the phase was paused, and the length of the gap in its frames.
     """
     streamer = in_free_movement(site, session_id, headset)
     streamer.stream(1.0)
@@ -63,7 +63,7 @@ def fall_asleep(site: Site, headset: Headset, session_id: str, for_s: float) -> 
 def wake_up(
     site: Site, headset: Headset, session_id: str, streamer: Streamer, slept_s: float
 ) -> None:
-    """The headset learns that its phase was paused, agrees, and is resumed."""
+    """Let the headset confirm the pause, resume the phase and finish it."""
     streamer.t_s += slept_s
     phase_id = streamer.phase_id
     clock = {"t_s": streamer.t_s, "active_s": streamer.active_s}
@@ -82,7 +82,7 @@ def wake_up(
 
 
 def quality_of(site: Site, session_id: str) -> PhaseQuality:
-    """The quality of the actual stream, once it was judged."""
+    """Wait for the quality of the actual stream, and return it."""
     deadline_s = time.monotonic() + QUALITY_WITHIN_S
     query = select(PhaseQuality).where(
         PhaseQuality.session_id == session_id, PhaseQuality.stream == "actual"
@@ -100,11 +100,11 @@ def quality_of(site: Site, session_id: str) -> PhaseQuality:
 def test_a_headset_that_falls_asleep_stops_its_phase(
     quick_site: Site, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The clock stops at the last time on disk, the operator is told, and the gap is marked."""
+    """A silent headset pauses its phase at the last time on disk; alarm and gap are recorded."""
     session_id = materialised(quick_site)
     with quick_site.headset(quick_site.token(session_id)) as headset:
         detected_s, slept_s = fall_asleep(quick_site, headset, session_id, 2.5)
-    tell(capsys, f"silent for {slept_s:.1f} s, limit 1 s: noticed after {detected_s:.2f} s")
+    print_figure(capsys, f"silent for {slept_s:.1f} s, limit 1 s: noticed after {detected_s:.2f} s")
     assert 1.0 <= detected_s < 1.0 + 2.0
     told = alarms(quick_site, session_id)
     silent = next(one for one in reversed(told) if one["code"] == "silent")
@@ -123,10 +123,10 @@ def test_a_headset_that_falls_asleep_stops_its_phase(
 
 
 @pytest.mark.one_engine
-def test_a_study_that_goes_on_alone_is_only_told(
+def test_a_silent_headset_only_raises_an_alarm_if_the_study_continues(
     quick_site: Site,
 ) -> None:
-    """Where `on_disconnect` is `continue` the phase's clock is the headset's."""
+    """With `on_disconnect: continue` a silent headset raises an alarm; its phase keeps running."""
     text = ok(quick_site.operator.get("/api/studies/reembodiment-latency"))["yaml"]
     text = text.replace("key: reembodiment-latency", "key: goes-on", 1)
     text = text.replace("on_disconnect: pause", "on_disconnect: continue", 1)
@@ -147,8 +147,8 @@ def test_a_study_that_goes_on_alone_is_only_told(
         assert view["current"]["status"] == "running"
 
 
-def test_a_headset_that_goes_away_is_an_alarm_until_it_is_back(quick_site: Site) -> None:
-    """Raised when the socket breaks, cleared when another opens."""
+def test_a_lost_headset_raises_an_alarm_until_it_reconnects(quick_site: Site) -> None:
+    """A headset that disconnects raises an alarm, which is cleared when it reconnects."""
     session_id = materialised(quick_site)
     token = quick_site.token(session_id)
     with quick_site.headset(token) as headset:
@@ -163,7 +163,7 @@ def test_a_headset_that_goes_away_is_an_alarm_until_it_is_back(quick_site: Site)
 
 @pytest.mark.one_engine
 def test_the_end_of_a_session_clears_its_alarms(quick_site: Site) -> None:
-    """Nobody is left to look at them."""
+    """Ending a session clears its open alarms."""
     session_id = materialised(quick_site)
     with quick_site.headset(quick_site.token(session_id)) as headset:
         in_free_movement(quick_site, session_id, headset).stream(0.3)
@@ -177,17 +177,17 @@ def test_the_end_of_a_session_clears_its_alarms(quick_site: Site) -> None:
 def test_a_headset_that_is_off_for_a_minute(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """With the limits that are usual."""
+    """A headset that is silent for a minute is noticed within the default limits."""
     with running_site("sqlite", tmp_path, {}) as site:
         session_id = materialised(site)
         with site.headset(site.token(session_id)) as headset:
             detected_s, slept_s = fall_asleep(site, headset, session_id, 60.0)
-    tell(capsys, f"silent for {slept_s:.1f} s, limit 3 s: noticed after {detected_s:.2f} s")
+    print_figure(capsys, f"silent for {slept_s:.1f} s, limit 3 s: noticed after {detected_s:.2f} s")
     assert 3.0 <= detected_s < 5.0
 
 
 def wait_for_alarms(site: Site, session_id: str, within_s: float = 5.0) -> list[Json]:
-    """The open alarms, once there are any."""
+    """Wait until any alarm is open, and return the open alarms."""
     deadline_s = time.monotonic() + within_s
     while time.monotonic() < deadline_s:
         opened: list[Json] = site.view(session_id)["alarms"]
@@ -198,14 +198,14 @@ def wait_for_alarms(site: Site, session_id: str, within_s: float = 5.0) -> list[
 
 
 def wait_until_clear(site: Site, session_id: str, within_s: float = 5.0) -> None:
-    """Until no alarm is open."""
+    """Wait until no alarm is open."""
     deadline_s = time.monotonic() + within_s
     while site.view(session_id)["alarms"]:
         assert time.monotonic() < deadline_s
         time.sleep(0.05)
 
 
-def tell(capsys: pytest.CaptureFixture[str], line: str) -> None:
-    """A figure for whoever reads the log."""
+def print_figure(capsys: pytest.CaptureFixture[str], line: str) -> None:
+    """Print a measured figure despite the capturing of output."""
     with capsys.disabled():
         sys.stdout.write(f"\n{line}\n")

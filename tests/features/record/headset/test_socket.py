@@ -1,4 +1,4 @@
-"""Opening, refusing and closing the headset's socket, and what its reports do."""
+"""Tests of opening, refusing and closing the headset's socket."""
 
 import json
 from typing import Any
@@ -11,7 +11,7 @@ from tests.features.record.headset.site import HELLO, Site
 
 
 def closing(socket: Any) -> tuple[Json, int]:
-    """The last message before the server closes, and the code of the close."""
+    """Return the last message before the server closes the socket, and the close code."""
     last: Json = {}
     try:
         while True:
@@ -21,7 +21,7 @@ def closing(socket: Any) -> tuple[Json, int]:
 
 
 def running(site: Site) -> tuple[str, str]:
-    """A session whose free movement can be called, and its headset's token."""
+    """Return a session whose free movement can be started, and its headset's token."""
     session_id = site.join()
     site.skip_to(session_id, "free_roam")
     return session_id, site.token(session_id)
@@ -30,7 +30,7 @@ def running(site: Site) -> tuple[str, str]:
 @pytest.mark.one_engine
 @pytest.mark.parametrize("token", [None, "", "wrong", "x" * 500])
 def test_a_wrong_token_is_refused_with_the_reason(site: Site, token: str | None) -> None:
-    """The socket says what is wrong and closes with 4401."""
+    """A headset with a wrong token gets an error with the reason and close code 4401."""
     with site.socket(token) as socket:
         last, code = closing(socket)
     assert (last["type"], last["code"], code) == ("error", "not_signed_in", 4401)
@@ -38,8 +38,8 @@ def test_a_wrong_token_is_refused_with_the_reason(site: Site, token: str | None)
 
 
 @pytest.mark.one_engine
-def test_an_operators_token_opens_no_headset(site: Site) -> None:
-    """A login is no pairing."""
+def test_an_operators_token_does_not_open_the_headsets_socket(site: Site) -> None:
+    """An operator's login token does not open the headset's socket."""
     with site.socket(site.operator.cookies["reembody_login"]) as socket:
         assert closing(socket)[1] == 4401
 
@@ -58,8 +58,8 @@ def test_an_operators_token_opens_no_headset(site: Site) -> None:
         "[" * 10_000,
     ],
 )
-def test_whoever_does_not_say_hello_first_is_refused(site: Site, first: str | bytes) -> None:
-    """The refusal says what was expected, and the close is 4400."""
+def test_a_first_message_other_than_hello_is_refused(site: Site, first: str | bytes) -> None:
+    """A socket whose first message is not a valid hello is closed with 4400 and an error."""
     with site.socket(site.token(site.join())) as socket:
         socket.send(first)
         last, code = closing(socket)
@@ -68,7 +68,7 @@ def test_whoever_does_not_say_hello_first_is_refused(site: Site, first: str | by
 
 
 @pytest.mark.one_engine
-def test_hello_comes_once(site: Site) -> None:
+def test_a_second_hello_closes_the_socket(site: Site) -> None:
     """A second hello on the same socket closes it."""
     with site.headset(site.token(site.join())) as headset:
         headset.say(HELLO)
@@ -77,7 +77,7 @@ def test_hello_comes_once(site: Site) -> None:
 
 @pytest.mark.one_engine
 def test_another_sites_page_cannot_open_the_socket(site: Site) -> None:
-    """A foreign Origin is refused before anything is said."""
+    """A socket from a page with another origin is refused."""
     token = site.token(site.join())
     with (
         pytest.raises(InvalidStatus) as refused,
@@ -89,15 +89,15 @@ def test_another_sites_page_cannot_open_the_socket(site: Site) -> None:
 
 @pytest.mark.one_engine
 def test_an_oversized_message_closes_the_socket(site: Site) -> None:
-    """More than 256 KiB at once is answered with 1009."""
+    """A message of more than 256 KiB closes the socket with 1009."""
     with site.headset(site.token(site.join())) as headset:
         headset.say(b"\0" * (257 * 1024))
         assert closing(headset.socket)[1] == 1009
 
 
 @pytest.mark.one_engine
-def test_the_welcome_tells_the_task_and_no_condition(site: Site) -> None:
-    """The headset hears boxes, texts and state; conditions and their order stay here."""
+def test_the_welcome_has_the_tasks_and_no_condition(site: Site) -> None:
+    """The welcome has tasks, texts and state, but no condition and no order."""
     with site.headset(site.token(site.join(language="de"))) as headset:
         welcome = headset.welcome
     assert welcome["language"] == "de"
@@ -106,8 +106,8 @@ def test_the_welcome_tells_the_task_and_no_condition(site: Site) -> None:
     assert "latency_350" not in json.dumps(welcome)
 
 
-def test_the_headset_hears_of_every_change(site: Site) -> None:
-    """The operator's command and its own report both come back as the new state."""
+def test_the_headset_receives_every_change_of_state(site: Site) -> None:
+    """The headset receives the new state after the operator's commands and its own reports."""
     session_id, token = running(site)
     with site.headset(token) as headset:
         site.command(session_id, "begin_phase")
@@ -119,8 +119,8 @@ def test_the_headset_hears_of_every_change(site: Site) -> None:
         headset.hear("state", lambda state: state["phase"]["status"] == "running")
 
 
-def test_an_unpaired_headset_is_shut_out_at_once(site: Site) -> None:
-    """Revoking its pairing closes the socket with 4401."""
+def test_unpairing_a_headset_closes_its_socket(site: Site) -> None:
+    """Unpairing a headset closes its socket with 4401."""
     session_id = site.join()
     with site.headset(site.token(session_id)) as headset:
         (device,) = site.view(session_id)["devices"]

@@ -1,4 +1,4 @@
-"""Movement over a real socket: acknowledged means on disk, and exactly what was sent."""
+"""Tests of movement over a real socket: what is acknowledged is on disk, exactly as sent."""
 
 import time
 from typing import Any
@@ -17,20 +17,20 @@ from tests.wire.samples import bits, every_odd_float, message, standing
 
 
 def numbered(first: int, count: int) -> NDArray[np.float32]:
-    """Frames that tell their own seq in the height of the hips."""
+    """Return frames whose hip height is their own seq."""
     values = standing(count)
     values[:, 1] = np.arange(first, first + count)
     return values
 
 
 def stored(site: Site, session_id: str, stream: str = "target", epoch: int = 1) -> Frames:
-    """Every frame of a stream as a reader gets it."""
+    """Return every stored frame of a stream as a reader gets it."""
     with site.database.reading() as db:
         return concatenate([frames for _, frames in iter_frames(db, session_id, stream, epoch)])
 
 
 def frames_on_disk(site: Site, session_id: str) -> int:
-    """How many frames are in batches and chunks now."""
+    """Return how many frames of a session are stored in batches and chunks."""
     with site.database.reading() as db:
         return sum(
             db.scalar(
@@ -43,8 +43,8 @@ def frames_on_disk(site: Site, session_id: str) -> int:
         )
 
 
-def test_acknowledged_means_on_disk(site: Site) -> None:
-    """Right after each acknowledgement the frames are in the database."""
+def test_acknowledged_frames_are_on_disk(site: Site) -> None:
+    """Frames are in the database as soon as they are acknowledged."""
     session_id = site.join()
     with site.headset(site.token(session_id)) as headset:
         for first in range(0, 90, 9):
@@ -54,8 +54,8 @@ def test_acknowledged_means_on_disk(site: Site) -> None:
     assert stored(site, session_id).seq.tolist() == list(range(90))
 
 
-def test_an_overlap_is_cut(site: Site) -> None:
-    """What is stored already is not stored again; the new part is."""
+def test_the_overlap_of_a_batch_is_not_stored_twice(site: Site) -> None:
+    """Of a batch that overlaps stored frames only the new part is stored."""
     session_id = site.join()
     with site.headset(site.token(session_id)) as headset:
         headset.say(message(numbered(0, 10)))
@@ -66,8 +66,8 @@ def test_an_overlap_is_cut(site: Site) -> None:
     assert frames_on_disk(site, session_id) == 15
 
 
-def test_the_first_content_of_a_seq_stands(site: Site) -> None:
-    """A resent seq is acknowledged whatever it holds, and changes nothing."""
+def test_a_resent_seq_keeps_its_first_content(site: Site) -> None:
+    """A resent seq is acknowledged and its first content stays, whatever the new content."""
     session_id = site.join()
     with site.headset(site.token(session_id)) as headset:
         headset.say(message(numbered(0, 10)))
@@ -79,8 +79,8 @@ def test_the_first_content_of_a_seq_stands(site: Site) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_skipped_seq_is_asked_for_again(site: Site) -> None:
-    """Nothing behind a hole is stored until the hole is filled."""
+def test_a_skipped_seq_is_requested_again(site: Site) -> None:
+    """Frames after a missing seq are not stored until the missing ones have been resent."""
     session_id = site.join()
     with site.headset(site.token(session_id)) as headset:
         headset.say(message(numbered(0, 10)))
@@ -94,8 +94,8 @@ def test_a_skipped_seq_is_asked_for_again(site: Site) -> None:
     assert stored(site, session_id).values[:, 1].tolist() == list(range(30))
 
 
-def test_broken_numbers_are_stored_bit_by_bit_and_flagged(site: Site) -> None:
-    """NaN payloads, infinities and denormals come back as they went in, with a notice."""
+def test_non_finite_numbers_are_stored_exactly_and_flagged(site: Site) -> None:
+    """NaN payloads, infinities and denormals are stored bit by bit and reported as flagged."""
     session_id = site.join()
     sent = every_odd_float()
     with site.headset(site.token(session_id)) as headset:
@@ -108,8 +108,8 @@ def test_broken_numbers_are_stored_bit_by_bit_and_flagged(site: Site) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_rotation_of_another_length_is_flagged_at_its_seq(site: Site) -> None:
-    """The notice names the first bad frame, and the others count as sound."""
+def test_a_non_unit_rotation_is_flagged_at_its_seq(site: Site) -> None:
+    """A rotation that is not a unit quaternion is flagged at its seq, and only its frame."""
     session_id = site.join()
     values = standing(10)
     values[7, 3] = 1.5
@@ -119,8 +119,8 @@ def test_a_rotation_of_another_length_is_flagged_at_its_seq(site: Site) -> None:
     assert (flag["code"], flag["seq"], flag["frames"]) == ("non_unit", 7, 1)
 
 
-def test_both_streams_have_positions_of_their_own(site: Site) -> None:
-    """The target may be ahead of the actual stream."""
+def test_each_stream_has_its_own_position(site: Site) -> None:
+    """Target and actual stream are acknowledged independently."""
     session_id = site.join()
     with site.headset(site.token(session_id)) as headset:
         headset.say(message(numbered(0, 20)))
@@ -130,8 +130,8 @@ def test_both_streams_have_positions_of_their_own(site: Site) -> None:
     assert positions == {"target": 20, "actual": 10, "reports": 0}
 
 
-def test_a_reconnecting_client_hears_how_far_it_is_stored(site: Site) -> None:
-    """The welcome of the same run names the next seq of each stream."""
+def test_a_reconnecting_client_receives_its_stored_positions(site: Site) -> None:
+    """The welcome of a reconnecting client has the next seq of each stream."""
     session_id = site.join()
     token = site.token(session_id)
     with site.headset(token) as headset:
@@ -143,8 +143,8 @@ def test_a_reconnecting_client_hears_how_far_it_is_stored(site: Site) -> None:
         assert position in headset.welcome["positions"]
 
 
-def test_each_run_of_the_client_has_an_epoch_of_its_own(site: Site) -> None:
-    """Two runs that both begin at seq 0 never mix, though the first had sent nothing yet."""
+def test_each_run_of_the_client_has_its_own_epoch(site: Site) -> None:
+    """Each run of the client gets its own epoch, so that frames of two runs never mix."""
     session_id = site.join()
     token = site.token(session_id)
     with site.headset(token) as first, site.headset(token) as second:
@@ -158,8 +158,8 @@ def test_each_run_of_the_client_has_an_epoch_of_its_own(site: Site) -> None:
 
 
 @pytest.mark.one_engine
-def test_late_frames_of_an_earlier_run_are_taken(site: Site) -> None:
-    """What the journal of the run before still held can be sent by the next one."""
+def test_late_frames_of_an_earlier_run_are_stored(site: Site) -> None:
+    """Frames of an earlier run, sent by the next one from its journal, are stored."""
     session_id = site.join()
     token = site.token(session_id)
     with site.headset(token):
@@ -171,8 +171,8 @@ def test_late_frames_of_an_earlier_run_are_taken(site: Site) -> None:
 
 
 @pytest.mark.one_engine
-def test_an_epoch_that_was_not_given_out_is_refused(site: Site) -> None:
-    """A batch of the future closes the connection with the reason."""
+def test_an_epoch_that_was_not_assigned_is_refused(site: Site) -> None:
+    """A batch with an epoch that was not assigned is refused with the reason."""
     session_id = site.join()
     with site.headset(site.token(session_id)) as headset:
         headset.say(message(numbered(0, 5), epoch=9))
@@ -180,8 +180,8 @@ def test_an_epoch_that_was_not_given_out_is_refused(site: Site) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_session_that_sends_nonsense_does_not_hold_up_another(site: Site) -> None:
-    """A malformed batch closes its own connection; the other session goes on."""
+def test_a_malformed_batch_does_not_affect_another_session(site: Site) -> None:
+    """A malformed batch closes its own connection; another session's data are still stored."""
     good, bad = site.join(), site.join()
     with site.headset(site.token(good)) as fine, site.headset(site.token(bad)) as broken:
         broken.say(message(numbered(0, 5))[:-1])
@@ -191,8 +191,8 @@ def test_a_session_that_sends_nonsense_does_not_hold_up_another(site: Site) -> N
     assert (error["code"], frames_on_disk(site, bad)) == ("invalid_input", 0)
 
 
-def test_readers_meet_every_frame_once_while_folding_goes_on(site: Site) -> None:
-    """Chunks and batches together are the stream, before, while and after they are folded."""
+def test_readers_get_every_frame_once_during_folding(site: Site) -> None:
+    """A reader gets every frame once, before, during and after batches are folded into chunks."""
     session_id = site.join()
     deadline_s = time.monotonic() + 15.0
     with site.headset(site.token(session_id)) as headset:
@@ -205,8 +205,8 @@ def test_readers_meet_every_frame_once_while_folding_goes_on(site: Site) -> None
     assert chunks(site, session_id) > 0
 
 
-def test_the_clocks_are_probed(site: Site) -> None:
-    """A probe is answered with the server's clock, and the raw reading is stored."""
+def test_a_clock_probe_is_answered_and_stored(site: Site) -> None:
+    """A clock probe is answered with the server's clock, and the completed probe is stored."""
     session_id = site.join()
     with site.headset(site.token(session_id)) as headset:
         headset.say({"type": "probe", "client_sent_s": 12.5})
@@ -225,8 +225,8 @@ def test_the_clocks_are_probed(site: Site) -> None:
 
 @pytest.mark.one_engine
 @pytest.mark.parametrize("epoch", [0, -1, 2**31, "one"])
-def test_a_hello_with_an_unusable_epoch_is_refused(site: Site, epoch: object) -> None:
-    """The first message is checked like any other."""
+def test_a_hello_with_an_invalid_epoch_is_refused(site: Site, epoch: object) -> None:
+    """A hello with an invalid epoch is refused."""
     with site.socket(site.token(site.join())) as socket:
         headset = Headset(socket)
         headset.say({**HELLO, "epoch": epoch})
@@ -234,13 +234,13 @@ def test_a_hello_with_an_unusable_epoch_is_refused(site: Site, epoch: object) ->
 
 
 def streams(site: Site, session_id: str) -> list[dict[str, Any]]:
-    """The positions as the interface tells them, target first."""
+    """Return the streams' positions as the interface lists them, reports last."""
     rows: list[dict[str, Any]] = site.operator.get(f"/api/sessions/{session_id}/streams").json()
     return sorted(rows, key=lambda row: row["stream"] == "reports")
 
 
 def chunks(site: Site, session_id: str) -> int:
-    """How many chunks there are."""
+    """Return how many chunks of a session are stored."""
     with site.database.reading() as db:
         query = select(func.count()).select_from(TelemetryChunk)
         return db.scalar(query.where(TelemetryChunk.session_id == session_id)) or 0

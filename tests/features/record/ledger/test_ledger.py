@@ -1,4 +1,4 @@
-"""The counterbalancing ledger: every order equally often, no slot held twice."""
+"""Tests of the counterbalancing ledger: every order equally often, and no slot taken twice."""
 
 from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
@@ -13,12 +13,12 @@ JOINS = 100
 
 
 def orders(views: list[Json]) -> Counter[tuple[float, ...]]:
-    """How often each order of latencies was given out."""
+    """Return how often each order of latencies was assigned."""
     return Counter(tuple(view["sequence"]) for view in views)
 
 
 def change_study(lab: Lab, old: str, new: str) -> Json:
-    """A new version of the study with some words replaced."""
+    """Store a new version of the study with some text replaced."""
     path = f"/api/studies/{STUDY}"
     yaml = ok(lab.operator.get(path))["yaml"]
     assert old in yaml
@@ -29,13 +29,13 @@ def change_study(lab: Lab, old: str, new: str) -> Json:
 
 
 def ledger(lab: Lab, kind: str = "people") -> Json:
-    """The ledger as the console shows it."""
+    """Return the ledger as the console shows it."""
     shown: Json = ok(lab.operator.get(f"/api/studies/{STUDY}/ledger?kind={kind}"))
     return shown
 
 
-def test_twelve_joins_give_each_order_twice(fresh_lab: Lab) -> None:
-    """Each block of six holds all six orders, and the joins follow the planned slots."""
+def test_twelve_sessions_use_each_order_twice(fresh_lab: Lab) -> None:
+    """Twelve sessions take the planned slots in order, and use each of the six orders twice."""
     planned = [slot["sequence"] for slot in ledger(fresh_lab)["slots"]]
     views = [fresh_lab.join() for _ in range(12)]
     assert [view["sequence"] for view in views] == planned
@@ -45,7 +45,7 @@ def test_twelve_joins_give_each_order_twice(fresh_lab: Lab) -> None:
 
 
 def test_a_full_ledger_grows_by_a_whole_block(fresh_lab: Lab) -> None:
-    """The thirteenth join opens six new slots, every order once more."""
+    """The thirteenth session adds a block of six slots to the ledger, each order once more."""
     views = [fresh_lab.join() for _ in range(18)]
     assert sorted(orders(views).values()) == [3] * 6
     assert len(ledger(fresh_lab)["slots"]) == 18
@@ -53,8 +53,8 @@ def test_a_full_ledger_grows_by_a_whole_block(fresh_lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_closed_ledger_takes_nobody_more(fresh_lab: Lab) -> None:
-    """The thirteenth is refused with the way out, and gets in once a slot is free."""
+def test_a_closed_ledger_refuses_further_sessions(fresh_lab: Lab) -> None:
+    """A full ledger that must not grow refuses a session until a slot becomes free."""
     change_study(fresh_lab, "when_full: grow", "when_full: closed")
     views = [fresh_lab.join() for _ in range(12)]
     refusal = error(fresh_lab.try_join(), 409, "conflict")
@@ -65,7 +65,7 @@ def test_a_closed_ledger_takes_nobody_more(fresh_lab: Lab) -> None:
 
 @pytest.mark.parametrize(("end", "outcome"), [("withdraw", "withdrawn"), ("abort", "aborted")])
 def test_a_freed_slot_is_the_next_to_be_taken(fresh_lab: Lab, end: str, outcome: str) -> None:
-    """Balance counts completed sessions: the order is given out again, its first try is kept."""
+    """The slot of a withdrawn or aborted session goes to the next one; both attempts are kept."""
     views = [fresh_lab.join() for _ in range(3)]
     fresh_lab.command(fresh_lab.command(views[1], "start"), end, reason="headset broke")
     again = fresh_lab.join()
@@ -77,8 +77,8 @@ def test_a_freed_slot_is_the_next_to_be_taken(fresh_lab: Lab, end: str, outcome:
 
 
 @pytest.mark.one_engine
-def test_people_simulated_and_test_sessions_have_ledgers_of_their_own(fresh_lab: Lab) -> None:
-    """Joins of one kind do not move the others."""
+def test_each_kind_of_session_has_its_own_ledger(fresh_lab: Lab) -> None:
+    """People, simulated and test sessions have separate ledgers."""
     first = {kind: fresh_lab.join(kind=kind) for kind in ("people", "simulated", "test")}
     assert {view["slot"]["index"] for view in first.values()} == {0}
     assert [view["participant_code"] for view in first.values()] == [
@@ -91,7 +91,7 @@ def test_people_simulated_and_test_sessions_have_ledgers_of_their_own(fresh_lab:
 
 @pytest.mark.one_engine
 def test_versions_of_one_design_share_their_ledger(fresh_lab: Lab) -> None:
-    """New wording goes on where the old version stood; new orders begin anew."""
+    """Versions with the same design share a ledger; another seed of the orders starts a new one."""
     fresh_lab.join()
     change_study(fresh_lab, "Acting through another body", "Acting through a second body")
     second = fresh_lab.join()
@@ -101,8 +101,8 @@ def test_versions_of_one_design_share_their_ledger(fresh_lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_generated_codes_pass_over_those_in_use(fresh_lab: Lab) -> None:
-    """A code that somebody typed is not given out again."""
+def test_generated_codes_skip_those_in_use(fresh_lab: Lab) -> None:
+    """A generated participant code is never one that is already in use."""
     fresh_lab.join(participant_code="P-0002")
     codes = [fresh_lab.join()["participant_code"] for _ in range(3)]
     assert len({*codes, "P-0002"}) == 4
@@ -110,8 +110,8 @@ def test_generated_codes_pass_over_those_in_use(fresh_lab: Lab) -> None:
 
 @pytest.mark.one_engine
 @pytest.mark.parametrize("code", ["Anna Müller", "-x", "a/b", "x" * 41, "=1+1"])
-def test_an_unusable_code_is_refused(lab: Lab, code: str) -> None:
-    """The refusal says what a code is made of, and takes no slot."""
+def test_an_invalid_participant_code_is_refused(lab: Lab, code: str) -> None:
+    """An invalid participant code is refused with the rule for codes, and takes no slot."""
     before = len([slot for slot in ledger(lab)["slots"] if slot["state"] != "free"])
     refusal = error(lab.try_join(participant_code=code), 422, "invalid_input")
     assert refusal["valid"] == "1 to 40 letters, digits, - and _"
@@ -119,16 +119,16 @@ def test_an_unusable_code_is_refused(lab: Lab, code: str) -> None:
     assert len(after) == before
 
 
-def test_a_code_that_is_no_text_is_refused(lab: Lab) -> None:
-    """A NUL character reaches neither the rule for codes nor the ledger."""
+def test_a_participant_code_with_a_nul_character_is_refused(lab: Lab) -> None:
+    """A participant code with a NUL character is refused and takes no slot."""
     before = len([slot for slot in ledger(lab)["slots"] if slot["state"] != "free"])
     refusal = error(lab.try_join(participant_code="a\x00b"), 422, "invalid_input")
     assert "NUL" in refusal["message"]
     assert len([slot for slot in ledger(lab)["slots"] if slot["state"] != "free"]) == before
 
 
-def test_a_busy_participant_is_refused(lab: Lab) -> None:
-    """Whoever has a session is led to it; after a withdrawal they may come again."""
+def test_a_participant_with_an_open_session_is_refused(lab: Lab) -> None:
+    """A participant with an open session gets no second one until the first has ended."""
     view = lab.join(participant_code="busy-1")
     refusal = error(lab.try_join(participant_code="busy-1"), 409, "conflict")
     assert refusal["details"] == [{"session_id": view["id"], "status": "planned"}]
@@ -150,13 +150,15 @@ def test_a_busy_participant_is_refused(lab: Lab) -> None:
         ({"kind": "simulated", "time_scale": 20.0, "language": "de"}, 201),
     ],
 )
-def test_only_simulated_sessions_run_faster_than_life(lab: Lab, fields: Json, status: int) -> None:
-    """Kind, language and time scale are checked before a slot is taken."""
+def test_only_simulated_sessions_run_faster_than_real_time(
+    lab: Lab, fields: Json, status: int
+) -> None:
+    """Only simulated sessions may have a time scale; an invalid kind or language is refused."""
     assert lab.try_join(**fields).status_code == status
 
 
 def test_a_hundred_simultaneous_joins_stay_balanced(database_url: str, tmp_path: Path) -> None:
-    """Over real HTTP no slot is held twice and no order is more than one ahead."""
+    """A hundred simultaneous sessions share no slot, and orders differ by at most one."""
     environment = {"REEMBODY_DATABASE_URL": database_url}
     with LiveServer(tmp_path, environment=environment) as server, server.client() as client:
         ok(client.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))

@@ -1,8 +1,8 @@
-"""Every way to make orders, under a hundred simultaneous joins and with people dropping out.
+"""Tests that every design stays balanced with simultaneous joins and with dropouts.
 
-The short form has a hundred joins where there are most orders, and forty to each other scheme: four
-times all its orders or more, with the same remainder as a hundred have. Which scheme makes the
-orders is nothing to the database, so on PostgreSQL, whose locks are others, it has one scheme.
+The short form has a hundred joins for the design with most orders, and forty for each other one: at
+least four times all its orders, with the same remainder as a hundred has. The database does not
+depend on the design, so PostgreSQL, whose locks differ, is tested with one design.
 """
 
 from collections import Counter
@@ -39,7 +39,7 @@ SCHEMES: dict[str, tuple[int, str, int]] = {
 
 
 def study(name: str) -> tuple[str, str]:
-    """Key and text of a study with that scheme, in three replicates."""
+    """Return the key and text of a study with that design, in three replicates."""
     levels, design, _ = SCHEMES[name]
     key = "scheme-" + "".join(letter for letter in name.lower() if letter.isalnum())
     text = with_levels(levels).replace("key: reembodiment-latency", f"key: {key}", 1)
@@ -50,21 +50,21 @@ def study(name: str) -> tuple[str, str]:
 
 @pytest.fixture
 def client(database_url: str, tmp_path: Path) -> Iterator[Client]:
-    """A signed-in client of a real server on each engine."""
+    """Yield a signed-in client of a real server, on each engine."""
     environment = {"REEMBODY_DATABASE_URL": database_url}
     with LiveServer(tmp_path, environment=environment) as server, server.client() as signed_in:
         ok(signed_in.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
         yield signed_in
 
 
-def at_once(task: Callable[[Json], Json], wishes: list[Json]) -> list[Json]:
-    """Do all of them, twenty at a time."""
+def run_concurrently(task: Callable[[Json], Json], wishes: list[Json]) -> list[Json]:
+    """Run a task for each of the items, twenty at a time."""
     with ThreadPoolExecutor(AT_ONCE) as pool:
         return list(pool.map(task, wishes))
 
 
 def imbalance(sequences: list[list[float]], orders: int) -> int:
-    """Between the order that was given out most and least often."""
+    """Return the difference between the most and the least frequent order."""
     counts = Counter(map(tuple, sequences))
     assert len(counts) <= orders
     return max(counts.values()) - (min(counts.values()) if len(counts) == orders else 0)
@@ -76,8 +76,9 @@ def test_every_scheme_stays_balanced(
     database_url: str,
     many: bool,  # noqa: FBT001 - by name
 ) -> None:
-    """No order is more than one ahead, with all who joined and with all who stayed; a slot that
-    somebody left is filled again, and none is held twice.
+    """With every design no order is more than one ahead, before and after dropouts.
+
+    A slot that was given back is taken again, and none is taken twice.
     """
     both = many or database_url.startswith("sqlite")
     for name in SCHEMES if both else [ON_POSTGRESQL]:
@@ -91,14 +92,14 @@ def test_every_scheme_stays_balanced(
             view: Json = ok(client.post(f"/api/studies/{key}/sessions", json={}))
             return view
 
-        views = at_once(join, [{}] * joins)
+        views = run_concurrently(join, [{}] * joins)
         joined = imbalance([view["sequence"] for view in views], orders)
         gone = views[:: joins // dropouts][:dropouts]
-        at_once(lambda view: withdraw(client, view), gone)
-        again = at_once(join, [{}] * dropouts)
+        run_concurrently(lambda view: withdraw(client, view), gone)
+        again = run_concurrently(join, [{}] * dropouts)
         held = [*(view for view in views if view not in gone), *again]
         refilled = imbalance([view["sequence"] for view in held], orders)
-        # One ahead where a block is begun and not full, none where the last one is.
+        # One ahead if the last block is not full, none if it is.
         expected = int(joins % orders > 0)
         assert (name, joined, refilled) == (name, expected, expected)
         assert sorted(view["slot"]["index"] for view in held) == list(range(joins))
@@ -108,7 +109,7 @@ def test_every_scheme_stays_balanced(
 
 
 def check_carry_over(client: Client, key: str, levels: int) -> None:
-    """Each ordered pair of neighbours equally often in each block of the ledger."""
+    """Require that each ordered pair of neighbours is equally frequent in each ledger block."""
     slots = ok(client.get(f"/api/studies/{key}/ledger"))["slots"]
     for block in {slot["block"] for slot in slots}:
         rows = [slot["sequence"] for slot in slots if slot["block"] == block]
@@ -118,7 +119,7 @@ def check_carry_over(client: Client, key: str, levels: int) -> None:
 
 
 def withdraw(client: Client, view: Json) -> Json:
-    """Start the session and let its participant leave."""
+    """Start a session and withdraw its participant."""
     path = f"/api/sessions/{view['id']}/commands"
     started = ok(client.post(path, json=command(view, "start")))
     left: Json = ok(client.post(path, json={**command(started, "withdraw"), "reason": "unwell"}))
@@ -126,7 +127,7 @@ def withdraw(client: Client, view: Json) -> Json:
 
 
 def command(view: Json, kind: str) -> Json:
-    """A command decided on what was seen."""
+    """Return a command decided on this view of the session."""
     return {
         "command_id": f"{kind}-{view['id']}"[:36],
         "expected_version": view["version"],

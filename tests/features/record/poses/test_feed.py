@@ -1,4 +1,4 @@
-"""From batches to what consoles draw: the newest frame, not too often, only if somebody looks."""
+"""Tests of the pose feed: the newest frame, at a limited rate, only while a console watches."""
 
 import asyncio
 import struct
@@ -21,14 +21,14 @@ from tests.wire.samples import message, standing
 
 
 def batch(seq: int, stream: StreamName = StreamName.TARGET) -> Batch:
-    """Six frames; the hips' x is the frame's seq."""
+    """Return a batch of six frames in which the hips' x is the frame's seq."""
     values = standing(6)
     values[:, 0] = seq + np.arange(6)
     return decode_batch(message(values, stream=stream, seq_first=seq, phase_id=3, active=True))
 
 
 def contact(seq: int) -> Report:
-    """A touched panel."""
+    """Return a report of a touched panel."""
     body = ContactReport(
         phase_id=3,
         surface="hand/1/panel",
@@ -45,7 +45,7 @@ def contact(seq: int) -> Report:
 
 
 def test_a_pose_is_the_newest_frame_of_its_batch() -> None:
-    """As the layout of the message says, to the bit."""
+    """A pose message has the newest frame of its batch, bit by bit, after the documented header."""
     told = encode_pose(batch(12, StreamName.ACTUAL))
     assert len(told) == HEADER.size + 4 * 91
     magic, stream, flags, count, phase_id, seq, t_s = struct.unpack_from("<4sBBHIQd", told)
@@ -54,8 +54,8 @@ def test_a_pose_is_the_newest_frame_of_its_batch() -> None:
     assert np.array_equal(np.frombuffer(told, "<f4", 91, HEADER.size), batch(12).values[-1])
 
 
-def test_a_slow_console_finds_the_newest_pose_alone() -> None:
-    """What it did not take in time is gone; the feed never waits for it."""
+def test_a_slow_console_gets_only_the_newest_pose() -> None:
+    """A slow console gets only the newest pose, and the feed never waits for it."""
 
     async def run() -> dict[str, bytes]:
         hub = Hub()
@@ -72,8 +72,8 @@ def test_a_slow_console_finds_the_newest_pose_alone() -> None:
     assert HEADER.unpack_from(news["pose_target"])[5] == 6 * 49 + 5
 
 
-def test_poses_come_thirty_times_a_second_at_most() -> None:
-    """Each stream by itself."""
+def test_poses_are_sent_at_most_thirty_times_a_second() -> None:
+    """Poses of a stream are sent at most thirty times a second."""
 
     async def run() -> int:
         hub = Hub()
@@ -89,8 +89,8 @@ def test_poses_come_thirty_times_a_second_at_most() -> None:
     assert 20 <= asyncio.run(run()) <= 31
 
 
-def test_touches_are_told_together_so_that_none_is_missed() -> None:
-    """The last few, the oldest first, each with a number of its own; also completed tasks."""
+def test_recent_touches_are_sent_together() -> None:
+    """The most recent touches and completed tasks are sent together, numbered, oldest first."""
 
     async def run() -> list[tuple[int, int]]:
         hub = Hub()
@@ -116,8 +116,8 @@ def test_touches_are_told_together_so_that_none_is_missed() -> None:
     assert asyncio.run(run()) == [(1, seq) for seq in range(21 - MAX_TOUCHES, 21)]
 
 
-def test_a_blinded_console_gets_the_participant_alone() -> None:
-    """Neither the avatar nor its contacts: beside the participant both tell the latency."""
+def test_a_blinded_console_gets_only_the_participants_pose() -> None:
+    """A blinded console gets only the participant's pose, as the avatar reveals the latency."""
     feed_news = {"pose_target": b"t", "pose_actual": b"a", TOUCHES: ()}
     assert list(visible(feed_news, blinded=True)) == [b"t"]
     shown = list(visible(feed_news, blinded=False))

@@ -1,4 +1,4 @@
-"""A console watches a session's movement over its socket."""
+"""Tests of the socket on which a console watches a session's movement."""
 
 import time
 from collections.abc import Iterator
@@ -23,13 +23,13 @@ PATIENCE_S = 10.0
 
 @contextmanager
 def watching(lab: Lab, session_id: str) -> Iterator[WebSocketTestSession]:
-    """A console's open socket."""
+    """Open a console's socket for a session."""
     with lab.operator.websocket_connect(f"/api/sessions/{session_id}/pose") as socket:
         yield socket
 
 
 def feed_of(lab: Lab, session_id: str) -> PoseFeed:
-    """The feed of a headset, as soon as a console listens."""
+    """Wait until a console listens to a session and return a feed for it."""
     until_s = time.monotonic() + PATIENCE_S
     while not lab.context.hub.has_listeners(session_id, "pose_target"):
         assert time.monotonic() < until_s
@@ -38,25 +38,25 @@ def feed_of(lab: Lab, session_id: str) -> PoseFeed:
 
 
 def batch(seq: int, stream: StreamName = StreamName.TARGET) -> Batch:
-    """One frame."""
+    """Return a batch of one frame."""
     return decode_batch(message(standing(1), stream=stream, seq_first=seq))
 
 
 def seq_of(told: bytes) -> int:
-    """Which frame a message shows."""
+    """Return the seq of the frame in a pose message."""
     return int(HEADER.unpack_from(told)[5])
 
 
 def blinded_session(lab: Lab) -> str:
-    """A running session of a study whose operators are blinded."""
+    """Return an active session of a study whose operators are blinded."""
     yaml = ok(lab.operator.get(f"/api/studies/{STUDY}"))["yaml"]
     blinded = yaml.replace("operator: false", "operator: true")
     ok(lab.operator.post(f"/api/studies/{STUDY}/versions", json={"yaml": blinded}))
     return str(lab.skip_to(lab.join(), "block1.hand")["id"])
 
 
-def test_a_console_is_told_the_body_and_the_boxes_of_the_present_task(lab: Lab) -> None:
-    """First nothing to touch; in the hand task its surfaces; the body is the participant's."""
+def test_a_console_receives_the_body_and_the_tasks_surfaces(lab: Lab) -> None:
+    """A console receives the participant's skeleton and the surfaces of the current task."""
     view = lab.join()
     with watching(lab, view["id"]) as socket:
         setup: Json = socket.receive_json()
@@ -78,7 +78,7 @@ def test_a_console_is_told_the_body_and_the_boxes_of_the_present_task(lab: Lab) 
 
 
 def test_both_figures_and_the_touches_reach_an_open_console(lab: Lab) -> None:
-    """As they come, each under its stream."""
+    """An open console receives the poses of both streams and the touches."""
     session_id = lab.join()["id"]
     with watching(lab, session_id) as socket:
         socket.receive_json()
@@ -95,8 +95,8 @@ def test_both_figures_and_the_touches_reach_an_open_console(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_blinded_console_gets_one_figure_until_the_condition_is_shown(fresh_lab: Lab) -> None:
-    """Neither the avatar nor a contact passes before; both do after."""
+def test_a_blinded_console_gets_the_avatar_once_the_condition_is_shown(fresh_lab: Lab) -> None:
+    """A blinded console gets neither avatar nor contacts until the condition is shown."""
     session_id = blinded_session(fresh_lab)
     with watching(fresh_lab, session_id) as socket:
         assert socket.receive_json()["blinded"] is True
@@ -113,8 +113,8 @@ def test_a_blinded_console_gets_one_figure_until_the_condition_is_shown(fresh_la
 
 
 @pytest.mark.one_engine
-def test_a_console_that_does_not_draw_gets_the_newest_afterwards(lab: Lab) -> None:
-    """No more than a few are on the way; what lies between is never sent."""
+def test_a_console_that_stops_drawing_resumes_with_the_newest_frame(lab: Lab) -> None:
+    """A console that stops confirming frames gets no more than a few, and then the newest one."""
     session_id = lab.join()["id"]
     with watching(lab, session_id) as socket:
         socket.receive_json()
@@ -134,8 +134,8 @@ def test_a_console_that_does_not_draw_gets_the_newest_afterwards(lab: Lab) -> No
 @pytest.mark.parametrize(
     ("client", "code"), [("stranger", 4401), ("elsewhere", 4403), ("unknown", 4403)]
 )
-def test_who_may_not_look_is_told_so(lab: Lab, client: str, code: int) -> None:
-    """Nobody without a login, no page of another site, nothing of a session that is none."""
+def test_an_unauthorised_console_is_refused_with_a_code(lab: Lab, client: str, code: int) -> None:
+    """A console without login, from another site or for an unknown session is refused."""
     session_id = "nobody" if client == "unknown" else lab.join()["id"]
     caller: Any = lab.stranger() if client == "stranger" else lab.operator
     headers = {"origin": "http://elsewhere.example"} if client == "elsewhere" else {}

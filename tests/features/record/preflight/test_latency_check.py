@@ -1,4 +1,4 @@
-"""The latency self-test: what was measured last, without a word about how much it was."""
+"""Tests of the pre-flight check of the latency, which reveals no latency of a condition."""
 
 import json
 
@@ -16,7 +16,7 @@ CALIBRATION = {
 
 
 def measure(lab: Lab, session_id: str, *flagged: bool) -> None:
-    """Phases of a session are over, and their latency was measured."""
+    """Store phases of a session with a measured latency, each in or out of tolerance."""
     now = lab.context.clock.utc_now()
     with lab.database.writing() as db:
         for phase_id, off in enumerate(flagged, start=1):
@@ -52,7 +52,7 @@ def measure(lab: Lab, session_id: str, *flagged: bool) -> None:
 
 
 def latency_of(lab: Lab, session_id: str) -> Json:
-    """The check."""
+    """Return the latency check of a session's pre-flight."""
     told = ok(lab.operator.get(f"/api/sessions/{session_id}/preflight"))
     (check,) = (one for one in told["checks"] if one["key"] == "latency")
     assert isinstance(check, dict)
@@ -60,9 +60,9 @@ def latency_of(lab: Lab, session_id: str) -> Json:
 
 
 def test_the_newest_measured_session_decides(fresh_lab: Lab) -> None:
-    """All of its phases within tolerance, or not; a simulated one says nothing of a real headset.
+    """The latency check passes if all phases of the last measured session are within tolerance.
 
-    No number of any latency is told, so a blinded operator may read it.
+    Simulated sessions do not count. No latency is stated, so a blinded operator may read it.
     """
     today = fresh_lab.join(participant_code="P-1")["id"]
     assert latency_of(fresh_lab, today)["code"] == "latency.unmeasured"

@@ -1,4 +1,4 @@
-"""The pre-flight list: made anew from what the server knows, overridden with a reason on record."""
+"""Tests of the pre-flight: checks of the current state, and overrides with a recorded reason."""
 
 import json
 from pathlib import Path
@@ -16,31 +16,31 @@ SOUND = {"frame_rate_hz": 89.9, "usual_rate_hz": 90.0, "clock_uncertainty_ms": 1
 
 
 def checks_of(lab: Lab, session_id: str) -> dict[str, Json]:
-    """The list, by key."""
+    """Return the checks of a session by key."""
     told = ok(lab.operator.get(f"/api/sessions/{session_id}/preflight"))
     return {check["key"]: check for check in told["checks"]}
 
 
 def codes_of(lab: Lab, session_id: str) -> dict[str, str]:
-    """What each check has found."""
+    """Return the finding of each check by key."""
     return {key: check["code"] for key, check in checks_of(lab, session_id).items()}
 
 
 def override(lab: Lab, session_id: str, check: str, reason: str = "the lab has one only") -> Any:
-    """Ask to go on all the same."""
+    """Request to override a check."""
     path = f"/api/sessions/{session_id}/preflight/overrides"
     return lab.operator.post(path, json={"check": check, "reason": reason})
 
 
 def wear(lab: Lab, session_id: str, **signal: float | None) -> None:
-    """A headset is connected, and its watch tells these figures."""
+    """Connect a headset with these figures in its signal."""
     lab.headset_token(session_id)
     lab.context.hub.headset_joined(session_id)
     lab.context.hub.note_signal(session_id, {**SOUND, **signal})
 
 
-def test_the_list_of_a_session_that_nobody_has_prepared(lab: Lab) -> None:
-    """Devices fail, what hangs on them waits, storage and study are tried and told."""
+def test_the_checks_of_a_session_that_nobody_has_prepared(lab: Lab) -> None:
+    """Without devices, their checks fail, checks that need them wait, and all others pass."""
     session_id = lab.join()["id"]
     told = ok(lab.operator.get(f"/api/sessions/{session_id}/preflight"))
     assert (told["clear"], told["asks"]) == (False, True)
@@ -64,8 +64,8 @@ def test_the_list_of_a_session_that_nobody_has_prepared(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_sound_devices_make_the_list_clear(lab: Lab) -> None:
-    """A tablet that was seen, a headset whose figures keep to the limits."""
+def test_working_devices_pass_their_checks(lab: Lab) -> None:
+    """A tablet that was seen and a headset within the limits pass their checks."""
     session_id = lab.join()["id"]
     ok(lab.tablet(session_id).get("/api/tablet/state"))
     wear(lab, session_id)
@@ -91,10 +91,10 @@ def test_sound_devices_make_the_list_clear(lab: Lab) -> None:
         ({"clock_uncertainty_ms": None}, "clock", "wait", "clock.measuring"),
     ],
 )
-def test_what_the_headset_tells_is_judged(
+def test_the_headsets_figures_are_checked_against_limits(
     lab: Lab, signal: dict[str, float | None], key: str, status: str, code: str | None
 ) -> None:
-    """By the limits of the live watch; what is not known yet waits."""
+    """The headset's figures are checked against the limits of the live watch; unknown ones wait."""
     session_id = lab.join()["id"]
     wear(lab, session_id, **signal)
     check = checks_of(lab, session_id)[key]
@@ -103,8 +103,8 @@ def test_what_the_headset_tells_is_judged(
 
 
 @pytest.mark.one_engine
-def test_a_headset_that_has_gone_leaves_no_figures(lab: Lab) -> None:
-    """Else the list would go on praising the one that was taken off."""
+def test_a_disconnected_headset_leaves_no_figures(lab: Lab) -> None:
+    """The figures of a disconnected headset are no longer used by the checks."""
     session_id = lab.join()["id"]
     wear(lab, session_id)
     lab.context.hub.headset_left(session_id)
@@ -113,10 +113,10 @@ def test_a_headset_that_has_gone_leaves_no_figures(lab: Lab) -> None:
     assert (codes["headset"], codes["clock"]) == ("headset.away", "clock.no_headset")
 
 
-def test_the_written_row_and_file_are_gone_again(
+def test_the_storage_check_removes_its_row_and_file(
     lab: Lab, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    """Also what an earlier test that was cut off has left."""
+    """The storage check removes its row and file, and also those left by an interrupted check."""
     session_id = lab.join()["id"]
     monkeypatch.setattr(
         type(lab.context.settings), "data_dir", property(lambda _: tmp_path), raising=False
@@ -138,10 +138,10 @@ def test_the_written_row_and_file_are_gone_again(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_storage_that_keeps_something_else_is_told(
+def test_storage_that_reads_back_other_data_fails_the_check(
     fresh_lab: Lab, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """What is read back is compared, not believed."""
+    """The storage check fails if other data are read back than were written."""
     session_id = fresh_lab.join()["id"]
     words = iter(["00", "11"])
     monkeypatch.setattr(
@@ -160,8 +160,8 @@ def _compare_with(database: Any, row_id: str, words: str) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_study_that_was_changed_behind_the_products_back_is_told(fresh_lab: Lab) -> None:
-    """Its content has another hash than the record, and so has an instrument's."""
+def test_a_study_changed_in_the_database_fails_its_checks(fresh_lab: Lab) -> None:
+    """A study or instrument that was changed directly in the database fails its check."""
     session_id = fresh_lab.join()["id"]
     with fresh_lab.database.writing() as db:
         db.execute(
@@ -180,7 +180,7 @@ def test_a_study_that_was_changed_behind_the_products_back_is_told(fresh_lab: La
 
 
 def test_an_override_goes_on_record_with_its_reason_and_the_finding(lab: Lab) -> None:
-    """The event names the check; the words lie beside it; everybody sees them in the list."""
+    """An override is recorded with the check's key, its finding, the reason and the account."""
     session_id = lab.join()["id"]
     told = ok(override(lab, session_id, "headset", "  on loan until noon "))
     assert told["status"] == "overridden"
@@ -201,8 +201,8 @@ def test_an_override_goes_on_record_with_its_reason_and_the_finding(lab: Lab) ->
 
 
 @pytest.mark.one_engine
-def test_words_about_one_finding_do_not_cover_another(lab: Lab) -> None:
-    """A headset that was not there is another thing than one that has gone."""
+def test_an_override_applies_to_one_finding_only(lab: Lab) -> None:
+    """An override of one finding does not apply to another finding of the same check."""
     session_id = lab.join()["id"]
     ok(override(lab, session_id, "headset"))
     lab.headset_token(session_id)
@@ -212,8 +212,8 @@ def test_words_about_one_finding_do_not_cover_another(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_all_overridden_is_clear_and_the_session_starts_either_way(lab: Lab) -> None:
-    """The server tells and records; it does not refuse the start."""
+def test_failed_checks_do_not_prevent_the_start(lab: Lab) -> None:
+    """The pre-flight is clear if all failures are overridden, but a session starts in any case."""
     view = lab.join()
     for key in ("tablet", "headset"):
         ok(override(lab, view["id"], key))
@@ -224,8 +224,8 @@ def test_all_overridden_is_clear_and_the_session_starts_either_way(lab: Lab) -> 
 
 
 @pytest.mark.one_engine
-def test_a_check_that_has_turned_green_is_told_and_nothing_is_recorded(lab: Lab) -> None:
-    """Somebody writes a reason while the headset connects: it is needed no more."""
+def test_overriding_a_passed_check_records_nothing(lab: Lab) -> None:
+    """Overriding a check that now passes returns its state and records nothing."""
     view = lab.join()
     told = ok(override(lab, view["id"], "language"))
     assert (told["status"], told["override"]) == ("ok", None)
@@ -233,8 +233,8 @@ def test_a_check_that_has_turned_green_is_told_and_nothing_is_recorded(lab: Lab)
 
 
 @pytest.mark.one_engine
-def test_what_cannot_be_overridden(lab: Lab) -> None:
-    """No reason, an unknown check, a session that is over."""
+def test_an_invalid_override_is_refused(lab: Lab) -> None:
+    """An override without a reason, of an unknown check or of an ended session is refused."""
     view = lab.join()
     error(override(lab, view["id"], "tablet", "   "), 422, "invalid_input")
     error(override(lab, view["id"], "weather"), 422, "invalid_input")
@@ -246,8 +246,8 @@ def test_what_cannot_be_overridden(lab: Lab) -> None:
 
 @pytest.mark.one_engine
 @pytest.mark.parametrize("kind", ["simulated", "test", "expert"])
-def test_sessions_without_participants_are_never_in_the_way(lab: Lab, kind: str) -> None:
-    """They show the same list."""
+def test_sessions_without_participants_need_no_overrides(lab: Lab, kind: str) -> None:
+    """Simulated, test and expert sessions have the same checks, but need no overrides."""
     session_id = lab.join(kind=kind)["id"]
     told = ok(lab.operator.get(f"/api/sessions/{session_id}/preflight"))
     assert told["asks"] is False

@@ -1,4 +1,4 @@
-"""The embodiment questionnaire, filled in and sent."""
+"""Helpers that fill in and submit the embodiment questionnaire."""
 
 from typing import Any
 
@@ -16,13 +16,13 @@ ANSWERS: Json = {**RAW, "q13": 4, "q14": 6, "problems": "Nothing at all."}
 
 
 def due(tablet: TestClient) -> Json:
-    """The form that the tablet shows."""
+    """Return the form that the tablet shows."""
     administration: Json = ok(tablet.get("/api/tablet/state"))["administration"]
     return administration
 
 
 def filled(administration: Json, answers: Json = ANSWERS, **fields: Any) -> Json:
-    """The form with answers, under a fresh key."""
+    """Return a submission of the form with these answers, under a new idempotency key."""
     return {
         "idempotency_key": key(),
         "administration": administration["key"],
@@ -35,25 +35,25 @@ def filled(administration: Json, answers: Json = ANSWERS, **fields: Any) -> Json
 
 
 def send(tablet: TestClient, body: Json) -> Response:
-    """Submit from the tablet."""
+    """Submit a form from the tablet."""
     return tablet.post("/api/tablet/submissions", json=body)
 
 
 def enter(lab: Lab, session_id: str, answers: Json) -> Response:
-    """Submit as the operator."""
+    """Submit the form that is due as the operator."""
     administration = ok(lab.operator.get(f"/api/sessions/{session_id}/administration"))
     body = filled(administration, answers)
     return lab.operator.post(f"/api/sessions/{session_id}/submissions", json=body)
 
 
 def stored(lab: Lab, session_id: str) -> list[Json]:
-    """Every stored form."""
+    """Return every stored form of a session."""
     forms: list[Json] = ok(lab.operator.get(f"/api/sessions/{session_id}/answers"))
     return forms
 
 
 def rows(lab: Lab, session_id: str) -> tuple[int, int, int]:
-    """How many submissions, answers and scores are stored."""
+    """Return how many submissions, answers and scores of a session are stored."""
     with lab.database.reading() as db:
         ids = select(Submission.id).where(Submission.session_id == session_id)
         counts = [db.scalar(select(func.count()).select_from(ids.subquery()))]

@@ -1,4 +1,4 @@
-"""Hints on how a form was filled in: for the operator, and only where they are worth a look."""
+"""Tests of the hints for operators on how a form was filled in."""
 
 import json
 from typing import Any
@@ -20,7 +20,7 @@ ALL_FOUR: Json = {**dict.fromkeys(RATED, 4), "problems": None}
 
 
 def traces(*times_s: float) -> Json:
-    """The rated items in their order, each answered in its time and never changed."""
+    """Return traces of the rated items in order, with these response times and no changes."""
     return {
         item: {"response_s": time_s, "changes": 0}
         for item, time_s in zip(RATED, times_s, strict=False)
@@ -28,24 +28,24 @@ def traces(*times_s: float) -> Json:
 
 
 def hints(lab: Lab, session_id: str) -> list[Json]:
-    """What the cockpit shows below the scores of the first form."""
+    """Return the hints that the cockpit shows below the scores of the first form."""
     view = lab.view(session_id)
     found: list[Json] = view["scores"][0]["hints"]
     return [{name: value for name, value in one.items() if value is not None} for one in found]
 
 
 def test_an_ordinary_form_has_no_hint(lab: Lab, session_id: str, tablet: TestClient) -> None:
-    """The published answers at an ordinary pace; the open question may be empty."""
+    """A form with ordinary answers and response times has no hint."""
     answers = {**ANSWERS, "problems": None}
     ok(send(tablet, filled(due(tablet), answers, item_traces=traces(*[3.0] * 14))))
     assert hints(lab, session_id) == []
 
 
 @pytest.mark.one_engine
-def test_answers_all_alike_are_told_to_the_operator_alone(
+def test_identical_answers_give_a_hint_to_the_operator_only(
     lab: Lab, session_id: str, tablet: TestClient
 ) -> None:
-    """Straight-lining: the form is stored and scored, and neither receipt nor screen tells."""
+    """Identical answers throughout give the operator a hint; the tablet is told nothing."""
     receipt = ok(send(tablet, filled(due(tablet), ALL_FOUR)))
     assert hints(lab, session_id) == [{"kind": "alike", "items": 14, "value": 4.0}]
     assert lab.view(session_id)["scores"][0]["scores"]["ownership"] is not None
@@ -67,22 +67,20 @@ def test_answers_all_alike_are_told_to_the_operator_alone(
 def test_half_of_the_ratings_below_a_second_are_implausibly_fast(
     lab: Lab, session_id: str, tablet: TestClient, times_s: list[float], kinds: list[str]
 ) -> None:
-    """The median decides, from five ratings on; a second is not below a second."""
+    """A form with at least five ratings and a median response time below one second is fast."""
     ok(send(tablet, filled(due(tablet), item_traces=traces(*times_s))))
     assert hints(lab, session_id) == [{"kind": kind, "items": 14, "seconds": 1.0} for kind in kinds]
 
 
 @pytest.mark.one_engine
-def test_what_an_operator_enters_is_not_fast_but_may_be_incomplete(
-    lab: Lab, session_id: str
-) -> None:
-    """An operator types what was said; what was not said is counted, the open question is not."""
+def test_an_operators_entry_is_never_fast_but_may_be_incomplete(lab: Lab, session_id: str) -> None:
+    """A form entered by the operator is never called fast; ratings left out are counted."""
     ok(enter(lab, session_id, {**ANSWERS, "q3": None, "q9": None, "problems": None}))
     assert hints(lab, session_id) == [{"kind": "left_out", "items": 2}]
 
 
 def hints_on(instrument: Instrument, value: float) -> list[str]:
-    """The kinds of hints on a form with one answer throughout."""
+    """Return the kinds of hints on a form with the same rating throughout."""
     submission = Submission(mode="tablet", item_traces=None)
     answers: dict[str, Any] = {
         item.key: value if item.type == "likert" else "" for item in instrument.items
@@ -91,8 +89,8 @@ def hints_on(instrument: Instrument, value: float) -> list[str]:
 
 
 @pytest.mark.one_engine
-def test_no_symptom_at_all_is_no_straight_line(lab: Lab) -> None:
-    """The lowest step throughout: usual in a list of symptoms, a contradiction in Karas 2020."""
+def test_no_symptoms_at_all_gives_no_hint(lab: Lab) -> None:
+    """The lowest rating throughout gives a hint on Karas 2020, but not on a list of symptoms."""
     with lab.database.reading() as db:
         known = {key: instrument_of(row) for key, row in newest_instruments(db).items()}
     assert hints_on(known["ssq"], 0.0) == []
@@ -103,7 +101,7 @@ def test_no_symptom_at_all_is_no_straight_line(lab: Lab) -> None:
 def test_times_and_changes_are_exported_by_item(
     lab: Lab, session_id: str, tablet: TestClient
 ) -> None:
-    """As they were sent; empty for an item of which nothing is known."""
+    """Response times and changes are exported per item, and empty where none were sent."""
     body = filled(
         due(tablet),
         timings={"q1": 4.5, "q2": 9.0},

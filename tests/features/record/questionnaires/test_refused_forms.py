@@ -1,4 +1,4 @@
-"""What cannot be an answer is refused by name, and nothing is stored."""
+"""Tests that invalid forms are refused by item, and that nothing of them is stored."""
 
 import pytest
 from fastapi.testclient import TestClient
@@ -27,7 +27,7 @@ pytestmark = pytest.mark.one_engine
 def test_an_impossible_answer_is_refused_by_item(
     lab: Lab, session_id: str, tablet: TestClient, item: str, value: object
 ) -> None:
-    """The refusal names the item, and nothing is stored."""
+    """An invalid answer is refused with its item named, and nothing is stored."""
     answer = send(tablet, filled(due(tablet), {**ANSWERS, item: value}))
     refusal = error(answer, 422, "invalid_input")
     named = [problem.get("item") or problem["path"] for problem in refusal["details"]]
@@ -36,8 +36,8 @@ def test_an_impossible_answer_is_refused_by_item(
     assert due(tablet)["key"] == f"{FORM}#1"
 
 
-def test_an_answer_off_the_scale_is_told_the_range(tablet: TestClient) -> None:
-    """8 on a scale of 1 to 7."""
+def test_an_answer_off_the_scale_is_refused_with_the_range(tablet: TestClient) -> None:
+    """An answer of 8 on a scale of 1 to 7 is refused with the range of the scale."""
     refusal = error(send(tablet, filled(due(tablet), {**ANSWERS, "q3": 8})), 422, "invalid_input")
     (problem,) = refusal["details"]
     assert (problem["item"], problem["value"]) == ("q3", 8)
@@ -46,10 +46,10 @@ def test_an_answer_off_the_scale_is_told_the_range(tablet: TestClient) -> None:
 
 
 @pytest.mark.parametrize("number", ["NaN", "Infinity", "1e999"])
-def test_a_number_that_is_none_is_refused(
+def test_a_non_finite_answer_is_refused(
     lab: Lab, session_id: str, tablet: TestClient, number: str
 ) -> None:
-    """Not even in JSON that only some programs write."""
+    """An answer of NaN or infinity is refused, and nothing is stored."""
     import json
 
     text = json.dumps(filled(due(tablet))).replace('"q1": 2', f'"q1": {number}')
@@ -73,10 +73,10 @@ def test_a_number_that_is_none_is_refused(
         {"administration": "block1.foot.karas2020#1"},
     ],
 )
-def test_what_surrounds_the_answers_is_checked_too(
+def test_the_fields_around_the_answers_are_checked(
     lab: Lab, session_id: str, tablet: TestClient, fields: Json
 ) -> None:
-    """Seed, time, order and language must be usable and the form the one that is due."""
+    """A form with an invalid seed, time, order, language or key, or one not due, is refused."""
     import json
 
     text = json.dumps({**filled(due(tablet)), **fields})

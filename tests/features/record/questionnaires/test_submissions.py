@@ -1,4 +1,4 @@
-"""Forms: stored once, scored by their instrument."""
+"""Tests that forms are stored once and scored by their instrument."""
 
 from concurrent.futures import ThreadPoolExecutor
 
@@ -25,7 +25,7 @@ from tests.features.record.questionnaires.forms import (
 
 
 def test_scores_are_the_published_ones(lab: Lab, session_id: str, tablet: TestClient) -> None:
-    """Table 7.2 of the thesis: 8, 7, 4 and 1.04 (unrounded 1.0407...)."""
+    """The answers of table 7.2 of the thesis give its scores 8, 7, 4 and 1.04 (1.0407...)."""
     ok(send(tablet, filled(due(tablet))))
     (form,) = stored(lab, session_id)
     assert {name: form["scores"][name] for name in ("ownership", "agency", "location")} == {
@@ -38,7 +38,7 @@ def test_scores_are_the_published_ones(lab: Lab, session_id: str, tablet: TestCl
 
 
 def test_answers_are_stored_as_given(lab: Lab, session_id: str, tablet: TestClient) -> None:
-    """Raw answers, the order shown, its seed and how they came in."""
+    """A form is stored with its raw answers, the order shown, its seed and its mode."""
     administration = due(tablet)
     ok(send(tablet, filled(administration)))
     (form,) = stored(lab, session_id)
@@ -48,8 +48,10 @@ def test_answers_are_stored_as_given(lab: Lab, session_id: str, tablet: TestClie
 
 
 @pytest.mark.one_engine
-def test_a_form_moves_the_session_on(lab: Lab, session_id: str, tablet: TestClient) -> None:
-    """After the receipt the next step is current."""
+def test_submitting_a_form_advances_the_session(
+    lab: Lab, session_id: str, tablet: TestClient
+) -> None:
+    """After a form is submitted the session's next step is current."""
     receipt = ok(send(tablet, filled(due(tablet))))
     assert receipt["duplicate"] is False
     view = lab.view(session_id)
@@ -58,7 +60,7 @@ def test_a_form_moves_the_session_on(lab: Lab, session_id: str, tablet: TestClie
 
 @pytest.mark.one_engine
 def test_items_are_shown_in_the_order_of_the_seed(lab: Lab, tablet: TestClient) -> None:
-    """The order can be made again from the seed; the open prompt comes last."""
+    """The order of items follows from the seed of the form, with the open question last."""
     administration = due(tablet)
     with lab.database.reading() as db:
         instrument = instrument_of(newest_instruments(db)["karas2020"])
@@ -68,17 +70,17 @@ def test_items_are_shown_in_the_order_of_the_seed(lab: Lab, tablet: TestClient) 
 
 
 def test_sending_twice_stores_once(lab: Lab, session_id: str, tablet: TestClient) -> None:
-    """The second answer is the first receipt."""
+    """A form that is sent twice is stored once and gets the same receipt."""
     body = filled(due(tablet))
     first, second = (ok(send(tablet, body)) for _ in range(2))
     assert second == {**first, "duplicate": True}
     assert rows(lab, session_id)[0] == 1
 
 
-def test_fifty_at_once_under_one_key_store_one_row(
+def test_fifty_simultaneous_submissions_under_one_key_store_one_row(
     lab: Lab, session_id: str, tablet: TestClient
 ) -> None:
-    """All get the same receipt, and exactly one is not a duplicate."""
+    """Fifty simultaneous submissions under one key store one form and get the same receipt."""
     body = filled(due(tablet))
     with ThreadPoolExecutor(50) as pool:
         receipts = [ok(answer) for answer in pool.map(lambda _: send(tablet, body), range(50))]
@@ -94,7 +96,7 @@ def test_other_answers_to_a_stored_form_are_refused(
     tablet: TestClient,
     new_key: bool,  # noqa: FBT001 - pytest passes it by name
 ) -> None:
-    """Under the same key or another one: 409, the first answers stand, both are in the record."""
+    """Other answers to a stored form are refused; the first are kept and both are recorded."""
     body = filled(due(tablet))
     ok(send(tablet, body))
     other = {**body, "answers": {**ANSWERS, "q1": 7}}
@@ -116,7 +118,7 @@ def test_other_answers_to_a_stored_form_are_refused(
 
 @pytest.mark.one_engine
 def test_the_operator_may_leave_answers_out(lab: Lab, session_id: str) -> None:
-    """Without Q3 ownership and what builds on it are null; agency and location are not."""
+    """The operator may leave answers out; only the scores that need them are null."""
     spoken = {item: value for item, value in ANSWERS.items() if item != "q3"}
     ok(enter(lab, session_id, spoken))
     (form,) = stored(lab, session_id)
@@ -131,8 +133,8 @@ def test_the_operator_may_leave_answers_out(lab: Lab, session_id: str) -> None:
 
 
 @pytest.mark.one_engine
-def test_the_operators_entry_is_told_apart(lab: Lab, session_id: str) -> None:
-    """Mode and account are stored with the answers."""
+def test_the_operators_entry_is_marked(lab: Lab, session_id: str) -> None:
+    """A form entered by the operator is stored with its mode and the account."""
     ok(enter(lab, session_id, ANSWERS))
     assert stored(lab, session_id)[0]["mode"] == "operator"
     with lab.database.reading() as db:
@@ -141,13 +143,15 @@ def test_the_operators_entry_is_told_apart(lab: Lab, session_id: str) -> None:
 
 
 @pytest.mark.one_engine
-def test_the_operator_cannot_enter_the_impossible(lab: Lab, session_id: str) -> None:
-    """An 8 is refused from the console too."""
+def test_the_operator_cannot_enter_an_invalid_answer(lab: Lab, session_id: str) -> None:
+    """An answer off the scale is refused from the operator as well."""
     error(enter(lab, session_id, {**ANSWERS, "q1": 8}), 422, "invalid_input")
 
 
-def test_a_reopened_form_is_answered_anew(lab: Lab, session_id: str, tablet: TestClient) -> None:
-    """Doing the step over makes a second administration with an order of its own."""
+def test_a_repeated_form_step_stores_a_second_form(
+    lab: Lab, session_id: str, tablet: TestClient
+) -> None:
+    """Repeating a form's step stores a second form, with its own order of items."""
     first = due(tablet)
     ok(send(tablet, filled(first)))
     view = lab.view(session_id)
@@ -163,7 +167,7 @@ def test_a_reopened_form_is_answered_anew(lab: Lab, session_id: str, tablet: Tes
 def test_a_late_copy_of_a_stored_form_still_gets_its_receipt(
     lab: Lab, session_id: str, tablet: TestClient
 ) -> None:
-    """A tablet that was offline hears that its answers are safe, even after the end."""
+    """A form that is resent after the session has ended still gets its first receipt."""
     body = filled(due(tablet))
     first = ok(send(tablet, body))
     lab.command(lab.view(session_id), "abort", reason="fire alarm")

@@ -1,4 +1,4 @@
-"""A session with movement in two epochs, and its receipt."""
+"""A fixture with a session that has movement in two epochs, and its receipt."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -19,32 +19,32 @@ FRAMES = 400
 
 
 @dataclass(frozen=True)
-class Kept:
-    """A stored session. `receipt()` is made anew at each call."""
+class StoredSession:
+    """A stored session, whose `receipt()` is computed at each call."""
 
     database: Database
     session_id: str
 
     def change(self, act: Callable[[Session], object]) -> None:
-        """Do something to the record behind the product's back."""
+        """Change the session's record directly in the database."""
         with self.database.writing() as db:
             act(db)
 
     def receipt(self) -> SessionReceipt:
-        """What the record proves now."""
+        """Return the current receipt of the session."""
         with self.database.reading() as db:
             return receipt_of(db, self.session_id)
 
     def stream(self, name: str = "target", epoch: int = 1) -> StreamReceipt:
-        """One stream of the receipt."""
+        """Return one stream of the current receipt."""
         return next(
             one for one in self.receipt().streams if (one.stream, one.epoch) == (name, epoch)
         )
 
 
 @pytest.fixture
-def kept(database_url: str) -> Iterator[Kept]:
-    """400 frames of both bodies in epoch 1, 100 of the target in epoch 2, on both engines."""
+def stored(database_url: str) -> Iterator[StoredSession]:
+    """Yield a session with 400 frames of both bodies in epoch 1 and 100 target frames in epoch 2."""
     database = open_database(database_url)
     with database.writing() as db:
         build_study(db)
@@ -53,5 +53,5 @@ def kept(database_url: str) -> Iterator[Kept]:
             store_chunks(db, session_id, stream, range(FRAMES), moving_values(FRAMES, seed))
         store_chunks(db, session_id, StreamName.TARGET, range(100), moving_values(100, 9), epoch=2)
         db.execute(update(TelemetryStream).values(produced=TelemetryStream.next_seq))
-    yield Kept(database, session_id)
+    yield StoredSession(database, session_id)
     database.close()

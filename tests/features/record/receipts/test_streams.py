@@ -1,4 +1,4 @@
-"""A receipt counts what is really stored, names every hole, and notices every changed bit."""
+"""Tests that a receipt counts the stored frames, names every gap and detects every changed bit."""
 
 import hashlib
 from typing import Any
@@ -11,22 +11,22 @@ from sqlalchemy.orm import Session
 from app.features.record.telemetry.encoding import ENCODING, decode_frames, encode_frames
 from app.features.record.telemetry.frames import iter_frames
 from app.models import TelemetryChunk, TelemetryStream
-from tests.features.record.receipts.conftest import FRAMES, Kept
+from tests.features.record.receipts.conftest import FRAMES, StoredSession
 
 
-def target(kept: Kept, *more: Any) -> tuple[Any, ...]:
-    """Which chunks: those of the target in epoch 1."""
+def target(stored: StoredSession, *more: Any) -> tuple[Any, ...]:
+    """Return conditions for the chunks of the target in epoch 1."""
     return (
-        TelemetryChunk.session_id == kept.session_id,
+        TelemetryChunk.session_id == stored.session_id,
         TelemetryChunk.stream == "target",
         TelemetryChunk.epoch == 1,
         *more,
     )
 
 
-def test_a_whole_record_misses_nothing(kept: Kept) -> None:
-    """Sent and stored agree in every stream of every epoch."""
-    streams = kept.receipt().streams
+def test_a_complete_record_has_no_missing_frames(stored: StoredSession) -> None:
+    """In a complete record the sent and stored frames of every stream and epoch agree."""
+    streams = stored.receipt().streams
     assert [(one.stream, one.epoch, one.sent, one.stored, one.missing) for one in streams] == [
         ("actual", 1, FRAMES, FRAMES, 0),
         ("target", 1, FRAMES, FRAMES, 0),
@@ -36,64 +36,64 @@ def test_a_whole_record_misses_nothing(kept: Kept) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_chunk_that_is_gone_leaves_a_named_hole(kept: Kept) -> None:
-    """Although every counter still says that all is there."""
-    kept.change(
+def test_a_deleted_chunk_is_reported_as_a_gap(stored: StoredSession) -> None:
+    """A deleted chunk is reported as a gap by its seqs, although all counters are unchanged."""
+    stored.change(
         lambda db: db.execute(
-            delete(TelemetryChunk).where(*target(kept, TelemetryChunk.seq_first == 90))
+            delete(TelemetryChunk).where(*target(stored, TelemetryChunk.seq_first == 90))
         )
     )
-    found = kept.stream()
+    found = stored.stream()
     assert (found.sent, found.stored, found.missing) == (FRAMES, FRAMES - 90, 90)
     assert found.gaps == ((90, 180),)
-    receipt = kept.receipt()
+    receipt = stored.receipt()
     assert not receipt.complete
     assert "target, epoch 1: 90 of 400 are missing (seq 90 to 179)" in receipt.problems
 
 
 @pytest.mark.one_engine
-def test_what_the_client_made_and_never_sent_is_missing(kept: Kept) -> None:
-    """The client told how far it had come; its journal was lost with it."""
-    kept.change(
+def test_frames_that_were_made_but_never_sent_are_missing(stored: StoredSession) -> None:
+    """Frames that the client reported as made but never sent count as missing."""
+    stored.change(
         lambda db: db.execute(
             update(TelemetryStream)
             .where(TelemetryStream.epoch == 2, TelemetryStream.stream == "target")
             .values(produced=130)
         )
     )
-    found = kept.stream(epoch=2)
+    found = stored.stream(epoch=2)
     assert (found.sent, found.stored, found.missing, found.gaps) == (130, 100, 30, ((100, 130),))
 
 
 @pytest.mark.one_engine
-def test_a_chunk_that_cannot_be_read_counts_as_missing(kept: Kept) -> None:
-    """One flipped bit in a chunk is noticed, and the rest is still counted."""
+def test_a_chunk_that_cannot_be_read_counts_as_missing(stored: StoredSession) -> None:
+    """The frames of a chunk with a flipped bit count as missing and damaged."""
 
     def damage(db: Session) -> None:
         chunk = db.scalars(
-            select(TelemetryChunk).where(*target(kept, TelemetryChunk.seq_first == 180))
+            select(TelemetryChunk).where(*target(stored, TelemetryChunk.seq_first == 180))
         ).one()
         data = bytearray(chunk.data)
         data[len(data) // 2] ^= 1
         chunk.data = bytes(data)
 
-    kept.change(damage)
-    found = kept.stream()
+    stored.change(damage)
+    found = stored.stream()
     assert (found.missing, found.damaged, found.gaps) == (90, 90, ((180, 270),))
-    with kept.database.reading() as db:
-        read = [frames for _, frames in iter_frames(db, kept.session_id, "target", 1)]
+    with stored.database.reading() as db:
+        read = [frames for _, frames in iter_frames(db, stored.session_id, "target", 1)]
     assert sum(len(frames) for frames in read) == FRAMES - 90
-    assert "target, epoch 1: 90 frames can no longer be read" in kept.receipt().problems
+    assert "target, epoch 1: 90 frames can no longer be read" in stored.receipt().problems
 
 
-def test_the_digest_does_not_depend_on_how_frames_were_cut(kept: Kept) -> None:
-    """Two records of the same frames have the same digest, and one other bit changes it."""
-    before = kept.stream().sha256
+def test_the_digest_does_not_depend_on_chunk_boundaries(stored: StoredSession) -> None:
+    """The digest of a stream depends on its frames, not on how they are divided into chunks."""
+    before = stored.stream().sha256
 
     def merge_two(db: Session) -> None:
         first, second = db.scalars(
             select(TelemetryChunk)
-            .where(*target(kept, TelemetryChunk.seq_first < 180))
+            .where(*target(stored, TelemetryChunk.seq_first < 180))
             .order_by(TelemetryChunk.seq_first)
         )
         pieces = [
@@ -114,16 +114,16 @@ def test_the_digest_does_not_depend_on_how_frames_were_cut(kept: Kept) -> None:
         first.frame_count += second.frame_count
         db.delete(second)
 
-    kept.change(merge_two)
-    assert kept.stream().sha256 == before
-    assert kept.stream("actual").sha256 != before
+    stored.change(merge_two)
+    assert stored.stream().sha256 == before
+    assert stored.stream("actual").sha256 != before
 
 
 @pytest.mark.one_engine
 @pytest.mark.parametrize("epoch", [2])
-def test_an_empty_stream_is_not_a_hole(kept: Kept, epoch: int) -> None:
-    """A run of the client that sent nothing misses nothing."""
-    kept.change(
+def test_an_empty_stream_has_no_missing_frames(stored: StoredSession, epoch: int) -> None:
+    """A stream of which nothing was sent has no missing frames."""
+    stored.change(
         lambda db: (
             db.execute(delete(TelemetryChunk).where(TelemetryChunk.epoch == epoch)),
             db.execute(
@@ -133,6 +133,6 @@ def test_an_empty_stream_is_not_a_hole(kept: Kept, epoch: int) -> None:
             ),
         )
     )
-    found = kept.stream(epoch=epoch)
+    found = stored.stream(epoch=epoch)
     assert (found.sent, found.stored, found.missing) == (0, 0, 0)
     assert found.sha256 == hashlib.sha256().hexdigest()

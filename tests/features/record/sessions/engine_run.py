@@ -1,4 +1,4 @@
-"""The engine driven by hand: a plan, the events so far, and the state they fold to."""
+"""A session engine driven by hand: its plan, its events and the state that follows from them."""
 
 from dataclasses import dataclass, field
 from typing import get_args
@@ -23,7 +23,7 @@ REPORTS: tuple[str, ...] = get_args(PhaseEvent)
 
 
 def index_of(key: str) -> int:
-    """Where the step of that key stands in the plan."""
+    """Return the index of the step with that key in the plan."""
     return next(step.index for step in PLAN if step.key == key)
 
 
@@ -35,7 +35,7 @@ class Run:
     events: list[Event] = field(default_factory=list)
 
     def do(self, command: Command) -> list[Event]:
-        """Decide a command and fold what it gave; Refused leaves everything as it was."""
+        """Decide a command and apply its events; `Refused` leaves the state unchanged."""
         decided = decide(PLAN, self.state, command)
         for event in decided:
             self.state = evolve(self.state, event)
@@ -49,7 +49,7 @@ class Run:
         return PLAN[self.state.current]
 
     def go_to(self, key: str) -> "Run":
-        """Start, and skip every step before `key`."""
+        """Start the session if needed and skip every step before `key`."""
         if self.state.current is None:
             self.do(c.Start())
         while self.step.key != key:
@@ -57,7 +57,7 @@ class Run:
         return self
 
     def report(self, what: str, active_s: float, client_t_s: float = 1.0) -> list[Event]:
-        """What the headset did to the phase under way."""
+        """Report a change of the phase in progress as the headset."""
         assert self.state.phase is not None
         return self.do(
             c.Report(
@@ -69,14 +69,14 @@ class Run:
         )
 
     def begin(self, key: str) -> "Run":
-        """Begin the phase of step `key`; its clock runs."""
+        """Go to the step `key` and start the clock of its phase."""
         self.go_to(key)
         self.do(c.BeginPhase(headset_connected=True))
         self.report("started", 0.0)
         return self
 
     def finish(self) -> "Run":
-        """Use the running phase's time up and end its freeze."""
+        """Use up the time of the running phase and end it."""
         duration_s = self.step.duration_s or 0.0
         self.report("time_up", duration_s)
         self.report("ended", duration_s)

@@ -11,7 +11,7 @@ FMS = "block1.fms"
 
 
 def joined(lab: Lab, **fields: Any) -> Json:
-    """A new session of the study with options, which is there then."""
+    """Create a session of the study with options, storing the study first if it is missing."""
     if lab.operator.get(f"/api/studies/{KEY}").status_code == 404:
         ok(lab.operator.post("/api/studies", json={"yaml": with_options()}))
     view: Json = ok(lab.operator.post(f"/api/studies/{KEY}/sessions", json=fields))
@@ -19,7 +19,7 @@ def joined(lab: Lab, **fields: Any) -> Json:
 
 
 def answer_fms(lab: Lab, session_id: str, value: int | None) -> Response:
-    """The operator enters how sick the participant feels; None for no answer."""
+    """Enter the participant's sickness rating as the operator; None leaves it out."""
     form = ok(lab.operator.get(f"/api/sessions/{session_id}/administration"))
     body = {
         "idempotency_key": key(),

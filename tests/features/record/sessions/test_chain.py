@@ -1,4 +1,4 @@
-"""The hash chain of the event log: nothing in it can be changed unseen."""
+"""Tests of the hash chain of the event log, which reveals every change to it."""
 
 from collections.abc import Callable
 from datetime import timedelta
@@ -19,7 +19,7 @@ CANARY = "canary-7f3a"
 
 @pytest.fixture
 def logged(lab: Lab) -> str:
-    """A session with at least eight events, a note and reasons among them."""
+    """Return the id of a session with eight events, including a note and reasons."""
     view = lab.skip_to(lab.join(), "materialise")
     lab.context.hub.headset_joined(view["id"])
     view = lab.command(view, "materialise")
@@ -30,19 +30,19 @@ def logged(lab: Lab) -> str:
 
 
 def check(lab: Lab, session_id: str) -> ChainCheck:
-    """Verify the log as it is stored now."""
+    """Verify the event log as it is stored now."""
     with lab.database.reading() as db:
         session = db.get_one(StudySession, session_id)
         return verify_chain(events_of(db, session_id), version=session.version)
 
 
 def test_an_untouched_log_verifies(lab: Lab, logged: str) -> None:
-    """Every hash can be computed again from what is stored."""
+    """An unchanged event log verifies."""
     assert check(lab, logged) == ChainCheck(ok=True, events=lab.view(logged)["version"])
 
 
 def test_folding_the_stored_events_gives_the_stored_snapshot(lab: Lab, logged: str) -> None:
-    """The snapshot holds nothing that the log does not."""
+    """Replaying the stored events gives the stored snapshot."""
     with lab.database.reading() as db:
         session = db.get_one(StudySession, logged)
         state = initial_state(len(plan_of(db, session)))
@@ -69,7 +69,7 @@ def test_folding_the_stored_events_gives_the_stored_snapshot(lab: Lab, logged: s
 def test_an_edited_column_breaks_the_chain(
     lab: Lab, logged: str, column: str, changed: Callable[[SessionEvent], Any]
 ) -> None:
-    """Whatever is changed in row 4, the check names row 4."""
+    """Changing any column of an event breaks the chain at that event."""
     with lab.database.writing() as db:
         row = db.get_one(SessionEvent, (logged, 4))
         setattr(row, column, changed(row))
@@ -77,8 +77,8 @@ def test_an_edited_column_breaks_the_chain(
 
 
 @pytest.mark.one_engine
-def test_a_row_put_under_another_session_is_found(lab: Lab, logged: str) -> None:
-    """A hash covers the session it belongs to."""
+def test_an_event_moved_to_another_session_is_detected(lab: Lab, logged: str) -> None:
+    """An event moved to another session breaks that session's chain."""
     other = str(lab.join()["id"])
     with lab.database.writing() as db:
         here = (SessionEvent.session_id == logged) & (SessionEvent.seq == 1)
@@ -89,15 +89,15 @@ def test_a_row_put_under_another_session_is_found(lab: Lab, logged: str) -> None
 
 @pytest.mark.one_engine
 @pytest.mark.parametrize("seq", [1, 4])
-def test_a_removed_row_is_found(lab: Lab, logged: str, seq: int) -> None:
-    """The check names the seq that is missing."""
+def test_a_removed_event_is_detected(lab: Lab, logged: str, seq: int) -> None:
+    """A removed event breaks the chain at its seq."""
     with lab.database.writing() as db:
         _delete(db, logged, seq)
     assert check(lab, logged).broken_at == seq
 
 
-def test_a_removed_end_is_found(lab: Lab, logged: str) -> None:
-    """The session's version says how many rows there must be."""
+def test_a_removed_last_event_is_detected(lab: Lab, logged: str) -> None:
+    """A removed last event is detected by the session's version."""
     last = lab.view(logged)["version"]
     with lab.database.writing() as db:
         _delete(db, logged, last)
@@ -105,8 +105,8 @@ def test_a_removed_end_is_found(lab: Lab, logged: str) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_removed_row_is_found_though_the_rest_moved_up(lab: Lab, logged: str) -> None:
-    """Renumbering what follows does not hide the gap."""
+def test_a_removed_event_is_detected_after_renumbering(lab: Lab, logged: str) -> None:
+    """A removed event is detected even if the later events are renumbered."""
     with lab.database.writing() as db:
         _delete(db, logged, 4)
         for seq in range(5, lab_version(db, logged) + 1):
@@ -115,8 +115,8 @@ def test_a_removed_row_is_found_though_the_rest_moved_up(lab: Lab, logged: str) 
 
 
 @pytest.mark.one_engine
-def test_an_inserted_row_is_found(lab: Lab, logged: str) -> None:
-    """A row put in between breaks the chain at its place."""
+def test_an_inserted_event_is_detected(lab: Lab, logged: str) -> None:
+    """An inserted event breaks the chain at its seq."""
     with lab.database.writing() as db:
         for seq in range(lab_version(db, logged), 3, -1):
             _move(db, logged, seq, seq + 1)
@@ -130,8 +130,8 @@ def test_an_inserted_row_is_found(lab: Lab, logged: str) -> None:
 
 
 @pytest.mark.one_engine
-def test_swapped_rows_are_found(lab: Lab, logged: str) -> None:
-    """The order of events is part of the chain."""
+def test_swapped_events_are_detected(lab: Lab, logged: str) -> None:
+    """Two swapped events break the chain at the first of them."""
     with lab.database.writing() as db:
         _move(db, logged, 4, 1000)
         _move(db, logged, 5, 4)
@@ -140,16 +140,16 @@ def test_swapped_rows_are_found(lab: Lab, logged: str) -> None:
 
 
 @pytest.mark.one_engine
-def test_an_edit_with_its_own_hash_mended_is_found_in_the_next_row(lab: Lab, logged: str) -> None:
-    """Who mends one hash has to mend all that follow."""
+def test_a_changed_previous_hash_is_detected(lab: Lab, logged: str) -> None:
+    """An event whose previous hash was changed breaks the chain."""
     with lab.database.writing() as db:
         third, fourth = (db.get_one(SessionEvent, (logged, seq)) for seq in (3, 4))
         fourth.previous_hash = third.hash[::-1]
     assert check(lab, logged).broken_at == 4
 
 
-def test_no_words_are_in_the_log(lab: Lab) -> None:
-    """Notes, reasons, heights and answers are stored elsewhere; the log holds ids and hashes."""
+def test_the_event_log_has_no_personal_content(lab: Lab) -> None:
+    """Notes, reasons, heights and answers are not in the event log, only their ids and hashes."""
     view = lab.command(lab.join(), "start")
     session_id = view["id"]
     view = lab.command(view, "note", text=f"{CANARY} note")
@@ -172,7 +172,7 @@ def test_no_words_are_in_the_log(lab: Lab) -> None:
 
 
 def test_phase_rows_follow_the_events(lab: Lab) -> None:
-    """A voided phase is voided in its row too, with its active time."""
+    """The row of a phase is voided together with the phase."""
     view = lab.skip_to(lab.join(), "free_roam")
     lab.context.hub.headset_joined(view["id"])
     view = lab.command(view, "begin_phase")
@@ -196,7 +196,7 @@ def _demographics(lab: Lab, session_id: str) -> dict[str, Any]:
 
 
 def lab_version(db: Session, session_id: str) -> int:
-    """How many events the session has."""
+    """Return how many events the session has."""
     return db.get_one(StudySession, session_id).version
 
 

@@ -1,4 +1,4 @@
-"""Commands over HTTP: one of two operators wins, repetition is harmless, refusals help."""
+"""Tests of commands over HTTP: concurrency, repetition and refusals."""
 
 import uuid
 from concurrent.futures import ThreadPoolExecutor
@@ -19,17 +19,17 @@ BOTH = range(2)
 
 @pytest.fixture
 def planned(lab: Lab) -> Json:
-    """A session that has joined and not begun."""
+    """Return a session that is planned."""
     return lab.join()
 
 
 def started(lab: Lab, session_id: str) -> list[Json]:
-    """The events that say the session was started."""
+    """Return the session's events of type `session_started`."""
     return [event for event in lab.events(session_id) if event["type"] == "session_started"]
 
 
 def contents(lab: Lab, session_id: str, kind: str) -> int:
-    """How many notes or reasons are stored."""
+    """Return how many contents of a kind are stored for a session."""
     with lab.database.reading() as db:
         return int(
             db.scalar(
@@ -42,7 +42,7 @@ def contents(lab: Lab, session_id: str, kind: str) -> int:
 
 
 def test_of_two_operators_pressing_start_one_wins(lab: Lab, planned: Json) -> None:
-    """The other gets 409 "stale" with what changed, and there is one start."""
+    """Of two simultaneous starts one succeeds; the other gets 409 `stale` with what changed."""
     with ThreadPoolExecutor(2) as pool:
         answers = list(pool.map(lambda _: lab.try_command(planned, "start"), BOTH))
     assert sorted(answer.status_code for answer in answers) == [200, 409]
@@ -55,8 +55,8 @@ def test_of_two_operators_pressing_start_one_wins(lab: Lab, planned: Json) -> No
 
 
 @pytest.mark.one_engine
-def test_a_version_from_the_future_is_stale_too(lab: Lab, planned: Json) -> None:
-    """Whoever decides on a state that is not the present one has to look again."""
+def test_a_future_version_is_stale(lab: Lab, planned: Json) -> None:
+    """A command with a later version than the session's is refused as stale."""
     error(lab.try_command({**planned, "version": 5}, "start"), 409, "stale")
 
 
@@ -64,7 +64,7 @@ def test_a_version_from_the_future_is_stale_too(lab: Lab, planned: Json) -> None
 def test_a_repeated_command_changes_nothing(
     lab: Lab, planned: Json, kind: str, words: dict[str, str]
 ) -> None:
-    """The same command_id answers as the first time, with one event and one row of words."""
+    """A command repeated with the same id gets the same answer and has no further effect."""
     command_id = str(uuid.uuid4())
     first = lab.command(planned, kind, command_id=command_id, **words)
     again = lab.command(planned, kind, command_id=command_id, **words)
@@ -73,8 +73,8 @@ def test_a_repeated_command_changes_nothing(
     assert contents(lab, planned["id"], "note") == (kind == "note")
 
 
-def test_a_repetition_at_the_same_moment_changes_nothing(lab: Lab, planned: Json) -> None:
-    """Eight requests under one command_id give one event, and nobody is refused."""
+def test_simultaneous_repetitions_of_a_command_take_effect_once(lab: Lab, planned: Json) -> None:
+    """Eight simultaneous requests with one command id all succeed and make one event."""
     command_id = str(uuid.uuid4())
     with ThreadPoolExecutor(8) as pool:
         answers = list(
@@ -84,8 +84,8 @@ def test_a_repetition_at_the_same_moment_changes_nothing(lab: Lab, planned: Json
     assert len(lab.events(planned["id"])) == 1
 
 
-def test_notes_never_clash(lab: Lab, planned: Json) -> None:
-    """A note is taken though the session has moved on."""
+def test_a_note_is_accepted_at_any_version(lab: Lab, planned: Json) -> None:
+    """A note is accepted although the session has changed since."""
     lab.command(planned, "start")
     view = lab.command(planned, "note", text="  they asked about the boxes  ")
     assert [note["text"] for note in view["notes"]] == ["they asked about the boxes"]
@@ -95,8 +95,10 @@ def test_notes_never_clash(lab: Lab, planned: Json) -> None:
 @pytest.mark.one_engine
 @pytest.mark.parametrize("kind", ["redo", "skip", "abort", "withdraw"])
 @pytest.mark.parametrize("reason", [None, "", "   "])
-def test_what_changes_the_record_needs_a_reason(lab: Lab, kind: str, reason: str | None) -> None:
-    """Without one the command is refused by name and nothing is stored."""
+def test_redo_skip_abort_and_withdraw_need_a_reason(
+    lab: Lab, kind: str, reason: str | None
+) -> None:
+    """Redo, skip, abort and withdraw are refused without a reason, and nothing is stored."""
     view = lab.command(lab.join(), "start")
     refusal = error(lab.try_command(view, kind, reason=reason), 422, "invalid_input")
     assert refusal["message"] == f"{kind} needs a reason"
@@ -106,13 +108,13 @@ def test_what_changes_the_record_needs_a_reason(lab: Lab, kind: str, reason: str
 
 @pytest.mark.one_engine
 def test_an_empty_note_is_refused(lab: Lab, planned: Json) -> None:
-    """A note needs some text."""
+    """An empty note is refused."""
     error(lab.try_command(planned, "note", text=" "), 422, "invalid_input")
 
 
 @pytest.mark.one_engine
-def test_a_phase_without_headset_is_refused_with_the_way_out(lab: Lab) -> None:
-    """The operator hears to pair or wake the headset, or to skip."""
+def test_a_phase_without_headset_is_refused_with_a_remedy(lab: Lab) -> None:
+    """Starting a phase without a headset is refused with the advice to pair or wake one."""
     view = lab.skip_to(lab.join(), "free_roam")
     refusal = error(lab.try_command(view, "begin_phase"), 409, "not_now")
     assert refusal["value"] == "headset not connected"
@@ -120,8 +122,8 @@ def test_a_phase_without_headset_is_refused_with_the_way_out(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_body_without_headset_is_refused_with_the_way_out(lab: Lab) -> None:
-    """Nobody would see it, and the log would say that it had appeared."""
+def test_entering_the_body_without_headset_is_refused(lab: Lab) -> None:
+    """Entering the body is refused without a headset and accepted with one."""
     view = lab.skip_to(lab.join(), "materialise")
     refusal = error(lab.try_command(view, "materialise"), 409, "not_now")
     assert refusal["value"] == "headset not connected"
@@ -129,15 +131,15 @@ def test_a_body_without_headset_is_refused_with_the_way_out(lab: Lab) -> None:
     assert lab.command(view, "materialise")["steps"][view["current"]["index"]]["status"] == "done"
 
 
-def test_a_refused_command_leaves_no_words_behind(lab: Lab, planned: Json) -> None:
-    """The reason of a command that cannot be done now is not stored."""
+def test_a_refused_command_stores_no_reason(lab: Lab, planned: Json) -> None:
+    """The reason of a refused command is not stored."""
     error(lab.try_command(planned, "skip", reason="too early"), 409, "not_now")
     assert contents(lab, planned["id"], "reason") == 0
 
 
 @pytest.mark.one_engine
-def test_a_pause_that_was_asked_for_already_stores_no_second_reason(lab: Lab) -> None:
-    """Words are kept only where an event points at them."""
+def test_a_second_pause_request_stores_no_second_reason(lab: Lab) -> None:
+    """Requesting a pause that is already requested stores no second reason."""
     view = lab.skip_to(lab.join(), "free_roam")
     lab.context.hub.headset_joined(view["id"])
     lab.command(view, "begin_phase")
@@ -149,8 +151,8 @@ def test_a_pause_that_was_asked_for_already_stores_no_second_reason(lab: Lab) ->
 
 
 @pytest.mark.one_engine
-def test_the_view_offers_what_can_be_done(lab: Lab, planned: Json) -> None:
-    """`allowed` leads with the next action of the present state."""
+def test_the_view_lists_the_allowed_commands(lab: Lab, planned: Json) -> None:
+    """A session's view lists the commands that are allowed now, the usual next one first."""
     assert planned["allowed"] == ["start", "note"]
     view = lab.command(planned, "start")
     assert view["allowed"][0] == "complete_step"
@@ -160,7 +162,7 @@ def test_the_view_offers_what_can_be_done(lab: Lab, planned: Json) -> None:
 
 @pytest.mark.one_engine
 def test_a_reason_is_shown_at_its_step(lab: Lab, planned: Json) -> None:
-    """A skipped step tells why it was skipped."""
+    """A skipped step is shown with its reason."""
     view = lab.command(lab.command(planned, "start"), "skip", reason="consent on paper")
     assert (view["steps"][0]["status"], view["steps"][0]["reason"]) == (
         "skipped",
@@ -170,7 +172,7 @@ def test_a_reason_is_shown_at_its_step(lab: Lab, planned: Json) -> None:
 
 @pytest.mark.one_engine
 def test_an_unknown_session_is_not_found(lab: Lab, planned: Json) -> None:
-    """A command to nobody is answered with 404."""
+    """A command to an unknown session is answered with 404."""
     error(lab.try_command({**planned, "id": "nobody"}, "start"), 404, "not_found")
 
 
@@ -188,20 +190,20 @@ def test_an_unknown_session_is_not_found(lab: Lab, planned: Json) -> None:
         {"reason": "x" * 2001},
     ],
 )
-def test_a_command_that_does_not_fit_is_refused_by_field(
+def test_an_invalid_command_is_refused_by_field(
     lab: Lab, planned: Json, fields: dict[str, Any]
 ) -> None:
-    """The answer is 422 and names the field."""
+    """An invalid command is refused with 422 and the name of the field."""
     body = {"command_id": str(uuid.uuid4()), "expected_version": 0, "type": "start", **fields}
     answer = lab.operator.post(f"/api/sessions/{planned['id']}/commands", json=body)
     refusal = error(answer, 422, "invalid_input")
     assert any(next(iter(fields)) in detail["path"] for detail in refusal["details"])
 
 
-def test_readers_hear_of_a_change_only_once_it_is_on_disk(
+def test_a_change_is_published_only_after_its_commit(
     lab: Lab, planned: Json, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """News are published behind the commit, also where a savepoint was released before it."""
+    """A change is published only after its transaction commits, not at an inner savepoint."""
     heard: list[str] = []
     with lab.database.writing() as db:
         session = db.get_one(StudySession, planned["id"])
@@ -218,7 +220,7 @@ def test_readers_hear_of_a_change_only_once_it_is_on_disk(
 def test_nothing_is_published_when_the_transaction_fails(
     lab: Lab, planned: Json, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A rolled-back change is no news."""
+    """Nothing is published when the transaction is rolled back."""
     heard: list[str] = []
     monkeypatch.setattr(lab.context.hub, "publish", lambda *_: heard.append("news"))
     with lab.database._writer() as db:
@@ -229,7 +231,7 @@ def test_nothing_is_published_when_the_transaction_fails(
 
 @pytest.mark.one_engine
 def test_a_blinded_operator_sees_no_latency_anywhere(fresh_lab: Lab) -> None:
-    """Neither order, step, phase, event nor ledger tells the condition."""
+    """A blinded operator sees no latency or order in session, events, ledger or figures."""
     yaml = ok(fresh_lab.operator.get(f"/api/studies/{STUDY}"))["yaml"]
     blinded = yaml.replace("operator: false", "operator: true")
     ok(fresh_lab.operator.post(f"/api/studies/{STUDY}/versions", json={"yaml": blinded}))

@@ -1,4 +1,4 @@
-"""Consent: what is wanted, what is stored, what is shown, and what never leaves the lab."""
+"""Tests of consent: what it needs, what is stored and shown, and what is never exported."""
 
 from pathlib import Path
 
@@ -19,25 +19,25 @@ GIVEN: Json = {"step_index": 0, "ticked": [0, 1], "signature": PATH}
 
 @pytest.fixture
 def view(lab: Lab) -> Json:
-    """A session that waits for its consent."""
+    """Return a session whose current step is the consent."""
     return lab.command(joined(lab), "start")
 
 
 @pytest.fixture
 def tablet(lab: Lab, view: Json) -> TestClient:
-    """Its tablet."""
+    """Return the client of the session's tablet."""
     return lab.tablet(view["id"])
 
 
 def record(lab: Lab, view: Json) -> Json:
-    """The record as the printable page reads it."""
+    """Return the consent record as the printable page reads it."""
     told: Json = ok(lab.operator.get(f"/api/sessions/{view['id']}/consent"))
     return told
 
 
 @pytest.mark.one_engine
-def test_the_tablet_is_told_what_to_ask_for(tablet: TestClient) -> None:
-    """Lines to tick in the participant's language, and how to sign."""
+def test_the_tablet_receives_the_consents_statements(tablet: TestClient) -> None:
+    """The tablet receives the consent's statements in its language and the kind of signature."""
     state = ok(tablet.get("/api/tablet/state"))
     assert state["screen"] == "consent"
     assert state["consent"]["signature"] == "drawn"
@@ -60,10 +60,10 @@ def test_the_tablet_is_told_what_to_ask_for(tablet: TestClient) -> None:
         ({"surprise": 1}, None),
     ],
 )
-def test_what_is_not_complete_is_refused(
+def test_an_incomplete_consent_is_refused(
     lab: Lab, view: Json, tablet: TestClient, change: Json, said: str | None
 ) -> None:
-    """Nothing is stored and the session stands where it was."""
+    """An incomplete or invalid consent is refused, and nothing is stored."""
     answer = tablet.post("/api/tablet/consent", json={**GIVEN, **change})
     assert answer.status_code == 422
     if said is not None:
@@ -72,10 +72,10 @@ def test_what_is_not_complete_is_refused(
     assert lab.view(view["id"])["version"] == view["version"]
 
 
-def test_a_consent_is_stored_once_with_everything_it_was_given_to(
+def test_a_consent_is_stored_once_with_its_text_and_version(
     lab: Lab, view: Json, tablet: TestClient
 ) -> None:
-    """Sending it again after a lost answer changes nothing."""
+    """A consent is stored once, with study version, text, statements and signature."""
     for _ in range(2):
         assert ok(tablet.post("/api/tablet/consent", json=GIVEN))["screen"] == "form"
     told = record(lab, view)
@@ -89,8 +89,10 @@ def test_a_consent_is_stored_once_with_everything_it_was_given_to(
     assert told["by"].startswith("tablet:")
 
 
-def test_the_log_holds_its_hash_and_no_word_of_it(lab: Lab, view: Json, tablet: TestClient) -> None:
-    """Erasing the content leaves a chain that still verifies."""
+def test_the_event_log_has_only_the_hash_of_a_consent(
+    lab: Lab, view: Json, tablet: TestClient
+) -> None:
+    """The event log has only the salted hash of a consent, not the name."""
     ok(tablet.post("/api/tablet/consent", json={**GIVEN, "signature": None, "name": "Ada L."}))
     (event,) = [one for one in lab.events(view["id"]) if one["type"] == "step_completed"]
     with lab.database.reading() as db:
@@ -108,8 +110,8 @@ def test_the_log_holds_its_hash_and_no_word_of_it(lab: Lab, view: Json, tablet: 
 
 
 @pytest.mark.one_engine
-def test_a_typed_name_stands_for_a_drawing(lab: Lab, view: Json, tablet: TestClient) -> None:
-    """Whoever cannot draw types; the language of what was read is part of the record."""
+def test_a_typed_name_replaces_a_drawn_signature(lab: Lab, view: Json, tablet: TestClient) -> None:
+    """A typed name is accepted instead of a drawn signature, and stored with the language."""
     ok(tablet.put("/api/tablet/language", json={"language": "de"}))
     ok(tablet.post("/api/tablet/consent", json={**GIVEN, "signature": None, "name": " Ada L. "}))
     told = record(lab, view)
@@ -118,10 +120,8 @@ def test_a_typed_name_stands_for_a_drawing(lab: Lab, view: Json, tablet: TestCli
 
 
 @pytest.mark.one_engine
-def test_one_press_is_not_enough_where_a_signature_is_wanted(
-    lab: Lab, view: Json, tablet: TestClient
-) -> None:
-    """Neither the tablet's plain acknowledgement nor the operator's click goes past it."""
+def test_a_required_signature_cannot_be_bypassed(lab: Lab, view: Json, tablet: TestClient) -> None:
+    """Neither the tablet's acknowledgement nor the operator can bypass a required signature."""
     answer = tablet.post("/api/tablet/acknowledge", json={"step_index": 0})
     assert "not ticked" in error(answer, 422, "invalid_input")["message"]
     refusal = error(lab.try_command(view, "complete_step", step_index=0), 422, "invalid_input")
@@ -129,8 +129,8 @@ def test_one_press_is_not_enough_where_a_signature_is_wanted(
 
 
 @pytest.mark.one_engine
-def test_a_consent_on_paper_says_where_the_sheet_is(lab: Lab, view: Json) -> None:
-    """The operator records it; the lines are on the sheet."""
+def test_a_consent_on_paper_is_recorded_with_its_place(lab: Lab, view: Json) -> None:
+    """A consent on paper is recorded by the operator with the place of the sheet and a reason."""
     sheet = {"place": "Folder A, sheet 12", "reason": "The tablet was empty"}
     error(
         lab.try_command(view, "complete_step", paper_consent={"place": "A"}), 422, "invalid_input"
@@ -143,8 +143,8 @@ def test_a_consent_on_paper_says_where_the_sheet_is(lab: Lab, view: Json) -> Non
 
 
 @pytest.mark.one_engine
-def test_a_plain_consent_has_a_record_too(lab: Lab) -> None:
-    """Of the shipped study, which wants no signature: one press, and it is the participant's."""
+def test_a_consent_without_signature_has_a_record(lab: Lab) -> None:
+    """A consent that needs no signature also has a record."""
     pressed = lab.command(lab.join(), "start")
     ok(lab.tablet(pressed["id"]).post("/api/tablet/acknowledge", json={"step_index": 0}))
     assert record(lab, pressed)["mode"] == "tablet"
@@ -154,8 +154,8 @@ def test_a_plain_consent_has_a_record_too(lab: Lab) -> None:
 @pytest.mark.parametrize(
     "sheet", [None, {"place": "  ", "reason": "no tablet"}, {"place": "Folder A", "reason": " "}]
 )
-def test_no_operator_consents_in_the_participants_place(lab: Lab, sheet: Json | None) -> None:
-    """Not even where the study wants one press only: a sheet, with its place and a reason."""
+def test_an_operator_cannot_consent_for_the_participant(lab: Lab, sheet: Json | None) -> None:
+    """An operator cannot complete a consent without a sheet of paper, its place and a reason."""
     view = lab.command(lab.join(), "start")
     refusal = error(
         lab.try_command(view, "complete_step", step_index=0, paper_consent=sheet),
@@ -167,8 +167,8 @@ def test_no_operator_consents_in_the_participants_place(lab: Lab, sheet: Json | 
     assert lab.view(view["id"])["version"] == view["version"]
 
 
-def test_an_erased_consent_leaves_its_time_only(lab: Lab, view: Json, tablet: TestClient) -> None:
-    """What erasure does to every content of a session."""
+def test_an_erased_consent_has_no_signature(lab: Lab, view: Json, tablet: TestClient) -> None:
+    """The record of an erased consent has neither name nor signature."""
     ok(tablet.post("/api/tablet/consent", json=GIVEN))
     with lab.database.writing() as db:
         query = select(SessionContent).where(SessionContent.session_id == view["id"])
@@ -179,10 +179,10 @@ def test_an_erased_consent_leaves_its_time_only(lab: Lab, view: Json, tablet: Te
 
 
 @pytest.mark.one_engine
-def test_no_export_holds_a_name_or_a_signature(
+def test_an_export_has_no_name_and_no_signature(
     lab: Lab, view: Json, tablet: TestClient, tmp_path: Path
 ) -> None:
-    """It says that and when consent was given."""
+    """An export states that and when consent was given, without name or signature."""
     given = {**GIVEN, "signature": None, "name": "Ada Unmistakable"}
     ok(tablet.post("/api/tablet/consent", json=given))
     with lab.database.reading() as db:

@@ -1,4 +1,4 @@
-"""Laws that hold for every sequence of commands, sensible or not."""
+"""Laws of the session engine that hold for every sequence of commands."""
 
 import contextlib
 import json
@@ -76,7 +76,7 @@ ANYTHING: st.SearchStrategy[Command] = st.one_of(
 
 
 def meant_by(name: str, state: SessionState) -> Command:
-    """The command that a page sends when it offers `name`."""
+    """Return the command that a page sends when it offers `name`."""
     assert state.current is not None or name in ("start", "note")
     current = state.current or 0
     timed = PLAN[current].kind in ("task", "free_roam")
@@ -99,7 +99,7 @@ def meant_by(name: str, state: SessionState) -> Command:
 
 
 def fitting(state: SessionState, what: str, share: float) -> Command:
-    """A report of the phase under way, at some active time that is still possible."""
+    """Return a valid report about the phase in progress, at a possible active time."""
     assert state.phase is not None
     left_s = (PLAN[state.phase.step].duration_s or 0.0) - state.phase.active_s
     whole = what in ("time_up", "ended")
@@ -108,7 +108,7 @@ def fitting(state: SessionState, what: str, share: float) -> Command:
 
 
 class AnySession(RuleBasedStateMachine):
-    """Commands in any order: what a page offers, what a headset reports, and nonsense."""
+    """Send commands in any order: allowed ones, headset reports and invalid ones."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -117,13 +117,13 @@ class AnySession(RuleBasedStateMachine):
         self.active_s: dict[int, float] = {}
 
     @rule(command=ANYTHING)
-    def ask_anything(self, command: Command) -> None:
-        """A command is followed or refused; nothing else ever happens."""
+    def try_any_command(self, command: Command) -> None:
+        """Any command is either accepted or refused."""
         self._do(command)
 
     @rule(data=st.data())
-    def do_what_is_offered(self, data: st.DataObject) -> None:
-        """A page sends what the session offers (ending it only rarely)."""
+    def send_an_allowed_command(self, data: st.DataObject) -> None:
+        """Send a command that the session allows, and only rarely one that ends it."""
         offered = allowed_commands(PLAN, self.run.state)
         name = data.draw(st.sampled_from([one for one in offered if one != "withdraw"]))
         if name != "abort" or data.draw(st.integers(0, 9)) == 0:
@@ -131,8 +131,8 @@ class AnySession(RuleBasedStateMachine):
 
     @precondition(lambda self: self.run.state.phase is not None)
     @rule(what=st.sampled_from(REPORTS), share=st.floats(0, 1))
-    def report_what_fits(self, what: str, share: float) -> None:
-        """The headset reports about the phase under way."""
+    def send_a_valid_report(self, what: str, share: float) -> None:
+        """Send a valid report about the phase in progress."""
         self._do(fitting(self.run.state, what, share))
 
     def _do(self, command: Command) -> None:
@@ -144,7 +144,7 @@ class AnySession(RuleBasedStateMachine):
 
     @invariant()
     def folding_all_events_gives_the_state(self) -> None:
-        """The state holds nothing that the events do not."""
+        """Replaying all events gives the current state."""
         state = initial_state(len(PLAN))
         for event in self.run.events:
             state = evolve(state, event)
@@ -152,13 +152,13 @@ class AnySession(RuleBasedStateMachine):
 
     @invariant()
     def the_snapshot_is_the_state(self) -> None:
-        """The state survives being stored as JSON."""
+        """The state is unchanged after being stored as JSON and read back."""
         stored = json.loads(json.dumps(state_to_json(self.run.state), allow_nan=False))
         assert state_from_json(stored) == self.run.state
 
     @invariant()
     def active_time_never_decreases(self) -> None:
-        """Nor does it leave the phase's duration."""
+        """A phase's active time never decreases and never exceeds its duration."""
         state = self.run.state
         for phase in (*state.ended_phases, *([state.phase] if state.phase else [])):
             assert phase.active_s >= self.active_s.get(phase.phase_id, 0.0)
@@ -166,8 +166,8 @@ class AnySession(RuleBasedStateMachine):
             self.active_s[phase.phase_id] = phase.active_s
 
     @invariant()
-    def voided_is_for_ever(self) -> None:
-        """No phase that was voided counts again, and ids are never used twice."""
+    def a_voided_phase_stays_void(self) -> None:
+        """A voided phase stays void, and no phase id is used twice."""
         ended = self.run.state.ended_phases
         assert [phase.phase_id for phase in ended] == list(range(1, len(ended) + 1))
         voided = {phase.phase_id for phase in ended if phase.status is PhaseStatus.VOIDED}
@@ -176,20 +176,20 @@ class AnySession(RuleBasedStateMachine):
 
     @invariant()
     def one_step_is_current_while_active(self) -> None:
-        """An active session always stands somewhere, any other nowhere."""
+        """A session has a current step exactly while it is active."""
         assert (self.run.state.current is not None) == (self.run.state.status == "active")
 
     @invariant()
-    def a_held_session_stands_still(self) -> None:
-        """Only an active session is held, and nothing in it is offered that moves on."""
+    def a_held_session_cannot_continue(self) -> None:
+        """A held session is active and allows only ending, overriding and notes."""
         if self.run.state.held is not None and self.run.state.refused_consent is None:
             assert self.run.state.status == "active"
             offered = allowed_commands(PLAN, self.run.state)
             assert offered == ["abort", "withdraw", "override_stop", "note"]
 
     @invariant()
-    def nobody_takes_part_against_their_will(self) -> None:
-        """After a refusal nothing is offered that moves on, and no clock is left to run."""
+    def a_refused_consent_stops_the_session(self) -> None:
+        """After a refused consent nothing that continues is allowed, and no phase keeps running."""
         state = self.run.state
         if state.refused_consent is None or state.status != "active":
             return
@@ -197,8 +197,8 @@ class AnySession(RuleBasedStateMachine):
         assert state.phase is None or state.phase.status != "running" or state.phase.pausing
 
     @invariant()
-    def what_is_offered_is_accepted(self) -> None:
-        """Every command in `allowed` can be given."""
+    def every_allowed_command_is_accepted(self) -> None:
+        """Every command listed as allowed is accepted."""
         for name in allowed_commands(PLAN, self.run.state):
             decide(PLAN, self.run.state, meant_by(name, self.run.state))
 
@@ -210,7 +210,7 @@ TestAnySession.settings = settings(
 
 
 def events(kind: type[Event]) -> st.SearchStrategy[Event]:
-    """Any event of a kind."""
+    """Return a strategy for events of a type."""
     values = {"str": st.text(), "int": st.integers(0), "float": st.floats(0, 1e6)}
     strategies = {}
     for one in fields(kind):
@@ -224,13 +224,13 @@ def events(kind: type[Event]) -> st.SearchStrategy[Event]:
 @given(data=st.data())
 @settings(max_examples=15)
 def test_every_event_survives_being_stored(name: str, data: st.DataObject) -> None:
-    """An event read back from its JSON is the event."""
+    """Every event read back from its JSON equals the original."""
     event = data.draw(events(EVENT_TYPES[name]))
     payload = json.loads(json.dumps(event_to_json(event)))
     assert event_from_json(event.type, payload) == event
 
 
-def test_an_event_of_a_newer_version_is_not_guessed_at() -> None:
-    """An unknown type is an error, never skipped."""
+def test_an_unknown_event_type_is_an_error() -> None:
+    """Reading an event of an unknown type raises an error."""
     with pytest.raises(KeyError):
         event_from_json("teleported", {})

@@ -1,4 +1,4 @@
-"""Doing over, skipping and ending: what was voided stays voided."""
+"""Tests of repeating, skipping and ending: a voided phase stays void."""
 
 import pytest
 
@@ -11,14 +11,14 @@ from tests.features.record.sessions.engine_run import PLAN, WORDS, Run, index_of
 HAND = "block1.hand"
 
 
-def begin_again(run: Run) -> None:
-    """Call the phase of the current step and start its clock."""
+def begin_phase(run: Run) -> None:
+    """Start the phase of the current step and its clock."""
     run.do(c.BeginPhase(headset_connected=True))
     run.report("started", 0.0)
 
 
 def test_redoing_a_running_phase_voids_it() -> None:
-    """The broken run keeps its data as voided, and the same step is ready as attempt 2."""
+    """Repeating a running phase voids it and makes its step ready for attempt 2."""
     run = Run().begin(HAND)
     run.do(c.Redo(content=WORDS))
     assert run.state.ended_phases[0].status is PhaseStatus.VOIDED
@@ -26,20 +26,20 @@ def test_redoing_a_running_phase_voids_it() -> None:
     assert run.state.steps[run.step.index].attempt == 2
 
 
-def test_redoing_counts_a_new_phase() -> None:
-    """The repetition has an id of its own, so its telemetry cannot mix with the first."""
+def test_a_repeated_phase_has_a_new_id() -> None:
+    """A repeated phase has its own id, so that its movement does not mix with the first."""
     run = Run().begin(HAND)
     run.do(c.Redo(content=WORDS))
-    begin_again(run)
+    begin_phase(run)
     assert run.state.phase is not None
     assert (run.state.phase.phase_id, run.state.phase.attempt) == (2, 2)
 
 
-def test_going_back_voids_everything_after() -> None:
-    """Redoing an earlier step voids its phase and the later ones and reopens all steps since."""
+def test_repeating_an_earlier_step_voids_all_later_ones() -> None:
+    """Repeating an earlier step voids its phase and all later ones, and reopens their steps."""
     run = Run().begin(HAND).finish()
     run.go_to("block1.foot")
-    begin_again(run)
+    begin_phase(run)
     run.do(c.Redo(content=WORDS, step=index_of(HAND)))
     assert [past.status for past in run.state.ended_phases] == [PhaseStatus.VOIDED] * 2
     assert run.step.key == HAND
@@ -47,8 +47,8 @@ def test_going_back_voids_everything_after() -> None:
     assert statuses[f"{HAND}.karas2020"] is StepStatus.PENDING
 
 
-def test_going_back_leaves_earlier_phases_alone() -> None:
-    """What was done before the reopened step still counts."""
+def test_repeating_a_step_keeps_the_earlier_phases() -> None:
+    """Phases before the repeated step still count."""
     run = Run().begin(HAND).finish()
     run.begin("block1.foot").finish()
     run.do(c.Redo(content=WORDS, step=index_of("block1.foot")))
@@ -59,15 +59,15 @@ def test_going_back_leaves_earlier_phases_alone() -> None:
 
 
 @pytest.mark.parametrize("step", [-1, 3, 99])
-def test_only_what_was_reached_can_be_redone(step: int) -> None:
-    """A step that lies ahead, or no step at all, is refused."""
+def test_only_a_step_that_was_reached_can_be_repeated(step: int) -> None:
+    """Repeating a step that was not reached or does not exist is refused."""
     run = Run().go_to("instructions")
     with pytest.raises(Refused, match="has not been reached yet"):
         run.do(c.Redo(content=WORDS, step=step))
 
 
 def test_skipping_a_running_phase_voids_it() -> None:
-    """A skipped phase does not count, and the session stands in the next step."""
+    """Skipping a running phase voids it and continues with the next step."""
     run = Run().begin(HAND)
     run.do(c.Skip(content=WORDS))
     assert run.state.ended_phases[0].status is PhaseStatus.VOIDED
@@ -76,8 +76,8 @@ def test_skipping_a_running_phase_voids_it() -> None:
 
 
 @pytest.mark.parametrize("status", ["aborted", "withdrawn"])
-def test_stopping_ends_the_session_and_voids_what_runs(status: str) -> None:
-    """Abort and withdrawal end everything at once."""
+def test_stopping_ends_the_session_and_voids_the_running_phase(status: str) -> None:
+    """Aborting or withdrawing ends the session and voids the running phase."""
     run = Run().begin(HAND)
     run.do(c.Stop(status=status, content=WORDS))
     assert (run.state.status, run.state.current) == (status, None)
@@ -85,8 +85,8 @@ def test_stopping_ends_the_session_and_voids_what_runs(status: str) -> None:
     assert run.state.ended_phases[0].status is PhaseStatus.VOIDED
 
 
-def test_an_ended_session_takes_notes_only() -> None:
-    """After the end a note is added, and every other command is refused."""
+def test_an_ended_session_accepts_notes_only() -> None:
+    """An ended session accepts notes and refuses every other command."""
     run = Run().go_to(HAND)
     run.do(c.Stop(status="aborted", content=WORDS))
     run.do(c.AddNote(content=WORDS))
@@ -95,7 +95,7 @@ def test_an_ended_session_takes_notes_only() -> None:
 
 
 def test_leaving_the_last_step_completes_the_session() -> None:
-    """The debriefing is followed by the session's end in the same decision."""
+    """Completing the last step completes the session."""
     run = Run().go_to("debrief")
     decided = run.do(c.CompleteStep(by="operator"))
     assert [event.type for event in decided] == ["step_completed", "session_ended"]
@@ -103,14 +103,14 @@ def test_leaving_the_last_step_completes_the_session() -> None:
 
 
 def test_skipping_the_last_step_completes_the_session_too() -> None:
-    """A session without debriefing has still reached its end."""
+    """Skipping the last step completes the session."""
     run = Run().go_to("debrief")
     run.do(c.Skip(content=WORDS))
     assert run.state.status is SessionStatus.COMPLETED
 
 
-def test_folding_is_total() -> None:
-    """An event of a clock that no phase has leaves the state as it was, one version on."""
+def test_an_event_of_an_unknown_phase_changes_only_the_version() -> None:
+    """An event about an unknown phase changes nothing but the version."""
     run = Run()
     after = evolve(run.state, e.PhaseResumed(phase_id=3, active_s=1.0, client_t_s=1.0))
     assert (after.version, after.phase) == (1, None)

@@ -1,4 +1,4 @@
-"""A stop rule that is met: laws of the engine."""
+"""Tests of the engine when a stop rule is met."""
 
 import pytest
 
@@ -27,7 +27,7 @@ MOVES: tuple[Command, ...] = (
 
 
 def submitted(*rules: int, form: str = FORM) -> Run:
-    """A session whose form met these rules."""
+    """Return a session after a form that met these rules."""
     run = Run().go_to(form)
     run.do(
         c.SubmitForm(
@@ -37,8 +37,8 @@ def submitted(*rules: int, form: str = FORM) -> Run:
     return run
 
 
-def test_a_rule_that_is_met_holds_the_session_behind_the_form() -> None:
-    """The form is stored and the step is left; the first of several rules is named."""
+def test_a_met_stop_rule_holds_the_session_after_the_form() -> None:
+    """A met stop rule holds the session after the form is stored; the first rule is named."""
     run = submitted(1, 0)
     assert [event.type for event in run.events[-3:]] == [
         "form_submitted",
@@ -49,15 +49,15 @@ def test_a_rule_that_is_met_holds_the_session_behind_the_form() -> None:
     assert run.step.key == "block1.foot"
 
 
-def test_the_event_holds_no_answer() -> None:
-    """Which rule and which form, nothing else."""
+def test_the_stop_rule_event_has_no_answer() -> None:
+    """The event of a met stop rule has only the rule and the submission."""
     (event,) = [one for one in submitted(0).events if isinstance(one, e.StopRuleMet)]
     assert vars(event) == {"rule": 0, "submission_id": "s"}
 
 
 @pytest.mark.parametrize("command", MOVES, ids=lambda one: type(one).__name__)
-def test_nothing_moves_a_held_session_on(command: Command) -> None:
-    """The refusal says why and what can be done, and leaves everything as it was."""
+def test_a_held_session_refuses_to_continue(command: Command) -> None:
+    """A held session refuses every command that continues it, and names the valid ones."""
     run = submitted(0)
     before = run.state
     with pytest.raises(Refused, match="stop rule") as refused:
@@ -67,13 +67,13 @@ def test_nothing_moves_a_held_session_on(command: Command) -> None:
     assert run.state == before
 
 
-def test_every_command_that_moves_on_is_tried_here() -> None:
-    """The list of the engine and the list above are one."""
+def test_all_commands_that_continue_a_session_are_tested() -> None:
+    """`MOVES` has every command that the engine regards as continuing a session."""
     assert {type(one) for one in MOVES} == set(GOES_ON)
 
 
-def test_a_held_session_offers_its_end_first() -> None:
-    """Ending is the first choice, going on the other."""
+def test_a_held_session_lists_its_end_first() -> None:
+    """The allowed commands of a held session begin with those that end it."""
     assert allowed_commands(PLAN, submitted(0).state) == [
         "abort",
         "withdraw",
@@ -82,8 +82,8 @@ def test_a_held_session_offers_its_end_first() -> None:
     ]
 
 
-def test_going_on_lifts_the_hold_and_keeps_the_reason() -> None:
-    """Afterwards the next step is the operator's again; a second override is refused."""
+def test_overriding_lifts_the_hold_and_stores_the_reason() -> None:
+    """Overriding the stop rule with a reason lifts the hold; overriding again is refused."""
     run = submitted(0)
     (event,) = run.do(c.OverrideStop(content=WORDS))
     assert event == e.StopRuleOverridden(content_id="content", content_hash="hash")
@@ -95,14 +95,14 @@ def test_going_on_lifts_the_hold_and_keeps_the_reason() -> None:
 
 @pytest.mark.parametrize("status", ["aborted", "withdrawn"])
 def test_a_held_session_can_be_ended(status: str) -> None:
-    """And is not held any more when it is over."""
+    """Aborting or withdrawing ends a held session and its hold."""
     run = submitted(0)
     run.do(c.Stop(status=status, content=WORDS))
     assert (run.state.status, run.state.held) == (status, None)
 
 
-def test_a_snapshot_from_before_there_were_rules_is_read() -> None:
-    """A session that was running during an update goes on."""
+def test_a_snapshot_without_the_hold_field_is_read() -> None:
+    """A snapshot stored before stop rules existed can still be read."""
     run = Run().go_to(FORM)
     stored = state_to_json(run.state)
     del stored["held"]
@@ -110,6 +110,6 @@ def test_a_snapshot_from_before_there_were_rules_is_read() -> None:
 
 
 def test_a_held_session_survives_being_stored() -> None:
-    """The hold is part of the snapshot."""
+    """The hold is part of the stored snapshot."""
     state = submitted(2).state
     assert state_from_json(state_to_json(state)) == state

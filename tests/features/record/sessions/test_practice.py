@@ -1,4 +1,4 @@
-"""A practice phase: run like a task, ended early where the study says so, never analysed."""
+"""Tests of practice phases: run like a task, ended early if the study says so, never analysed."""
 
 import pytest
 from sqlalchemy import select
@@ -20,7 +20,7 @@ PRACTICE = next(step for step in PLAN if step.kind == "practice")
 
 
 def running() -> SessionState:
-    """A session whose practice runs."""
+    """Return a session with a running practice."""
     state = initial_state(len(PLAN))
     for command in (c.Start(), *(c.Skip(content=WORDS) for _ in range(PRACTICE.index))):
         state = after(state, command)
@@ -29,21 +29,21 @@ def running() -> SessionState:
 
 
 def after(state: SessionState, command: c.Command) -> SessionState:
-    """The state behind a command."""
+    """Return the state after a command."""
     for event in decide(PLAN, state, command):
         state = evolve(state, event)
     return state
 
 
 def report(what: str, active_s: float, completions: int = 0) -> c.Report:
-    """What the headset says of the practice."""
+    """Return a headset's report about the practice."""
     return c.Report(
         what=what, phase_id=1, client_t_s=1.0, active_s=active_s, completions=completions
     )
 
 
 def test_a_practice_ends_once_enough_tasks_are_completed() -> None:
-    """Two are wanted: with one it is too early, with two it may end at any time."""
+    """A practice may end early once two tasks are completed, but not after one."""
     state = running()
     with pytest.raises(Refused, match="active time"):
         decide(PLAN, state, report("time_up", 12.0, completions=1))
@@ -54,13 +54,13 @@ def test_a_practice_ends_once_enough_tasks_are_completed() -> None:
 
 
 def test_a_practice_ends_when_its_time_is_used_up() -> None:
-    """At the latest; nobody is kept in it."""
+    """A practice ends at the latest when its time is used up."""
     frozen = after(running(), report("time_up", 30.0))
     assert after(frozen, report("ended", 30.0)).ended_phases[0].active_s == 30.0
 
 
 def test_a_task_never_ends_early() -> None:
-    """Completions shorten practice only."""
+    """A task does not end early, however many times it was completed."""
     index = next(step.index for step in PLAN if step.kind == "task")
     state = after(running(), c.Skip(content=WORDS))
     while state.current != index:
@@ -75,8 +75,8 @@ def test_a_task_never_ends_early() -> None:
 
 
 @pytest.mark.one_engine
-def test_the_server_counts_the_completions_itself(lab: Lab) -> None:
-    """What the headset is told and what is on record: a marked phase, in no figure."""
+def test_the_server_counts_the_completed_tasks_of_a_practice(lab: Lab) -> None:
+    """The server counts a practice's completed tasks itself and leaves it out of every figure."""
     if lab.operator.get(f"/api/studies/{KEY}").status_code == 404:
         ok(lab.operator.post("/api/studies", json={"yaml": with_options()}))
     view = ok(lab.operator.post(f"/api/studies/{KEY}/sessions", json={}))

@@ -1,4 +1,4 @@
-"""A refused consent and a question: laws of the engine."""
+"""Tests of the engine for a refused consent and for a question."""
 
 import pytest
 
@@ -24,7 +24,7 @@ AGREE = c.CompleteStep(by="tablet", step=0, content=WORDS)
 
 
 def refused() -> Run:
-    """A session that stands at its consent, which the participant has refused."""
+    """Return a session whose participant has refused consent."""
     run = Run()
     run.do(c.Start())
     run.do(REFUSE)
@@ -36,8 +36,8 @@ def refused() -> Run:
     [*MOVES, AGREE, c.SubmitForm(step=0, submission_id="s", content_hash="h")],
     ids=lambda one: type(one).__name__,
 )
-def test_nothing_goes_on_after_a_refusal(command: Command) -> None:
-    """Not even the participant's own agreement, before the refusal was taken back."""
+def test_a_session_cannot_continue_after_a_refusal(command: Command) -> None:
+    """After a refusal no command continues the session, not even the participant's agreement."""
     run = refused()
     before = run.state
     with pytest.raises(Refused, match="does not want to take part") as refusal:
@@ -46,8 +46,8 @@ def test_nothing_goes_on_after_a_refusal(command: Command) -> None:
     assert run.state == before
 
 
-def test_a_refusal_is_an_event_and_counts_once() -> None:
-    """Saying it again changes nothing; the end is offered first."""
+def test_a_refusal_is_recorded_once() -> None:
+    """A repeated refusal makes no second event, and ending is the first allowed command."""
     run = refused()
     assert run.do(REFUSE) == []
     assert [one.type for one in run.events] == ["session_started", "consent_refused"]
@@ -56,7 +56,7 @@ def test_a_refusal_is_an_event_and_counts_once() -> None:
 
 @pytest.mark.parametrize("step", [-1, 1, 3, 500])
 def test_only_a_consent_that_was_shown_can_be_refused(step: int) -> None:
-    """No form and no step that lies ahead."""
+    """Refusing a step other than a consent that was shown is refused."""
     run = Run()
     run.do(c.Start())
     with pytest.raises(Refused) as refusal:
@@ -64,8 +64,8 @@ def test_only_a_consent_that_was_shown_can_be_refused(step: int) -> None:
     assert refusal.value.valid == [0]
 
 
-def test_ending_keeps_that_it_was_refused() -> None:
-    """The tablet does not thank for taking part then."""
+def test_an_ended_session_keeps_its_refusal() -> None:
+    """A session that ends after a refusal keeps the refusal."""
     run = refused()
     run.do(c.Stop(status="withdrawn", content=WORDS))
     assert (run.state.status, run.state.refused_consent) == ("withdrawn", 0)
@@ -78,8 +78,8 @@ def test_ending_keeps_that_it_was_refused() -> None:
     [c.RetractRefusal(by="tablet"), c.RetractRefusal(by="operator", content=WORDS)],
     ids=["by the participant", "by the operator"],
 )
-def test_whoever_changes_their_mind_stands_at_the_consent_again(command: Command) -> None:
-    """Nothing is agreed to by that; agreeing and refusing are possible as before."""
+def test_a_retracted_refusal_returns_to_the_consent(command: Command) -> None:
+    """Retracting a refusal returns to the consent, which can then be given or refused."""
     run = refused()
     (event,) = run.do(command)
     assert isinstance(event, e.RefusalRetracted)
@@ -90,8 +90,8 @@ def test_whoever_changes_their_mind_stands_at_the_consent_again(command: Command
     assert run.step.index == 1
 
 
-def test_taking_back_what_was_not_said_is_harmless_on_the_tablet_only() -> None:
-    """An operator who was overtaken hears of it."""
+def test_retracting_no_refusal_is_an_error_for_the_operator_only() -> None:
+    """Retracting a missing refusal is ignored from the tablet and an error for the operator."""
     run = Run()
     run.do(c.Start())
     assert run.do(c.RetractRefusal(by="tablet")) == []
@@ -99,8 +99,8 @@ def test_taking_back_what_was_not_said_is_harmless_on_the_tablet_only() -> None:
         run.do(c.RetractRefusal(by="operator", content=WORDS))
 
 
-def test_a_refusal_that_comes_late_stops_the_clock() -> None:
-    """A tablet was offline while the consent was recorded from paper."""
+def test_a_late_refusal_pauses_the_running_phase() -> None:
+    """A refusal that arrives during a phase pauses it, and it cannot be resumed."""
     run = Run().begin(HAND)
     decided = run.do(REFUSE)
     assert [one.type for one in decided] == ["consent_refused", "pause_requested"]
@@ -111,8 +111,8 @@ def test_a_refusal_that_comes_late_stops_the_clock() -> None:
     run.do(c.Resume(headset_connected=True))
 
 
-def test_a_headset_that_counts_down_is_stopped_as_soon_as_its_clock_runs() -> None:
-    """It had its order before the refusal came."""
+def test_a_refusal_during_the_countdown_pauses_the_phase_at_its_start() -> None:
+    """A refusal during a phase's countdown requests a pause as soon as the clock runs."""
     run = Run().go_to(HAND)
     run.do(c.BeginPhase(headset_connected=True))
     run.do(REFUSE)
@@ -122,15 +122,15 @@ def test_a_headset_that_counts_down_is_stopped_as_soon_as_its_clock_runs() -> No
 
 
 def test_consent_needs_a_record_of_how_it_was_given() -> None:
-    """Whoever sends the command."""
+    """Completing a consent without a record of how it was given is refused."""
     run = Run()
     run.do(c.Start())
     with pytest.raises(Refused, match="record of how it was given"):
         run.do(c.CompleteStep(by="operator", step=0))
 
 
-def test_no_body_appears_without_a_headset() -> None:
-    """The log would say that somebody saw it."""
+def test_entering_the_body_needs_a_headset() -> None:
+    """Entering the body without a headset is refused."""
     run = Run().go_to("materialise")
     with pytest.raises(Refused, match="no headset could show") as refusal:
         run.do(c.Materialise(by="operator", headset_connected=False))
@@ -139,7 +139,7 @@ def test_no_body_appears_without_a_headset() -> None:
 
 
 def test_a_question_is_asked_and_closed_once() -> None:
-    """Before the start, too; it holds nothing up."""
+    """A question is recorded once while it is open and does not hold the session."""
     run = Run()
     for _ in range(2):
         run.do(c.AskQuestion())
@@ -162,8 +162,8 @@ def test_a_question_is_asked_and_closed_once() -> None:
         run.do(c.AskQuestion())
 
 
-def test_what_was_stored_before_there_were_refusals_is_read() -> None:
-    """A snapshot without the fields, and an old log in which an operator's click was a consent."""
+def test_a_snapshot_from_before_refusals_is_read() -> None:
+    """Snapshots and event logs stored before refusals existed can still be read."""
     run = Run()
     run.do(c.Start())
     stored = state_to_json(run.state)

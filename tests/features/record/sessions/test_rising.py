@@ -1,4 +1,4 @@
-"""A stop rule on the rise of a score since a form before the blocks."""
+"""Tests of a stop rule on the rise of a score since an earlier form."""
 
 import pytest
 
@@ -15,7 +15,7 @@ STUDY = with_options(
 
 
 def session(lab: Lab) -> Json:
-    """A session of a study whose rule looks at the rise."""
+    """Return a session of a study whose stop rule is about the rise of a score."""
     if lab.operator.get("/api/studies/reembodiment-rising").status_code == 404:
         ok(lab.operator.post("/api/studies", json={"yaml": STUDY}))
     view: Json = ok(lab.operator.post("/api/studies/reembodiment-rising/sessions", json={}))
@@ -34,7 +34,7 @@ def session(lab: Lab) -> Json:
     ],
 )
 def test_only_the_rise_counts(lab: Lab, start: int, later: int, codes: list[str]) -> None:
-    """Who came unwell is compared with how they came."""
+    """Only the rise of the score since the first form meets the stop rule, not its level."""
     view = lab.skip_to(session(lab), START)
     ok(answer_fms(lab, view["id"], start))
     assert lab.view(view["id"])["alarms"] == []
@@ -46,8 +46,8 @@ def test_only_the_rise_counts(lab: Lab, start: int, later: int, codes: list[str]
     assert (held is not None and held["is_rise"]) == ("stop_rule_met" in codes)
 
 
-def test_a_starting_point_that_was_skipped_is_told(lab: Lab) -> None:
-    """Nothing to compare with: a warning, and no false calm."""
+def test_a_missing_first_score_raises_a_warning(lab: Lab) -> None:
+    """If the first form was skipped, a warning says that the rise is unknown."""
     view = lab.skip_to(session(lab), FMS)
     ok(answer_fms(lab, view["id"], 2))
     assert [one["code"] for one in lab.view(view["id"])["alarms"]] == ["stop_rule_unknown"]

@@ -1,4 +1,4 @@
-"""Stop rules on both engines: what a form leads to, on the console, the tablet and the record."""
+"""Tests of stop rules on both engines: their effect on console, tablet and record."""
 
 import pytest
 
@@ -8,28 +8,28 @@ from tests.features.record.sessions.options_lab import FMS, answer_fms, joined
 
 
 def answered(lab: Lab, value: int | None, step: str = FMS) -> Json:
-    """A session whose participant feels that sick at the end of the first block."""
+    """Return a session after a sickness rating at the end of its first block."""
     view = lab.skip_to(joined(lab), step)
     ok(answer_fms(lab, view["id"], value))
     return lab.view(view["id"])
 
 
 def alarms(view: Json) -> dict[str, str]:
-    """What is wrong now: severity by code."""
+    """Return the severity of each open alarm by code."""
     return {one["code"]: one["severity"] for one in view["alarms"]}
 
 
 @pytest.mark.one_engine
 def test_below_every_limit_nothing_happens(lab: Lab) -> None:
-    """The session goes on."""
+    """A rating below every limit raises no alarm and holds nothing."""
     view = answered(lab, 9)
     assert (view["held"], alarms(view)) == (None, {})
     assert "begin_phase" in view["allowed"]
 
 
 @pytest.mark.one_engine
-def test_at_the_warning_the_operator_is_told_and_it_goes_on(lab: Lab) -> None:
-    """At or above: 10 is enough. A later form below it clears the warning."""
+def test_a_rating_at_the_warning_limit_raises_a_warning(lab: Lab) -> None:
+    """A rating at the warning limit raises a warning, which a lower rating clears."""
     view = answered(lab, 10)
     assert (view["held"], alarms(view)) == (None, {"stop_rule_near": "warning"})
     assert "begin_phase" in view["allowed"]
@@ -39,7 +39,7 @@ def test_at_the_warning_the_operator_is_told_and_it_goes_on(lab: Lab) -> None:
 
 
 def test_at_the_limit_the_session_is_held(lab: Lab) -> None:
-    """At or above: 15 is enough. A critical alarm, two ways on, and a calm tablet."""
+    """A rating at the stop limit holds the session, with a critical alarm and a neutral tablet."""
     view = answered(lab, 15)
     assert view["held"] == {
         "rule": 0,
@@ -56,8 +56,8 @@ def test_at_the_limit_the_session_is_held(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_held_session_refuses_to_go_on_and_says_what_to_do(lab: Lab) -> None:
-    """Begin, complete, resume and skip wait for the operator's decision."""
+def test_a_held_session_refuses_to_continue_with_a_remedy(lab: Lab) -> None:
+    """A held session refuses every command that continues it, with advice."""
     view = answered(lab, 20)
     for kind in ("begin_phase", "complete_step", "resume", "materialise", "skip", "redo"):
         refusal = error(lab.try_command(view, kind, reason="go"), 409, "not_now")
@@ -66,8 +66,8 @@ def test_a_held_session_refuses_to_go_on_and_says_what_to_do(lab: Lab) -> None:
     assert lab.view(view["id"])["version"] == view["version"]
 
 
-def test_going_on_needs_a_reason_and_is_on_record(lab: Lab) -> None:
-    """The alarm ends; the reason is content, and the log says nothing of the answer."""
+def test_overriding_a_stop_rule_needs_a_reason_and_is_recorded(lab: Lab) -> None:
+    """Overriding a stop rule needs a reason, clears the alarm and is recorded."""
     view = answered(lab, 17)
     error(lab.try_command(view, "override_stop"), 422, "invalid_input")
     view = lab.command(view, "override_stop", reason="Sat down, feels well again")
@@ -86,16 +86,16 @@ def test_going_on_needs_a_reason_and_is_on_record(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_ending_a_held_session_frees_its_slot(lab: Lab) -> None:
-    """As any session that was aborted."""
+def test_aborting_a_held_session_clears_its_hold(lab: Lab) -> None:
+    """Aborting a held session clears its hold and its alarm."""
     view = answered(lab, 15)
     ended = lab.command(view, "abort", reason="Stop rule: sickness")
     assert (ended["status"], ended["held"], alarms(ended)) == ("aborted", None, {})
 
 
 @pytest.mark.one_engine
-def test_a_missing_score_never_passes_silently(lab: Lab) -> None:
-    """The operator left the item out: a warning, until a later form tells."""
+def test_a_missing_score_raises_a_warning(lab: Lab) -> None:
+    """A score that could not be computed raises a warning until a later form has one."""
     view = answered(lab, None)
     assert (view["held"], alarms(view)) == (None, {"stop_rule_unknown": "warning"})
     view = lab.skip_to(view, "block2.fms")
@@ -104,8 +104,8 @@ def test_a_missing_score_never_passes_silently(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_restart_of_the_server_lifts_nothing(fresh_lab: Lab) -> None:
-    """Alarms of the equipment are cleared then; those of the participant stay."""
+def test_a_server_restart_keeps_the_hold_and_its_alarm(fresh_lab: Lab) -> None:
+    """A restart of the server keeps a session's hold and its alarm."""
     view = answered(fresh_lab, 15)
     stop_running_clocks(fresh_lab.context)
     after = fresh_lab.view(view["id"])
@@ -114,8 +114,8 @@ def test_a_restart_of_the_server_lifts_nothing(fresh_lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_no_alarm_tells_the_answer(lab: Lab) -> None:
-    """The value stays with the answers, where it can be erased."""
+def test_a_stop_rules_alarm_does_not_contain_the_answer(lab: Lab) -> None:
+    """The alarm of a stop rule does not contain the answer."""
     view = answered(lab, 19)
     (alarm,) = view["alarms"]
     assert (alarm["value"], "19" in alarm["message"]) == (None, False)

@@ -1,4 +1,4 @@
-"""Which completed sessions count, and which give their slot back."""
+"""Tests of which completed sessions are valid, and which give their slot back."""
 
 from dataclasses import replace
 
@@ -30,7 +30,7 @@ TASKS = [step for step in PLAN if step.kind == "task"]
 
 
 def done() -> SessionState:
-    """A session whose every task was carried through and every form answered."""
+    """Return the state of a session with every task and form completed."""
     run = Run()
     for step in TASKS:
         run.begin(step.key).finish()
@@ -39,12 +39,12 @@ def done() -> SessionState:
 
 
 def delays(state: SessionState, achieved_s: float | None = 0.2) -> dict[int, PhaseDelay]:
-    """Every phase measured alike; 0.1 s were ordered."""
+    """Return the same achieved latency for every phase, with 0.1 s set."""
     return {one.phase_id: PhaseDelay(0.1, achieved_s) for one in state.ended_phases}
 
 
 def skip_all(lab: Lab, view: Json) -> Json:
-    """Every step is skipped, and so the session ends."""
+    """Skip every step of a session, which completes it."""
     view = lab.command(view, "start")
     while view["status"] == "active":
         view = lab.command(view, "skip", reason="nobody was there")
@@ -52,20 +52,20 @@ def skip_all(lab: Lab, view: Json) -> Json:
 
 
 def ledger(lab: Lab) -> list[Json]:
-    """The slots of people's ledger."""
+    """Return the slots of the ledger of people."""
     slots: list[Json] = ok(lab.operator.get(f"/api/studies/{STUDY}/ledger?kind=people"))["slots"]
     return slots
 
 
 def with_latency(lab: Lab) -> Lab:
-    """The same with a study that asks for a measured latency, too."""
+    """Store a version of the study that also requires a measured latency."""
     yaml = edited(WITH_LATENCY)
     ok(lab.operator.post(f"/api/studies/{STUDY}/versions", json={"yaml": yaml}))
     return lab
 
 
 def complete(db: Session, view: Json) -> StudySession:
-    """The session of this view, with everything done; the first phase has a row."""
+    """Store a session as completed, with a row for its first phase."""
     session = db.get_one(StudySession, view["id"])
     state = done()
     session.status, session.snapshot = "completed", state_to_json(state)
@@ -93,7 +93,7 @@ def complete(db: Session, view: Json) -> StudySession:
 
 
 def measure(db: Session, session: StudySession, achieved_s: float | None) -> None:
-    """The first phase's latency is measured (again), and validity decided anew."""
+    """Store the latency of a session's first phase and reassess its validity."""
     phase = db.get_one(Phase, (session.id, 1))
     db.execute(delete(PhaseLatency).where(PhaseLatency.session_id == session.id))
     db.add(measured(phase, achieved_s))
@@ -101,15 +101,15 @@ def measure(db: Session, session: StudySession, achieved_s: float | None) -> Non
     judge_again(db, session, ())
 
 
-def test_a_session_in_which_everything_was_done_counts() -> None:
-    """Nothing is held against it, also while no latency was looked at."""
+def test_a_complete_session_is_valid() -> None:
+    """A session with every task and form done is valid, also before its latency is measured."""
     state = done()
     assert judged(RULES, PLAN, state, delays(state)) == ()
     assert judged(RULES, PLAN, state, {}) == ()
 
 
-def test_what_is_missing_is_told_in_the_order_of_the_steps() -> None:
-    """A skipped task, a short one, an unanswered form, latencies unknown and off."""
+def test_shortfalls_are_listed_in_the_order_of_the_steps() -> None:
+    """Skipped and short phases, unanswered forms and missing latencies are listed in step order."""
     state = done()
     short, last = (TASKS[index].index for index in (1, 5))
     form = index_of("block2.hand.karas2020")
@@ -141,8 +141,8 @@ def test_what_is_missing_is_told_in_the_order_of_the_steps() -> None:
     ]
 
 
-def test_nobody_counts_without_a_consent() -> None:
-    """Whatever else was done; a test or an expert's try needs none."""
+def test_a_participants_session_without_consent_is_not_valid() -> None:
+    """A session without consent is not valid, unless it has no participant."""
     state = done()
     consent = next(step.index for step in PLAN if step.kind == "consent")
     steps = tuple(
@@ -154,8 +154,8 @@ def test_nobody_counts_without_a_consent() -> None:
     assert judged(RULES, PLAN, state, {}, of_people=False) == ()
 
 
-def test_a_latency_may_be_off_by_the_tolerance_and_no_more() -> None:
-    """100 ms off is allowed by a tolerance of 101 ms and refused by one of 99 ms."""
+def test_a_latency_outside_the_tolerance_is_a_shortfall() -> None:
+    """A latency that is 100 ms off is within a tolerance of 101 ms and outside one of 99 ms."""
     state = done()
     for tolerance_ms, count in ((101.0, 0), (99.0, 6)):
         rules = ValidWhen.model_validate_json(
@@ -167,8 +167,8 @@ def test_a_latency_may_be_off_by_the_tolerance_and_no_more() -> None:
         assert judged(rules, PLAN, state, delays(state, None)) == ()
 
 
-def test_a_redone_task_counts_by_its_last_run() -> None:
-    """The latency of the voided run is not looked at."""
+def test_a_repeated_task_counts_by_its_last_attempt() -> None:
+    """A repeated task is assessed by its last attempt; the latency of the void one is ignored."""
     run = Run().begin(TASKS[0].key).finish()
     run.do(c.Redo(step=TASKS[0].index, content=c.ContentRef("content", "hash")))
     run.begin(TASKS[0].key).finish()
@@ -177,8 +177,8 @@ def test_a_redone_task_counts_by_its_last_run() -> None:
 
 
 @pytest.mark.one_engine
-def test_a_session_whose_every_task_was_skipped_gives_its_slot_back(fresh_lab: Lab) -> None:
-    """It is completed and does not count, view and ledger say why, and the next one takes over."""
+def test_a_session_with_every_task_skipped_gives_its_slot_back(fresh_lab: Lab) -> None:
+    """A completed session whose tasks were all skipped is not valid and gives its slot back."""
     lab = fresh_lab
     view = skip_all(lab, lab.join())
     assert view["status"] == "completed"
@@ -193,8 +193,8 @@ def test_a_session_whose_every_task_was_skipped_gives_its_slot_back(fresh_lab: L
 
 
 @pytest.mark.one_engine
-def test_a_study_without_rules_keeps_the_slot(fresh_lab: Lab) -> None:
-    """Completed is completed, as before there were rules."""
+def test_a_study_without_validity_rules_keeps_the_slot(fresh_lab: Lab) -> None:
+    """In a study without validity rules a completed session keeps its slot."""
     lab = fresh_lab
     ok(lab.operator.post(f"/api/studies/{STUDY}/versions", json={"yaml": BEFORE_RULES}))
     view = skip_all(lab, lab.join())
@@ -203,8 +203,8 @@ def test_a_study_without_rules_keeps_the_slot(fresh_lab: Lab) -> None:
     assert (slot["state"], slot["attempts"][0]["outcome"]) == ("completed", "completed")
 
 
-def test_a_latency_that_comes_later_decides_again(fresh_lab: Lab) -> None:
-    """Nothing looked at yet keeps the slot, unknown frees it, known takes it back."""
+def test_a_later_latency_reassesses_the_session(fresh_lab: Lab) -> None:
+    """A latency that is measured later makes a session valid or not, and its slot follows."""
     lab = with_latency(fresh_lab)
     view = lab.join()
     with lab.database.writing() as db:
@@ -219,8 +219,8 @@ def test_a_latency_that_comes_later_decides_again(fresh_lab: Lab) -> None:
     assert lab.view(view["id"])["shortfalls"] == []
 
 
-def test_a_slot_that_somebody_else_has_by_then_stays_theirs(fresh_lab: Lab) -> None:
-    """A session that counts after all is valid, and holds no slot."""
+def test_a_slot_taken_by_another_session_is_not_returned(fresh_lab: Lab) -> None:
+    """A session that becomes valid after its slot was taken by another stays without a slot."""
     lab = with_latency(fresh_lab)
     view = lab.join()
     with lab.database.writing() as db:
@@ -235,8 +235,8 @@ def test_a_slot_that_somebody_else_has_by_then_stays_theirs(fresh_lab: Lab) -> N
 
 
 @pytest.mark.one_engine
-def test_a_form_that_ends_a_session_does_not_hide_what_cannot_be_true(fresh_lab: Lab) -> None:
-    """Whoever ends it, an operator or a form, it is judged with the doubts about its headset."""
+def test_a_session_ended_by_a_form_is_checked_for_doubts(fresh_lab: Lab) -> None:
+    """A session that ends with a form is assessed with the doubts about its headset."""
     lab = fresh_lab
     last = "    - {step: debrief, text: debrief}\n"
     text = edited((last, f"{last}    - {{step: form, instrument: karas2020}}\n"))

@@ -1,4 +1,4 @@
-"""Sessions of experts: with the others in the list, in no figure and no export."""
+"""Tests of expert sessions: listed with the others, but in no figure and no export."""
 
 from pathlib import Path
 
@@ -9,8 +9,8 @@ from app.features.results.exports.writing import export_study, usual_kind
 from tests.features.lab import STUDY, Lab, ok
 
 
-def test_experts_have_a_ledger_of_their_own(fresh_lab: Lab) -> None:
-    """An expert takes nobody's slot."""
+def test_experts_have_their_own_ledger(fresh_lab: Lab) -> None:
+    """An expert's session takes its slot from a separate ledger."""
     expert, person = fresh_lab.join(kind="expert"), fresh_lab.join()
     assert (expert["slot"]["index"], person["slot"]["index"]) == (0, 0)
     assert expert["participant_code"] == "EXPERT-0001"
@@ -20,20 +20,20 @@ def test_experts_have_a_ledger_of_their_own(fresh_lab: Lab) -> None:
 
 @pytest.mark.one_engine
 def test_an_expert_is_in_the_list_of_sessions(fresh_lab: Lab) -> None:
-    """With a kind of its own, and not simulated."""
+    """An expert's session is listed with its own kind and not as simulated."""
     fresh_lab.join(kind="expert")
     (told,) = ok(fresh_lab.operator.get(f"/api/studies/{STUDY}/sessions?kind=expert"))
     assert (told["kind"], told["simulated"]) == ("expert", False)
 
 
 @pytest.mark.one_engine
-def test_an_expert_runs_no_faster_than_life(lab: Lab) -> None:
-    """Only simulations may."""
+def test_an_expert_session_has_no_time_scale(lab: Lab) -> None:
+    """An expert's session with a time scale is refused."""
     assert lab.try_join(kind="expert", time_scale=2.0).status_code == 422
 
 
-def test_no_table_holds_an_expert(fresh_lab: Lab, tmp_path: Path) -> None:
-    """Not even when all kinds are asked for, and no route takes the kind."""
+def test_no_table_or_export_contains_an_expert(fresh_lab: Lab, tmp_path: Path) -> None:
+    """No table and no export contains an expert's session, whatever kind is requested."""
     expert, person = fresh_lab.join(kind="expert"), fresh_lab.join()
     with fresh_lab.database.reading() as db:
         for kind in KINDS:

@@ -1,4 +1,4 @@
-"""What experts advise: written at a step of a version, decided once."""
+"""Tests of experts' suggestions, which belong to a step of a version and are decided once."""
 
 import pytest
 
@@ -6,7 +6,7 @@ from tests.features.lab import STUDY, Json, Lab, error, ok
 
 
 def advise(lab: Lab, **wish: object) -> Json:
-    """A suggestion for the shipped study."""
+    """Store a suggestion for the shipped study."""
     stored: Json = ok(
         lab.operator.post(f"/api/studies/{STUDY}/suggestions", json={"body": "Longer", **wish})
     )
@@ -14,7 +14,7 @@ def advise(lab: Lab, **wish: object) -> Json:
 
 
 def all_of(lab: Lab) -> list[Json]:
-    """Every suggestion for the shipped study."""
+    """Return every suggestion for the shipped study."""
     told: list[Json] = ok(lab.operator.get(f"/api/studies/{STUDY}/suggestions"))
     return told
 
@@ -27,7 +27,7 @@ def decide(lab: Lab, suggestion: Json, **decision: object) -> Json:
 
 
 def next_version(lab: Lab, word: str) -> int:
-    """Store a version of the study with another wording; its number."""
+    """Store a version of the study with another wording and return its number."""
     study = ok(lab.operator.get(f"/api/studies/{STUDY}/versions/1"))
     text = study["yaml"].replace("Thank you for coming.", word, 1)
     assert text != study["yaml"]
@@ -35,8 +35,8 @@ def next_version(lab: Lab, word: str) -> int:
     return int(added["version"])
 
 
-def test_an_expert_advises_at_the_step_they_are_in(fresh_lab: Lab) -> None:
-    """The version is the session's; the page shows the step's own name."""
+def test_a_suggestion_belongs_to_a_session_and_a_step(fresh_lab: Lab) -> None:
+    """A suggestion has its session's version and participant, and the title of its step."""
     view = fresh_lab.join(kind="expert")
     stored = advise(fresh_lab, session_id=view["id"], about="block1.foot", body=" Longer boxes ")
     assert (stored["version"], stored["participant_code"]) == (1, "EXPERT-0001")
@@ -57,8 +57,8 @@ def test_an_expert_advises_at_the_step_they_are_in(fresh_lab: Lab) -> None:
         ({"surprise": 1}, 422, "invalid"),
     ],
 )
-def test_advice_about_nothing_is_refused(lab: Lab, wish: Json, status: int, code: str) -> None:
-    """Unknown steps, versions and sessions, and no words."""
+def test_an_invalid_suggestion_is_refused(lab: Lab, wish: Json, status: int, code: str) -> None:
+    """A suggestion about an unknown step, version or session, or without text, is refused."""
     body = {"body": "Longer", **wish}
     answer = lab.operator.post(f"/api/studies/{STUDY}/suggestions", json=body)
     assert error(answer, status, answer.json()["error"]["code"])
@@ -67,7 +67,7 @@ def test_advice_about_nothing_is_refused(lab: Lab, wish: Json, status: int, code
 
 @pytest.mark.one_engine
 def test_a_suggestion_is_decided_once(fresh_lab: Lab) -> None:
-    """Adopted in a later version, or declined; afterwards it stands."""
+    """A suggestion is adopted in a later version or declined, once."""
     first, second = advise(fresh_lab), advise(fresh_lab, body="Shorter")
     number = next_version(fresh_lab, "Welcome.")
     adopted = decide(fresh_lab, first, status="adopted", adopted_in=number)
@@ -81,8 +81,8 @@ def test_a_suggestion_is_decided_once(fresh_lab: Lab) -> None:
 
 @pytest.mark.one_engine
 @pytest.mark.parametrize("number", [1, 99])
-def test_only_a_later_version_can_have_adopted_it(fresh_lab: Lab, number: int) -> None:
-    """Not the one it was made about, and none that is not there."""
+def test_a_suggestion_is_adopted_only_in_a_later_version(fresh_lab: Lab, number: int) -> None:
+    """A suggestion cannot be adopted in its own version or in a missing one."""
     stored = advise(fresh_lab)
     next_version(fresh_lab, "Welcome.")
     path = f"/api/suggestions/{stored['id']}/decision"
@@ -90,8 +90,8 @@ def test_only_a_later_version_can_have_adopted_it(fresh_lab: Lab, number: int) -
     assert error(fresh_lab.operator.post(path, json=body), 422, "invalid_input")["valid"] == [2]
 
 
-def test_the_newest_version_comes_first(fresh_lab: Lab) -> None:
-    """Within a version they stand as they were written."""
+def test_suggestions_list_the_newest_version_first(fresh_lab: Lab) -> None:
+    """Suggestions list the newest version first, and in order of writing within a version."""
     old = [advise(fresh_lab, body=body)["id"] for body in ("a", "b")]
     next_version(fresh_lab, "Welcome.")
     new = advise(fresh_lab, body="c")["id"]

@@ -1,4 +1,4 @@
-"""A participant does not want to take part, or has a question: tablet, console, record, ledger."""
+"""Tests of a participant who refuses or asks: on tablet and console, in record and ledger."""
 
 import uuid
 from typing import Any
@@ -12,34 +12,34 @@ REASON = "Refused consent"
 
 
 def wish(*, refused: bool = True, step_index: int = 0) -> Json:
-    """One press on the tablet."""
+    """Return the request that one press on the tablet sends."""
     return {"wish_id": str(uuid.uuid4()), "step_index": step_index, "refused": refused}
 
 
 def said(tablet: Any, body: Json) -> Json:
-    """What the tablet shows after it was taken."""
+    """Send a refusal request and return the tablet's screen after it."""
     screen: Json = ok(tablet.put("/api/tablet/refusal", json=body))
     return screen
 
 
 def at_consent(lab: Lab, **fields: Any) -> tuple[Json, Any]:
-    """A session that has begun, and its tablet."""
+    """Return a session at its consent, and its tablet."""
     view = lab.command(lab.join(**fields), "start")
     return view, lab.tablet(view["id"])
 
 
 def codes(view: Json) -> dict[str, str]:
-    """What is wrong now: severity by code."""
+    """Return the severity of each open alarm by code."""
     return {one["code"]: one["severity"] for one in view["alarms"]}
 
 
 def types(lab: Lab, view: Json) -> list[str]:
-    """The event log."""
+    """Return the event types of a session."""
     return [one["type"] for one in lab.events(view["id"])]
 
 
 def test_a_refusal_reaches_the_operator_and_holds_the_session(lab: Lab) -> None:
-    """An alarm at once, an event on record, and a calm tablet that asks for nothing more."""
+    """A refusal raises an alarm, is recorded and holds the session, and the tablet asks no more."""
     view, tablet = at_consent(lab)
     screen = said(tablet, wish())
     assert (screen["screen"], screen["is_refused"]) == ("refused", True)
@@ -55,8 +55,8 @@ def test_a_refusal_reaches_the_operator_and_holds_the_session(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_nobody_goes_on_as_if_nothing_had_happened(lab: Lab) -> None:
-    """Neither the operator with a sheet of paper, nor a second page of the tablet that agrees."""
+def test_a_refused_session_cannot_be_continued(lab: Lab) -> None:
+    """After a refusal neither the operator nor another page of the tablet can continue."""
     view, tablet = at_consent(lab)
     said(tablet, wish())
     now = lab.view(view["id"])
@@ -75,8 +75,8 @@ def test_nobody_goes_on_as_if_nothing_had_happened(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_ending_the_session_frees_its_slot(fresh_lab: Lab) -> None:
-    """The next participant takes it; the tablet thanks, and does not debrief."""
+def test_ending_a_refused_session_frees_its_slot(fresh_lab: Lab) -> None:
+    """Ending a refused session frees its slot, and the tablet shows no debriefing."""
     view, tablet = at_consent(fresh_lab)
     said(tablet, wish())
     ended = fresh_lab.command(fresh_lab.view(view["id"]), "withdraw", reason=REASON)
@@ -88,8 +88,8 @@ def test_ending_the_session_frees_its_slot(fresh_lab: Lab) -> None:
     assert [one["status"] for one in sessions] == ["planned", "withdrawn"]
 
 
-def test_the_same_press_counts_once_however_often_it_comes(lab: Lab) -> None:
-    """Answers get lost; a repetition that comes after it was taken back changes nothing."""
+def test_a_repeated_refusal_request_counts_once(lab: Lab) -> None:
+    """A repeated refusal request counts once, even if it arrives after the retraction."""
     view, tablet = at_consent(lab)
     first, back = wish(), wish(refused=False)
     for body in (first, first, back, first, back):
@@ -100,8 +100,8 @@ def test_the_same_press_counts_once_however_often_it_comes(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_who_changes_their_mind_sees_the_consent_again_and_may_agree(lab: Lab) -> None:
-    """On record with its times; the operator's warning ends with the decision."""
+def test_a_participant_who_retracts_a_refusal_may_consent(lab: Lab) -> None:
+    """A participant who retracts the refusal sees the consent and may give it."""
     view, tablet = at_consent(lab)
     said(tablet, wish())
     screen = said(tablet, wish(refused=False))
@@ -118,8 +118,8 @@ def test_who_changes_their_mind_sees_the_consent_again_and_may_agree(lab: Lab) -
 
 
 @pytest.mark.one_engine
-def test_the_operator_shows_the_consent_again_for_a_reason(lab: Lab) -> None:
-    """Nothing is agreed to by that, and without a refusal there is nothing to show again."""
+def test_the_operator_reopens_the_consent_with_a_reason(lab: Lab) -> None:
+    """The operator may reopen a refused consent with a reason, which does not give it."""
     view, tablet = at_consent(lab)
     error(lab.try_command(view, "reopen_consent", reason="again"), 409, "not_now")
     said(tablet, wish())
@@ -134,8 +134,8 @@ def test_the_operator_shows_the_consent_again_for_a_reason(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_another_tablet_shows_the_refusal_too(lab: Lab) -> None:
-    """It may also be refused there, and taken back there: it is the same participant."""
+def test_another_tablet_shows_the_refusal(lab: Lab) -> None:
+    """Another tablet of the session shows the refusal and may retract it."""
     view, tablet = at_consent(lab)
     said(tablet, wish())
     other = lab.tablet(view["id"])
@@ -146,8 +146,8 @@ def test_another_tablet_shows_the_refusal_too(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_refusal_that_arrives_late_holds_the_session_where_it_is(lab: Lab) -> None:
-    """The tablet was offline while the operator recorded a sheet of paper."""
+def test_a_late_refusal_holds_the_session_at_its_current_step(lab: Lab) -> None:
+    """A refusal that arrives after a consent on paper holds the session at its current step."""
     view, tablet = at_consent(lab)
     sheet = {"place": "Folder A", "reason": "The tablet is offline"}
     lab.command(view, "complete_step", paper_consent=sheet)
@@ -168,8 +168,8 @@ def test_a_refusal_that_arrives_late_holds_the_session_where_it_is(lab: Lab) -> 
     assert ok(lab.operator.get(f"/api/sessions/{view['id']}/answers")) == []
 
 
-def test_a_restart_of_the_server_lifts_nothing(fresh_lab: Lab) -> None:
-    """Alarms of the equipment are cleared then; what the participant said stays."""
+def test_a_server_restart_keeps_refusals_and_questions(fresh_lab: Lab) -> None:
+    """A restart of the server keeps the alarms of a refusal and a question."""
     view, tablet = at_consent(fresh_lab)
     ok(tablet.put("/api/tablet/question", json={"asked": True}))
     said(tablet, wish())
@@ -180,8 +180,8 @@ def test_a_restart_of_the_server_lifts_nothing(fresh_lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_an_operator_who_is_blind_sees_it_as_well(fresh_lab: Lab) -> None:
-    """It tells nothing about the condition."""
+def test_a_blinded_operator_sees_the_refusal(fresh_lab: Lab) -> None:
+    """A blinded operator sees a refusal, which reveals nothing about the condition."""
     yaml = ok(fresh_lab.operator.get(f"/api/studies/{STUDY}"))["yaml"]
     blinded = yaml.replace("operator: false", "operator: true")
     ok(fresh_lab.operator.post(f"/api/studies/{STUDY}/versions", json={"yaml": blinded}))
@@ -193,8 +193,8 @@ def test_an_operator_who_is_blind_sees_it_as_well(fresh_lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_session_that_is_over_has_nobody_to_tell(lab: Lab) -> None:
-    """The tablet hears so, and shows the end."""
+def test_a_refusal_after_the_end_is_not_accepted(lab: Lab) -> None:
+    """A refusal after the end of a session is not accepted, and the tablet shows the end."""
     view, tablet = at_consent(lab)
     lab.command(view, "abort", reason="fire alarm")
     error(tablet.put("/api/tablet/refusal", json=wish()), 409, "not_now")
@@ -202,8 +202,8 @@ def test_a_session_that_is_over_has_nobody_to_tell(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_wish_about_something_else_is_refused(lab: Lab) -> None:
-    """Forms and steps that lie ahead are no consents."""
+def test_only_a_consent_can_be_refused(lab: Lab) -> None:
+    """A refusal of a step that is not a consent is not accepted."""
     view, tablet = at_consent(lab)
     refusal = error(tablet.put("/api/tablet/refusal", json=wish(step_index=1)), 409, "not_now")
     assert (refusal["value"], refusal["valid"]) == (1, [0])
@@ -211,8 +211,8 @@ def test_a_wish_about_something_else_is_refused(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_question_is_an_alarm_and_an_event_until_somebody_comes(lab: Lab) -> None:
-    """Answered like a call, by the same button; asking twice does no harm."""
+def test_a_question_raises_an_alarm_until_it_is_answered(lab: Lab) -> None:
+    """A question raises an alarm and is recorded once, until the operator answers it."""
     view, tablet = at_consent(lab)
     for _ in range(2):
         screen = ok(tablet.put("/api/tablet/question", json={"asked": True}))
@@ -233,7 +233,7 @@ def test_a_question_is_an_alarm_and_an_event_until_somebody_comes(lab: Lab) -> N
 
 @pytest.mark.one_engine
 def test_a_question_can_be_taken_back(lab: Lab) -> None:
-    """And an ended session has nobody to ask."""
+    """A question can be retracted; after the end of a session none can be asked."""
     view, tablet = at_consent(lab)
     ok(tablet.put("/api/tablet/question", json={"asked": True}))
     back = ok(tablet.put("/api/tablet/question", json={"asked": False}))
@@ -247,7 +247,7 @@ def test_a_question_can_be_taken_back(lab: Lab) -> None:
 
 @pytest.mark.one_engine
 def test_a_steps_own_text_has_its_own_title(lab: Lab) -> None:
-    """Only the study's waiting text stands under the tablet's words that nothing is to be done."""
+    """A step's own text has its own title, unlike the study's text for waiting."""
     view = lab.join()
     tablet = lab.tablet(view["id"])
     assert ok(tablet.get("/api/tablet/state"))["is_own_text"] is False

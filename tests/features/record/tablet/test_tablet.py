@@ -1,4 +1,4 @@
-"""What a tablet shows and does: its own session's step, and nothing of the condition."""
+"""Tests of what a tablet shows and does: its session's current step, and never the condition."""
 
 import json
 from typing import Any
@@ -9,13 +9,13 @@ from tests.features.lab import Json, Lab, error, ok
 
 
 def state(tablet: Any) -> Json:
-    """The screen."""
+    """Return the screen that the tablet shows."""
     screen: Json = ok(tablet.get("/api/tablet/state"))
     return screen
 
 
 def test_the_screen_follows_the_session(lab: Lab) -> None:
-    """Waiting, consent, form, instructions, waiting, finished."""
+    """The tablet shows waiting, consent, form, instructions and the end as the session proceeds."""
     view = lab.join()
     tablet = lab.tablet(view["id"])
     screens = [state(tablet)["screen"]]
@@ -29,8 +29,8 @@ def test_the_screen_follows_the_session(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_acknowledging_twice_does_no_harm(lab: Lab) -> None:
-    """Consent sent again after a lost answer leaves the session where it is."""
+def test_a_repeated_acknowledgement_has_no_effect(lab: Lab) -> None:
+    """A consent acknowledged twice completes its step once."""
     view = lab.command(lab.join(), "start")
     tablet = lab.tablet(view["id"])
     for _ in range(2):
@@ -42,8 +42,8 @@ def test_acknowledging_twice_does_no_harm(lab: Lab) -> None:
 
 @pytest.mark.one_engine
 @pytest.mark.parametrize("step_index", [1, 3, 6, 500])
-def test_a_tablet_completes_only_what_is_its_own(lab: Lab, step_index: int) -> None:
-    """Forms, heights and phases cannot be acknowledged."""
+def test_a_tablet_acknowledges_only_consent_and_instructions(lab: Lab, step_index: int) -> None:
+    """Only the consent and the instructions can be acknowledged from the tablet."""
     tablet = lab.tablet(lab.command(lab.join(), "start")["id"])
     answer = tablet.post("/api/tablet/acknowledge", json={"step_index": step_index})
     refusal = error(answer, 422, "invalid_input")
@@ -51,15 +51,15 @@ def test_a_tablet_completes_only_what_is_its_own(lab: Lab, step_index: int) -> N
 
 
 @pytest.mark.one_engine
-def test_a_tablet_cannot_run_ahead(lab: Lab) -> None:
-    """Instructions are acknowledged when they are due, not before."""
+def test_a_tablet_cannot_acknowledge_a_later_step(lab: Lab) -> None:
+    """A tablet cannot acknowledge instructions before they are due."""
     tablet = lab.tablet(lab.command(lab.join(), "start")["id"])
     error(tablet.post("/api/tablet/acknowledge", json={"step_index": 2}), 409, "not_now")
 
 
 @pytest.mark.one_engine
 def test_the_language_can_be_chosen(lab: Lab) -> None:
-    """The screen answers in it; a language without texts is refused."""
+    """A tablet can change the language to one of the study's; any other is refused."""
     view = lab.command(lab.join(), "start")
     tablet = lab.tablet(view["id"])
     german = ok(tablet.put("/api/tablet/language", json={"language": "de"}))
@@ -71,8 +71,8 @@ def test_the_language_can_be_chosen(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_no_screen_tells_the_condition(lab: Lab) -> None:
-    """Neither latency nor order reaches the participant before the debriefing."""
+def test_no_screen_reveals_the_condition(lab: Lab) -> None:
+    """No screen of the tablet reveals the latency before the debriefing."""
     view = lab.command(lab.join(), "start")
     tablet = lab.tablet(view["id"])
     while view["status"] == "active":
@@ -84,8 +84,8 @@ def test_no_screen_tells_the_condition(lab: Lab) -> None:
         view = lab.command(view, "skip", reason="not in this test")
 
 
-def test_a_call_stands_until_it_is_answered(lab: Lab) -> None:
-    """The operator sees an alarm once, the tablet that it has arrived and that somebody came."""
+def test_a_call_for_help_raises_an_alarm_until_answered(lab: Lab) -> None:
+    """A call for help raises one critical alarm until the operator answers it."""
     view = lab.join()
     tablet = lab.tablet(view["id"])
     assert state(tablet)["help_asked"] is False
@@ -103,7 +103,7 @@ def test_a_call_stands_until_it_is_answered(lab: Lab) -> None:
 
 @pytest.mark.one_engine
 def test_a_call_can_be_taken_back(lab: Lab) -> None:
-    """Both are on record; an ended session has nobody to call."""
+    """A call for help can be retracted; after the end of a session none can be made."""
     view = lab.join()
     tablet = lab.tablet(view["id"])
     ok(tablet.put("/api/tablet/help", json={"asked": True}))
@@ -116,8 +116,8 @@ def test_a_call_can_be_taken_back(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_an_unpaired_tablet_may_ask_whether_it_is_paired(lab: Lab) -> None:
-    """No error, no screen; a paired one gets its screen at once, an unpaired one none again."""
+def test_an_unpaired_tablet_can_query_its_pairing(lab: Lab) -> None:
+    """An unpaired tablet gets an empty state without an error; a paired one gets its screen."""
     view = lab.join()
     assert ok(lab.stranger().get("/api/tablet/paired")) == {"state": None}
     tablet = lab.tablet(view["id"])
