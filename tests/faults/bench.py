@@ -1,4 +1,4 @@
-"""Many databases that are all alike, on either engine: copies of one that was made once."""
+"""Make identical databases on SQLite or PostgreSQL by copying a template database."""
 
 import shutil
 import uuid
@@ -16,18 +16,18 @@ from tests.support.postgres import Cluster
 
 @dataclass(frozen=True)
 class SqliteBench:
-    """Files in a folder."""
+    """Create SQLite databases as files in a folder."""
 
     folder: Path
 
     @contextmanager
     def empty(self) -> Iterator[str]:
-        """The address of a database that is not there yet."""
+        """Yield the URL of a database file that does not exist yet."""
         yield f"sqlite:///{self.folder / uuid.uuid4().hex}.sqlite"
 
     @contextmanager
     def copy(self, url: str) -> Iterator[str]:
-        """A copy of a database that nobody has open."""
+        """Yield the URL of a copy of a database that has no open connections."""
         with self.empty() as copy:
             shutil.copyfile(url.removeprefix("sqlite:///"), copy.removeprefix("sqlite:///"))
             yield copy
@@ -35,19 +35,19 @@ class SqliteBench:
 
 @dataclass(frozen=True)
 class PostgresBench:
-    """Databases of a cluster, dropped after use."""
+    """Create databases in a PostgreSQL cluster and drop them after use."""
 
     cluster: Cluster
 
     @contextmanager
     def empty(self) -> Iterator[str]:
-        """The address of a database without tables."""
+        """Yield the URL of a new database without tables."""
         with self._made("template0") as url:
             yield url
 
     @contextmanager
     def copy(self, url: str) -> Iterator[str]:
-        """A copy of a database that nobody is connected to."""
+        """Yield the URL of a copy of a database that has no open connections."""
         with self._made(_name(url)) as copy:
             yield copy
 
@@ -73,5 +73,5 @@ Bench = SqliteBench | PostgresBench
 
 
 def _name(url: str) -> str:
-    """The database in `postgresql+psycopg://postgres@/NAME?host=...`."""
+    """Return the database name in `postgresql+psycopg://postgres@/NAME?host=...`."""
     return url.partition("?")[0].rpartition("/")[2]

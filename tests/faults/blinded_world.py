@@ -1,11 +1,11 @@
-"""Blinded studies with sessions of every status, and everything that anybody can fetch of them.
+"""Build blinded studies with sessions of every status, and search all responses for leaks.
 
-Each status has a study of its own, whose conditions have keys, names and latencies that occur
-nowhere else: canaries. So whatever an answer holds can be told to be of one session, also where
-answers mix studies. What is searched for: the conditions' keys and names, latencies in ms and s,
-joint errors that were made equal to the latency (in degrees), and the hashes of the event log, by
-which a latency can be tried. What is not: that a delay can be computed from frames; but the
-avatar's frames are taken for a leak themselves.
+Each status has its own study. The keys, names and latencies of its conditions are canaries: they
+occur nowhere else, so anything found in a response can be traced to one session, even where a
+response mixes studies. The search covers the conditions' keys and names, latencies in ms and s,
+joint errors that were set equal to the latency (in degrees), and the hashes of the event log,
+against which a guessed latency could be checked. It does not cover that a delay can be computed
+from frames; instead, the avatar's frames themselves count as a leak.
 """
 
 import asyncio
@@ -73,13 +73,13 @@ class Canaried:
     words: re.Pattern[bytes]
 
     def is_known_to(self, role: str) -> bool:
-        """Whether somebody of this role may know the condition."""
+        """Return whether an account with this role may know the condition."""
         return role != "operator" and self.world in KNOWN
 
 
 @dataclass
 class Search:
-    """What was fetched, and what should not have been in it."""
+    """The responses fetched so far, and the leaks found in them."""
 
     routes: set[str] = field(default_factory=set)
     fetched: Counter[str] = field(default_factory=Counter)
@@ -88,7 +88,7 @@ class Search:
     leaks: list[str] = field(default_factory=list)
 
     def look(self, role: str, one: Canaried, way: str, body: bytes) -> None:
-        """Search what left by one way."""
+        """Search one response body and record a leak if the role may not know the condition."""
         self.fetched[way.split(" ")[0]] += 1
         match = one.words.search(body)
         if match is None:
@@ -101,18 +101,18 @@ class Search:
 
 
 def number_pattern(latency_ms: float) -> str:
-    """A latency in ms or s, however it is written and rounded; digits inside others are not it.
+    """Return a pattern that matches a latency in ms or s, in any notation and rounding.
 
-    A number begins where it begins: the microseconds of a time of day and the middle of an
-    identifier hold every sequence of four digits sooner or later. It ends where it ends, but for
-    zeros and the rounding behind them: a headset's clock passes 137.256 s.
+    Digits inside a longer number do not match at its start: the microseconds of a time of day and
+    the middle of an identifier contain every sequence of four digits sooner or later. At its end
+    only zeros and the digits of a rounding error are accepted: a headset's clock passes 137.256 s.
     """
     whole, _, part = f"{latency_ms:g}".partition(".")
     return rf"(?:0?\.?{whole}[.]?{part})(?:0{{0,3}}(?![0-9])|0{{4}})"
 
 
 def canaries(latencies_ms: Sequence[float], *, more: Sequence[str] = ()) -> re.Pattern[bytes]:
-    """Finds latencies in every unit and spelling, and whatever else is named."""
+    """Return a pattern that matches the latencies in every unit and notation, and `more` words."""
     numbers = "|".join(number_pattern(one) for one in latencies_ms)
     words = "|".join(re.escape(one) for one in more)
     tail = f"|{words}" if words else ""
@@ -120,7 +120,7 @@ def canaries(latencies_ms: Sequence[float], *, more: Sequence[str] = ()) -> re.P
 
 
 def build_world(lab: Lab, worlds: Sequence[str] = WORLDS) -> list[Canaried]:
-    """A study for each of `worlds`."""
+    """Create one study for each of `worlds`."""
     with lab.database.writing() as db:
         return [_build(lab, db, WORLDS.index(world), world) for world in worlds]
 
@@ -198,7 +198,7 @@ def _session(db: Session, key: str, world: str, code: str = "P-0001") -> StudySe
 
 
 def _measured(db: Session, session: StudySession) -> None:
-    """Frames of both bodies, and an achieved latency that is just the ordered one."""
+    """Store frames of both bodies, and an achieved latency equal to the set latency."""
     for seed, stream in enumerate((StreamName.TARGET, StreamName.ACTUAL)):
         values = moving_values(FRAMES, seed)
         store_chunks(db, session.id, stream, range(FRAMES), values, phase_id=2)
@@ -232,14 +232,14 @@ def _reveal(lab: Lab, db: Session, session: StudySession) -> None:
 
 
 def people(lab: Lab, roles: Sequence[str] = ROLES) -> dict[str, TestClient]:
-    """Somebody of each role."""
+    """Return one signed-in client for each role."""
     return {role: sign_in(lab, role) for role in roles}
 
 
 def fetch(
     search: Search, role: str, client: TestClient, all_: Sequence[Canaried], routes: Sequence[str]
 ) -> None:
-    """Ask for every one of `routes` (path templates) that is not of a stream, of every study."""
+    """Request each of `routes` (path templates, without streams) for every study and search it."""
     for route in routes:
         search.routes.add(route)
         told = [(one, path) for one in all_ for path in _paths(route, one)]
@@ -255,7 +255,7 @@ def fetch(
 
 
 def _paths(route: str, one: Canaried) -> Iterator[str]:
-    """The route's addresses for a study: one for each of its sessions or participants."""
+    """Yield the route's paths for a study, one for each of its sessions or participants."""
     of_study = route.startswith("/api/studies/{key}")
     base = route.replace("{key}", one.key if of_study else "karas2020")
     for session_id, participant_id in zip(one.session_ids, one.participant_ids, strict=True):
@@ -269,7 +269,10 @@ def _paths(route: str, one: Canaried) -> Iterator[str]:
 
 
 def pieces_of(route: str, one: Canaried, body: bytes) -> Iterator[tuple[str, bytes]]:
-    """An answer as it is searched: an archive file by file, without what is the design's own."""
+    """Yield the searchable parts of a response.
+
+    An archive is split into its files, and the fields that belong to the study design are left out.
+    """
     if body[:2] == b"PK":
         yield from _unpacked(route, one, body)
         return
@@ -298,12 +301,12 @@ def _has_avatar(samples: bytes) -> bool:
 
 
 def _mark(one: Canaried) -> bytes:
-    """A canary of the study, in place of what no pattern can find."""
+    """Return a canary of the study, which stands for a leak that no pattern can find."""
     return f"canary{WORLDS.index(one.world)}small".encode()
 
 
 def fetch_jobs(search: Search, role: str, client: TestClient, all_: Sequence[Canaried]) -> None:
-    """Have files made, watch them, and take them apart."""
+    """Start export jobs, then search their progress reports and the files they produce."""
     if role not in POLICY["POST /api/studies/{key}/exports"]:
         return
     for one in all_:
@@ -325,7 +328,7 @@ def fetch_jobs(search: Search, role: str, client: TestClient, all_: Sequence[Can
 
 
 def call_errors(search: Search, role: str, client: TestClient, all_: Sequence[Canaried]) -> None:
-    """What is said to a call that changes nothing, or is refused."""
+    """Search the responses to calls that change nothing or are rejected."""
     for one in all_:
         session = f"/api/sessions/{one.session_ids[0]}"
         command = {"command_id": "c" * 12, "expected_version": 1}
@@ -346,7 +349,7 @@ def call_errors(search: Search, role: str, client: TestClient, all_: Sequence[Ca
 
 
 def listen(lab: Lab, search: Search, role: str, client: TestClient, one: Canaried) -> None:
-    """The socket of poses, and the stream of news with a telemetry that tells joint errors."""
+    """Search the pose socket, and the live stream with telemetry that contains joint errors."""
     session_id = one.session_ids[0]
     with client.websocket_connect(f"/api/sessions/{session_id}/pose") as socket:
         search.look(role, one, "SOCKET pose", socket.receive_text().encode())
@@ -359,7 +362,7 @@ def listen(lab: Lab, search: Search, role: str, client: TestClient, one: Canarie
 
 
 def _news(lab: Lab, client: TestClient, session_id: str) -> bytes:
-    """What the stream sends at first, and once there is telemetry."""
+    """Return what the live stream sends at first, and after telemetry has arrived."""
     heard: list[bytes] = []
     path = f"/api/sessions/{session_id}/live"
     scope = {
@@ -408,6 +411,6 @@ def _news(lab: Lab, client: TestClient, session_id: str) -> bytes:
 
 
 def get_routes(lab: Lab) -> list[str]:
-    """Path templates of every GET of the OpenAPI document, without the streams."""
+    """Return the path templates of every GET in the OpenAPI document, without the streams."""
     paths = lab.app.openapi()["paths"]
     return [path for path, calls in paths.items() if "get" in calls and not path.endswith("/live")]

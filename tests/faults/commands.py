@@ -1,4 +1,4 @@
-"""Commands of the product on the installation of a server, as an operator would type them."""
+"""Run the product's commands on a server's installation, as an operator would type them."""
 
 import json
 import tempfile
@@ -16,7 +16,7 @@ UNUSABLE = 2
 
 @dataclass(frozen=True)
 class Said:
-    """How a command ended, what it said, and how long it took."""
+    """The result of a command: exit code, output, error output and duration."""
 
     code: int
     out: str
@@ -25,21 +25,21 @@ class Said:
 
     @property
     def json(self) -> dict[str, Any]:
-        """What it printed with `--json`."""
+        """Return the decoded output of a command that was run with `--json`."""
         assert self.code == 0, self.err
         decoded: dict[str, Any] = json.loads(self.out)
         return decoded
 
 
 def reembody(server: LiveServer, *arguments: object, max_file_bytes: int | None = None) -> Said:
-    """Run a command; `max_file_bytes` is the longest file it can write."""
+    """Run a command in the server's environment; `max_file_bytes` limits the files it can write."""
     return command(server._full_environment(), *arguments, max_file_bytes=max_file_bytes)
 
 
 def command(
     environment: Mapping[str, str], *arguments: object, max_file_bytes: int | None = None
 ) -> Said:
-    """The same with nothing but this environment."""
+    """Run a command in the given environment; `max_file_bytes` limits the files it can write."""
     with tempfile.TemporaryDirectory() as folder:
         out, err = Path(folder) / "out", Path(folder) / "err"
         wish = Wish(

@@ -1,4 +1,4 @@
-"""Fault tests tell figures; they are printed at the end."""
+"""Print the figures of the fault tests at the end of a run."""
 
 from _pytest.terminal import TerminalReporter
 
@@ -9,7 +9,7 @@ __all__ = ["fresh_lab", "lab"]
 
 
 def pytest_terminal_summary(terminalreporter: TerminalReporter) -> None:
-    """Print the table of this run."""
+    """Print the table of this run's figures and save it."""
     told = noted()
     if told:
         terminalreporter.section("figures of the fault tests")

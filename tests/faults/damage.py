@@ -1,8 +1,8 @@
-"""Random damage to the files of a real data folder, and how a start with it ends.
+"""Damage the files of a real data folder at random and record how a start with it ends.
 
-A folder is one that a server left that was killed in the middle of a visit: its log holds
-transactions that the database does not. Each case works on a copy, within the
-process that tries it.
+The folder comes from a server that was killed in the middle of a visit, so its write-ahead log
+contains transactions that the database file does not. Each case works on a copy, within the process
+that runs it.
 """
 
 import multiprocessing
@@ -41,7 +41,7 @@ MOST_FLIPS, MOST_ZEROS = 16, 65_536
 
 @dataclass(frozen=True)
 class Folder:
-    """A data folder that was left, and a backup of nearly all that is in it."""
+    """The data folder of a killed server, and a backup of nearly all data in it."""
 
     data: Path
     backup: Path
@@ -51,10 +51,10 @@ class Folder:
 
 @dataclass(frozen=True)
 class Case:
-    """One damage in words, and how the start with it ended.
+    """A description of one damage, and how the start with it ended.
 
-    `end`: served, quarantined (and a restore brought everything back), refused (in words, with
-    everything left in its place) or traceback. `errors`: answers of a server that should not be.
+    `end`: served, quarantined (and a restore brought everything back), refused (with a message, and
+    with every file left in place) or traceback. `errors`: responses that a server must not give.
     """
 
     what: str
@@ -64,12 +64,12 @@ class Case:
 
     @property
     def has_advice(self) -> bool:
-        """Whether what was said names the way out."""
+        """Return whether the message says how to recover."""
         return "./run restore FILE" in self.said
 
 
 def damaged(folder: Path, rng: np.random.Generator) -> str:
-    """Flip bits of one of the files, cut it or write zeros over a part; what was done."""
+    """Flip bits of one file, truncate it or write zeros over a part; return a description."""
     file = folder / FILES[rng.integers(len(FILES))]
     data = bytearray(file.read_bytes())
     where = int(rng.integers(len(data)))
@@ -91,7 +91,7 @@ def damaged(folder: Path, rng: np.random.Generator) -> str:
 
 
 def tried(folder: Folder, to: Path, rng: np.random.Generator) -> Case:
-    """Damage a copy at `to` and start with it; where it is put away, restore the backup."""
+    """Damage a copy at `to` and start with it; if it is quarantined, restore the backup."""
     shutil.copytree(folder.data, to)
     what = damaged(to, rng)
     settings = Settings(data_dir=to)
@@ -111,7 +111,7 @@ def tried(folder: Folder, to: Path, rng: np.random.Generator) -> Case:
 
 
 def served(settings: Settings, session_id: str) -> Iterator[str]:
-    """Start as `reembody serve` does and look around; answers that should not be."""
+    """Start as `reembody serve` does, request the main pages and yield responses that are wrong."""
     prepare_database(settings, Clock(), to_write=True)
     app = create_app(settings)
     try:
@@ -141,7 +141,11 @@ def _looked_around(client: TestClient, session_id: str) -> Iterator[str]:
 
 
 def _says_damaged(answer: Response) -> bool:
-    """A value can be damaged where no start looks; whoever asks hears that, and the way out."""
+    """Return whether a response reports the database as damaged.
+
+    A value can be damaged where no start checks; the request that reads it then gets this response,
+    with the remedy.
+    """
     return answer.status_code == 503 and "the database is damaged" in answer.text
 
 
@@ -168,7 +172,7 @@ def _no_output() -> Iterator[None]:
 def many(
     folder: Folder, elsewhere: Path, count: int, seed: int, *, processes: int = 1
 ) -> list[Case]:
-    """Try so many kinds of damage, each drawn by a seed of its own."""
+    """Try `count` kinds of damage, each drawn with its own seed."""
     if processes == 1:
         return [_numbered(folder, elsewhere, seed, number) for number in range(count)]
     with ProcessPoolExecutor(processes, multiprocessing.get_context("spawn")) as pool:
@@ -180,7 +184,7 @@ def _numbered(folder: Folder, elsewhere: Path, seed: int, number: int) -> Case:
 
 
 def left_by_a_killed_server(folder: Path) -> Folder:
-    """Make such a folder: a visit with answers and movement, a backup, more of it, a kill."""
+    """Create the folder of a server that was killed after a visit, a backup and more data."""
     from app.database import open_database
     from tests.faults.commands import reembody
     from tests.features.care.rights.visit import make_visit

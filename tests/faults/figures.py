@@ -1,4 +1,4 @@
-"""The figures of the fault tests: told by each test, printed together at the end of a run.
+"""Collect the figures that fault tests report and print them together at the end of a run.
 
 `note(20, "burst", "acknowledged and lost", 0)` adds a line to the table; the first number is the
 row of the fault matrix in docs/faults.md. `./run test tests/faults` prints the table; with
@@ -35,7 +35,7 @@ def note(row: int, fault: str, figure: str, value: object) -> None:
 
 
 def noted() -> list[Told]:
-    """Everything that was told in this run, by row."""
+    """Return all figures reported in this run, sorted by row."""
     file = run_folder() / "fault-figures.jsonl"
     if not file.exists():
         return []
@@ -44,7 +44,7 @@ def noted() -> list[Told]:
 
 
 def as_table(told: Sequence[Told]) -> list[str]:
-    """Lines for the terminal."""
+    """Format the figures as lines for the terminal."""
     widths = [max(len(getattr(one, name)) for one in told) for name in ("fault", "figure")]
     return [
         f"{one.row:>3}  {one.fault:<{widths[0]}}  {one.figure:<{widths[1]}}  {one.value}"
@@ -53,7 +53,7 @@ def as_table(told: Sequence[Told]) -> list[str]:
 
 
 def save(told: Sequence[Told]) -> None:
-    """Write them where the variable says, if it says so."""
+    """Write the figures as JSON to the file named by the environment variable, if it is set."""
     if os.environ.get(FILE_VARIABLE):
         rows = [asdict(one) for one in told]
         Path(os.environ[FILE_VARIABLE]).write_text(json.dumps(rows, indent=2))

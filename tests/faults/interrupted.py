@@ -1,7 +1,7 @@
-"""Stopping a migration somewhere in it, and telling which schema is left.
+"""Interrupt a migration at any point, and read which schema is left.
 
-Run as a program it migrates the database at the address it is given and kills itself meanwhile:
-`python -m tests.faults.interrupted URL REVISION AFTER_S`.
+Run as a program, it migrates the database at the given URL and kills itself on the way: `python -m
+tests.faults.interrupted URL REVISION AFTER_S`.
 """
 
 import os
@@ -29,12 +29,12 @@ Step = tuple[str, str]
 
 
 class Interrupted(Exception):
-    """The migration was stopped here."""
+    """Raised to stop a migration at a chosen point."""
 
 
 @dataclass(frozen=True)
 class Found:
-    """What a database is: its revision, its schema in words, everything in its tables."""
+    """A database's revision, a description of its schema, and the contents of its tables."""
 
     revision: str | None
     schema: dict[str, Any]
@@ -42,7 +42,7 @@ class Found:
 
 
 def steps() -> list[Step]:
-    """Every step there is, the oldest first; `base` is an empty database."""
+    """Return every migration step, oldest first; `base` is an empty database."""
     script = ScriptDirectory.from_config(alembic_config("sqlite://"))
     newest_first = [revision.revision for revision in script.walk_revisions()]
     revisions = ["base", *reversed(newest_first)]
@@ -50,13 +50,13 @@ def steps() -> list[Step]:
 
 
 def upgrade(url: str, revision: str) -> None:
-    """Migrate to a revision, as the product does."""
+    """Migrate to a revision as the product does."""
     if revision != "base":
         command.upgrade(alembic_config(url), revision)
 
 
 def found(url: str) -> Found:
-    """Look at a database."""
+    """Read the revision, schema and contents of a database."""
     database = open_database(url)
     try:
         with database.engine.connect() as connection:
@@ -74,7 +74,10 @@ def _schema_of(connection: Connection) -> dict[str, Any]:
 
 
 def _in_words(connection: Connection) -> dict[str, Any]:
-    """All tables at once: PostgreSQL answers each question about fifty as fast as about one."""
+    """Describe all tables with one query of each kind.
+
+    PostgreSQL answers a query about fifty tables as fast as a query about one.
+    """
     look = inspect(connection)
     columns, keys = look.get_multi_columns(), look.get_multi_pk_constraint()
     references, unique = look.get_multi_foreign_keys(), look.get_multi_unique_constraints()
@@ -102,7 +105,7 @@ def _plain(index: Any) -> dict[str, Any]:
 
 @contextmanager
 def counted() -> Iterator[list[str]]:
-    """The statements that change something, as they are executed."""
+    """Collect the statements that change something as they are executed."""
     seen: list[str] = []
 
     def note(_c: Any, _cursor: Any, statement: str, *_: Any) -> None:
@@ -118,7 +121,7 @@ def counted() -> Iterator[list[str]]:
 
 @contextmanager
 def stopped_after(changes: int) -> Iterator[None]:
-    """Raise Interrupted behind the statement with this number, or instead of committing."""
+    """Raise `Interrupted` after the statement with this number, or instead of the commit."""
     with counted() as seen:
 
         def stop(*_: Any) -> None:
@@ -135,7 +138,7 @@ def stopped_after(changes: int) -> Iterator[None]:
 
 
 def killed_after(url: str, revision: str, after_s: float) -> bool:
-    """Migrate in a process that is killed so long after its first statement; whether it was."""
+    """Migrate in a process that is killed `after_s` after its first statement; return if it was."""
     arguments = [sys.executable, "-m", "tests.faults.interrupted", url, revision, str(after_s)]
     ended = subprocess.run(arguments, check=False, capture_output=True, text=True)
     assert ended.returncode in (0, -signal.SIGKILL), ended.stderr
@@ -145,7 +148,7 @@ def killed_after(url: str, revision: str, after_s: float) -> bool:
 def _main(url: str, revision: str, after_s: str) -> None:
     kill = threading.Timer(float(after_s), os.kill, (os.getpid(), signal.SIGKILL))
     kill.daemon = True
-    # The time counts from the first statement, not from loading what is needed to get there.
+    # The time counts from the first statement, so loading the modules is not included.
     event.listen(Engine, "before_cursor_execute", lambda *_: kill.start(), once=True)
     command.upgrade(alembic_config(url), revision)
 

@@ -1,12 +1,12 @@
-"""What a start, a restore, a backup, an export, an upload and an erasure do when the disk refuses.
+"""Inject disk errors into a start, a restore, a backup, an export, an upload and an erasure.
 
-Every call that one of them makes to a file of the installation is found by following it once
-(tests/faults/tracing). Then each is made to fail, one in each run on a fresh copy of a real data
-folder, and the same is done once more without a fault, as an operator would. The oracle: nothing
-that had been acknowledged is lost, no healthy database is moved, no file is left that nobody knows,
-and what is said is a sentence and no traceback.
+A traced run first finds every call that an operation makes to a file of the installation
+(tests/faults/tracing). Then each call is made to fail, one per run on a fresh copy of a real data
+folder, and the operation is repeated without a fault, as an operator would. The test checks that no
+acknowledged data is lost, no healthy database is moved, no unknown file is left, and the message is
+a sentence and not a traceback.
 
-`main` is run in a process that has neither threads nor children (tests/benchmarks/io_faults.py).
+`main` must run in a process that has neither threads nor children (tests/benchmarks/io_faults.py).
 """
 
 import errno
@@ -87,7 +87,7 @@ KNOWN = tuple(
 
 @dataclass(frozen=True)
 class Source:
-    """What every run begins with: a folder, and who is erased in it."""
+    """The starting point of every run: a data folder, and the participant who is erased in it."""
 
     folder: Path
     participant_id: str
@@ -96,7 +96,7 @@ class Source:
 
 @dataclass
 class Outcome:
-    """How an operation ended: `ok` is the acknowledgement, `trace` a fault of the program."""
+    """How an operation ended: `ok` means acknowledged, `trace` is a program error's traceback."""
 
     ok: bool
     said: str = ""
@@ -105,7 +105,7 @@ class Outcome:
 
 @dataclass
 class Found:
-    """What one run left behind; every list is empty where all is well."""
+    """The state after one run; every list is empty if all checks passed."""
 
     operation: str
     site: Site
@@ -118,18 +118,18 @@ class Found:
 
 
 def settings_in(folder: Path) -> Settings:
-    """Those of the installation in a folder."""
+    """Return the settings of the installation in a folder."""
     return Settings(data_dir=folder / "data")
 
 
 def begin(folder: Path) -> None:
-    """From here on calls are counted."""
+    """Create the file that tells the tracer to count calls from now on."""
     os.close(os.open(folder / BEGIN, os.O_CREAT | os.O_WRONLY))
 
 
 @contextmanager
 def serving(folder: Path, *, counted: bool) -> Iterator[TestClient]:
-    """A server on the folder, started as `reembody serve` does; `counted`: also its start."""
+    """Start a server on the folder as `reembody serve` does; `counted` includes its start."""
     settings = settings_in(folder)
     if counted:
         begin(folder)
@@ -147,25 +147,25 @@ def serving(folder: Path, *, counted: bool) -> Iterator[TestClient]:
 
 
 def start(folder: Path, _: Source) -> None:
-    """Start, and answer."""
+    """Start a server and request its health."""
     with serving(folder, counted=True) as client:
         ok(client.get("/api/health"))
 
 
 def back_up(folder: Path, _: Source) -> None:
-    """To a file outside of the data folder."""
+    """Back up to a file outside the data folder."""
     begin(folder)
     back_up_to(folder / "out" / "made.reembody", Activity(""), as_json=True)
 
 
 def export(folder: Path, _: Source) -> None:
-    """To a folder outside of the data folder."""
+    """Export to a folder outside the data folder."""
     begin(folder)
     export_to_folder(STUDY, folder / "out" / "export", Activity(""), "all")
 
 
 def restore(folder: Path, _: Source, *, replace: bool = False) -> None:
-    """Into an empty folder, or over what is there."""
+    """Restore the backup into an empty folder, or with `replace` over the existing data."""
     begin(folder)
     restore_from(
         folder / "all.reembody",
@@ -179,7 +179,7 @@ def restore(folder: Path, _: Source, *, replace: bool = False) -> None:
 
 
 def upload(folder: Path, _: Source) -> None:
-    """Bring a capture in."""
+    """Upload a capture."""
     with serving(folder, counted=False) as client:
         ok(client.post("/api/login", json=CREDENTIALS))
         begin(folder)
@@ -196,7 +196,7 @@ def erase(folder: Path, source: Source) -> None:
 
 
 class Refused(Exception):
-    """An answer that says in words why not."""
+    """A response that rejects the request with a message."""
 
 
 def _taken(answer: Any) -> None:
@@ -221,7 +221,7 @@ EMPTY = {"first start", "restore"}
 
 
 def prepared(operation: str, source: Source, to: Path) -> Path:
-    """A fresh folder for a run."""
+    """Copy the source to a fresh folder for one run of an operation."""
     shutil.copytree(source.folder, to)
     if operation in EMPTY:
         shutil.rmtree(to / "data")
@@ -232,7 +232,7 @@ def prepared(operation: str, source: Source, to: Path) -> Path:
 
 
 def done(operation: str, folder: Path, source: Source) -> Outcome:
-    """Do it; how it ended, in the words that an operator would read."""
+    """Run an operation and return how it ended, with the messages that an operator would read."""
     said = StringIO()
     try:
         with redirect_stderr(said), reported(ValueError, OSError):
@@ -245,7 +245,7 @@ def done(operation: str, folder: Path, source: Source) -> Outcome:
 
 
 def source_in(folder: Path) -> Source:
-    """Make the folder that every run begins with: a killed server's, with a backup beside it."""
+    """Create the data folder of a killed server, with a backup next to it."""
     server = LiveServer(folder).start()
     with server.client() as operator:
         ok(operator.post("/api/login", json=CREDENTIALS))
@@ -262,7 +262,7 @@ def source_in(folder: Path) -> Source:
 
 
 def facts(data: Path) -> set[str]:
-    """What must never be lost: every event, filled-in form, second of movement and account."""
+    """Return what must never be lost: every event, submission, position of a stream and account."""
     file = data / DATABASE
     if not file.is_file():
         return set()
@@ -277,7 +277,7 @@ def facts(data: Path) -> set[str]:
 
 
 def erased_away(fact: str) -> bool:
-    """Whether an erasure takes such a fact."""
+    """Return whether an erasure removes such a fact."""
     return fact.startswith(("frames", "form"))
 
 
@@ -294,7 +294,7 @@ def looked_at(operation: str, folder: Path, source: Source, outcome: Outcome) ->
         done("start", folder, source)
     if recovered.ok:
         now = facts(folder / "data")
-        # A restore goes back to the backup; what came after it is kept in a backup of its own.
+        # A restore goes back to the backup; later data are retained in a separate backup.
         kept = operation != "restore" and not (operation == "restore --replace" and outcome.ok)
         missing = before - now if kept else backed_up(source) - now
         if operation == "erasure":
@@ -318,14 +318,14 @@ def looked_at(operation: str, folder: Path, source: Source, outcome: Outcome) ->
 
 
 def facts_of_source(source: Source) -> set[str]:
-    """Of the folder that every run begins with, in a copy: looking would empty its log."""
+    """Return the facts of the source folder, read from a copy: reading would empty its log."""
     with tempfile.TemporaryDirectory() as copy:
         shutil.copytree(source.folder / "data", Path(copy) / "data")
         return facts(Path(copy) / "data")
 
 
 def backed_up(source: Source) -> set[str]:
-    """The same of the backup."""
+    """Return the facts that the backup of the source contains."""
     with tempfile.TemporaryDirectory() as copy:
         shutil.copyfile(source.folder / "all.reembody", Path(copy) / DATABASE)
         return facts(Path(copy))
@@ -337,7 +337,7 @@ def _holding(data: Path, code: str) -> Iterable[Path]:
 
 
 def chosen(sites: list[Site]) -> list[Site]:
-    """The first call of each kind to each file, one in the middle, and the last."""
+    """Return the first, a middle and the last call of each kind to each file."""
     last = {(site.kind, site.path, site.writes): site.nth for site in sites}
     wanted = {
         Site(kind, path, nth, writes)
@@ -348,14 +348,14 @@ def chosen(sites: list[Site]) -> list[Site]:
 
 
 def faults_at(site: Site) -> Iterator[Fault]:
-    """What can go wrong there."""
+    """Yield the errors that can occur at a call."""
     kind = "open to write" if site.kind == "open" and site.writes else site.kind
     for number in FAULTS[kind]:
         yield Fault(site, number)
 
 
 def in_a_child(work: Callable[[], Any], result: Path) -> Any:
-    """What `work` returns in a process of its own: this one must never open a database."""
+    """Return the result of `work` in a child process: this process must never open a database."""
     child = os.fork()
     if child == 0:
         try:
@@ -371,7 +371,7 @@ def in_a_child(work: Callable[[], Any], result: Path) -> Any:
 def run_once(
     operation: str, source: Source, fault: Fault | None, elsewhere: Path
 ) -> tuple[Injector, Outcome, dict[str, Any]]:
-    """Do it once with a fault, then look at what is left."""
+    """Run an operation once with a fault, then check the state that it left."""
     machine = injecting_machine()
     if machine is None:
         raise OSError("system calls of this machine cannot be made to fail")
@@ -395,7 +395,7 @@ def run_once(
 
 
 def sites_of(operation: str, source: Source, elsewhere: Path) -> list[Site]:
-    """Where it asks something of a file, found by following it once."""
+    """Trace an operation without a fault and return its calls to files."""
     injector, outcome, wrong = run_once(operation, source, None, elsewhere)
     if not outcome.ok or any(wrong.values()):
         raise RuntimeError(f"{operation} without any fault: {outcome} {wrong}")
@@ -403,7 +403,7 @@ def sites_of(operation: str, source: Source, elsewhere: Path) -> list[Site]:
 
 
 def all_of(operation: str, source: Source, elsewhere: Path, most: int | None) -> dict[str, Any]:
-    """Every fault at every site of one operation, or about `most` of them, spread evenly."""
+    """Inject every fault at every call of one operation, or about `most` of them, evenly spread."""
     sites = chosen(sites_of(operation, source, elsewhere))
     faults = [fault for site in sites for fault in faults_at(site)]
     if most is not None and len(faults) > most:
@@ -417,7 +417,7 @@ def all_of(operation: str, source: Source, elsewhere: Path, most: int | None) ->
 
 
 def main(source: str, operation: str, workers: str, most: str, to: str) -> None:
-    """One operation; its findings as JSON."""
+    """Run all faults of one operation and write the findings as JSON."""
     use_fork_server(lambda: bytes.fromhex(workers))
     make_passwords_cheap()
     with tempfile.TemporaryDirectory() as elsewhere:

@@ -1,4 +1,4 @@
-"""Kills the server during a rehearsal and takes down what was there before and after."""
+"""Kill the server during a rehearsal and read the stored record before and after the restart."""
 
 import asyncio
 import time
@@ -17,12 +17,12 @@ RECOVERS_WITHIN_S = 60.0
 
 @dataclass(frozen=True)
 class Kill:
-    """One kill: the record as the dead server left it, and as the next one went on.
+    """One kill: the record as the killed server left it and as the next server continued it.
 
-    `lost`: acknowledged frames and reports that are not on disk. `surplus`: rows more or fewer than
-    the positions say. `acked_active_s` and `used_active_s`: active time of the phase under way that
-    the server had promised, and that the headset had used up. `recovery_s`: from the kill until the
-    headset was connected again.
+    `lost`: acknowledged frames and reports that are not on disk. `surplus`: the number of rows that
+    differ from the stored positions. `acked_active_s` and `used_active_s`: active time of the
+    current phase that the server had acknowledged, and that the headset had used. `recovery_s`:
+    from the kill until the headset was connected again.
     """
 
     target: Target
@@ -39,7 +39,7 @@ class Kill:
 
 @dataclass
 class Killer:
-    """Works through a schedule beside the rehearsal; `kills` grows, targets passed are left out."""
+    """Kill the server at scheduled targets during a rehearsal; skip targets already passed."""
 
     server: LiveServer
     cast: Cast
@@ -47,7 +47,7 @@ class Killer:
     kills: list[Kill] = field(default_factory=list)
 
     async def run(self, targets: Iterable[Target], most: int) -> None:
-        """Kill up to `most` times."""
+        """Kill the server up to `most` times."""
         for target in targets:
             if len(self.kills) == most:
                 return
@@ -56,7 +56,7 @@ class Killer:
                 self.kills.append(await self._kill(target))
 
     async def _met(self, target: Target) -> bool:
-        """Wait for the target; False once the session has gone past it."""
+        """Wait until the session reaches the target; return False if it has already passed it."""
         while True:
             step, kind = seen(self.cast.headset.client.state)
             if (step > target.step and kind != "setup") or self._is_over():
@@ -73,7 +73,8 @@ class Killer:
         reconnects = self.cast.headset.client.reconnects
         began_s = time.monotonic()
         await asyncio.to_thread(self.server.kill)
-        # What the dead server still said may lie in a buffer; then nothing is acknowledged.
+        # Messages that the killed server had sent may still be in a buffer; then none are
+        # acknowledged.
         await asyncio.sleep(0.01)
         acked = dict(self.ledger.acked)
         before = await asyncio.to_thread(self._on_disk)
@@ -107,7 +108,7 @@ class Killer:
 
 
 def figures(kills: Sequence[Kill]) -> str:
-    """The kills as a table: by kind of step, and how long recovery took."""
+    """Format the kills as a table by kind of step, with the recovery times."""
     times_s = sorted(kill.recovery_s for kill in kills)
     lines = ["", f"{'killed in':<14}{'kills':>6}{'acked':>10}{'stored':>10}{'lost':>6}{'twice':>6}"]
     for kind in sorted({kill.before.kind for kill in kills}):

@@ -1,7 +1,7 @@
-"""Headsets that lie: each tells one thing that cannot be, somewhere in an honest stream.
+"""Simulate headsets that report one impossible thing somewhere in a correct stream.
 
-`play(site, seed, lie)` runs one phase and says what became of it. A lie is believed where the
-phase counts and nobody notices: neither a refusal nor a doubt in the record.
+`play(site, seed, lie)` runs one phase and returns the outcome. A lie is believed if the phase
+counts and nobody notices: there is neither a rejection nor a doubt in the record.
 """
 
 import math
@@ -31,7 +31,7 @@ Lie = Callable[[Telling, np.random.Generator], None]
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of a stream."""
+    """The outcome of one stream: its session's status, rejections and doubts."""
 
     seed: int
     lie: str | None
@@ -44,16 +44,16 @@ class Outcome:
 
     @property
     def believed(self) -> bool:
-        """Whether the lie was told, and nobody noticed."""
+        """Return whether the lie was sent without causing a rejection or a doubt."""
         return self.told and not self.refusals and not self.doubts
 
 
 def play(site: Site, seed: int, lie: str | None = None) -> Outcome:
-    """One session with one phase: honest, or with the lie of that name."""
+    """Run one session with one phase, either correct or with the named lie."""
     rng = np.random.default_rng(seed)
     weather = Weather.drawn(rng) if lie is None or rng.random() < 0.5 else Weather()
     if lie is not None:
-        # What the weather takes away with a client must not be the lie.
+        # A client replaced by a network fault must not take the lie with it.
         weather = replace(weather, new_client_at_s=None)
     step = FREE if lie in OF_FREE else FOOT if lie not in OF_HAND and rng.random() < 0.2 else HAND
     simulated = weather.time_scale != 1.0
@@ -70,7 +70,7 @@ def play(site: Site, seed: int, lie: str | None = None) -> Outcome:
     with site.context.database.reading() as db:
         doubts = doubts_of(db, session_id)
         phase = db.get(Phase, (session_id, 1))
-    # Whoever skips ahead is asked for what is missing, and nothing of it is taken.
+    # A client that skips ahead is asked for the missing messages, and none of it is stored.
     refusals = [
         str(one.get("reason") or one.get("message") or one["type"])
         for one in telling.socket.heard
@@ -87,7 +87,7 @@ HAND, FOOT, FREE = "block1.hand", "block1.foot", "free_roam"
 
 
 def _reports(what: str, change: Callable[[Json], list[Json]]) -> Edit:
-    """Changes the bodies of reports of a kind, or of one `what` of a phase."""
+    """Return an edit of the bodies of reports of one kind, or with one `what` of a phase."""
 
     def edit(message: Message) -> list[Message]:
         if isinstance(message, Frames) or message["type"] != "report":
@@ -101,7 +101,7 @@ def _reports(what: str, change: Callable[[Json], list[Json]]) -> Edit:
 
 
 def _once(change: Callable[[Json], Json], after: int = 0) -> Callable[[Json], list[Json]]:
-    """Changes one body of them, the one that comes after so many."""
+    """Apply `change` to a single body: the one after the first `after` bodies."""
     seen = [0]
 
     def changed(body: Json) -> list[Json]:
@@ -112,7 +112,7 @@ def _once(change: Callable[[Json], Json], after: int = 0) -> Callable[[Json], li
 
 
 def _frames(change: Callable[[Frames, int], Frames]) -> Edit:
-    """Changes frames; told the number of the batch."""
+    """Return an edit of frame batches; `change` is given the number of the batch."""
     seen = [0]
 
     def edit(message: Message) -> list[Message]:
@@ -134,20 +134,20 @@ def _plain(type_: str, change: Callable[[Json], list[Json]]) -> Edit:
 
 
 def _too_fast(telling: Telling, rng: np.random.Generator) -> None:
-    """The whole phase within a moment of the server's time: 8 s in 0.1 s."""
+    """Send the whole phase within a moment of server time: 8 s in 0.1 s."""
     telling.pace = float(rng.uniform(0.0, 0.7)) / telling.weather.time_scale
     telling.weather = Weather()
 
 
 def _slow_clock(telling: Telling, rng: np.random.Generator) -> None:
-    """More active time than its own clock shows."""
+    """Report more active time than has elapsed on the headset's own clock."""
     share = float(rng.uniform(0.0, 0.9))
     telling.edit = _reports("time_up", lambda b: [{**b, "t_s": 21.2 + share * DURATION_S}])
     telling.weather = Weather()
 
 
 def _batch_ahead(claimed_s: float) -> Lie:
-    """A batch claims the whole phase; the headset goes, and another one has nothing left to do."""
+    """Claim the whole phase in one batch, then replace the headset: the next has nothing to do."""
 
     def lie(telling: Telling, rng: np.random.Generator) -> None:
         telling.weather = Weather(new_client_at_s=float(rng.uniform(1.0, 3.0)))
@@ -167,7 +167,7 @@ def _report_backwards(telling: Telling, rng: np.random.Generator) -> None:
 
 
 def _standing_gain(telling: Telling, rng: np.random.Generator) -> None:
-    """Active time that passes while the clock stands."""
+    """Gain active time while the clock is paused."""
     telling.weather = Weather(pause=(2.0, float(rng.uniform(5.0, 60.0))))
     gained_s = float(rng.uniform(0.5, 4.0))
     jumped = [False]
@@ -181,7 +181,7 @@ def _standing_gain(telling: Telling, rng: np.random.Generator) -> None:
 
 
 def _fell(telling: Telling, rng: np.random.Generator) -> None:
-    """The time at which the freeze ends lies before the time was up."""
+    """Report an active time at the end of the freeze that is less than at time up."""
     telling.edit = _reports("ended", lambda b: [{**b, "active_s": rng.uniform(0.0, 7.0)}])
 
 
@@ -211,7 +211,7 @@ def _frames_back(telling: Telling, rng: np.random.Generator) -> None:
 
 
 def _idle_frames(telling: Telling, rng: np.random.Generator) -> None:
-    """The clock is said to run; the frames say that it stands."""
+    """Mark frames as paused while the clock is reported as running."""
     since = int(rng.integers(2, 60))
 
     def change(frames: Frames, number: int) -> Frames:
@@ -235,7 +235,7 @@ def _completion(change: Callable[[Json, np.random.Generator], Json]) -> Lie:
 
 
 def _many_completions(telling: Telling, rng: np.random.Generator) -> None:
-    """More completions than targets were touched."""
+    """Report more completions than the touched targets allow."""
     more = int(rng.integers(2, 40))
 
     def change(body: Json) -> list[Json]:
@@ -245,7 +245,7 @@ def _many_completions(telling: Telling, rng: np.random.Generator) -> None:
 
 
 def _in_free(kind: str) -> Lie:
-    """A contact or a completion in free movement, where there is nothing to touch."""
+    """Report a contact or a completion in free movement, where there is nothing to touch."""
 
     def lie(telling: Telling, rng: np.random.Generator) -> None:
         body: Json = {
@@ -282,7 +282,7 @@ def _in_free(kind: str) -> Lie:
 
 
 def _completion_after(telling: Telling, rng: np.random.Generator) -> None:
-    """A completion in the freeze, when the time is up."""
+    """Report a completion during the freeze, after the time is up."""
     late = {
         "phase_id": 1,
         "kind": "completion",
@@ -300,7 +300,7 @@ def _completion_after(telling: Telling, rng: np.random.Generator) -> None:
 
 
 def _walk_back(telling: Telling, rng: np.random.Generator) -> None:
-    """A walk back in a hand task."""
+    """Report a walk back in a hand task."""
 
     def before(up: Json) -> list[Json]:
         walks = [{**up, "what": f"walk_back_{what}"} for what in ("started", "ended")]
@@ -359,7 +359,7 @@ def _echo(change: Callable[[Json, np.random.Generator], Json]) -> Lie:
 
 
 def _json_time(value: float) -> Lie:
-    """A time that is no number, in a report."""
+    """Send a time in a report that is not a finite number."""
 
     def lie(telling: Telling, rng: np.random.Generator) -> None:
         what = str(rng.choice(["started", "time_up", "ended"]))

@@ -1,7 +1,8 @@
-"""A time in which the server cannot write, watched from outside while headsets stream.
+"""Watch a server from outside while it cannot write and headsets stream.
 
-The watch asks all the while as people would: reads, words, starts, the server's health. It notes
-every answer, when the alarm could be seen, when something new was refused, and when all was well.
+The watch sends requests throughout, as people would: reads, notes, starts, the server's health. It
+records every response, when the alarm became visible, when a new start was rejected, and when the
+server had recovered.
 """
 
 import asyncio
@@ -27,10 +28,12 @@ READS = (f"/api/studies/{STUDY}/sessions", "/api/studies", f"/api/studies/{STUDY
 
 @dataclass
 class Watch:
-    """What was seen. Times in s: `noticed_s` from the cause to the alarm; the alarm and the
-    refusal since the first commit that failed; recovery since the server could write again.
-    `acked_during`: messages that were acknowledged although nothing could be stored. `console`:
-    what an open page was told of storage. `answers`: how many by (reads, writes) and status.
+    """The observations of one outage.
+
+    Times in s: `noticed_s` from the cause to the alarm; `alarm_s` and `refusal_s` since the first
+    commit that failed; `recovery_s` since the server could write again. `acked_during`: messages
+    that were acknowledged although nothing could be stored. `console`: the storage statuses that an
+    open page received. `answers`: the number of responses by (reads, writes) and status.
     """
 
     noticed_s: float = float("nan")
@@ -49,9 +52,9 @@ class Watch:
 
 @dataclass
 class Outage:
-    """`begin` makes writing impossible, `end` possible again; it lasts `lasts_s`.
+    """An outage of storage: `begin` makes writing impossible, `end` makes it possible again.
 
-    `latecomer` connects its headset only when nothing can be written any more.
+    It lasts `lasts_s`. `latecomer` connects its headset only when nothing can be written any more.
     """
 
     server: LiveServer
@@ -64,7 +67,7 @@ class Outage:
     _streaming: bool = True
 
     async def run(self) -> Watch:
-        """Stream, have the outage in the middle, and wait until everything is acknowledged."""
+        """Stream, cause the outage in the middle, and wait until everything is acknowledged."""
         async with AsyncClient(base_url=self.server.url, timeout=GIVE_UP_S) as client:
             credentials = {"username": "admin", "password": ADMIN_PASSWORD}
             (await client.post("/api/login", json=credentials)).raise_for_status()
@@ -88,7 +91,7 @@ class Outage:
         began_s = time.monotonic()
         self.begin()
         try:
-            # Who asks before anybody knows waits longest.
+            # A request made before the failure is detected waits longest.
             first = asyncio.create_task(self._command(client, planned, "note"))
             since = await self._alarm(client)
             self.watch.noticed_s = time.monotonic() - began_s
@@ -111,7 +114,7 @@ class Outage:
         listening.cancel()
 
     async def _listen(self, client: AsyncClient, session_id: str) -> None:
-        """What the page of a session is told of storage."""
+        """Record the storage statuses that the page of a session receives."""
         async with client.stream("GET", f"/api/sessions/{session_id}/live") as answer:
             told = ""
             async for line in answer.aiter_lines():
@@ -120,7 +123,7 @@ class Outage:
                 told = line.removeprefix("event:").strip() if line.startswith("event:") else told
 
     async def _alarm(self, client: AsyncClient) -> datetime:
-        """Until health tells; when the first commit failed."""
+        """Wait until health reports the failure; return when the first commit failed."""
         health = await self._until(client, lambda health: health["storage"] == "failing")
         since = datetime.fromisoformat(health["storage_since"])
         self.watch.alarm_s = _seconds_since(since)
@@ -128,7 +131,7 @@ class Outage:
         return since
 
     async def _ask_to_start(self, client: AsyncClient, planned: str, since: datetime) -> None:
-        """Whatever would start something: each is refused."""
+        """Send every kind of request that would start something; each is rejected."""
         pairing = {"device": "tablet"}
         self.watch.refusals = [
             _refusal(await self._command(client, planned, "start")),

@@ -1,4 +1,4 @@
-"""What must hold after an outage, and its figures."""
+"""Check the record after an outage and format its figures."""
 
 from collections.abc import Sequence
 from datetime import datetime
@@ -14,14 +14,16 @@ from tests.support.server import LiveServer
 
 
 def reconciled(server: LiveServer, headsets: Sequence[StreamingHeadset]) -> list[Reconciliation]:
-    """What each headset knows beside what is stored."""
+    """Compare each headset's journal with the stored record."""
     with record_of(server) as db:
         return [reconcile(db, headset.session_id, headset.ledger) for headset in headsets]
 
 
 def check_outage(watch: Watch, found: Sequence[Reconciliation]) -> None:
-    """Everything sent is stored, once; reads went on; nothing was answered by a 500; what would
-    start something was refused in words.
+    """Assert that an outage lost nothing and was handled correctly.
+
+    Everything sent is stored exactly once; reads continued; no response had status 500; requests
+    that would start something were rejected with a message.
     """
     for one in found:
         assert one == Reconciliation(one.sent, one.sent, one.sent, 0, 0, 0, 0), one
@@ -38,7 +40,7 @@ def check_outage(watch: Watch, found: Sequence[Reconciliation]) -> None:
 
 
 def check_recorded(server: LiveServer, headsets: Sequence[StreamingHeadset], reason: str) -> None:
-    """The outage is on every connected session's record, as an alarm that came and went."""
+    """Assert that each connected session has a raised and a cleared alarm about the outage."""
     with record_of(server) as db:
         rows = db.scalars(select(AlarmRow).where(AlarmRow.code == "storage")).all()
     for headset in headsets:
@@ -53,7 +55,7 @@ def _at(row: AlarmRow) -> datetime:
 
 
 def outage_figures(name: str, watch: Watch, found: Sequence[Reconciliation]) -> str:
-    """What was seen, in a few lines."""
+    """Format the figures of an outage in a few lines."""
     answers = ", ".join(
         f"{what} {status}: {count}" for (what, status), count in sorted(watch.answers.items())
     )

@@ -1,4 +1,4 @@
-"""Reading a session's record while no server runs, as the next start will find it."""
+"""Read a session's stored record while no server runs, as the next start will find it."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -20,7 +20,7 @@ from tests.support.server import LiveServer
 
 @contextmanager
 def record_of(server: LiveServer) -> Iterator[Session]:
-    """The database of a server, running or not."""
+    """Open the database of a server, whether or not it is running."""
     database = open_database(f"sqlite:///{server.data_dir / 'reembody.sqlite'}")
     try:
         with database.reading() as db:
@@ -31,10 +31,10 @@ def record_of(server: LiveServer) -> Iterator[Session]:
 
 @dataclass(frozen=True)
 class OnDisk:
-    """What is certain: where the session stands and how far each stream is stored.
+    """The certain state of a session: its position in the plan and how far each stream is stored.
 
-    `held` counts the rows' frames of each stream; it equals `stored` unless something is stored
-    twice or left out.
+    `held` counts the rows' frames of each stream; it equals `stored` unless data are stored twice
+    or missing.
     """
 
     version: int
@@ -47,7 +47,7 @@ class OnDisk:
 
 
 def read_record(db: Session, session_id: str) -> OnDisk:
-    """The record of one session."""
+    """Read the stored record of one session."""
     session = session_by_id(db, session_id)
     state, plan = state_of(session), plan_of(db, session)
     phase = state.phase

@@ -1,4 +1,4 @@
-"""A network between devices and the server that can be cut: a TCP relay on the loopback."""
+"""A TCP relay on the loopback that emulates a network which can be cut."""
 
 import asyncio
 import contextlib
@@ -11,7 +11,7 @@ from tests.support.server import free_port
 
 @dataclass
 class Relay:
-    """Passes bytes both ways while it is up. `cut()` breaks every connection, as a dead cable."""
+    """Relay bytes in both directions while it is up; `cut()` breaks every connection."""
 
     target_port: int
     port: int = field(default_factory=free_port)
@@ -21,21 +21,21 @@ class Relay:
 
     @property
     def url(self) -> str:
-        """Where devices find the server."""
+        """Return the URL at which devices reach the server."""
         return f"http://127.0.0.1:{self.port}"
 
     def cut(self) -> None:
-        """Reset every connection at both ends; new ones come through if the relay is up."""
+        """Reset every connection at both ends; new ones are accepted if the relay is up."""
         for writer in tuple(self._writers):
             writer.transport.abort()
 
     async def idle(self) -> None:
-        """Until no connection is left."""
+        """Wait until no connection is left."""
         await asyncio.gather(*self._tasks, return_exceptions=True)
 
     @asynccontextmanager
     async def outage(self) -> AsyncIterator[None]:
-        """Nobody gets through while the block lasts."""
+        """Reject and cut all connections while the block runs."""
         self.up = False
         self.cut()
         try:
@@ -80,7 +80,7 @@ async def _pass(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> N
 
 @asynccontextmanager
 async def relayed(target_port: int) -> AsyncIterator[Relay]:
-    """A relay in front of a server, for the time of the block."""
+    """Run a relay in front of a server while the block runs."""
     relay = Relay(target_port)
     server = await asyncio.start_server(relay.accept, "127.0.0.1", relay.port)
     try:

@@ -1,7 +1,8 @@
-"""When to kill: in every kind of step, at moments drawn from a seed.
+"""Draw when to kill the server: in every kind of step, at moments drawn from a seed.
 
-A target names a place in the procedure (`step`) and what must be going on there (`kind`); the kill
-comes a random while after that was seen. Targets of one session are in the order of its procedure.
+A target names a place in the procedure (`step`) and what must be happening there (`kind`); the kill
+comes a random time after that was observed. Targets of one session are in the order of its
+procedure.
 """
 
 from dataclasses import dataclass
@@ -20,8 +21,9 @@ KINDS = ("setup", "free_roam", *FOOT)
 
 @dataclass(frozen=True)
 class Target:
-    """Kill `wait_s` after `kind` was seen at step `step` (of the procedure, from 0; the set-up is
-    one place).
+    """A kill that comes `wait_s` after `kind` was observed at step `step`.
+
+    Steps of the procedure count from 0; the set-up counts as one place.
     """
 
     step: int
@@ -30,7 +32,7 @@ class Target:
 
 
 def kind_of(step: int | None, step_kind: str | None, phase_status: str | None) -> str:
-    """What goes on, in the words of the schedule."""
+    """Return what is happening at a step, as a kind of the schedule."""
     if step_kind == "task":
         return phase_status or "ready"
     if step_kind in ("questionnaire", "free_roam", "debrief"):
@@ -39,7 +41,7 @@ def kind_of(step: int | None, step_kind: str | None, phase_status: str | None) -
 
 
 def seen(state: HeadsetState | None) -> tuple[int, str]:
-    """Step and kind as the headset knows them now."""
+    """Return the step and kind that the headset currently has."""
     if state is None:
         return 0, "setup"
     status = None if state.phase is None else state.phase.status
@@ -60,7 +62,7 @@ def draw_schedule(rng: np.random.Generator) -> list[Target]:
 
 
 def _possible(kinds: list[str]) -> list[str]:
-    """A phase is paused only after a kill while it ran."""
+    """Add a kill while running before a kill while paused: only that kill pauses the phase."""
     if "paused" in kinds and "running" not in kinds:
         kinds.insert(kinds.index("paused"), "running")
     return kinds

@@ -1,6 +1,6 @@
-"""The shipped study with short phases, stored on a server: faults need seconds, not minutes.
+"""Store the shipped study with short phases on a server, so that faults take seconds.
 
-It has two of the three latencies: the block in which things go wrong, and one that comes after.
+It has two of the three latencies: the block in which faults happen, and a block after it.
 """
 
 import asyncio
@@ -30,7 +30,7 @@ FIRST_FOOT_STEP = next(step.index for step in PLAN if step.limb == "foot")
 def short_study(
     *, phase_s: float = PHASE_S, roam_s: float = ROAM_S, around_s: float = AROUND_S
 ) -> str:
-    """Its file; a task is prepared for `around_s`, and frozen for as long at its end."""
+    """Return the study file; preparation and freeze of a task each last `around_s`."""
     return edited(
         ("key: reembodiment-latency", f"key: {KEY}"),
         ONE_LATENCY_LESS,
@@ -42,7 +42,7 @@ def short_study(
 
 
 def add_short_study(server: LiveServer) -> str:
-    """Store it; its key."""
+    """Store the short study and return its key."""
     text = short_study()
     with server.client() as client:
         credentials = {"username": "admin", "password": ADMIN_PASSWORD}
@@ -53,12 +53,12 @@ def add_short_study(server: LiveServer) -> str:
 
 @dataclass(frozen=True)
 class Watch:
-    """Waits for moments of a rehearsal."""
+    """Wait for moments of a rehearsal."""
 
     cast: Cast
 
     async def phase(self, phase_id: int, is_it: Callable[[PhaseOrder], bool]) -> None:
-        """Until the headset knows this phase in a state for which `is_it` holds."""
+        """Wait until the headset has this phase in a state for which `is_it` is true."""
         while True:
             state = self.cast.headset.client.state
             order = None if state is None else state.phase
@@ -67,9 +67,9 @@ class Watch:
             await asyncio.sleep(LOOK_EVERY_S)
 
     async def paused(self, phase_id: int) -> None:
-        """Until its clock was stopped."""
+        """Wait until the phase's clock is paused."""
         await self.phase(phase_id, lambda order: order.status == "paused")
 
     async def running(self, phase_id: int) -> None:
-        """Until its clock runs."""
+        """Wait until the phase's clock runs."""
         await self.phase(phase_id, lambda order: order.status == "running")

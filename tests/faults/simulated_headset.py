@@ -1,10 +1,10 @@
-"""A headset that runs one phase in simulated time, against the real connection and writer.
+"""Run a headset through one phase in simulated time, with the real connection and writer.
 
 The application's own `HeadsetConnection` reads from a socket that this module writes, and its
-writer commits at once. Nothing waits: the server's clocks are `World`'s, so ten minutes offline
-cost nothing. What the network does to an honest headset is drawn from a seed: jitter, drift, an
-offline journal, broken connections that send again what was sent, a client that starts anew, a
-wall clock that is set, pauses.
+writer commits immediately. Nothing waits: the server's clocks are those of `World`, so ten minutes
+offline take no time. What the network does to a correct headset is drawn from a seed: jitter,
+drift, an offline journal, broken connections after which messages are resent, a client that
+restarts, a wall clock that is set, pauses.
 """
 
 import asyncio
@@ -52,7 +52,7 @@ TOUCH_S, BETWEEN_S = 0.08, 0.2
 
 @dataclass(frozen=True)
 class Frames:
-    """A batch before it is packed; `times_s` (n,), `flags` (n,)."""
+    """A batch of frames before it is encoded; `times_s` (n,), `flags` (n,)."""
 
     stream: StreamName
     epoch: int
@@ -63,7 +63,7 @@ class Frames:
     active_s: float
 
     def packed(self) -> bytes:
-        """As it travels."""
+        """Return the batch as it is sent."""
         closed_s = float(np.nan_to_num(self.times_s[-1], nan=0.0, posinf=0.0, neginf=0.0))
         return encode_batch(
             self.stream,
@@ -84,33 +84,33 @@ Edit = Callable[[Message], list[Message]]
 
 @dataclass
 class World:
-    """The server's clocks: seconds that pass, and a wall clock that may be set."""
+    """The server's simulated clocks: a monotonic one, and a wall clock that may be set."""
 
     monotonic_s: float = 5_000.0
     wall: datetime = datetime(2026, 3, 1, 9, tzinfo=UTC)
 
     def advance(self, seconds: float) -> None:
-        """Time passes."""
+        """Advance both clocks."""
         self.monotonic_s += seconds
         self.wall += timedelta(seconds=seconds)
 
     @property
     def clock(self) -> Clock:
-        """Both, for the application."""
+        """Return both clocks for the application."""
         return Clock(lambda: self.wall, lambda: round(self.monotonic_s * 1e9))
 
 
 class PromptWriter(TelemetryWriter):
-    """Commits in the caller's thread: a handful together, or what has gathered when it is asked."""
+    """Commit in the caller's thread: a group of arrivals, or all pending ones on request."""
 
     def submit(self, arrival: Arrival) -> None:
-        """Store it with the next ones; that a headset was lost is stored at once."""
+        """Queue an arrival for the next commit; commit immediately if it reports a lost headset."""
         self._waiting.append(arrival)
         if len(self._waiting) >= TOGETHER or isinstance(arrival.content, LossContent):
             self.commit()
 
     def commit(self) -> None:
-        """Store what has gathered."""
+        """Store all pending arrivals."""
         arrivals, self._waiting = self._waiting, []
         if arrivals:
             self._store_or_wait(arrivals)
@@ -118,7 +118,7 @@ class PromptWriter(TelemetryWriter):
 
 @dataclass
 class Socket:
-    """The server's end of a socket: reads what a headset says, keeps what it is told."""
+    """The server's end of a socket: yields the headset's messages and collects the server's."""
 
     says: Iterator[Json | bytes | str]
     heard: list[Json] = field(default_factory=list)
@@ -126,9 +126,9 @@ class Socket:
     application_state: WebSocketState = WebSocketState.CONNECTED
 
     async def receive(self) -> Json:
-        """The headset's next message; it hangs up when it has nothing more to say."""
+        """Return the headset's next message, or a disconnect after its last one."""
         for _ in range(4):
-            await asyncio.sleep(0)  # what the connection does beside reading comes first
+            await asyncio.sleep(0)  # let the connection's other tasks run first
         said = next(self.says, None)
         if said is None:
             self.hangs_up()
@@ -141,11 +141,11 @@ class Socket:
         return {"type": "websocket.receive", "text": text}
 
     async def send_text(self, text: str) -> None:
-        """What the server says."""
+        """Record a message of the server."""
         self.heard.append(json.loads(text))
 
     async def close(self, code: int = 1000, reason: str = "") -> None:
-        """The server hangs up."""
+        """Record that the server closed the connection."""
         self.heard.append({"type": "closed", "code": code, "reason": reason})
 
 
@@ -155,7 +155,7 @@ def _without_flushing(connection: Any, _record: object) -> None:
 
 @dataclass
 class Site:
-    """An application without a port, whose time is the world's."""
+    """An application without a port, running on the clocks of `World`."""
 
     context: AppContext
     world: World
@@ -164,13 +164,13 @@ class Site:
 
     @classmethod
     def open(cls, database_url: str, data_dir: Path, study_yaml: str, key: str) -> "Site":
-        """On a migrated, empty database, with one study."""
+        """Open an application on a migrated, empty database, with one study."""
         world = World()
         settings = Settings(
             database_url=database_url, data_dir=data_dir, admin_password=SecretStr("unused here")
         )
         context: AppContext = create_app(settings, clock=world.clock).state.context
-        # Nothing here is about power losses, and flushing would take most of the time.
+        # These tests do not concern power losses, and flushing would take most of the time.
         event.listen(context.database.engine, "connect", _without_flushing)
         with context.database.writing() as db:
             add_shipped(db, context.clock.utc_now())
@@ -179,7 +179,7 @@ class Site:
         return cls(context, world, writer, key)
 
     def join(self, *, kind: str = "test", time_scale: float = 1.0, step: str) -> str:
-        """A session that stands at this step, its earlier steps skipped."""
+        """Create a session that is at this step, with its earlier steps skipped."""
         with self.context.database.writing() as db:
             session = join(
                 db,
@@ -197,7 +197,7 @@ class Site:
             return session.id
 
     def command(self, session_id: str, command: c.Command) -> bool:
-        """An operator's command; False where it does not fit the moment."""
+        """Apply an operator's command; return False if it is not possible now."""
         self.writer.commit()
         try:
             with self.context.database.writing() as db:
@@ -214,7 +214,7 @@ class Site:
         return "" if current is None else plan[current].key
 
     def summarise(self, session_id: str) -> None:
-        """What a running server does in the background once a phase has ended."""
+        """Store the summaries that a running server computes in the background after a phase."""
         self.writer.commit()
         with self.context.database.writing() as db:
             done = select(Phase.phase_id).where(
@@ -225,16 +225,16 @@ class Site:
                 replace_rows(db, session_id, phase_id, rows)
 
     def token(self, session_id: str) -> str:
-        """Pair a headset; its token."""
+        """Pair a headset and return its token."""
         now = self.context.clock.utc_now()
         with self.context.database.writing() as db:
             code = new_code(db, session_id=session_id, kind="headset", now=now, minutes=10.0)
             return pair(db, code=code.code, name="simulated", now=now).token
 
     def connect(self, session_id: str, says: Iterator[Json | bytes | str], socket: Socket) -> None:
-        """One connection of a headset until either side hangs up; errors of the server are raised.
+        """Run one connection of a headset until either side closes it; raise errors of the server.
 
-        What a headset is refused for is in `socket.heard`, as it would hear it.
+        A rejection is in `socket.heard`, as the headset would receive it.
         """
         self.writer.commit()
         socket.says, socket.hangs_up = says, self.writer.commit
@@ -255,7 +255,7 @@ class Site:
 
 @dataclass
 class Weather:
-    """What an honest headset meets, drawn from a seed."""
+    """The network faults and pauses that a correct headset meets, drawn from a seed."""
 
     drift: float = 0.0
     jitter_s: float = 0.0
@@ -268,7 +268,7 @@ class Weather:
 
     @classmethod
     def drawn(cls, rng: np.random.Generator) -> "Weather":
-        """Up to all of it at once; only one thing stops the clock."""
+        """Draw any combination of faults, with at most one that stops the clock."""
         weather = cls(
             drift=float(rng.uniform(-1e-4, 1e-4)),
             jitter_s=float(rng.uniform(0.0, 0.03)),
@@ -293,11 +293,11 @@ class Weather:
 
 @dataclass
 class Telling:
-    """A headset in one phase: its clock, its seqs, its journal, its task.
+    """A headset in one phase: its clock, sequence numbers, journal and task.
 
-    `edit` may change, drop or add messages before they are journaled: that is where a liar lies.
-    `pace` is how many real seconds pass in one of the headset's, 1 over the time scale for an
-    honest one.
+    `edit` may change, drop or add messages before they are journaled: this is where a lie is
+    inserted. `pace` is how many real seconds pass in one of the headset's, 1 over the time scale
+    for a correct one.
     """
 
     site: Site
@@ -326,7 +326,7 @@ class Telling:
     _probed: int = 0
 
     def play(self) -> None:
-        """The whole phase, over as many connections as it takes."""
+        """Run the whole phase, over as many connections as needed."""
         self.site.connect(self.session_id, self._first(), self.socket)
         weather = self.weather
         if weather.broken_at_s is not None and not self.refused:
@@ -338,7 +338,7 @@ class Telling:
 
     @property
     def refused(self) -> bool:
-        """Whether the server refused something, or hung up."""
+        """Return whether the server rejected a message or closed the connection."""
         return any(one["type"] in REFUSALS for one in self.socket.heard)
 
     def _first(self) -> Iterator[Json | bytes]:
@@ -351,7 +351,7 @@ class Telling:
         yield from self._run()
 
     def _again(self) -> Iterator[Json | bytes]:
-        """The same client is back: it sends the last of what it sent once more, then the rest."""
+        """Reconnect the same client: it resends the last messages, then sends the rest."""
         yield self._hello(self.epoch)
         yield from self.sent[-int(self.rng.integers(1, 12)) :]
         self._pass(0.5)
@@ -361,7 +361,7 @@ class Telling:
         yield from self._run()
 
     def _anew(self) -> Iterator[Json | bytes]:
-        """Another client takes over: what the first had in memory is gone, and so is its clock."""
+        """Connect a new client: the memory and the clock of the first one are lost."""
         yield self._hello(None)
         welcome = [one for one in self.socket.heard if one["type"] == "welcome"][-1]
         order = welcome["state"]["phase"]
@@ -382,7 +382,7 @@ class Telling:
         yield from self._delivered()
 
     def _run(self) -> Iterator[Json | bytes]:
-        """Tick by tick until the time is up and the freeze is over."""
+        """Run tick by tick until the time is up and the freeze is over."""
         weather, offline_until_s = self.weather, None
         while self.active_s < self.duration_s - 1e-9:
             self._tick(min(TICK_S, self.duration_s - self.active_s))
@@ -419,7 +419,7 @@ class Telling:
         yield from self._say({"type": "produced", "epoch": self.epoch, "streams": counts})
 
     def _paused(self, for_s: float) -> Iterator[Json | bytes]:
-        """The operator pauses, and after a while lets it go on."""
+        """Let the operator pause and, after a while, resume the phase."""
         yield from self._delivered()
         self.site.command(self.session_id, c.Pause())
         self._tick(TICK_S)
@@ -434,12 +434,12 @@ class Telling:
         yield from self._resume()
 
     def _pass(self, seconds: float) -> None:
-        """Time passes at both ends; nothing is drawn."""
+        """Advance the clocks of both ends without making frames."""
         self.t_s += seconds * (1.0 + self.weather.drift)
         self.site.world.advance(seconds * self.pace)
 
     def _tick(self, for_s: float) -> None:
-        """A moment with its frames and, where the clock runs, the task."""
+        """Advance by one tick, with frames and, if the clock runs, the task."""
         begin_s, begin_active_s = self.t_s, self.active_s
         self.site.world.advance(for_s * self.pace / (1.0 + self.weather.drift))
         self.t_s += for_s
@@ -466,7 +466,7 @@ class Telling:
         self.seq += len(times_s)
 
     def _touch(self, t_s: float, active_s: float) -> None:
-        """The next thing in the order is touched for a moment, if it is time to."""
+        """Touch the next surface in the order for a moment, if it is due."""
         if active_s < self._next_touch_s or active_s + TOUCH_S > self.duration_s - 0.01:
             return
         self._next_touch_s = active_s + BETWEEN_S
@@ -512,13 +512,13 @@ class Telling:
                 self.journal.append(one.packed())
                 continue
             if one.get("type") == "report":
-                # A report that a liar adds has a seq, too.
+                # A report added by a lie has a seq, too.
                 one = {**one, "seq": one["seq"] if one.get("odd") else self.reports}
                 self.reports += 1
             self.journal.append({key: value for key, value in one.items() if key != "odd"})
 
     def _delivered(self) -> Iterator[Json | bytes]:
-        """Everything that was journaled, a moment later."""
+        """Send all journaled messages after a short delay."""
         waiting, self.journal = self.journal, []
         if waiting and self.weather.jitter_s:
             self.site.world.advance(float(self.rng.uniform(0.0, self.weather.jitter_s)))
@@ -527,13 +527,13 @@ class Telling:
             yield message
 
     def _say(self, message: Json) -> Iterator[Json | bytes]:
-        """What is not journaled: readings of the clocks and counts."""
+        """Send messages that are not journaled: clock readings and counts."""
         for one in self.edit(message):
             assert not isinstance(one, Frames)
             yield one
 
     def _probe(self) -> Iterator[Json | bytes]:
-        """Readings of the clocks, about once a second."""
+        """Send clock readings about once a second."""
         self._probed += 1
         if self._probed % 10:
             return

@@ -1,4 +1,4 @@
-"""Headsets that only stream, each with a ledger of what it sent and what it was promised."""
+"""Run headsets that only stream, each with a journal of what it sent and was acknowledged."""
 
 import asyncio
 import time
@@ -25,7 +25,7 @@ MOST_WAITING = 400
 
 @dataclass(frozen=True)
 class StreamingHeadset:
-    """A headset paired with a session that has not begun."""
+    """A headset paired with a session that has not started."""
 
     session_id: str
     token: str
@@ -34,7 +34,7 @@ class StreamingHeadset:
 
 @contextmanager
 def signed_in(server: LiveServer) -> Iterator[httpx2.Client]:
-    """An operator's client."""
+    """Yield an operator's HTTP client."""
     with server.client() as client:
         credentials = {"username": "admin", "password": ADMIN_PASSWORD}
         client.post("/api/login", json=credentials).raise_for_status()
@@ -42,7 +42,7 @@ def signed_in(server: LiveServer) -> Iterator[httpx2.Client]:
 
 
 def pair_headsets(server: LiveServer, count: int) -> list[StreamingHeadset]:
-    """So many new sessions, each with its headset."""
+    """Create `count` new sessions, each with a paired headset."""
     with signed_in(server) as client:
         return [_paired(client) for _ in range(count)]
 
@@ -68,10 +68,10 @@ async def stream(
     *,
     real_time: bool = True,
 ) -> None:
-    """All headsets side by side while `more()`; returns when everything is acknowledged.
+    """Stream from all headsets in parallel while `more()`; return when all is acknowledged.
 
-    In real time each makes 90 frames a second however slow the server is, as a body does; else as
-    many as the server takes.
+    In real time each makes 90 frames a second however slow the server is, as a body does; otherwise
+    as many as the server accepts.
     """
     async with asyncio.TaskGroup() as group:
         for seed, headset in enumerate(headsets):
@@ -103,7 +103,8 @@ async def _stream_one(
                 message = batch_of(name, client.epoch, seq, values)
                 await client.send_batch(name, seq + FRAMES_PER_BATCH, message)
             if batch % BATCHES_PER_REPORT == 0:
-                # Refused, since the session has not begun; stored and acknowledged like any other.
+                # Rejected, since the session has not started, but stored and acknowledged like any
+                # other.
                 await client.report(MaterialisedReport(t_s=seq / RATE_HZ))
             batch += 1
             if real_time:

@@ -1,7 +1,7 @@
-"""Backups made under load, and what is there after a restore.
+"""Tests of backups made under load, and of the data present after a restore.
 
 Fault 29 of the matrix, with the real server and the real commands. A session streams while the
-backup is made; the oracle is the headset's own ledger, as it stood before the command was given.
+backup is made; the data are compared with the headset's own journal as it was before the command.
 """
 
 import asyncio
@@ -36,7 +36,7 @@ CREDENTIALS = {"username": "admin", "password": ADMIN_PASSWORD}
 
 @contextmanager
 def installation(folder: Path, engine: str) -> Iterator[LiveServer]:
-    """A server that was not started yet, on the engine of this name."""
+    """Yield a server that has not been started, on the named database engine."""
     if engine == "sqlite":
         yield LiveServer(folder)
         return
@@ -46,7 +46,7 @@ def installation(folder: Path, engine: str) -> Iterator[LiveServer]:
 
 @contextmanager
 def record(server: LiveServer) -> Iterator[Session]:
-    """The database of a server, on either engine."""
+    """Open the database of a server, on either engine."""
     url = server._full_environment().get("REEMBODY_DATABASE_URL")
     database = open_database(url or f"sqlite:///{server.data_dir / 'reembody.sqlite'}")
     try:
@@ -58,7 +58,7 @@ def record(server: LiveServer) -> Iterator[Session]:
 
 @dataclass
 class Made:
-    """A backup made while a session streamed. `acked`: by the server before the command."""
+    """A backup made while a session streamed. `acked`: acknowledged before the command."""
 
     session_id: str
     said: Said
@@ -66,9 +66,9 @@ class Made:
 
 
 async def stream_and_back_up(server: LiveServer, ledger: LedgerJournal, to: Path) -> Made:
-    """A session to its end, with a backup from the midst of its first task phase on.
+    """Run a session to its end and make a backup in the middle of its first task phase.
 
-    The tablet waits for the backup, so the session streams until it is made.
+    The tablet waits for the backup, so the session streams until it is complete.
     """
     plan = RehearsalPlan(
         server.url, add_short_study(server), speed=SPEED, seed=3, password=ADMIN_PASSWORD
@@ -97,7 +97,10 @@ async def stream_and_back_up(server: LiveServer, ledger: LedgerJournal, to: Path
     ],
 )
 def test_a_backup_under_load_is_restored_whole(tmp_path: Path, origin: str, target: str) -> None:
-    """Hash-equal, with every frame that was acknowledged before; and the session can go on."""
+    """A backup made under load restores to an equal hash, and the session in it can continue.
+
+    It contains every frame that was acknowledged before the command.
+    """
     ledger, file = LedgerJournal(), tmp_path / "all.reembody"
     with installation(tmp_path / "first", origin) as server, server:
         made = asyncio.run(stream_and_back_up(server, ledger, file))
@@ -130,10 +133,10 @@ def test_a_backup_under_load_is_restored_whole(tmp_path: Path, origin: str, targ
 
 
 def check_rows(db: Session, file: Path) -> None:
-    """Every table is what the backup holds, but for what a restore says it does afterwards.
+    """Assert that every table equals the backup's, except for what a restore changes afterwards.
 
-    The clock of the running phase was stopped (its session's rows), its open alarms ended, and the
-    headset unpaired.
+    The clock of the running phase was stopped (its session's rows), its open alarms were ended, and
+    the headset was unpaired.
     """
     with opened_backup(file) as backup:
         now = digests(db.connection(), backup.shapes)
@@ -159,7 +162,7 @@ def go_on(server: LiveServer, session_id: str) -> None:
 def test_a_server_is_stopped_for_a_restore_and_goes_on_with_what_was_restored(
     tmp_path: Path, engine: str
 ) -> None:
-    """Beside it a restore is refused; afterwards logins, sessions, streams are the backup's."""
+    """A restore is refused while a server runs; after it, all data are those of the backup."""
     with installation(tmp_path / "live", engine) as server, server, server.client() as client:
         study = add_short_study(server)
         assert client.post("/api/login", json=CREDENTIALS).is_success
@@ -192,7 +195,7 @@ def test_a_server_is_stopped_for_a_restore_and_goes_on_with_what_was_restored(
 
 
 def join(client: httpx2.Client, study: str, code: str) -> str:
-    """A session that waits for its start."""
+    """Create a session that has not started and return its id."""
     body = {"kind": "test", "language": "en", "participant_code": code}
     view = client.post(f"/api/studies/{study}/sessions", json=body).json()
     return str(view["id"])
@@ -201,7 +204,7 @@ def join(client: httpx2.Client, study: str, code: str) -> str:
 def test_a_restore_waits_for_active_sessions_to_end(
     live_server: LiveServer, tmp_path: Path
 ) -> None:
-    """They are listed with the way out, and nothing has changed."""
+    """A restore is refused while sessions are active, lists them, and changes nothing."""
     with live_server.client() as client:
         study = add_short_study(live_server)
         assert client.post("/api/login", json=CREDENTIALS).is_success
@@ -224,7 +227,7 @@ def test_a_restore_waits_for_active_sessions_to_end(
 
 
 def test_a_full_disk_leaves_no_half_backup(live_server: LiveServer, tmp_path: Path) -> None:
-    """Said plainly; nothing is left, and the server does not notice."""
+    """A backup to a full disk fails with a message and leaves no file; the server is unaffected."""
     for at, limit in enumerate((50_000, 300_000, 420_000)):
         place = tmp_path / f"usb{at}"
         place.mkdir()

@@ -1,7 +1,7 @@
-"""A blinded operator runs a whole session and nowhere meets its condition (fault 33).
+"""Tests that a blinded operator never meets the condition in a whole session (fault 33).
 
-The conditions of this study have names and latencies that occur nowhere else, so that finding one
-of them in anything an operator is sent is a leak.
+The conditions of this study have names and latencies that occur nowhere else, so finding one of
+them in anything that is sent to an operator is a leak.
 """
 
 import asyncio
@@ -47,7 +47,7 @@ PAGES = ("/", "/tablet")
 
 
 def canary_study() -> str:
-    """The shipped study, short and blinded, with conditions that can be told from all else."""
+    """Return the shipped study, short and blinded, with conditions that are easy to search for."""
     return edited(
         ("key: reembodiment-latency", f"key: {KEY}"),
         ONE_LATENCY_LESS,
@@ -66,25 +66,25 @@ def canary_study() -> str:
 
 
 def _around(match: re.Match[bytes]) -> str:
-    """The word, with what stands before and behind it."""
+    """Return the matched word with the text before and after it."""
     return match.string[max(0, match.start() - 60) : match.end() + 20].decode(errors="replace")
 
 
 @dataclass
 class Spy:
-    """Somebody with a login who keeps everything they are sent."""
+    """A signed-in account that keeps everything it receives."""
 
     client: httpx2.AsyncClient
     role: str
     heard: list[tuple[str, bytes]] = field(default_factory=list)
 
     def leaks(self) -> list[str]:
-        """What they heard of the condition: where, and the word."""
+        """Return where the condition was found in the received data, and the text."""
         found = [(where, CANARIES.search(body)) for where, body in self.heard]
         return [f"{where}: {_around(match)}" for where, match in found if match]
 
     async def look(self, session_id: str) -> None:
-        """Ask for everything that the role may ask for."""
+        """Request everything that the role may request."""
         for name, who in POLICY.items():
             method, template = name.split()
             if method == "GET" and self.role in who and not template.endswith("/live"):
@@ -104,7 +104,7 @@ class Spy:
             self.heard.append((f"{answer.status_code} {path}", headers + answer.content))
 
     async def listen(self, session_id: str) -> None:
-        """Keep the live stream, as the cockpit does."""
+        """Record the live stream, as the cockpit receives it."""
         path = f"/api/sessions/{session_id}/live"
         async with self.client.stream("GET", path, timeout=None) as answer:
             async for piece in answer.aiter_bytes():
@@ -112,7 +112,7 @@ class Spy:
 
 
 async def _spy(server: LiveServer, role: str) -> Spy:
-    """A new person, by the lab's own way: an invitation that is accepted."""
+    """Create an account through an accepted invitation, as the lab does."""
     async with httpx2.AsyncClient(base_url=server.url) as admin:
         await _done(admin.post("/api/login", json=_admin()))
         link = (await _done(admin.post("/api/invitations", json={"role": role})))["url"]
@@ -134,7 +134,7 @@ async def _done(asked: Any) -> Any:
 
 
 def _moment(cast: Cast) -> tuple[object, ...]:
-    """What kind of step is under way, and with which limb and latency."""
+    """Return the current kind of step, with its limb and latency."""
     state = cast.headset.client.state
     if state is None:
         return ()
@@ -195,12 +195,15 @@ async def _run(server: LiveServer) -> tuple[Spy, Spy]:
     ],
 )
 def test_the_search_knows_a_condition_from_a_time_of_day(*, sent: bytes, tells: bool) -> None:
-    """Latencies are found in every unit and spelling; digits inside other numbers are not."""
+    """Latencies are found in every unit and notation; digits inside other numbers are not."""
     assert bool(CANARIES.search(sent)) is tells
 
 
 def test_a_blinded_operator_cannot_find_the_condition(tmp_path: Path) -> None:
-    """In no response, page, header or stream, during the session or after it."""
+    """No response, page, header or stream shows a blinded operator the condition of a session.
+
+    This holds during the session and after it.
+    """
     with LiveServer(tmp_path / "live") as server:
         operator, analyst = asyncio.run(_run(server))
     streamed = sum(len(body) for where, body in operator.heard if where == "stream")
@@ -219,7 +222,10 @@ QUICK_ROLES = ("operator", "experimenter")
 
 @pytest.mark.one_engine
 def test_nobody_who_must_not_know_gets_a_condition_by_any_way_out(fresh_lab: Lab) -> None:
-    """Every route, archives unpacked, sockets and errors; what draws or tests is in the bench."""
+    """No route, archive, socket or error reveals a condition to a role that must not know it.
+
+    Routes that draw figures or run statistics are covered by the benchmark.
+    """
     all_ = build_world(fresh_lab, QUICK)
     search = Search()
     routes = [one for one in get_routes(fresh_lab) if not any(part in one for part in HEAVY)]
@@ -235,7 +241,11 @@ def test_nobody_who_must_not_know_gets_a_condition_by_any_way_out(fresh_lab: Lab
 
 @pytest.mark.one_engine
 def test_a_copy_with_a_condition_of_an_open_session_is_on_record(fresh_lab: Lab) -> None:
-    """Export, file and a participant's own copy say which session it was, who took it and when."""
+    """The audit trail records each copy that contains the condition of an open session.
+
+    An entry for an export, a file or a participant's own copy names the session, the account and
+    the time.
+    """
     revealed, hidden = build_world(fresh_lab, (REVEALED, "active"))
     reader = people(fresh_lab, ["experimenter"])["experimenter"]
     fetch_jobs(Search(), "experimenter", reader, [revealed])
@@ -254,7 +264,10 @@ def test_a_copy_with_a_condition_of_an_open_session_is_on_record(fresh_lab: Lab)
 
 
 def test_an_order_is_not_known_from_a_session_that_gave_its_slot_up(fresh_lab: Lab) -> None:
-    """Not to be had by showing that session, either; both are known once the slot is completed."""
+    """The order of a session that gave up its slot stays hidden until the slot is completed.
+
+    Showing the condition of that session does not reveal it either.
+    """
     (taken,) = build_world(fresh_lab, (TAKEN_AGAIN,))
     given_up, holder = taken.session_ids
     wish = {"reason": "looking for a fault"}

@@ -1,4 +1,4 @@
-"""Connections break and devices start again in mid-phase; the session goes on, nothing is lost."""
+"""Tests that sessions continue without loss when connections break or devices restart mid-phase."""
 
 import asyncio
 from collections.abc import Callable, Coroutine
@@ -37,14 +37,14 @@ Wear = Callable[[Cast, Relay], Coroutine[Any, Any, None]]
 
 @dataclass(frozen=True)
 class Outcome:
-    """The session afterwards."""
+    """The session's view and events after the rehearsal."""
 
     session_id: str
     view: dict[str, Any]
     events: list[dict[str, Any]]
 
     def pauses(self, phase_id: int) -> list[dict[str, Any]]:
-        """The pauses of a phase, with their causes."""
+        """Return the pauses of a phase, with their causes."""
         return [
             event["data"]
             for event in self.events
@@ -53,7 +53,7 @@ class Outcome:
 
 
 def rehearse_with(server: LiveServer, wear: Wear, ledger: LedgerJournal) -> Outcome:
-    """A short session through a relay, with something happening to it; checked afterwards."""
+    """Run a short session through a relay while `wear` injects a fault, and check its result."""
     study = add_short_study(server)
     outcome = asyncio.run(_perform(server, study, wear, ledger))
     active_s = [phase["active_s"] for phase in outcome.view["phases"]]
@@ -78,7 +78,7 @@ async def _perform(server: LiveServer, study: str, wear: Wear, ledger: LedgerJou
 
 
 def worn_while(fault: Callable[[Cast, Relay], Coroutine[Any, Any, None]]) -> Wear:
-    """The headset is worn to the end while `fault` happens."""
+    """Return a function that wears the headset to the end while `fault` happens."""
 
     async def wear(cast: Cast, relay: Relay) -> None:
         async with asyncio.TaskGroup() as group:
@@ -89,7 +89,7 @@ def worn_while(fault: Callable[[Cast, Relay], Coroutine[Any, Any, None]]) -> Wea
 
 
 def sound(server: LiveServer, outcome: Outcome, ledger: LedgerJournal) -> bool:
-    """Whether everything that was acknowledged is stored, once and unaltered."""
+    """Return whether everything acknowledged is stored exactly once and unaltered."""
     with record_of(server) as db:
         return reconcile(db, outcome.session_id, ledger).sound
 
@@ -97,7 +97,7 @@ def sound(server: LiveServer, outcome: Outcome, ledger: LedgerJournal) -> bool:
 def test_a_cut_connection_pauses_the_phase_and_the_headset_goes_on_as_the_same_run(
     live_server: LiveServer,
 ) -> None:
-    """Cut in a hand and in a foot phase: the same epoch goes on, and each phase gets its time."""
+    """A cut connection pauses a hand or foot phase; the same epoch continues to its full time."""
     ledger = LedgerJournal()
 
     async def cut(cast: Cast, relay: Relay) -> None:
@@ -113,7 +113,7 @@ def test_a_cut_connection_pauses_the_phase_and_the_headset_goes_on_as_the_same_r
 
 
 def test_an_outage_of_the_network_costs_no_active_time(live_server: LiveServer) -> None:
-    """Neither side counts what happens while nobody gets through."""
+    """Neither the server nor the headset counts active time during a network outage."""
     ledger = LedgerJournal()
 
     async def go_dark(cast: Cast, relay: Relay) -> None:
@@ -131,7 +131,10 @@ def test_an_outage_of_the_network_costs_no_active_time(live_server: LiveServer) 
 def test_a_headset_that_starts_again_goes_on_with_the_time_that_is_left(
     live_server: LiveServer,
 ) -> None:
-    """A new run is a new epoch; what the old one had not sent is gone and nothing else is."""
+    """A restarted headset gets a new epoch and continues the phase for its remaining time.
+
+    Only what the old run had not sent is lost.
+    """
     ledger, second = LedgerJournal(), LedgerJournal()
 
     async def start_again(cast: Cast, _: Relay) -> None:
@@ -160,19 +163,22 @@ def test_a_headset_that_starts_again_goes_on_with_the_time_that_is_left(
     assert found.sound
     assert refused == 0
     assert outcome.pauses(HAND)
-    # Both runs together had the phase's time, but for what the first could not send any more.
+    # Both runs together had the phase's time, except for what the first could no longer send.
     active = [int(frames.active.sum()) for _, frames in runs]
     assert len(active) == 2
     assert PHASE_S * 90 - LOST_FRAMES <= sum(active) <= PHASE_S * 90 + 2
 
 
 def both_runs(first: LedgerJournal, second: LedgerJournal) -> LedgerJournal:
-    """What both runs of a headset sent and were promised."""
+    """Combine the journals of both runs of a headset."""
     return replace(first, sent={**first.sent, **second.sent}, acked={**first.acked, **second.acked})
 
 
 def test_a_form_sent_again_after_a_crash_is_stored_once(tmp_path: Path) -> None:
-    """The same receipt comes back, whether the first answer got lost or the server was away."""
+    """A form that is resent after a lost response or a server crash is stored exactly once.
+
+    Every attempt returns the same receipt.
+    """
     with LiveServer(tmp_path / "live") as server:
         asyncio.run(_send_forms(server))
 

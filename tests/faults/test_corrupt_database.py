@@ -1,6 +1,6 @@
-"""A damaged database is put away, and a start without it is never taken for granted.
+"""Tests that a damaged database is quarantined and never silently replaced by an empty one.
 
-Fault 6 of the matrix, with the real server. How each kind of damage is noticed is tested in
+Fault 6 of the matrix, with the real server. The detection of each kind of damage is tested in
 tests/features/care/opening.
 """
 
@@ -34,33 +34,33 @@ serve_forever({"port": int(sys.argv[3])}, new_database=True)
 
 
 def file_of(server: LiveServer) -> Path:
-    """The server's database."""
+    """Return the path of the server's database."""
     return server.data_dir / "reembody.sqlite"
 
 
 def garble(server: LiveServer) -> None:
-    """The first bytes are somebody else's."""
+    """Overwrite the first bytes of the database with other data."""
     file_of(server).write_bytes(b"not a database, " + file_of(server).read_bytes()[16:])
 
 
 def cut(server: LiveServer) -> None:
-    """Half of it is missing."""
+    """Remove half of the database."""
     file_of(server).write_bytes(file_of(server).read_bytes()[: 20 * PAGE])
 
 
 def overwrite(server: LiveServer) -> None:
-    """Some pages in the middle hold something else."""
+    """Overwrite some pages in the middle of the database."""
     data = file_of(server).read_bytes()
     file_of(server).write_bytes(data[: 10 * PAGE] + b"\x07" * (8 * PAGE) + data[18 * PAGE :])
 
 
 def damage_log(server: LiveServer) -> None:
-    """One bit far back in the log."""
+    """Flip one early bit in the write-ahead log, with several transactions after it."""
     flip(Path(f"{file_of(server)}-wal"), 3 * PAGE)
 
 
 def checksums(folder: Path) -> dict[str, str]:
-    """Of the database and its log, if there is anything in it."""
+    """Return the checksums of the database and of its log, if the log is not empty."""
     return {
         path.name: hashlib.sha256(path.read_bytes()).hexdigest()
         for path in sorted(folder.glob("reembody.sqlite*"))
@@ -69,7 +69,7 @@ def checksums(folder: Path) -> dict[str, str]:
 
 
 def refusal(server: LiveServer) -> str:
-    """What the server says instead of starting."""
+    """Return the message with which the server refuses to start."""
     before = len(server.log)
     with pytest.raises(RuntimeError, match="exit code 2"):
         server.start()
@@ -113,7 +113,7 @@ def test_it_is_put_away_and_a_backup_brings_everything_back(
 
 
 def test_an_empty_database_is_begun_by_who_says_so(tmp_path: Path) -> None:
-    """From then on every start is a plain one again."""
+    """An operator may explicitly create a new database; later starts then need no option."""
     server = LiveServer(tmp_path / "live").start()
     server.stop()
     garble(server)
@@ -126,7 +126,7 @@ def test_an_empty_database_is_begun_by_who_says_so(tmp_path: Path) -> None:
 
 
 def test_a_damaged_backup_helps_nobody_and_harms_nobody(tmp_path: Path) -> None:
-    """It is refused before a database is begun."""
+    """A damaged backup is rejected before a database is created."""
     server = LiveServer(tmp_path / "live").start()
     reembody(server, "backup", tmp_path / "all.reembody")
     server.stop()
@@ -141,13 +141,13 @@ def test_a_damaged_backup_helps_nobody_and_harms_nobody(tmp_path: Path) -> None:
 
 
 def test_a_torn_log_is_an_ordinary_start(tmp_path: Path) -> None:
-    """What a power failure leaves is no damage."""
+    """A write-ahead log torn by a power failure is not treated as damage."""
     server = LiveServer(tmp_path / "live").start()
     write_much(server)
     server.kill()
     log = Path(f"{file_of(server)}-wal")
     log.write_bytes(log.read_bytes()[:-1000])
-    # What was never flushed was never noted there either.
+    # The index never referred to data that were not flushed.
     Path(f"{file_of(server)}-shm").unlink()
     with server, server.client() as client:
         assert_signs_in(client)
@@ -169,7 +169,7 @@ def test_a_newer_programs_database_is_refused_and_left_alone(tmp_path: Path) -> 
 
 
 def write_much(server: LiveServer) -> None:
-    """Some sign-ins, each a transaction, and more if the log has just been begun anew."""
+    """Sign in several times, each a transaction, until the log is long enough."""
     log = Path(f"{file_of(server)}-wal")
     with server.client() as client:
         for _ in range(5):
@@ -179,6 +179,6 @@ def write_much(server: LiveServer) -> None:
 
 
 def assert_signs_in(client: httpx2.Client) -> None:
-    """The first account is there."""
+    """Assert that the first account exists and can sign in."""
     credentials = {"username": "admin", "password": ADMIN_PASSWORD}
     assert client.post("/api/login", json=credentials).is_success

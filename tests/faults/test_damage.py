@@ -1,8 +1,7 @@
-"""Whatever happens to the files of a data folder, a start ends in serving or in quarantine.
+"""Tests that a start with randomly damaged files ends in serving or in quarantine.
 
-Fault 6 of the matrix, with damage that nobody chose: bits flipped, files cut, parts zeroed, in the
-database, its log and the log's index. Each kind of damage by itself is tested in
-tests/features/care/opening.
+Fault 6 of the matrix, with random damage: bits flipped, files cut, parts zeroed, in the database,
+its log and the log's index. Each kind of damage alone is tested in tests/features/care/opening.
 """
 
 import os
@@ -20,12 +19,12 @@ SEED = 6
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Folder:
-    """What a server left that was killed in the middle of a visit."""
+    """Provide the data folder of a server that was killed in the middle of a visit."""
     return left_by_a_killed_server(tmp_path_factory.mktemp("killed"))
 
 
 def try_many(folder: Folder, elsewhere: Path, count: int, processes: int = 1) -> None:
-    """Damage that many copies; each start serves, or puts the database away for a restore."""
+    """Damage `count` copies and assert that each start serves or quarantines the database."""
     cases = many(folder, elsewhere, count, SEED, processes=processes)
     ends = Counter(case.end for case in cases)
     note(6, f"{count} random damages", "served", ends["served"])
@@ -37,12 +36,12 @@ def try_many(folder: Folder, elsewhere: Path, count: int, processes: int = 1) ->
 
 
 def test_damage_ends_in_serving_or_in_quarantine(folder: Folder, tmp_path: Path) -> None:
-    """Never in a traceback; a restored backup serves."""
+    """A start with damaged files never ends in a traceback, and a restored backup serves."""
     try_many(folder, tmp_path, SHORT)
 
 
 @pytest.mark.long
 @pytest.mark.timeout(14_400)
 def test_much_damage_ends_in_serving_or_in_quarantine(folder: Folder, tmp_path: Path) -> None:
-    """The same, a thousand times."""
+    """A thousand starts with damaged files never end in a traceback, and restored backups serve."""
     try_many(folder, tmp_path, LONG, os.cpu_count() or 1)

@@ -1,7 +1,7 @@
-"""The disk is full while headsets stream: acknowledgements stop, everybody is told, it goes on.
+"""Tests of a disk that is full while headsets stream: it is reported, and streaming recovers.
 
-Fault 4 of the matrix. The short form takes the right to make files longer from the running server,
-the long one fills a small disk.
+Fault 4 of the matrix. The short form denies the running server any growth of files, the long one
+fills a small disk.
 """
 
 import asyncio
@@ -57,8 +57,10 @@ def test_a_server_that_may_not_write_says_so_and_goes_on_when_it_may(
 
 
 def test_on_a_full_disk_what_frees_space_still_works(tmp_path: Path) -> None:
-    """Not a byte is left: logging in, removing an export, ending a session and erasing all work,
-    nothing new starts, and health recovers by itself once there is space.
+    """On a completely full disk, operations that free space still work.
+
+    Logging in, removing an export, ending a session and erasing all work, nothing new starts, and
+    health recovers automatically once there is space.
     """
     folder = tmp_path / "live"
     server = LiveServer(folder, environment={"REEMBODY_LOW_DISK_BYTES": "0"})
@@ -86,7 +88,7 @@ def test_on_a_full_disk_what_frees_space_still_works(tmp_path: Path) -> None:
 
 
 def new_session(client: httpx2.Client) -> dict[str, Any]:
-    """A session that has started."""
+    """Create and start a session."""
     made = client.post(f"/api/studies/{STUDY}/sessions", json={"kind": "test"})
     made.raise_for_status()
     assert command(client, made.json(), "start").is_success
@@ -95,7 +97,7 @@ def new_session(client: httpx2.Client) -> dict[str, Any]:
 
 
 def command(client: httpx2.Client, session: dict[str, Any], kind: str) -> httpx2.Response:
-    """Something done with a session, as it stands now."""
+    """Send a command for the current version of a session."""
     version = client.get(f"/api/sessions/{session['id']}").json()["version"]
     body = {"command_id": str(uuid.uuid4()), "expected_version": version, "type": kind}
     words = {"reason": "the disk is full", "text": "x" * 1500}
@@ -103,7 +105,7 @@ def command(client: httpx2.Client, session: dict[str, Any], kind: str) -> httpx2
 
 
 def erased(client: httpx2.Client, session: dict[str, Any]) -> httpx2.Response:
-    """The erasure of a session's participant."""
+    """Request the erasure of a session's participant."""
     people = client.get(f"/api/studies/{STUDY}/participants").json()
     one = next(one for one in people if one["code"] == session["participant_code"])
     path = f"/api/studies/{STUDY}/participants/{one['id']}/erasure"
@@ -111,7 +113,7 @@ def erased(client: httpx2.Client, session: dict[str, Any]) -> httpx2.Response:
 
 
 def made_export(client: httpx2.Client) -> str:
-    """An export that is ready; its id."""
+    """Create an export, wait until it is ready and return its id."""
     ordered = client.post(f"/api/studies/{STUDY}/exports", json={"kind": "test"}).json()
     path = f"/api/exports/{ordered['id']}"
     wait_for(lambda: client.get(path).json()["state"] == "ready")
@@ -119,13 +121,13 @@ def made_export(client: httpx2.Client) -> str:
 
 
 def health(client: httpx2.Client) -> dict[str, Any]:
-    """How the server is."""
+    """Return the server's health."""
     told: dict[str, Any] = client.get("/api/health").json()
     return told
 
 
 def wait_for(is_so: Callable[[], bool]) -> None:
-    """Until it is; fails after a while."""
+    """Wait until the condition is true; fail after WAIT_S."""
     give_up_s = time.monotonic() + WAIT_S
     while not is_so():
         assert time.monotonic() < give_up_s
@@ -133,7 +135,7 @@ def wait_for(is_so: Callable[[], bool]) -> None:
 
 
 def fill_up(ballast: Path) -> None:
-    """Take every byte."""
+    """Use every free byte of the disk."""
     with ballast.open("wb", buffering=0) as file:
         for size in (1024 * 1024, 4096):
             with suppress(OSError):
@@ -146,7 +148,7 @@ def fill_up(ballast: Path) -> None:
 def test_a_full_disk_stops_acknowledgements_until_there_is_space(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A disk of 48 MiB without a free byte for 30 s; the warning of little space comes first."""
+    """A full disk of 48 MiB stops acknowledgements for 30 s, after a warning of low disk space."""
     folder = tmp_path / "live"
     with small_disk(folder / "data") as disk, LiveServer(folder) as server:
         with server.client() as client:
@@ -167,7 +169,7 @@ def test_a_full_disk_stops_acknowledgements_until_there_is_space(
 
 @contextmanager
 def small_disk(folder: Path) -> Iterator[Path]:
-    """A disk in memory, mounted; skips where that is not permitted."""
+    """Mount a small disk in memory; skip the test if mounting is not permitted."""
     folder.mkdir(parents=True)
     options = f"size={DISK_MIB}m"
     command = ["mount", "-t", "tmpfs", "-o", options, "tmpfs", str(folder)]
@@ -184,7 +186,7 @@ def small_disk(folder: Path) -> Iterator[Path]:
 
 
 def fill(ballast: Path) -> None:
-    """Take what space is left but a little."""
+    """Use nearly all free space of the disk."""
     free = os.statvfs(ballast.parent)
     with ballast.open("wb") as file:
         os.posix_fallocate(file.fileno(), 0, free.f_bavail * free.f_frsize - ENOUGH_BYTES)

@@ -1,4 +1,4 @@
-"""The emulated disk and the tracer below it, on files small enough to follow by hand."""
+"""Tests of the emulated disk and of the tracer, on files small enough to follow by hand."""
 
 import subprocess
 import sys
@@ -44,12 +44,12 @@ os.write(one.fileno(), b"again")
 
 
 def event(what: str, stamp: int, data: bytes = b"", *, offset: int = 0, path: str = FILE) -> Event:
-    """A call that returns before the next one begins."""
+    """Return a call that returns before the next one begins."""
     return Event(what, what, path, 2 * stamp, 2 * stamp + 1, 0, 0, offset=offset, data=data)
 
 
 def disk_after(events: Sequence[Event], until: int = NEVER - 1) -> Disk:
-    """The disk once all calls up to a stamp have begun or returned."""
+    """Return the disk after all calls up to a stamp have begun or returned."""
     disk = Disk(FOLDER)
     replay(disk, (moment for moment in timeline(events) if moment[0] <= until))
     return disk
@@ -57,7 +57,7 @@ def disk_after(events: Sequence[Event], until: int = NEVER - 1) -> Disk:
 
 @pytest.fixture
 def started() -> list[Event]:
-    """A file that is there for certain, with three sectors of ones."""
+    """Provide the calls that make a file certain, with three sectors of ones."""
     return [
         event("create", 1),
         event("write", 2, b"1" * 1536),
@@ -67,7 +67,7 @@ def started() -> list[Event]:
 
 
 def test_what_a_sync_covers_is_there_in_every_mood(started: list[Event]) -> None:
-    """Name, size and content; without the folder's sync the name may be missing."""
+    """Synced data exist in every mood of the disk; a name exists only if its folder was synced."""
     rng = np.random.default_rng(1)
     for mood in MOODS:
         assert disk_after(started).after_power_loss(rng, mood) == {"a": b"1" * 1536}
@@ -77,7 +77,7 @@ def test_what_a_sync_covers_is_there_in_every_mood(started: list[Event]) -> None
 
 
 def test_every_sector_holds_a_version_it_had_and_all_mixtures_come_up(started: list[Event]) -> None:
-    """Two writes over three sectors: each is as it was, or after the first, or after both."""
+    """Each of three sectors under two writes holds one of its versions, and all mixtures occur."""
     disk = disk_after(
         [*started, event("write", 5, b"2" * 1536), event("write", 6, b"3" * 600, offset=300)]
     )
@@ -97,7 +97,7 @@ def test_every_sector_holds_a_version_it_had_and_all_mixtures_come_up(started: l
 
 
 def test_a_sync_covers_only_what_had_returned_before_it_began(started: list[Event]) -> None:
-    """A write of another thread that was under way may be lost."""
+    """A sync does not cover another thread's write that had not returned when it began."""
     overlapping = replace(event("write", 5, b"2" * 512), ended=13)
     disk = disk_after([*started, overlapping, event("sync", 6)])
     assert disk.certain()["a"] == b"1" * 1536
@@ -106,7 +106,7 @@ def test_a_sync_covers_only_what_had_returned_before_it_began(started: list[Even
 
 
 def test_a_file_has_a_size_it_had(started: list[Event]) -> None:
-    """Cut and written again further on; what was never written is zeros or noise."""
+    """A truncated and extended file has one of its sizes; unwritten parts are zeros or noise."""
     cut = replace(event("truncate", 5), size=512)
     disk = disk_after([*started, cut, event("write", 6, b"2" * 512, offset=1024)])
     rng = np.random.default_rng(1)
@@ -127,7 +127,7 @@ def test_a_removed_file_may_come_back_until_its_folder_is_synced(started: list[E
 
 
 def test_the_tracer_sees_every_change_of_every_thread_and_process(tmp_path: Path) -> None:
-    """Replayed in full, a record of threads and a child gives the files they left."""
+    """Replaying a trace of threads and a child process reproduces the files that they left."""
     folder = tmp_path / "data"
     folder.mkdir()
     skip_without_tracing(tmp_path)
@@ -144,7 +144,7 @@ def test_the_tracer_sees_every_change_of_every_thread_and_process(tmp_path: Path
 
 
 def test_an_exit_code_comes_through_the_tracer(tmp_path: Path) -> None:
-    """A command that fails fails, one that is killed too."""
+    """The tracer returns the exit code of a command that failed or was killed."""
     skip_without_tracing(tmp_path)
     for script, code in (("exit 3", 3), ("kill -9 $$", 128 + 9)):
         command = traced(tmp_path / RECORD, tmp_path, ["sh", "-c", script])
@@ -152,7 +152,7 @@ def test_an_exit_code_comes_through_the_tracer(tmp_path: Path) -> None:
 
 
 def test_promises_are_read_from_the_bytes_however_they_are_cut() -> None:
-    """The same acknowledgement in one send, or byte by byte: made when its last byte leaves."""
+    """An acknowledgement sent whole or in pieces counts as made when its last byte is sent."""
     head = b"HTTP/1.1 101 Switching Protocols\r\nupgrade: websocket\r\n\r\n"
     welcome = b'{"type": "welcome", "session_id": "s", "positions": []}'
     ack = b'{"type":"ack","positions":[{"stream":"target","epoch":1,"next_seq":%06d}]}' % 12
@@ -172,7 +172,7 @@ def test_promises_are_read_from_the_bytes_however_they_are_cut() -> None:
 
 
 def skip_without_tracing(folder: Path) -> None:
-    """The kernel may not allow it."""
+    """Skip the test if the kernel does not allow tracing."""
     reason = why_not(folder)
     if reason is not None:
         pytest.skip(reason)

@@ -1,9 +1,9 @@
-"""Withdrawal and erasure with the real server: no byte of the participant is left.
+"""Tests of withdrawal and erasure with the real server: no byte of the participant remains.
 
-Fault 30 of the matrix, and of fault 29 that a restored backup does not undo an erasure. The oracle
-is a canary: every answer, note, reason and name of the participant holds their code, and every
-frame two numbers that nobody else has. It is searched in the tables, in every file of the data
-folder, in the server's log, and in a new export and a new backup.
+Fault 30 of the matrix, and from fault 29 that a restored backup does not undo an erasure. The test
+searches for canaries: every answer, note, reason and name of the participant contains their code,
+and every frame contains two numbers that occur nowhere else. It searches the tables, every file of
+the data folder, the server's log, and a new export and a new backup.
 """
 
 import shutil
@@ -44,7 +44,7 @@ DATABASE = "reembody.sqlite"
 
 @contextmanager
 def installed(folder: Path, engine: str) -> Iterator[Site]:
-    """A running server on the engine of this name, with its operator signed in."""
+    """Yield a running server on the named engine, with its operator signed in."""
     if engine == "sqlite":
         url = f"sqlite:///{folder / 'data' / DATABASE}"
         with LiveServer(folder) as server, signed_in(server, url) as site:
@@ -58,7 +58,7 @@ def installed(folder: Path, engine: str) -> Iterator[Site]:
 
 @contextmanager
 def signed_in(server: LiveServer, url: str) -> Iterator[Site]:
-    """Its operator, and a look at its database from outside."""
+    """Yield a site with a signed-in operator and direct access to the database."""
     with server.client() as operator:
         ok(operator.post("/api/login", json=CREDENTIALS))
         database = open_database(url)
@@ -70,14 +70,14 @@ def signed_in(server: LiveServer, url: str) -> Iterator[Site]:
 
 @dataclass(frozen=True)
 class Search:
-    """Everything that the product keeps or gives, searched for one visit."""
+    """Search everything that the product stores or exports for one visit."""
 
     site: Site
     visit: Visit
     elsewhere: Path
 
     def residuals(self) -> int:
-        """How often it is found: tables, files, log, a new export, a new backup."""
+        """Return the number of finds in tables, files, the log, a new export and a new backup."""
         return (
             sum(in_tables(self.visit, self.site.database.engine).values())
             + sum(self.files().values())
@@ -85,12 +85,12 @@ class Search:
         )
 
     def files(self) -> dict[str, int]:
-        """In the data folder with the write-ahead log, and in the server's log."""
+        """Return the finds in the data folder with the write-ahead log, and in the server's log."""
         folder = self.site.server.data_dir
         return in_files(self.visit, [*folder.rglob("*"), self.site.server._log_file])
 
     def in_new_copies(self) -> int:
-        """In an export of everything and in a backup that are made now."""
+        """Return the finds in a new export of everything and a new backup."""
         answer = self.site.operator.get(f"/api/studies/{STUDY}/export?kind=all")
         assert answer.is_success
         to = self.elsewhere / f"{len(list(self.elsewhere.iterdir()))}.reembody"
@@ -100,14 +100,14 @@ class Search:
 
 @pytest.fixture
 def elsewhere(tmp_path: Path) -> Path:
-    """A folder that is not the server's: backups go there."""
+    """Provide a folder outside the server's, for backups."""
     folder = tmp_path / "elsewhere"
     folder.mkdir()
     return folder
 
 
 def refused_after_withdrawal(site: Site, visit: Visit) -> int:
-    """Withdraw while the headset is connected; how many of its later frames were taken."""
+    """Withdraw while the headset is connected; return how many later frames were stored."""
     with site.headset(visit.headset_token) as headset:
         site.command(visit.session_id, "withdraw", reason=f"{visit.code} feels sick")
         headset.hear("state", lambda told: told["status"] == "withdrawn")
@@ -118,7 +118,7 @@ def refused_after_withdrawal(site: Site, visit: Visit) -> int:
 
 
 def settled(site: Site, visit: Visit, within_s: float = 60.0) -> Mapping[str, int]:
-    """Where a visit is found once its last movement has gone from batches into chunks."""
+    """Return where a visit is found once its last batches have been folded into chunks."""
     give_up_s = time.monotonic() + within_s
     waiting = select(func.count()).where(TelemetryBatch.session_id == visit.session_id)
     while True:
@@ -136,7 +136,10 @@ def settled(site: Site, visit: Visit, within_s: float = 60.0) -> Mapping[str, in
 def test_no_byte_of_an_erased_participant_is_left(
     tmp_path: Path, elsewhere: Path, engine: str
 ) -> None:
-    """Capture stops, the tables and files are searched, the skeleton verifies, others are whole."""
+    """No table, file or copy contains a byte of an erased participant, and others are unchanged.
+
+    Recording stops, and the remaining event log verifies.
+    """
     with installed(tmp_path / "live", engine) as site:
         visit, other = make_visit(site), make_visit(site, "P-0815")
         search, others = Search(site, visit, elsewhere), Search(site, other, elsewhere)
@@ -165,7 +168,11 @@ def test_no_byte_of_an_erased_participant_is_left(
 def test_what_cannot_be_overwritten_at_once_is_at_the_next_start(
     tmp_path: Path, elsewhere: Path
 ) -> None:
-    """While another session runs the file is not written anew; it is remembered, over a crash."""
+    """Data that cannot be overwritten while a session runs are overwritten at the next start.
+
+    The database file is not rewritten during the other session, and the pending work survives a
+    crash.
+    """
     with installed(tmp_path / "live", "sqlite") as site:
         visit, other = make_visit(site), make_visit(site, "P-0815")
         site.command(visit.session_id, "withdraw", reason="enough")
@@ -183,7 +190,10 @@ def test_what_cannot_be_overwritten_at_once_is_at_the_next_start(
 def test_a_restored_backup_does_not_undo_an_erasure(
     tmp_path: Path, elsewhere: Path, engine: str
 ) -> None:
-    """Into the same installation, and into a new one that has only the list of erasures."""
+    """A restored backup does not undo an erasure, in the same installation or a new one.
+
+    The new installation has only the list of erasures.
+    """
     backup = elsewhere / "older.reembody"
     with installed(tmp_path / "live", engine) as site:
         visit, other = make_visit(site), make_visit(site, "P-0815")
@@ -212,7 +222,7 @@ def test_a_restored_backup_does_not_undo_an_erasure(
 
 
 def in_a_new_installation(folder: Path, visit: Visit, backup: Path, listed: Path) -> int:
-    """Restore a backup where only the list of erasures was copied to; the residuals."""
+    """Restore a backup where only the list of erasures was copied; return the residuals."""
     server = LiveServer(folder)
     server.data_dir.mkdir(parents=True)
     shutil.copyfile(listed, server.data_dir / listed.name)
@@ -222,7 +232,7 @@ def in_a_new_installation(folder: Path, visit: Visit, backup: Path, listed: Path
 
 
 def test_an_older_file_put_in_the_databases_place_is_erased_at_the_start(tmp_path: Path) -> None:
-    """Somebody copies files instead of restoring: the list beside the database knows better."""
+    """An older database file copied into place is erased at the start from the list of erasures."""
     older = tmp_path / "older.sqlite"
     with installed(tmp_path / "live", "sqlite") as site:
         visit = make_visit(site)
@@ -245,7 +255,7 @@ def test_an_older_file_put_in_the_databases_place_is_erased_at_the_start(tmp_pat
 
 
 def test_a_list_that_was_lost_is_made_again_from_the_table(tmp_path: Path) -> None:
-    """At every start; it holds ids only."""
+    """A lost list of erasures is rebuilt from the table at every start, with ids only."""
     with installed(tmp_path / "live", "sqlite") as site:
         visit = make_visit(site)
         site.command(visit.session_id, "withdraw", reason="enough")

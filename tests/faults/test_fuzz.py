@@ -1,4 +1,4 @@
-"""Malformed messages: each is refused by itself, and nobody else notices."""
+"""Tests that each malformed message is rejected without affecting other sessions."""
 
 import asyncio
 import contextlib
@@ -38,7 +38,7 @@ ODD = ("null", "-1", "1e400", "NaN", '""', "[]", "{}", "true", "9" * 400, '"\\u0
 
 
 def malformed_batch(rng: np.random.Generator) -> bytes:
-    """A batch with some bytes changed, cut, doubled, or nothing like a batch."""
+    """Return a batch with bytes changed, cut or doubled, or random bytes."""
     data = bytearray(BATCH)
     match int(rng.integers(5)):
         case 0:
@@ -57,7 +57,7 @@ def malformed_batch(rng: np.random.Generator) -> bytes:
 
 
 def malformed_text(rng: np.random.Generator) -> str:
-    """A message with a value replaced, a piece cut out, or characters from anywhere."""
+    """Return a message with a value replaced, a part removed, or random characters inserted."""
     text = json.dumps(TEXTS[int(rng.integers(len(TEXTS)))])
     at, end = sorted(rng.integers(0, len(text) + 1, 2).tolist())
     match int(rng.integers(3)):
@@ -71,7 +71,7 @@ def malformed_text(rng: np.random.Generator) -> str:
 
 
 def crashes(rng: np.random.Generator, count: int) -> int:
-    """Messages that raised anything but the refusal they should."""
+    """Return how many messages raised anything but the expected rejection."""
     wrong = 0
     for at in range(count):
         try:
@@ -88,7 +88,7 @@ def crashes(rng: np.random.Generator, count: int) -> int:
 
 
 def test_every_malformed_message_is_refused_by_its_own_error() -> None:
-    """Nothing else is ever raised, whatever the bytes."""
+    """A malformed message only ever raises the error for malformed input."""
     found = crashes(np.random.default_rng(21), SHORT)
     note(21, f"malformed messages ({SHORT:,})", "crashes", found)
     assert found == 0
@@ -97,7 +97,7 @@ def test_every_malformed_message_is_refused_by_its_own_error() -> None:
 @pytest.mark.long
 @pytest.mark.timeout(1800)
 def test_a_million_malformed_messages() -> None:
-    """The long form."""
+    """None of a million malformed messages raises an unexpected error."""
     found = crashes(np.random.default_rng(22), LONG)
     note(21, f"malformed messages ({LONG:,})", "crashes", found)
     assert found == 0
@@ -105,7 +105,7 @@ def test_a_million_malformed_messages() -> None:
 
 @pytest.mark.timeout(120)
 def test_a_healthy_session_does_not_notice(live_server: LiveServer) -> None:
-    """One headset sends rubbish; the server lives, and the other headset's record is whole."""
+    """While one headset sends malformed messages, the server and another session are unaffected."""
     (healthy,) = pair_headsets(live_server, 1)
     before = live_server.pid
     with open_site(live_server) as site:

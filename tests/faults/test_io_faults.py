@@ -1,6 +1,6 @@
-"""A disk that refuses one call: in words, with nothing lost, left behind or moved.
+"""Tests that a failed disk call is reported in words, with nothing lost, left over or moved.
 
-The benchmark `io_faults` does this at every site of eight operations; here are a few of each kind.
+The benchmark `io_faults` does this at every call of eight operations; here are a few of each kind.
 """
 
 import json
@@ -24,7 +24,7 @@ FEW, MANY = 5, 40
 
 @pytest.fixture(scope="module")
 def source(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder that every run begins with."""
+    """Provide the data folder with which every run begins."""
     folder = tmp_path_factory.mktemp("source")
     refused = why_not(folder)
     if refused or injecting_machine() is None:
@@ -34,7 +34,7 @@ def source(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def tried(source: Path, operation: str, most: int) -> list[dict[str, Any]]:
-    """About so many faults in an operation."""
+    """Inject about `most` faults into an operation and return the findings."""
     result = source.with_name("result.json")
     workers = nursery().workers.hex()
     arguments = [str(source), operation, workers, str(most), str(result)]
@@ -56,7 +56,10 @@ def tried(source: Path, operation: str, most: int) -> list[dict[str, Any]]:
     ],
 )
 def test_a_disk_that_refuses_is_said_in_words(source: Path, operation: str, most: int) -> None:
-    """Nothing acknowledged is lost, no healthy database moved, no file left that nobody knows."""
+    """A failed disk call is reported without loss of acknowledged data or a traceback.
+
+    No healthy database is moved, and no unknown file is left.
+    """
     found = tried(source, operation, most)
     hit = [one for one in found if one["hit"]]
     note(6, f"{operation}: a call to the disk fails", "injected", len(hit))

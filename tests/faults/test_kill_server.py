@@ -1,6 +1,6 @@
-"""The server is killed again and again, in every kind of step, and every session is finished.
+"""Tests that every session is completed although the server is killed in every kind of step.
 
-Fault 1 of the matrix: nothing that was acknowledged is lost, and the same phase goes on with the
+Fault 1 of the matrix: nothing that was acknowledged is lost, and the same phase continues with the
 active time it had.
 """
 
@@ -26,7 +26,7 @@ FRAME_S = 1 / 90
 SHORT_KILLS = 6
 SPEED = 20.0
 SHORT_SPEED = 10.0
-# A second of a machine's time each: longer than the longest wait for a kill in it.
+# Each lasts a second of real time: longer than the longest wait before a kill.
 SHORT = Lengths(15.0, 10.0, 2.5)
 
 
@@ -42,7 +42,7 @@ def test_kills_lose_nothing_and_every_phase_goes_on(
 @pytest.mark.long
 @pytest.mark.timeout(3600)
 def test_two_hundred_kills_lose_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Ten sessions and more of the shipped length, each with other moments."""
+    """Two hundred kills in sessions of the shipped length lose nothing that was acknowledged."""
     kills = kill_until(
         tmp_path, 10 * KILLS_PER_SESSION, SHIPPED, SPEED, first_seed=2, capsys=capsys
     )
@@ -58,7 +58,7 @@ def kill_until(
     first_seed: int,
     capsys: pytest.CaptureFixture[str],
 ) -> list[Kill]:
-    """Rehearse sessions, each to its end, until there were so many kills; every one is checked."""
+    """Rehearse whole sessions until there were `wanted` kills, and check each of them."""
     kills: list[Kill] = []
     seed = first_seed
     while len(kills) < wanted:
@@ -128,7 +128,7 @@ def check_kill(kill: Kill) -> None:
 def check_session(
     server: LiveServer, session_id: str, ledger: LedgerJournal, lengths: Lengths
 ) -> None:
-    """The session was finished as if nothing had happened."""
+    """Assert that the session was completed as if no kill had happened."""
     with record_of(server) as db:
         found = reconcile(db, session_id, ledger)
         rows = events_of(db, session_id)
@@ -141,7 +141,7 @@ def check_session(
         view = client.get(f"/api/sessions/{session_id}").json()
         answers = client.get(f"/api/sessions/{session_id}/answers").json()
     assert view["status"] == "completed"
-    # Never done over, never skipped, each form stored once.
+    # No step was repeated or skipped, and each form is stored once.
     assert {(step["status"], step["attempt"]) for step in view["steps"]} == {("done", 1)}
     assert len({row["administration"] for row in answers}) == len(answers) == 7
     phases = view["phases"]

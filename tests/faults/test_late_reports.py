@@ -1,4 +1,4 @@
-"""A lost headset's journal tells late what the server could not know: the two sides agree again."""
+"""Tests that late reports from a lost headset's journal correct what the server had assumed."""
 
 import pytest
 
@@ -12,21 +12,24 @@ FOOT = next(step.key for step in PLAN if step.limb == "foot")
 
 
 def lost(cause: str, active_s: float = 20.0) -> Run:
-    """A foot phase whose headset was lost while the clock ran."""
+    """Return a run in a foot phase whose headset was lost while the clock ran."""
     run = Run().begin(FOOT)
     run.do(c.HeadsetLost(active_s=active_s, cause=cause))
     return run
 
 
 def phase_of(run: Run) -> PhaseState:
-    """The phase under way."""
+    """Return the current phase."""
     assert run.state.phase is not None
     return run.state.phase
 
 
 @pytest.mark.parametrize("cause", ASSUMED)
 def test_a_walk_back_that_began_before_the_loss_is_taken(cause: str) -> None:
-    """And its end lets the clock run again, without anybody's resume."""
+    """A walk back that began before the loss is accepted, and its end restarts the clock.
+
+    No operator has to resume the phase.
+    """
     run = lost(cause)
     run.report("walk_back_started", 20.5)
     assert (phase_of(run).status, phase_of(run).pause_cause) == ("walk_back", None)
@@ -36,7 +39,7 @@ def test_a_walk_back_that_began_before_the_loss_is_taken(cause: str) -> None:
 
 @pytest.mark.parametrize("cause", ASSUMED)
 def test_a_phase_whose_time_was_up_before_the_loss_ends(cause: str) -> None:
-    """Nothing is left to resume."""
+    """A phase whose time was up before the headset was lost ends without a resume."""
     run = lost(cause, active_s=59.5)
     run.report("time_up", 60.0)
     run.report("ended", 60.0)
@@ -52,7 +55,7 @@ def test_the_operators_early_resume_is_forgotten_with_the_assumed_pause() -> Non
 
 
 def test_a_pause_that_somebody_made_is_not_corrected() -> None:
-    """The headset itself stood still: nothing can have happened in its clock."""
+    """A pause that the headset itself reported is not corrected by later reports."""
     run = Run().begin(FOOT)
     run.report("paused", 20.0)
     for what in ("walk_back_started", "time_up"):

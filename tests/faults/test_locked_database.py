@@ -1,4 +1,4 @@
-"""Another program holds the database: telemetry waits, requests are told, nothing is lost.
+"""Tests that telemetry waits and requests are rejected without loss while the database is locked.
 
 Fault 5 of the matrix: a viewer or a backup that keeps a transaction open.
 """
@@ -30,7 +30,7 @@ LONGEST_WRITE_S = 5.0
 def test_a_locked_database_costs_nothing_but_time(
     tmp_path: Path, lock: str, lasts_s: float, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Headsets stream, one joins late, requests of all kinds come; all is stored in the end."""
+    """A locked database delays streams, a late headset and requests, and everything is stored."""
     with LiveServer(tmp_path / "live") as server:
         *headsets, latecomer = pair_headsets(server, 3)
         file = server.data_dir / "reembody.sqlite"
@@ -52,7 +52,7 @@ def test_a_locked_database_costs_nothing_but_time(
 
 
 def check_waits(watch: Watch, lasts_s: float) -> None:
-    """The queue of a headset holds what it made meanwhile and no more; nobody waits for long."""
+    """Assert that a headset's queue is bounded by the outage and that no request waits for long."""
     assert watch.reason == "another program has locked the database"
     # 2 streams of 15 messages a second, a report a second, and what was under way.
     assert watch.longest_queue <= (lasts_s + LONGEST_WRITE_S) * 31 + 31

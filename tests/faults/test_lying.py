@@ -1,4 +1,4 @@
-"""A headset that lies is noticed, never believed silently; an honest one is never accused."""
+"""Tests that impossible data from a headset are always noticed, and correct data never doubted."""
 
 from collections import Counter
 from collections.abc import Iterator
@@ -29,7 +29,7 @@ MANY_HONEST, MANY_LYING = 300, 1000
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
-    """An application in simulated time."""
+    """Provide an application in simulated time."""
     folder: Path = tmp_path_factory.mktemp("lying")
     text = short_study(phase_s=DURATION_S, roam_s=ROAM_S, around_s=FREEZE_S)
     site = Site.open(fresh_sqlite(folder / "reembody.sqlite"), folder, text, KEY)
@@ -38,18 +38,18 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
 
 
 def lying(site: Site, count: int) -> list[Outcome]:
-    """So many streams, every lie in its turn."""
+    """Run `count` streams with each lie in turn."""
     names = [name for name in LIES if name not in CORRECTED]
     return [play(site, seed, names[seed % len(names)]) for seed in range(count)]
 
 
 def honest(site: Site, count: int) -> list[Outcome]:
-    """So many honest streams."""
+    """Run `count` correct streams."""
     return [play(site, 1_000_000 + seed) for seed in range(count)]
 
 
 def tell(outcomes: list[Outcome], what: str) -> list[str]:
-    """The figures, and every stream that did not end as it should."""
+    """Report the figures and return every stream with an unexpected outcome."""
     lies = what == "lying"
     wrong = [
         f"{one.seed} {one.lie}: {one.status} {one.refusals} {[d.words for d in one.doubts]}"
@@ -63,7 +63,7 @@ def tell(outcomes: list[Outcome], what: str) -> list[str]:
 
 
 def test_no_lie_is_believed(site: Site) -> None:
-    """Whatever is told that cannot be is refused, or stored and doubted."""
+    """Every impossible report is rejected, or stored with a doubt."""
     assert tell(lying(site, LYING), "lying") == []
 
 
@@ -73,7 +73,7 @@ def test_no_honest_headset_is_doubted(site: Site) -> None:
 
 
 def test_a_lie_is_on_the_receipt_and_before_the_operator(site: Site) -> None:
-    """The receipt names it, an alarm says that the phase does not count, and it does not."""
+    """A doubt is named on the receipt, invalidates the phase and raises an alarm that says so."""
     told = play(site, 1, "8 s in a moment")
     Summariser(site.context)._run(told.session_id, 1, tuple(SUMMARIES))
     with site.context.database.reading() as db:
@@ -106,7 +106,7 @@ def test_a_wrong_count_is_corrected_by_a_later_honest_one(site: Site) -> None:
 
 
 def test_a_run_of_the_highest_number_locks_nobody_out(site: Site) -> None:
-    """The next run of the client gets a number that it can use, and that nobody had."""
+    """After a client claimed the highest epoch, later runs get unused epochs."""
     session_id = site.join(step=HAND)
     with site.context.database.writing() as db:
         now = site.context.clock.utc_now()
@@ -128,7 +128,7 @@ def test_who_takes_over_is_not_told_more_than_the_phase_has(site: Site) -> None:
 
 
 def stream_row(session_id: str, epoch: int, now: datetime) -> TelemetryStream:
-    """The row of a stream in which one report came."""
+    """Return the row of a stream that received one report."""
     return TelemetryStream(
         session_id=session_id,
         stream="reports",

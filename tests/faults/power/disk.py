@@ -1,4 +1,4 @@
-"""The disk below a trace: replays its events and says what could be found after a power loss."""
+"""Replay the events of a trace on an emulated disk and return its states after a power loss."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
@@ -20,7 +20,7 @@ MOODS = ("nothing", "everything", "scattered", "most", "few", "later first", "ea
 
 @dataclass
 class _Name:
-    """What a name stood for: the certain file (or none) first, then each change with its stamp."""
+    """The files that a name may refer to: the certain one (or none), then each change."""
 
     certain: TracedFile | None = None
     changes: list[tuple[int, TracedFile | None]] = field(default_factory=list)
@@ -30,7 +30,7 @@ class _Name:
         return self.changes[-1][1] if self.changes else self.certain
 
     def sync(self, began: int) -> None:
-        """The folder's sync that began then has returned."""
+        """Make changes certain that precede a completed sync of the folder, begun at `began`."""
         while self.changes and self.changes[0][0] < began:
             self.certain = self.changes.pop(0)[1]
 
@@ -40,21 +40,21 @@ class _Name:
 
 @dataclass
 class Disk:
-    """A folder that was empty before the trace. Feed it with `replay`, then take images.
+    """An emulated folder that was empty before the trace. Call `replay`, then take images.
 
-    A folder within is there with its first file: nobody cares for empty ones.
+    A subfolder exists as soon as it has a file: empty folders do not matter.
     """
 
     folder: str
     _names: dict[str, _Name] = field(default_factory=dict)
 
     def begin(self, event: Event) -> None:
-        """A call has begun: from now on it may have happened."""
+        """Apply a call that has begun: from now on it may have taken effect."""
         if Path(event.path).name == RESERVE:
-            return  # Room, no data: nobody ever reads it.
+            return  # Reserved space without data: it is never read.
         if event.what in ("write", "truncate"):
             name = self._names.get(event.path)
-            # A removed file that is still open is nobody's concern.
+            # A removed file that is still open does not matter.
             if name is not None and name.now is not None:
                 name.now.changes.append(event)
         elif event.what == "create":
@@ -69,7 +69,7 @@ class Disk:
             raise ValueError(f"{event.call} on {event.path} is not emulated")
 
     def end(self, event: Event) -> None:
-        """A call has returned: a sync makes certain what had returned before it began."""
+        """Apply a call that has returned: a sync makes earlier completed calls certain."""
         if event.what != "sync":
             return
         synced = self._names.get(event.path)
@@ -81,7 +81,7 @@ class Disk:
             synced.now.sync(event.began)
 
     def certain(self) -> Image:
-        """Only what no power loss can take."""
+        """Return only the data that no power loss can remove."""
         return {
             self._in_folder(path): bytes(name.certain.certain)
             for path, name in self._names.items()
@@ -89,7 +89,7 @@ class Disk:
         }
 
     def after_power_loss(self, rng: Rng, mood: str) -> Image:
-        """One of the many ways the disk could look."""
+        """Return one of the many possible states of the disk after a power loss."""
         found: Image = {}
         sector = int(rng.choice((512, 4096)))
         for path, name in sorted(self._names.items()):
@@ -127,14 +127,14 @@ def _torn(file: TracedFile, sector: int, rng: Rng, mood: str) -> bytes:
 def _size(sizes: list[int], rng: Rng, mood: str) -> int:
     if mood == "nothing":
         return sizes[0]
-    # Data that are there count only as far as the size does, so give them a chance.
+    # Data beyond the file's size are not visible, so the largest size is chosen often.
     if mood != "scattered" or rng.random() < 0.5:
         return sizes[-1]
     return sizes[int(rng.integers(len(sizes)))]
 
 
 def _choice(rng: Rng, mood: str, count: int) -> Choice:
-    """Which version a sector has, for a mood."""
+    """Return the function that chooses the version of a sector, for a mood."""
     cut = int(rng.integers(count + 1))
 
     def choose(places: list[int]) -> int:
@@ -159,7 +159,7 @@ def _choice(rng: Rng, mood: str, count: int) -> Choice:
 
 
 def timeline(events: Sequence[Event]) -> list[tuple[int, bool, Event]]:
-    """(stamp, whether it is the return, event) of every call that did not fail, in order."""
+    """Return (stamp, whether it is the return, event) of every call that did not fail, in order."""
     moments = [(event.began, False, event) for event in events if not event.failed]
     moments += [
         (event.ended, True, event) for event in events if not event.failed and event.ended != NEVER
@@ -168,7 +168,7 @@ def timeline(events: Sequence[Event]) -> list[tuple[int, bool, Event]]:
 
 
 def replay(disk: Disk, moments: Iterable[tuple[int, bool, Event]]) -> None:
-    """Let the disk live through some of a timeline."""
+    """Apply a part of a timeline to the disk."""
     for _, returned, event in moments:
         if returned:
             disk.end(event)

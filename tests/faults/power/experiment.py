@@ -1,4 +1,4 @@
-"""Headsets stream to a traced server; then power fails at many moments of the record."""
+"""Stream from headsets to a traced server, then emulate power losses throughout the trace."""
 
 import asyncio
 import time
@@ -24,7 +24,7 @@ Flush = tuple[int, int, Mapping[Position, int]]
 
 @dataclass(frozen=True)
 class Recording:
-    """A run of a server: what it did, what it promised, and what its headsets know."""
+    """A run of a server: its calls, its promises, and the journals of its headsets."""
 
     folder: Path
     events: Sequence[Event]
@@ -39,8 +39,9 @@ class Recording:
         return str((self.folder / "data").resolve())
 
     def with_earlier_acks(self) -> "Recording":
-        """The same run, had the server acknowledged before the flush: a promise counts from the
-        moment when the last sync before it began.
+        """Return the run as if the server had acknowledged before the flush.
+
+        Each promise counts from the moment when the last sync before it began.
         """
         began = np.array([e.began for e in self.events if e.what == "sync"])
         earlier = []
@@ -53,7 +54,7 @@ class Recording:
 def record_streaming(
     folder: Path, headsets: int, duration_s: float, command: Sequence[str] = REEMBODY
 ) -> Recording:
-    """Stream in real time for so long and stop the server."""
+    """Stream in real time for `duration_s`, stop the server and return the recording."""
     folder.mkdir()
     with traced_server(folder, command) as server:
         paired = pair_headsets(server, headsets)
@@ -66,10 +67,10 @@ def record_streaming(
 
 @dataclass(frozen=True)
 class AckProof:
-    """Every acknowledgement of a record beside the flush that made it true.
+    """The acknowledgements of a recording, compared with the flushes that made them true.
 
-    `early`: acknowledgements sent when no completed flush held what they promise. `waits_ms`: from
-    that flush's return to the send, of each of the others.
+    `early`: acknowledgements sent before a completed flush contained the promised data. `waits_ms`:
+    for each of the others, the time from that flush's return to the send.
     """
 
     acks: int
@@ -79,9 +80,9 @@ class AckProof:
 
 
 def prove_acks(recording: Recording) -> AckProof:
-    """After each flush, open what is certain by then and read the positions; then compare.
+    """After each flush, open the certain data and compare its positions with the acknowledgements.
 
-    So it is SQLite's own recovery that says whether the bytes on disk hold a position.
+    SQLite's own recovery thus decides whether the bytes on disk contain a position.
     """
     flushed = recording.flushes
     if not flushed:
@@ -112,7 +113,7 @@ def _holds(stored: Mapping[Position, int], promised: Mapping[Position, int]) -> 
 
 @dataclass(frozen=True)
 class CrashPoint:
-    """Power fails when the call with this stamp has just begun or returned."""
+    """A power loss just after the call with this stamp has begun or returned."""
 
     stamp: int
     where: str
@@ -121,7 +122,7 @@ class CrashPoint:
 
 @dataclass(frozen=True)
 class Crash:
-    """A crash point, and what the image of the disk was worth."""
+    """A crash point, and the verdict on the disk image it left."""
 
     point: CrashPoint
     promised: int
@@ -129,7 +130,7 @@ class Crash:
 
 
 def draw_crash_points(recording: Recording, count: int, rng: Rng) -> list[CrashPoint]:
-    """Moments around every kind of call, in order; every mood of the disk comes up in each."""
+    """Draw moments around every kind of call, in order of time, with every mood of the disk."""
     places = _places(recording)
     kinds = sorted(places)
     drawn = []
@@ -160,7 +161,7 @@ def _places(recording: Recording) -> dict[str, list[int]]:
 
 
 def crash_at(recording: Recording, points: Iterable[CrashPoint], rng: Rng) -> list[Crash]:
-    """Let power fail at each point (in order) and open what is left."""
+    """Emulate a power loss at each point (in order) and open the image it left."""
     disk, moments = Disk(recording.data_dir), timeline(recording.events)
     crashes, at = [], 0
     for point in points:

@@ -1,4 +1,4 @@
-"""One file as a disk may hold it: what is certain, and every change since."""
+"""The states in which a disk may hold one file: its certain content, and every change since."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -14,27 +14,27 @@ Choice = Callable[[list[int]], int]
 
 @dataclass
 class TracedFile:
-    """The content that is certain, and the changes that are not, oldest first."""
+    """The certain content of a file, and the uncertain changes, oldest first."""
 
     certain: bytearray = field(default_factory=bytearray)
     changes: list[Event] = field(default_factory=list)
 
     def sync(self, began: int) -> None:
-        """A sync that began then has returned: what was written before is certain."""
+        """Make earlier writes certain: a sync that began at `began` has returned."""
         for change in self.changes:
             if change.ended < began:
                 _apply(self.certain, change)
         self.changes = [change for change in self.changes if change.ended >= began]
 
     def sizes(self) -> list[int]:
-        """The sizes it had since the last sync, the certain one first."""
+        """Return the sizes of the file since the last sync, the certain one first."""
         sizes = [len(self.certain)]
         for change in self.changes:
             sizes.append(_size_after(sizes[-1], change))
         return sizes
 
     def touched(self, sector: int) -> dict[int, list[int]]:
-        """Sectors that may hold something else, with the places of their changes."""
+        """Return the sectors that may have changed, with the indices of their changes."""
         found: dict[int, list[int]] = {}
         size = len(self.certain)
         for place, change in enumerate(self.changes):
@@ -62,12 +62,12 @@ class TracedFile:
 
 @dataclass(frozen=True)
 class _Versions:
-    """Single sectors after some of their changes."""
+    """Compute single sectors of a file after some of their changes."""
 
     file: TracedFile
 
     def at(self, start: int, end: int, places: list[int]) -> bytes:
-        """A whole sector: where a file ends within it, zeros follow."""
+        """Return a whole sector, padded with zeros if the file ends within it."""
         piece = bytearray(self.file.certain[start:end])
         piece += bytes(end - start - len(piece))
         for place in places:
@@ -101,8 +101,8 @@ def _size_after(size: int, change: Event) -> int:
 
 
 def _span(size: int, change: Event) -> tuple[int, int]:
-    """The bytes that a change touches in a file of that size."""
+    """Return the byte range that a change affects in a file of that size."""
     if change.what == "truncate":
         return min(size, change.size), max(size, change.size)
-    # What lies between the end and a write behind it becomes zeros.
+    # The gap between the end of the file and a later write becomes zeros.
     return min(size, change.offset), change.offset + len(change.data)

@@ -1,4 +1,4 @@
-"""Opening what a power loss left: with SQLite, then as the server's next start would."""
+"""Open the state after a power loss: with SQLite, then as the server's next start would."""
 
 import shutil
 import sqlite3
@@ -25,9 +25,10 @@ DATABASE = "reembody.sqlite"
 
 @dataclass(frozen=True)
 class Verdict:
-    """What an image is worth. `lost`: promised frames, reports and sessions that are not there.
+    """The comparison of a disk image with the promises.
 
-    `corrupt`: what SQLite says of a broken file, empty if it is sound.
+    `lost`: promised frames, reports and sessions that are missing. `corrupt`: what SQLite reports
+    about a broken file, empty if it is sound.
     """
 
     corrupt: str = ""
@@ -39,14 +40,14 @@ class Verdict:
 
 @dataclass(frozen=True)
 class Promised:
-    """Everything that was promised up to a moment."""
+    """Everything that was promised up to a given moment."""
 
     positions: Mapping[Position, int]
     sessions: frozenset[str]
 
 
 def promised_by(promises: Iterable[Promise], stamp: int) -> Promised:
-    """What had been promised when the call with this stamp began."""
+    """Return everything that had been promised when the call with this stamp began."""
     positions: dict[Position, int] = {}
     sessions = set()
     for promise in promises:
@@ -58,7 +59,7 @@ def promised_by(promises: Iterable[Promise], stamp: int) -> Promised:
 
 
 def write_image(folder: Path, image: Image) -> Path:
-    """Put an image into an emptied folder; where its database is."""
+    """Write an image into an emptied folder and return the path of its database."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir()
     for name, content in image.items():
@@ -68,7 +69,7 @@ def write_image(folder: Path, image: Image) -> Path:
 
 
 def positions_in(database: Path) -> dict[Position, int]:
-    """How far each stream is stored; nothing where there is no such table yet."""
+    """Return how far each stream is stored; empty if the table does not exist yet."""
     with closing(sqlite3.connect(database)) as connection:
         try:
             rows = connection.execute(
@@ -82,9 +83,9 @@ def positions_in(database: Path) -> dict[Position, int]:
 
 
 def judge(database: Path, promised: Promised, ledgers: Mapping[str, LedgerJournal]) -> Verdict:
-    """Start with an image and compare it with what was promised; `ledgers` by session.
+    """Start with an image and compare it with the promises; `ledgers` by session.
 
-    A start that puts the database away as damaged counts as corruption, too.
+    A start that quarantines the database as damaged counts as corruption, too.
     """
     try:
         prepare_database(Settings(data_dir=database.parent), Clock())

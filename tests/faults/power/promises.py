@@ -1,6 +1,6 @@
-"""What a server promised, read from the bytes it sent: acknowledgements, welcomes, new sessions.
+"""Read a server's promises from the bytes it sent: acknowledgements, welcomes, new sessions.
 
-A promise is made when its last byte is handed to the network, whether or not anybody receives it.
+A promise is made when its last byte is passed to the network, whether or not it is received.
 """
 
 import json
@@ -16,10 +16,10 @@ TEXT, HEADER_END = 0x1, b"\r\n\r\n"
 
 @dataclass(frozen=True)
 class Promise:
-    """These positions (all of `seq <` the number) and sessions are on disk, said at that moment.
+    """A statement that these positions (all of `seq <` the number) and sessions are on disk.
 
     `began`: the stamp of the call that sent it. `is_ack`: an acknowledgement, not a welcome or the
-    answer to a request.
+    response to a request.
     """
 
     began: int
@@ -30,7 +30,7 @@ class Promise:
 
 
 def promises_of(events: Sequence[Event]) -> list[Promise]:
-    """Every promise of a record, in the order in which they were made."""
+    """Return every promise of a trace, in the order in which they were made."""
     sent: dict[str, list[Event]] = {}
     for event in events:
         if event.what == "send" and not event.failed:
@@ -72,7 +72,7 @@ def _on_websocket(talk: "_Talk") -> Iterator[Promise]:
 
 @dataclass
 class _Talk:
-    """The bytes of a connection in order; `last` is the call that sent the last of those taken."""
+    """The bytes of a connection in order; `last` is the call that sent the last byte taken."""
 
     sends: Sequence[Event]
     _at: int = 0
@@ -101,8 +101,9 @@ class _Talk:
 
 
 def _messages(talk: _Talk) -> Iterator[bytes]:
-    """The text messages of a server's side of a WebSocket (RFC 6455, 5.2), neither masked nor
-    compressed.
+    """Yield the text messages that a server sent over a WebSocket (RFC 6455, 5.2).
+
+    They are neither masked nor compressed.
     """
     parts: list[bytes] = []
     kind = 0
@@ -135,6 +136,6 @@ def _length(lines: Iterable[str]) -> int | None:
 
 
 def _created(body: bytes) -> str:
-    """The id of the session that a response says was made."""
+    """Return the id of the session that a response reports as created, or "" if there is none."""
     answer = json.loads(body)
     return str(answer["id"]) if isinstance(answer, dict) and "study_version" in answer else ""
