@@ -64,7 +64,7 @@ QUERIES = {"/api/studies/{key}/diff": {"from": "1", "to": "1"}}
 
 @dataclass(frozen=True)
 class Canaried:
-    """A study with one session (or two that held one slot), and how to find what it hides."""
+    """A study with one session (or two that used one slot), and the pattern of its canaries."""
 
     world: str
     key: str

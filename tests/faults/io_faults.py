@@ -282,7 +282,7 @@ def erased_away(fact: str) -> bool:
 
 
 def looked_at(operation: str, folder: Path, source: Source, outcome: Outcome) -> dict[str, Any]:
-    """After a run: start a server, or do it again where there is none yet; what is wrong."""
+    """Start a server after a run, or repeat the operation if there are no data; return problems."""
     lost, before = [], facts_of_source(source)
     again = operation if operation in EMPTY and not outcome.ok else "start"
     recovered = done(again, folder, source)

@@ -49,7 +49,7 @@ def seen(state: HeadsetState | None) -> tuple[int, str]:
 
 
 def draw_schedule(rng: np.random.Generator) -> list[Target]:
-    """Somewhat more targets than KILLS_PER_SESSION: a short step may be over before it is met."""
+    """Draw more targets than KILLS_PER_SESSION: a short step may end before it is observed."""
     targets = [_target(SETUP_STEPS - 1, "setup", rng) for _ in range(3)]
     targets += [_target(FREE_ROAM, "free_roam", rng) for _ in range(2)]
     for task in range(TASKS):

@@ -146,7 +146,7 @@ def check_rows(db: Session, file: Path) -> None:
 
 
 def go_on(server: LiveServer, session_id: str) -> None:
-    """The session is where it was, its clock stopped; its headset has to be paired again."""
+    """Assert that the session is at the same step with a stopped clock, and pair its headset."""
     with server.client() as client:
         assert client.post("/api/login", json=CREDENTIALS).is_success
         view = client.get(f"/api/sessions/{session_id}").json()

@@ -143,7 +143,7 @@ def _moment(cast: Cast) -> tuple[object, ...]:
 
 
 async def _watched(cast: Cast, spies: list[Spy]) -> None:
-    """Listen, and look at one kind of moment after the other, until the rehearsal is over."""
+    """Record the streams and request everything once per kind of moment in a rehearsal."""
     session_id = cast.operator.session_id
     seen: set[tuple[object, ...]] = set()
     async with asyncio.TaskGroup() as group:
@@ -281,7 +281,7 @@ def test_an_order_is_not_known_from_a_session_that_gave_its_slot_up(fresh_lab: L
 
 
 def test_every_column_that_could_tell_a_condition_is_emptied_or_known_to_be_harmless() -> None:
-    """A new column that is named after a condition, a latency, an order or a hash is decided on."""
+    """Every column named after a condition, latency, order or hash is emptied or harmless."""
     telling = re.compile("condition|latency|order|hash|slot|delay|lag")
     told = {
         column.name

@@ -90,7 +90,7 @@ def refusal(server: LiveServer) -> str:
 def test_it_is_put_away_and_a_backup_brings_everything_back(
     tmp_path: Path, damage: Callable[[LiveServer], None], how_it_ends: str
 ) -> None:
-    """Refused at every start until the backup is restored; what was found is kept as it was."""
+    """A damaged database is quarantined unchanged, and a restored backup replaces it."""
     server = LiveServer(tmp_path / "live").start()
     made = reembody(server, "backup", tmp_path / "all.reembody", "--json").json
     write_much(server)
@@ -155,7 +155,7 @@ def test_a_torn_log_is_an_ordinary_start(tmp_path: Path) -> None:
 
 
 def test_a_newer_programs_database_is_refused_and_left_alone(tmp_path: Path) -> None:
-    """The message names its schema and what to do."""
+    """A database of a newer program is refused unchanged, with its schema and the remedy."""
     server = LiveServer(tmp_path / "live").start()
     server.stop()
     with closing(sqlite3.connect(file_of(server))) as connection:

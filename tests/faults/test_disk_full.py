@@ -33,7 +33,7 @@ WAIT_S = 30.0
 def test_a_server_that_may_not_write_says_so_and_goes_on_when_it_may(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """No file can grow (RLIMIT_FSIZE) for three seconds: nothing acknowledged is lost."""
+    """A server whose files cannot grow (RLIMIT_FSIZE) for 3 s loses nothing acknowledged."""
     with LiveServer(tmp_path / "live") as server:
         headsets = pair_headsets(server, 2)
         _, hard = resource.prlimit(server.pid, resource.RLIMIT_FSIZE)

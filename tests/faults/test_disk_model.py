@@ -117,7 +117,7 @@ def test_a_file_has_a_size_it_had(started: list[Event]) -> None:
 
 
 def test_a_removed_file_may_come_back_until_its_folder_is_synced(started: list[Event]) -> None:
-    """As SQLite's log does when the server was stopped."""
+    """A removed file, such as SQLite's log, may reappear until its folder is synced."""
     gone = [*started, event("unlink", 5)]
     rng = np.random.default_rng(1)
     found = [disk_after(gone).after_power_loss(rng, "scattered") for _ in range(50)]

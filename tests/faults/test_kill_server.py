@@ -34,7 +34,7 @@ SHORT = Lengths(15.0, 10.0, 2.5)
 def test_kills_lose_nothing_and_every_phase_goes_on(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A session at high speed, killed again and again from its set-up to its last phase."""
+    """A session whose server is killed from set-up to the last phase completes without loss."""
     kills = kill_until(tmp_path, SHORT_KILLS, SHORT, SHORT_SPEED, first_seed=1, capsys=capsys)
     assert {"setup", "preparing", "running"} <= {kill.before.kind for kill in kills}
 
@@ -115,7 +115,7 @@ async def _rehearse(
 
 
 def check_kill(kill: Kill) -> None:
-    """What was promised is on disk, once; the next server stands where the dead one stood."""
+    """Assert that acknowledged data are stored once and the session resumes at the same place."""
     assert (kill.lost, kill.surplus) == (0, 0), kill
     before, after = kill.before, kill.after
     assert after.version >= before.version, kill

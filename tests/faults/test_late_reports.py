@@ -47,7 +47,10 @@ def test_a_phase_whose_time_was_up_before_the_loss_ends(cause: str) -> None:
 
 
 def test_the_operators_early_resume_is_forgotten_with_the_assumed_pause() -> None:
-    """The headset was never paused, so it owes no resume."""
+    """An operator's early resume is dropped when the assumed pause proves to be wrong.
+
+    The headset was never paused, so it sends no resume.
+    """
     run = lost("server_restarted")
     run.do(c.Resume(headset_connected=True))
     run.report("walk_back_started", 21.0)

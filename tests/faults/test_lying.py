@@ -68,7 +68,7 @@ def test_no_lie_is_believed(site: Site) -> None:
 
 
 def test_no_honest_headset_is_doubted(site: Site) -> None:
-    """Jitter, drift, late journals, broken connections, new clients, pauses, a wall clock set."""
+    """Jitter, drift, late journals, reconnects, pauses and clock steps raise no doubt."""
     assert tell(honest(site, HONEST), "honest") == []
 
 
@@ -89,7 +89,7 @@ def test_a_lie_is_on_the_receipt_and_before_the_operator(site: Site) -> None:
 
 
 def test_a_wrong_count_is_corrected_by_a_later_honest_one(site: Site) -> None:
-    """A count beyond reason does not stay, and nothing is missing in the end."""
+    """A frame count beyond reason is corrected by a later true one, and no frame is missing."""
     told = play(site, 3, "more made than can be, then the truth")
     with site.context.database.reading() as db:
         receipt = receipt_of(db, told.session_id)
@@ -120,7 +120,7 @@ def test_a_run_of_the_highest_number_locks_nobody_out(site: Site) -> None:
 
 
 def test_who_takes_over_is_not_told_more_than_the_phase_has(site: Site) -> None:
-    """A batch that claims 1e6 s of active time does not reach the next client."""
+    """A client that takes over is not given the impossible active time of an earlier batch."""
     told = play(site, 4, "a batch far ahead of time")
     assert told.believed is False
     orders = [one["state"]["phase"]["active_s"] for one in told.welcomes if one["state"]["phase"]]
@@ -143,7 +143,7 @@ def stream_row(session_id: str, epoch: int, now: datetime) -> TelemetryStream:
 @pytest.mark.long
 @pytest.mark.timeout(3600)
 def test_none_of_a_thousand_lies_is_believed(site: Site) -> None:
-    """The long form, with three hundred honest streams beside them."""
+    """A thousand lies are all rejected or doubted, and 300 correct streams are not."""
     told = lying(site, MANY_LYING)
     assert tell(told, "lying") == []
     kinds = Counter(doubt.kind for one in told for doubt in one.doubts)

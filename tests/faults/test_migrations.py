@@ -1,6 +1,6 @@
-"""A migration that is interrupted anywhere leaves the old schema or the new one, with all data.
+"""Tests that an interrupted migration leaves the old schema or the new one, with all data.
 
-Fault 28 of the matrix. Every revision there is takes part, also those that are added later.
+Fault 28 of the matrix. Every existing revision takes part, also those that are added later.
 """
 
 import time
@@ -42,7 +42,7 @@ STOPS_ON_POSTGRES = 6
 
 @pytest.fixture(scope="module", params=["sqlite", "postgresql"])
 def bench(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Bench:
-    """Where databases are made."""
+    """Provide the place where databases are created, for each engine."""
     if request.param == "sqlite":
         return SqliteBench(tmp_path_factory.mktemp("bench"))
     return PostgresBench(running_cluster())
@@ -50,7 +50,7 @@ def bench(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
 
 @dataclass(frozen=True)
 class Known:
-    """A filled database before a step, and what it is before and after, undisturbed."""
+    """A filled database before a step, and its state before and after an undisturbed step."""
 
     url: str
     old: Found
@@ -61,7 +61,7 @@ class Known:
 
 @contextmanager
 def undisturbed(bench: Bench, step: Step) -> Iterator[Known]:
-    """Take the step once on a copy."""
+    """Take the step once, undisturbed, on a copy of a filled database."""
     before, after = step
     with bench.empty() as url:
         upgrade(url, before)
@@ -80,7 +80,7 @@ def undisturbed(bench: Bench, step: Step) -> Iterator[Known]:
 
 @pytest.fixture(scope="module")
 def known_of(bench: Bench) -> Iterator[Callable[[Step], Known]]:
-    """What is known of a step: each is taken once for all tests, which only copy the database."""
+    """Provide the undisturbed result of a step, computed once for all tests."""
     with ExitStack() as stack:
         yield cache(lambda step: stack.enter_context(undisturbed(bench, step)))
 
@@ -89,7 +89,7 @@ def known_of(bench: Bench) -> Iterator[Callable[[Step], Known]]:
 def test_a_step_stopped_at_a_statement_can_be_taken_again(
     bench: Bench, known_of: Callable[[Step], Known], step: Step
 ) -> None:
-    """Behind every statement and instead of the commit: the old schema; then the new one."""
+    """A step stopped after a statement or before the commit leaves the old schema for a retry."""
     most = None if isinstance(bench, SqliteBench) else STOPS_ON_POSTGRES
     stop_often(bench, step, known_of(step), most)
 
@@ -97,14 +97,14 @@ def test_a_step_stopped_at_a_statement_can_be_taken_again(
 @pytest.mark.long
 @pytest.mark.parametrize("step", STEPS, ids="-".join)
 def test_a_step_stopped_at_every_statement_on_postgresql(step: Step) -> None:
-    """The same without leaving any out."""
+    """On PostgreSQL, a step stopped after any statement keeps the old schema and can be retried."""
     bench = PostgresBench(running_cluster())
     with undisturbed(bench, step) as known:
         stop_often(bench, step, known, None)
 
 
 def stop_often(bench: Bench, step: Step, known: Known, most: int | None) -> None:
-    """Stop behind each statement, or behind so many of them evenly spread; the last always."""
+    """Stop after each statement, or after `most` evenly spread ones including the last."""
     stops = np.unique(np.linspace(1, known.changes, most or known.changes, dtype=int)).tolist()
     assert stops[-1] == known.changes > 1
     for changes in stops:
@@ -124,18 +124,18 @@ def stop_often(bench: Bench, step: Step, known: Known, most: int | None) -> None
 
 
 def of_all(stops: list[int], known: Known) -> str:
-    """How many statements of how many."""
+    """Format how many of the step's statements were tried."""
     return f"{len(stops)} of {known.changes}"
 
 
 def engine_of(bench: Bench) -> str:
-    """Its name, for a figure."""
+    """Return the engine's name for a figure."""
     return type(bench).__name__.removesuffix("Bench")
 
 
 @pytest.mark.parametrize("step", STEPS, ids="-".join)
 def test_a_step_keeps_every_row(known_of: Callable[[Step], Known], step: Step) -> None:
-    """What both schemas know is the same before and after."""
+    """A step changes no value of a row in columns that both schemas have."""
     known = known_of(step)
     for table, rows in known.old.contents.items():
         now = known.new.contents.get(table)
@@ -148,19 +148,19 @@ def test_a_step_keeps_every_row(known_of: Callable[[Step], Known], step: Step) -
 
 
 def test_a_killed_migration_can_be_taken_again(bench: Bench) -> None:
-    """SIGKILL at random moments of the way from the first revision to the newest."""
+    """A migration from the first revision to the newest can be retried after a SIGKILL."""
     kill_often(bench, KILLS)
 
 
 @pytest.mark.long
 @pytest.mark.timeout(1200)
 def test_a_migration_killed_many_times(bench: Bench) -> None:
-    """The same at many more moments."""
+    """A migration can be retried after each of many SIGKILLs at random moments."""
     kill_often(bench, MANY_KILLS)
 
 
 def kill_often(bench: Bench, kills: int) -> None:
-    """Start, kill, look, go on; the moments are drawn from a seed."""
+    """Kill migrations at moments drawn from a seed, check the database, and retry."""
     rng = np.random.default_rng(28)
     step = (EVERY[0][1], EVERY[-1][1])
     outcomes = {"old": 0, "new": 0}

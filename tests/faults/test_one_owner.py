@@ -1,4 +1,4 @@
-"""A second server, or a command that writes, on data that a server has: refused, nothing touched.
+"""Tests that a second server or a writing command is refused on data that a server uses.
 
 The short form tries a few times what `--long` tries fifty times.
 """
@@ -39,12 +39,15 @@ ANSWERS_WITHIN_S = 60.0
 
 @pytest.fixture
 def times(request: pytest.FixtureRequest) -> int:
-    """How often something is tried."""
+    """Provide the number of tries."""
     return LONG if request.config.getoption("--long") else SHORT
 
 
 def test_of_two_servers_started_at_once_one_serves(tmp_path: Path, times: int) -> None:
-    """Whichever is first; the other ends in a sentence. A session that runs gets no event."""
+    """Of two servers started simultaneously one serves and the other exits with a message.
+
+    A running session gets no event from it.
+    """
     server = LiveServer(tmp_path / "live")
     with server:
         session_id = running_session(server)
@@ -67,12 +70,15 @@ def test_of_two_servers_started_at_once_one_serves(tmp_path: Path, times: int) -
 def test_a_second_server_leaves_a_running_phase_and_an_export_alone(
     live_server: LiveServer, times: int
 ) -> None:
-    """Refused with process and port, in one line; nothing is paused, deleted or said to anybody."""
+    """A second server is refused without affecting a running phase or an export.
+
+    The message is one line with the process id and the port.
+    """
     asyncio.run(refused_beside_a_running_phase(live_server, times))
 
 
 async def refused_beside_a_running_phase(server: LiveServer, times: int) -> None:
-    """Second servers, one after the other, while a participant reaches."""
+    """Start second servers one after the other while a task phase runs."""
     plan = RehearsalPlan(
         server.url, add_short_study(server), speed=1.0, seed=3, password=ADMIN_PASSWORD
     )
@@ -94,7 +100,7 @@ async def refused_beside_a_running_phase(server: LiveServer, times: int) -> None
 
 
 def second_servers(server: LiveServer, times: int) -> int:
-    """How many of them were refused as they should be; the export that is there stays."""
+    """Return how many second servers were refused correctly while an export stays available."""
     with server.client() as client:
         assert client.post("/api/login", json=CREDENTIALS).is_success
         export, refused = made_export(client), 0
@@ -109,14 +115,17 @@ def second_servers(server: LiveServer, times: int) -> int:
 
 
 def paused(payloads: Sequence[str]) -> int:
-    """How often a phase was paused because a server started, as the one here never did again."""
+    """Return how many events pause a phase because a server restarted."""
     return sum("server_restarted" in payload for payload in payloads)
 
 
 def test_commands_that_write_are_refused_and_those_that_read_are_not(
     live_server: LiveServer, tmp_path: Path
 ) -> None:
-    """Restoring and storing a tuning need the data for themselves; the rest works beside it."""
+    """While a server runs, commands that need the data exclusively are refused and others work.
+
+    Exclusive are restoring and storing a tuning.
+    """
     session_id, file = running_session(live_server), tmp_path / "all.reembody"
     works = [
         ("backup", file),
@@ -145,8 +154,9 @@ def test_commands_that_write_are_refused_and_those_that_read_are_not(
 def test_no_second_name_leads_to_the_database_of_a_running_server(
     live_server: LiveServer, tmp_path: Path
 ) -> None:
-    """Neither an address of SQLite's own nor a hard link: each would lock another folder. Nothing
-    is made by the attempt.
+    """A running server's database is refused under an SQLite URI or through a hard link.
+
+    Either would lock another folder. The attempt creates no file.
     """
     file, other = live_server.data_dir / "reembody.sqlite", tmp_path / "other"
     other.mkdir()
@@ -175,7 +185,10 @@ def test_no_second_name_leads_to_the_database_of_a_running_server(
 
 
 def test_a_database_of_postgres_has_one_server(tmp_path: Path) -> None:
-    """Whatever the data folders: started at once, and one after the other."""
+    """A PostgreSQL database has only one server, whatever the data folders.
+
+    This holds for servers started simultaneously and one after the other.
+    """
     with fresh_postgres() as url:
         server = LiveServer(tmp_path / "live", environment={"REEMBODY_DATABASE_URL": url})
         other = LiveServer(tmp_path / "other", environment={"REEMBODY_DATABASE_URL": url})
@@ -185,14 +198,17 @@ def test_a_database_of_postgres_has_one_server(tmp_path: Path) -> None:
             said = reembody(other, "serve", "--port", free_port())
             assert said.code == UNUSABLE
             assert f"process id {server.pid} on port {server.port}" in said.err
-            # A kill leaves nothing behind that would hold the next one up.
+            # A killed server leaves nothing behind that would block the next one.
             server.kill()
             with other:
                 pass
 
 
 def test_a_server_that_was_killed_is_followed_at_once(tmp_path: Path) -> None:
-    """As a service manager does it: the lock has died with its process, workers or not."""
+    """A server can be started immediately after its predecessor was killed.
+
+    The lock ends with its process, with or without workers.
+    """
     server = LiveServer(tmp_path / "live")
     for _ in range(2):
         server.start()
@@ -205,8 +221,9 @@ def test_a_server_that_was_killed_is_followed_at_once(tmp_path: Path) -> None:
 def pair(
     server: LiveServer, *environments: Mapping[str, str]
 ) -> Iterator[tuple[list[Child], list[tuple[Child, Path]]]]:
-    """Two servers started at once, on ports of their own: those that serve, and those that do not
-    with what they said.
+    """Start two servers simultaneously, on ports of their own.
+
+    Yield those that serve, and those that do not with their log files.
     """
     folder = server.data_dir.parent
     folder.mkdir(parents=True, exist_ok=True)
@@ -240,7 +257,7 @@ def _serves(child: Child, port: int) -> bool:
 
 
 def running_session(server: LiveServer) -> str:
-    """A session that was started, of a short study."""
+    """Start a session of the short study and return its id."""
     key = add_short_study(server)
     with server.client() as client:
         assert client.post("/api/login", json=CREDENTIALS).is_success
@@ -251,14 +268,14 @@ def running_session(server: LiveServer) -> str:
 
 
 def event_count(server: LiveServer, session_id: str) -> int:
-    """How many events a session has."""
+    """Return how many events a session has."""
     with record_of(server) as db:
         query = select(func.count()).where(SessionEvent.session_id == session_id)
         return db.scalar(query) or 0
 
 
 def made_export(client: httpx2.Client) -> str:
-    """An export that is ready; its id."""
+    """Create an export, wait until it is ready and return its id."""
     ordered = client.post(f"/api/studies/{KEY}/exports", json={"kind": "test"})
     assert ordered.is_success, ordered.text
     export_id = str(ordered.json()["id"])

@@ -1,4 +1,4 @@
-"""Two operators press the same button at the same moment."""
+"""Tests of two operators who press the same button at the same moment."""
 
 import threading
 import uuid
@@ -15,7 +15,7 @@ SHORT, LONG = 60, 1000
 
 
 def press_together(lab: Lab, view: Json, pool: ThreadPoolExecutor) -> list[Response]:
-    """Both decide on the same view and press start at once."""
+    """Send two start commands simultaneously, both based on the same view."""
     together = threading.Barrier(2)
 
     def press(_: int) -> Response:
@@ -31,7 +31,7 @@ def press_together(lab: Lab, view: Json, pool: ThreadPoolExecutor) -> list[Respo
 
 
 def press_many_times(lab: Lab, times: int) -> Counter[str]:
-    """How often a session was started twice, not at all, or the loser was not told who won."""
+    """Count sessions that started twice or not at all, or whose loser was not informed."""
     found: Counter[str] = Counter()
     with ThreadPoolExecutor(2) as pool:
         for _ in range(times):
@@ -48,7 +48,7 @@ def press_many_times(lab: Lab, times: int) -> Counter[str]:
 
 
 def test_one_of_two_operators_wins_and_the_other_sees_it(lab: Lab) -> None:
-    """The session starts once; who came second is told what happened and by whom."""
+    """Of two simultaneous starts one succeeds, and the other is told of the winner's event."""
     found = press_many_times(lab, SHORT)
     note(25, f"two operators press start (x{SHORT})", "double starts", found["double"])
     note(25, f"two operators press start (x{SHORT})", "losers not told", found["unseen"])
@@ -58,7 +58,7 @@ def test_one_of_two_operators_wins_and_the_other_sees_it(lab: Lab) -> None:
 @pytest.mark.long
 @pytest.mark.timeout(900)
 def test_one_of_two_operators_wins_a_thousand_times(lab: Lab) -> None:
-    """The long form."""
+    """A thousand pairs of simultaneous starts each start the session exactly once."""
     found = press_many_times(lab, LONG)
     note(25, f"two operators press start (x{LONG})", "double starts", found["double"])
     assert found == Counter(double=0, none=0, unseen=0)

@@ -1,4 +1,4 @@
-"""Batches arrive twice, out of order and overlapping; the record is the same as if they had not."""
+"""Tests that duplicate, reordered and overlapping batches give the same stored record."""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -19,12 +19,12 @@ VALUES = moving_values(FRAMES, 5)
 
 
 def batch(first: int, end: int) -> bytes:
-    """Frames first to end - 1."""
+    """Return a batch with frames `first` to `end` - 1."""
     return message(VALUES[first:end], seq_first=first)
 
 
 def deliver(headset: Headset, batches: Sequence[tuple[int, int]]) -> None:
-    """Send these, answer every request to send again, until all is stored."""
+    """Send the batches and answer every resend request until all frames are stored."""
     for first, end in batches:
         headset.say(batch(first, end))
     asked = 0
@@ -45,7 +45,7 @@ def _stored(heard: Json) -> int:
 
 
 def shuffled(rng: np.random.Generator) -> list[tuple[int, int]]:
-    """Cut anywhere, some twice, some overlapping, in any order."""
+    """Cut the frames at random places; duplicate, overlap and reorder the pieces."""
     cuts = sorted({0, FRAMES, *rng.integers(1, FRAMES, 20).tolist()})
     pieces = list(pairwise(cuts))
     again = [pieces[at] for at in rng.integers(0, len(pieces), 10)]
@@ -56,7 +56,7 @@ def shuffled(rng: np.random.Generator) -> list[tuple[int, int]]:
 
 @pytest.mark.timeout(120)
 def test_any_order_gives_the_same_record(live_server: LiveServer) -> None:
-    """Digests of the stored streams are equal, whatever order, overlap and repetition."""
+    """The digests of stored streams are equal for any order, overlap and repetition of batches."""
     rng = np.random.default_rng(18)
     in_order = [(first, min(first + 50, FRAMES)) for first in range(0, FRAMES, 50)]
     digests, missing = [], 0

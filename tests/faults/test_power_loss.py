@@ -1,7 +1,7 @@
-"""Power fails at any moment: what was acknowledged is there, and the database is sound.
+"""Tests that a power loss at any moment loses no acknowledged data and leaves a sound database.
 
-Faults 2 and 3 of the matrix, and the proof that an acknowledgement leaves only after the flush that
-makes it true. What the emulated disk does and does not do stands in `tests.faults.power`.
+Faults 2 and 3 of the matrix, and the proof that an acknowledgement is sent only after the flush
+that makes it true. `tests.faults.power` describes what the emulated disk does and does not do.
 """
 
 import sys
@@ -30,7 +30,7 @@ PLACES = 7
 
 @pytest.fixture(scope="module")
 def can_trace(tmp_path_factory: pytest.TempPathFactory) -> None:
-    """Skips where the kernel does not let a process trace its child."""
+    """Skip if the kernel does not let a process trace its child."""
     reason = why_not(tmp_path_factory.mktemp("tracing"))
     if reason is not None:
         pytest.skip(reason)
@@ -38,7 +38,7 @@ def can_trace(tmp_path_factory: pytest.TempPathFactory) -> None:
 
 @pytest.fixture(scope="module")
 def recording(can_trace: None, tmp_path_factory: pytest.TempPathFactory) -> Recording:
-    """A few seconds of three headsets, from the first start of a server to its end."""
+    """Provide a recording of three headsets, from the server's first start to its end."""
     folder = tmp_path_factory.mktemp("power")
     return streamed(folder, 3, lambda proof: proof.acks > 80, (4.0, 16.0, 64.0))
 
@@ -46,7 +46,7 @@ def recording(can_trace: None, tmp_path_factory: pytest.TempPathFactory) -> Reco
 def test_no_ack_leaves_before_the_flush_that_makes_it_true(
     recording: Recording, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Whatever an acknowledgement says is on disk by a completed fsync when its send begins."""
+    """The data of every acknowledgement are covered by a completed fsync when its send begins."""
     proof = experiment.prove_acks(recording)
     with capsys.disabled():
         sys.stdout.write(ack_figures(proof))
@@ -57,7 +57,7 @@ def test_no_ack_leaves_before_the_flush_that_makes_it_true(
 def test_no_power_loss_takes_what_was_acknowledged(
     recording: Recording, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Around every kind of call, with a disk in each mood."""
+    """A power loss around any kind of call, in any mood of the disk, loses nothing acknowledged."""
     crashes = crash(recording, PLACES * len(MOODS), seed=1)
     with capsys.disabled():
         sys.stdout.write(crash_figures(crashes))
@@ -69,7 +69,7 @@ def test_no_power_loss_takes_what_was_acknowledged(
 def test_a_thousand_power_losses_take_nothing(
     can_trace: None, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A longer run with several checkpoints, cut off at a thousand moments."""
+    """A thousand power losses in a run with several checkpoints lose nothing acknowledged."""
     recording = experiment.record_streaming(tmp_path / "run", 4, 25.0)
     proof = experiment.prove_acks(recording)
     crashes = crash(recording, 1000, seed=2)
@@ -80,7 +80,7 @@ def test_a_thousand_power_losses_take_nothing(
 
 
 def test_the_oracle_sees_acks_that_come_before_the_flush(recording: Recording) -> None:
-    """The same record with every acknowledgement moved before its flush loses data."""
+    """The check finds lost data if every acknowledgement is moved before its flush."""
     careless = recording.with_earlier_acks()
     assert experiment.prove_acks(careless).early > 50
     crashes = crash(careless, 2 * PLACES, seed=1)
@@ -91,7 +91,7 @@ def test_the_oracle_sees_acks_that_come_before_the_flush(recording: Recording) -
 def test_the_oracle_sees_a_database_that_does_not_flush(
     can_trace: None, tmp_path: Path, level: str
 ) -> None:
-    """The real server with `synchronous` below FULL acknowledges what a power loss takes."""
+    """The check finds lost data of a real server with `synchronous` below FULL."""
     command = [sys.executable, "-m", "tests.faults.weakened", level]
     recording = streamed(
         tmp_path, 2, lambda proof: proof.early > 20, (2.5, 10.0, 40.0), command=command
@@ -109,7 +109,7 @@ def streamed(
     *,
     command: Sequence[str] = REEMBODY,
 ) -> Recording:
-    """The first recording with enough in it, or the longest.
+    """Return the first recording that contains enough, or the longest.
 
     A traced server on a busy machine takes a while until it acknowledges anything.
     """
@@ -122,13 +122,13 @@ def streamed(
 
 
 def crash(recording: Recording, count: int, seed: int) -> list[Crash]:
-    """Let power fail so often, in every place and mood."""
+    """Emulate `count` power losses, in every place and mood."""
     rng = np.random.default_rng(seed)
     return experiment.crash_at(recording, experiment.draw_crash_points(recording, count, rng), rng)
 
 
 def check(crashes: Sequence[Crash]) -> None:
-    """Nothing lost, altered, twice or torn, and the test did look at every place and mood."""
+    """Assert that nothing is lost, altered, duplicated or torn, and all moods were tried."""
     for one in crashes:
         verdict = one.verdict
         assert verdict.corrupt == "", one
@@ -140,7 +140,7 @@ def check(crashes: Sequence[Crash]) -> None:
 
 
 def ack_figures(proof: AckProof) -> str:
-    """The proof in one line."""
+    """Format the proof in one line."""
     half, most = np.percentile(proof.waits_ms, [50, 99])
     return (
         f"\nacks {proof.acks}, flushes {proof.syncs}, acks before their flush {proof.early}; "
@@ -149,7 +149,7 @@ def ack_figures(proof: AckProof) -> str:
 
 
 def crash_figures(crashes: Sequence[Crash]) -> str:
-    """The crashes as a table by place."""
+    """Format the power losses as a table by place."""
     lines = [
         "",
         f"{'power fails':<18}{'points':>7}{'acked':>10}{'lost':>6}{'twice':>6}{'corrupt':>8}",

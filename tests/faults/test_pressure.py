@@ -1,4 +1,4 @@
-"""Too much at once, and readers that do not read: memory stays bounded, nothing is dropped."""
+"""Tests that bursts and clients that do not read leave memory bounded and lose no data."""
 
 import asyncio
 import socket
@@ -30,18 +30,18 @@ READERS, ALONE_S, STREAM_S = 10, 1.0, 4.0
 
 @dataclass
 class TimedLedger(LedgerJournal):
-    """A ledger that also measures how long each message waits for its acknowledgement."""
+    """A journal that also measures how long each message waits for its acknowledgement."""
 
     added_s: dict[int, float] = field(default_factory=dict)
     waited_s: list[float] = field(default_factory=list)
 
     def add(self, entry: Entry) -> None:
-        """Note when it came."""
+        """Record when the message was added."""
         self.added_s[self.end] = time.monotonic()
         super().add(entry)
 
     def acknowledge(self, positions: Iterable[tuple[str, int, int]]) -> None:
-        """Note what leaves."""
+        """Record how long the acknowledged messages waited."""
         first = self.first
         super().acknowledge(list(positions))
         for place in range(first, self.first):
@@ -50,7 +50,7 @@ class TimedLedger(LedgerJournal):
 
 @contextmanager
 def watched_memory(server: LiveServer) -> Iterator[list[int]]:
-    """The server's resident bytes, looked at while the block runs."""
+    """Sample the server's resident bytes while the block runs."""
     process, seen, done = psutil.Process(server.pid), [], threading.Event()
 
     def look() -> None:
@@ -69,7 +69,7 @@ def watched_memory(server: LiveServer) -> Iterator[list[int]]:
 @pytest.mark.timeout(120)
 @pytest.mark.parametrize("burst_s", [2.0, pytest.param(5.0, marks=pytest.mark.long)])
 def test_a_burst_is_taken_without_loss(live_server: LiveServer, burst_s: float) -> None:
-    """Four headsets at ten times their pace for seconds: it queues, and all of it arrives."""
+    """A burst from four headsets at ten times their rate is queued and stored without loss."""
     headsets = [
         StreamingHeadset(one.session_id, one.token, TimedLedger())
         for one in pair_headsets(live_server, HEADSETS)
@@ -114,7 +114,7 @@ async def _burst_one(server: LiveServer, headset: StreamingHeadset, burst_s: flo
 
 @pytest.mark.timeout(120)
 def test_consoles_that_do_not_read_hold_nobody_up(live_server: LiveServer) -> None:
-    """Ten live streams are opened and never read: only their own news is dropped."""
+    """Ten live streams that are never read lose only their own events and slow down no headset."""
     (headset,) = pair_headsets(live_server, 1)
     (other,) = pair_headsets(live_server, 1)
     before_s = _stream_for(live_server, headset, ALONE_S)
@@ -139,7 +139,7 @@ def test_consoles_that_do_not_read_hold_nobody_up(live_server: LiveServer) -> No
 
 
 def _stream_for(server: LiveServer, headset: StreamingHeadset, for_s: float) -> float:
-    """Stream in real time; the acknowledgements' p99."""
+    """Stream in real time and return the 99th percentile of acknowledgement times."""
     ledger = TimedLedger()
     timed = StreamingHeadset(headset.session_id, headset.token, ledger)
     until_s = time.monotonic() + for_s
@@ -151,7 +151,7 @@ def _stream_for(server: LiveServer, headset: StreamingHeadset, for_s: float) -> 
 
 @contextmanager
 def _unread(server: LiveServer, session_id: str) -> Iterator[None]:
-    """A console's live stream with a small window, never read."""
+    """Open a console's live stream with a small window and never read it."""
     with signed_in(server) as client, socket.socket() as connection:
         cookies = "; ".join(f"{name}={value}" for name, value in client.cookies.items())
         connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)

@@ -1,4 +1,4 @@
-"""A login or pairing that ends shuts out at once whoever holds it, streams included (fault 31)."""
+"""Tests that the end of a login or pairing immediately closes its streams (fault 31)."""
 
 import threading
 import time
@@ -22,14 +22,14 @@ NOTICED_WITHIN_S = 30.0
 
 @pytest.fixture(scope="module")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveServer]:
-    """A server as operators start it."""
+    """Provide a server as operators start it."""
     with LiveServer(tmp_path_factory.mktemp("revoked")) as server:
         yield server
 
 
 @dataclass
 class Reader:
-    """Somebody whose open stream is read in a thread; `ended_s` is when it ended."""
+    """A client whose open stream is read in a thread; `ended_s` is when it ended."""
 
     client: httpx2.Client
     path: str
@@ -38,7 +38,7 @@ class Reader:
     ended_s: float = 0.0
 
     def read(self) -> None:
-        """Until the server ends it."""
+        """Read until the server ends the stream."""
         with self.client.stream("GET", self.path, timeout=None) as answer:
             for _ in answer.iter_bytes():
                 self.began.set()
@@ -48,7 +48,7 @@ class Reader:
 
 @contextmanager
 def reading(client: httpx2.Client, path: str) -> Iterator[Reader]:
-    """An open stream."""
+    """Yield a reader with an open stream."""
     reader = Reader(client, path)
     threading.Thread(target=reader.read, daemon=True).start()
     assert reader.began.wait(NOTICED_WITHIN_S)
@@ -57,7 +57,7 @@ def reading(client: httpx2.Client, path: str) -> Iterator[Reader]:
 
 @contextmanager
 def signed_in(server: LiveServer) -> Iterator[httpx2.Client]:
-    """A client with a login of its own."""
+    """Yield a client with a login of its own."""
     with server.client() as client:
         credentials = {"username": "admin", "password": ADMIN_PASSWORD}
         client.post("/api/login", json=credentials).raise_for_status()
@@ -65,19 +65,19 @@ def signed_in(server: LiveServer) -> Iterator[httpx2.Client]:
 
 
 def joined(client: httpx2.Client) -> str:
-    """A new session."""
+    """Create a session and return its id."""
     answer = client.post(f"/api/studies/{STUDY}/sessions", json={"kind": "test"})
     return str(answer.raise_for_status().json()["id"])
 
 
 def code(client: httpx2.Client, session_id: str, device: str) -> str:
-    """A pairing code."""
+    """Return a new pairing code."""
     path = f"/api/sessions/{session_id}/pairings"
     return str(client.post(path, json={"device": device}).raise_for_status().json()["code"])
 
 
 def shut_out_after_s(reader: Reader, end: Callable[[], object]) -> float:
-    """How long after `end` the stream ended."""
+    """Return how many seconds after `end` the stream was closed."""
     before_s = time.monotonic()
     end()
     assert reader.ended.wait(NOTICED_WITHIN_S), "the stream went on"
@@ -85,7 +85,7 @@ def shut_out_after_s(reader: Reader, end: Callable[[], object]) -> float:
 
 
 def test_a_login_that_ends_takes_its_open_pages_with_it(server: LiveServer) -> None:
-    """Logging out, or an admin who ends logins: the live stream ends, then 401."""
+    """Logging out, or an admin's ending of logins, closes a live stream; then requests get 401."""
     with signed_in(server) as admin:
         session_id = joined(admin)
         path = f"/api/sessions/{session_id}/live"
@@ -102,7 +102,7 @@ def test_a_login_that_ends_takes_its_open_pages_with_it(server: LiveServer) -> N
 
 
 def test_a_tablet_that_is_unpaired_is_shut_out(server: LiveServer) -> None:
-    """Its stream ends and its next question is answered with 401."""
+    """Unpairing a tablet closes its stream, and its next request gets 401."""
     with signed_in(server) as admin, server.client() as tablet:
         session_id = joined(admin)
         tablet.post("/api/devices/pair", json={"code": code(admin, session_id, "tablet")})
@@ -116,7 +116,7 @@ def test_a_tablet_that_is_unpaired_is_shut_out(server: LiveServer) -> None:
 
 
 def test_a_headset_that_is_replaced_is_closed_with_the_reason(server: LiveServer) -> None:
-    """4401 for the one that held the session; the other goes on."""
+    """A replaced headset's socket is closed with code 4401, and the new one continues."""
     with signed_in(server) as admin, server.client() as other:
         session_id = joined(admin)
         pair = {"code": code(admin, session_id, "headset")}
@@ -135,7 +135,7 @@ def test_a_headset_that_is_replaced_is_closed_with_the_reason(server: LiveServer
 
 
 def closing_code(socket: ClientConnection) -> int | None:
-    """Read until the server closes; the code that it closes with."""
+    """Read until the server closes the socket and return the close code."""
     try:
         while True:
             socket.recv(timeout=NOTICED_WITHIN_S)

@@ -1,4 +1,4 @@
-"""A headset whose frames stop for a while though its connection holds: the session goes on."""
+"""Tests that a session continues after a connected headset stops sending frames for a while."""
 
 import asyncio
 from collections.abc import Coroutine
@@ -26,7 +26,10 @@ NOTICED_WITHIN_S = 60.0
 def test_a_headset_that_falls_asleep_follows_the_pause_and_gets_its_whole_time(
     tmp_path: Path,
 ) -> None:
-    """In a hand and in a foot phase: both sides count the same active time, nothing is lost."""
+    """A headset without frames is paused in hand and foot phases, without loss of time or data.
+
+    Headset and server count the same active time.
+    """
     ledger = LedgerJournal()
 
     async def fall_asleep(cast: Cast, _: Relay) -> None:
@@ -49,14 +52,14 @@ def test_a_headset_that_falls_asleep_follows_the_pause_and_gets_its_whole_time(
 
 
 async def _hold_frames(headset: Headset, noticed: Coroutine[Any, Any, None]) -> None:
-    """Frames stop until it was noticed; the socket, and what is said on it besides, does not."""
+    """Stop the frames until the server has noticed; other messages continue."""
     awake = asyncio.Event()
     due = headset._sleep_until_due
 
     async def sleep() -> None:
         await awake.wait()
 
-    # The simulated headset has no switch for this, and needs none outside of this test.
+    # The simulated headset has no switch for this, and needs none outside this test.
     headset._sleep_until_due = sleep  # type: ignore[method-assign]  # it sleeps on purpose
     async with asyncio.timeout(NOTICED_WITHIN_S):
         await noticed

@@ -1,4 +1,4 @@
-"""Those who owe the rest of a request: they go in time, everybody else is served."""
+"""Tests that clients with unfinished requests are closed in time and others are served."""
 
 import asyncio
 import socket
@@ -29,13 +29,13 @@ ASKED = 200
 
 @pytest.fixture(scope="module")
 def lan(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LanServer]:
-    """A server with all its doors open."""
+    """Provide a server with all its ports open."""
     with LanServer(tmp_path_factory.mktemp("slow")) as server:
         yield server
 
 
 async def _healthy(server: LiveServer, count: int) -> list[float]:
-    """How long a client waits for each of `count` answers, in seconds, one after the other."""
+    """Return the response times, in seconds, of `count` requests one after the other."""
     took_s = []
     async with httpx2.AsyncClient(base_url=server.url, timeout=30.0) as client:
         for _ in range(count):
@@ -47,7 +47,7 @@ async def _healthy(server: LiveServer, count: int) -> list[float]:
 
 
 async def _loris(port: int, stop: asyncio.Event) -> float:
-    """Send a head byte by byte, never its end; how long the server bore it, in seconds."""
+    """Send a request head byte by byte without end; return after how many seconds it was closed."""
     reader, writer = await asyncio.open_connection("127.0.0.1", port)
     began_s = time.monotonic()
     writer.write(b"GET /api/health HTTP/1.1\r\nHost: localhost\r\nX-Slow: ")
@@ -62,7 +62,7 @@ async def _loris(port: int, stop: asyncio.Event) -> float:
 
 
 async def _still_open(reader: asyncio.StreamReader) -> bool:
-    """Whether the server says nothing for a second."""
+    """Return whether the server sends nothing for a second."""
     try:
         async with asyncio.timeout(1.0):
             await reader.read(4096)
@@ -73,7 +73,7 @@ async def _still_open(reader: asyncio.StreamReader) -> bool:
 
 @pytest.mark.timeout(120)
 def test_five_hundred_slow_clients_hold_nobody_up(lan: LanServer) -> None:
-    """500 connections drip a head: all are closed in time, and a healthy client is answered."""
+    """500 connections with endless heads are closed in time while a normal client is served."""
     bare_s, under_s, borne_s = asyncio.run(_attacked(lan))
     p95_bare, p95_under = (float(np.percentile(each, 95)) for each in (bare_s, under_s))
     told = f"{LORISES} slow heads"
@@ -103,7 +103,7 @@ async def _attacked(server: LiveServer) -> tuple[list[float], list[float], list[
 
 
 def _answer_to(port: int, request: bytes, patience_s: float) -> bytes:
-    """Send these bytes and nothing more; everything that comes until the server closes."""
+    """Send these bytes and return everything received until the server closes."""
     with socket.create_connection(("127.0.0.1", port), timeout=patience_s) as connection:
         connection.sendall(request)
         answer = b""
@@ -115,7 +115,7 @@ def _answer_to(port: int, request: bytes, patience_s: float) -> bytes:
 @pytest.mark.timeout(120)
 @pytest.mark.long
 def test_whoever_owes_a_request_is_told_and_closed(lan: LanServer) -> None:
-    """Half a head and half a body get 408, silence and a stuck handshake just an end."""
+    """An unfinished head or body gets 408; silence and an unfinished handshake are just closed."""
     head = b"POST /api/login HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
     half_body = head + b"Content-Length: 500\r\n\r\n{"
     half_chunk = head + b"Transfer-Encoding: chunked\r\n\r\n5\r\n{"
@@ -136,7 +136,7 @@ def test_whoever_owes_a_request_is_told_and_closed(lan: LanServer) -> None:
 @pytest.mark.timeout(120)
 @pytest.mark.long
 def test_a_large_file_may_take_its_time(lan: LanServer) -> None:
-    """A capture that comes at 140 kB/s for longer than a usual body may is taken to its end."""
+    """A capture sent at 140 kB/s for longer than a usual body may take is read to its end."""
     with lan.client() as client:
         credentials = {"username": "admin", "password": ADMIN_PASSWORD}
         client.post("/api/login", json=credentials).raise_for_status()
@@ -166,7 +166,7 @@ async def _all_answers(
 
 
 def test_an_endless_head_is_refused(lan: LanServer) -> None:
-    """More than 64 KiB of head get 431, so that no memory is filled by a single line."""
+    """A request head of more than 64 KiB gets 431, so that it cannot fill the memory."""
     answer = _answer_to(
         lan.port, b"GET / HTTP/1.1\r\nX-Long: " + b"a" * (MOST_HEAD_BYTES + 1), HEAD_WITHIN_S
     )
@@ -174,7 +174,7 @@ def test_an_endless_head_is_refused(lan: LanServer) -> None:
 
 
 def test_a_large_body_in_pieces_is_not_mistaken_for_a_head(lan: LanServer) -> None:
-    """A body that comes in many segments, and a request after it on the same connection."""
+    """A large body in many segments is not taken for a head, and the connection stays usable."""
     body = b'{"username": "' + b"a" * (3 * MOST_HEAD_BYTES) + b'"}'
     with lan.client() as client:
         credentials = {"username": "admin", "password": ADMIN_PASSWORD}
@@ -198,7 +198,7 @@ def test_a_large_body_in_pieces_is_not_mistaken_for_a_head(lan: LanServer) -> No
 
 
 def test_the_greediest_makes_room(lan: LanServer) -> None:
-    """One more unfinished request than may wait: the oldest goes, the newest is served."""
+    """At the limit of unfinished requests, the oldest is closed and the newest is served."""
     waiting = [
         socket.create_connection(("127.0.0.1", lan.port), timeout=5)
         for _ in range(MOST_UNFINISHED + 20)

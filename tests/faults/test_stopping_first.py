@@ -1,4 +1,4 @@
-"""Stopping does not lose to what others write and report at the same moment."""
+"""Tests that stopping a session succeeds in spite of simultaneous notes and reports."""
 
 import threading
 import uuid
@@ -17,7 +17,7 @@ THREADS = 50
 
 
 def command(lab: Lab, view: Json, kind: str, **fields: object) -> Response:
-    """A command, decided on a page that was drawn when the session had this version."""
+    """Send a command based on this view of the session."""
     body = {
         "command_id": str(uuid.uuid4()),
         "expected_version": view["version"],
@@ -29,7 +29,7 @@ def command(lab: Lab, view: Json, kind: str, **fields: object) -> Response:
 
 @pytest.mark.parametrize("kind", ["abort", "withdraw"])
 def test_a_session_ends_at_the_first_try_whatever_is_written(lab: Lab, kind: str) -> None:
-    """Of 50 threads on one session 45 write notes and 5 move it on; one stops it, and wins."""
+    """One stop among 50 simultaneous commands on a session succeeds at the first try."""
     view = lab.command(lab.join(kind="test"), "start")
     together = threading.Barrier(THREADS)
 
@@ -54,7 +54,7 @@ def test_a_session_ends_at_the_first_try_whatever_is_written(lab: Lab, kind: str
 
 @pytest.mark.parametrize("kind", ["abort", "withdraw"])
 def test_a_stop_needs_no_version_and_any_old_one_will_do(lab: Lab, kind: str) -> None:
-    """Nothing is asked of whoever stops but the reason."""
+    """Aborting or withdrawing needs only a reason: the version may be missing or outdated."""
     for version in ({}, {"expected_version": 0}):
         view = lab.command(lab.join(kind="test"), "start")
         lab.command(view, "note", text="written meanwhile")
@@ -64,7 +64,7 @@ def test_a_stop_needs_no_version_and_any_old_one_will_do(lab: Lab, kind: str) ->
 
 
 def test_what_moves_a_session_on_still_needs_the_newest_version(lab: Lab) -> None:
-    """A skip decided on an old page is refused as stale, and one without a version by field."""
+    """A skip is rejected if it is based on an outdated version or has no version."""
     view = lab.command(lab.join(kind="test"), "start")
     lab.command(view, "note", text="written meanwhile")
     error(command(lab, view, "skip", reason="late"), 409, "stale")
@@ -74,7 +74,7 @@ def test_what_moves_a_session_on_still_needs_the_newest_version(lab: Lab) -> Non
 
 
 def test_a_pause_is_taken_on_any_version(lab: Lab) -> None:
-    """Stopping the clock is stopping, too: a note that came first does not hold it up."""
+    """A pause is accepted on an outdated version, so that a note does not delay it."""
     view = lab.skip_to(lab.join(kind="test"), "free_roam")
     lab.context.hub.headset_joined(view["id"])
     view = lab.command(view, "begin_phase")

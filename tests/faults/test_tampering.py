@@ -1,4 +1,4 @@
-"""Somebody edits the event log in SQL: every single change is found."""
+"""Tests that every change to the event log by SQL is detected."""
 
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -26,7 +26,7 @@ Attack = Callable[[Session], object]
 
 
 def attacks(rows: list[SessionEvent]) -> Iterator[Attack]:
-    """Every column of every event changed, every event removed, one put in between, the end cut."""
+    """Yield a change of each column, a removal of each event, an insertion and a truncation."""
     table = SessionEvent.__table__
     for row in rows:
         here = (table.c.session_id == row.session_id, table.c.seq == row.seq)
@@ -45,7 +45,7 @@ def _execute(statement: Executable, db: Session) -> None:
 
 
 def test_every_change_of_the_log_is_found(lab: Lab) -> None:
-    """Whatever is changed in SQL, the receipt says that the log was changed."""
+    """The receipt reports the log as changed after any change by SQL."""
     view = lab.skip_to(lab.join(), "materialise")
     lab.command(view, "note", text="a note")
     session_id = view["id"]
@@ -65,7 +65,7 @@ def test_every_change_of_the_log_is_found(lab: Lab) -> None:
 
 
 def _is_found(lab: Lab, session_id: str, attack: Attack) -> bool:
-    """Do it, look, take it back."""
+    """Return whether an attack is detected, and roll it back."""
     with lab.database.engine.connect() as connection:
         transaction = connection.begin()
         with Session(connection, join_transaction_mode="create_savepoint") as db:

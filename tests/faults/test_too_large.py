@@ -1,4 +1,4 @@
-"""Those who send too much: refused before it fills the memory."""
+"""Tests that too large requests are rejected before they fill the memory."""
 
 import asyncio
 import socket
@@ -25,14 +25,14 @@ MOST_GROWTH_MIB = 64
 
 @pytest.fixture(scope="module")
 def lan(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LanServer]:
-    """A server with all its doors open."""
+    """Provide a server with all its ports open."""
     with LanServer(tmp_path_factory.mktemp("large")) as server:
         yield server
 
 
 @contextmanager
 def _bounded(lan: LanServer, what: str) -> Iterator[None]:
-    """Note how much the server's memory grew, and refuse a lot."""
+    """Report how much the server's memory grew, and assert that it stayed below the limit."""
     before = psutil.Process(lan.pid).memory_info().rss
     with watched_memory(lan) as rss:
         yield
@@ -43,7 +43,7 @@ def _bounded(lan: LanServer, what: str) -> Iterator[None]:
 
 
 def test_too_large_a_body_is_refused(lan: LanServer) -> None:
-    """Declared or in chunks without a length: 413, before it fills the memory."""
+    """A too large body gets 413 before it fills the memory, with or without a declared length."""
     limit = Settings().max_body_bytes
     with lan.client() as client:
         client.get("/api/health")
@@ -58,7 +58,7 @@ def test_too_large_a_body_is_refused(lan: LanServer) -> None:
 
 
 def test_a_stranger_who_sends_on_is_let_go(lan: LanServer) -> None:
-    """After 413 nothing more of a stranger's body is read, and the connection ends soon."""
+    """After a 413, no more of an anonymous client's body is read and the connection is closed."""
     with socket.create_connection(("127.0.0.1", lan.port), timeout=30) as connection:
         connection.sendall(
             b"POST /api/login HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
@@ -67,7 +67,7 @@ def test_a_stranger_who_sends_on_is_let_go(lan: LanServer) -> None:
         answer = connection.recv(4096)
         sent = _sent_until_closed(connection)
     assert answer.startswith(b"HTTP/1.1 413")
-    # What the system's own buffers take is not the server's.
+    # The system's buffers accept data that the server never reads.
     assert sent < 2**26
 
 
@@ -83,7 +83,7 @@ def _sent_until_closed(connection: socket.socket) -> int:
 
 
 def test_too_large_a_capture_is_refused(lan: LanServer) -> None:
-    """413 above its own, larger limit; whoever may not send any is refused at the door."""
+    """A capture above its own larger limit gets 413; an anonymous upload gets 401."""
     most = Settings().max_capture_bytes
     address = "/api/captures?name=walk.bvh"
     with lan.client() as client:
@@ -114,7 +114,7 @@ def _blocks(mebibytes: int) -> Iterator[bytes]:
 def _sent_in_chunks(
     port: int, mebibytes: int, address: str = "/api/login", cookie: str = ""
 ) -> bytes:
-    """Send until the server answers, which it does long before the end."""
+    """Send chunks until the server answers, which it does long before the end."""
     with socket.create_connection(("127.0.0.1", port), timeout=30) as connection:
         head = f"POST {address} HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
         head += f"Cookie: {cookie}\r\nTransfer-Encoding: chunked\r\n\r\n"
@@ -128,7 +128,7 @@ def _sent_in_chunks(
 
 
 def test_too_large_a_frame_is_refused(lan: LanServer) -> None:
-    """1009, and the headset's socket is closed; over ws and wss."""
+    """A too large frame closes the headset's socket with code 1009, over ws and wss."""
     (headset,) = pair_headsets(lan, 1)
     for url, trust in ((lan.url, None), (lan.secure_url, lan.trusting())):
         scheme = url.partition(":")[0]

@@ -1,4 +1,4 @@
-"""Somebody sets the server's clock in mid-phase, as a time service or summer time does."""
+"""Tests of the server's wall clock being set in mid-phase, as a time service does."""
 
 import json
 from collections.abc import Iterator
@@ -24,7 +24,7 @@ PHASE_S = 120.0
 
 @dataclass
 class Headset:
-    """A headset over the application's own socket."""
+    """A headset connected to the application's own socket."""
 
     socket: WebSocketTestSession
     epoch: int = 0
@@ -32,14 +32,14 @@ class Headset:
     next_frame: int = 0
 
     def hear(self, kind: str) -> Json:
-        """The next message of a kind."""
+        """Return the next message of a kind."""
         while True:
             heard: Json = json.loads(self.socket.receive_text())
             if heard["type"] == kind:
                 return heard
 
     def report(self, **body: Any) -> None:
-        """Report, and wait until it is stored."""
+        """Send a report and wait until it is stored."""
         seq, self.next_report = self.next_report, self.next_report + 1
         text = json.dumps({"type": "report", "epoch": self.epoch, "seq": seq, "body": body})
         self.socket.send_text(text)
@@ -50,7 +50,7 @@ class Headset:
             pass
 
     def move(self, t_s: float, active_s: float, phase_id: int) -> None:
-        """Nine frames up to `t_s`."""
+        """Send nine frames up to `t_s`."""
         times_s = t_s - np.arange(8, -1, -1) / 90.0
         first, self.next_frame = self.next_frame, self.next_frame + 9
         self.socket.send_bytes(
@@ -73,25 +73,25 @@ class WallClock:
     offset: timedelta = field(default_factory=timedelta)
 
     def utc_now(self) -> datetime:
-        """What the wall clock shows."""
+        """Return the time that the wall clock shows."""
         return datetime.now(UTC) + self.offset
 
 
 @pytest.fixture
 def wall() -> WallClock:
-    """The clock on the wall."""
+    """Provide the wall clock."""
     return WallClock()
 
 
 @pytest.fixture
 def stepped(database_url: str, wall: WallClock) -> Iterator[Lab]:
-    """A running application that looks at that clock."""
+    """Provide a running application that uses this wall clock."""
     with running_lab(database_url, Clock(utc_now=wall.utc_now)) as lab:
         yield lab
 
 
 def test_durations_do_not_care_what_the_wall_clock_does(stepped: Lab, wall: WallClock) -> None:
-    """Active time is the headset's; no interval of any table is negative; the log is in order."""
+    """Setting the wall clock in mid-phase changes no active time and makes no interval negative."""
     view = stepped.skip_to(stepped.join(), "free_roam")
     offered = ["reembody.v1", f"bearer.{stepped.headset_token(view['id'])}"]
     with stepped.operator.websocket_connect("/api/vr/stream", subprotocols=offered) as socket:
@@ -109,7 +109,7 @@ def test_durations_do_not_care_what_the_wall_clock_does(stepped: Lab, wall: Wall
 
 
 def _run_phase(lab: Lab, session_id: str, headset: Headset, wall: WallClock) -> None:
-    """The free phase, with the wall clock set before every part of it."""
+    """Run the free movement, with the wall clock set before every part of it."""
     lab.command(lab.view(session_id), "begin_phase")
     state = headset.hear("state")
     while state["phase"] is None:
@@ -140,7 +140,7 @@ def _run_phase(lab: Lab, session_id: str, headset: Headset, wall: WallClock) -> 
 
 
 def _negative_intervals(lab: Lab, session_id: str) -> int:
-    """Over everything that has a length: phases, contacts, and the steps from event to event."""
+    """Return how many phases, contacts, completions and gaps between events are negative."""
     with lab.database.reading() as db:
         phases = phases_table(db, STUDY, "people")
         contacts = contacts_table(db, STUDY, "people")

@@ -1,6 +1,6 @@
-"""The server with a careless database: `python -m tests.faults.weakened NORMAL serve ...`.
+"""Run the server with a database that does not flush, to show that tests notice it.
 
-Tests of durability run against it to show that they notice.
+Usage: `python -m tests.faults.weakened NORMAL serve ...`.
 """
 
 import sqlite3
@@ -15,7 +15,7 @@ from app.database import prepare_connection
 
 
 def weaken(level: str) -> None:
-    """Set `synchronous` of every connection to come."""
+    """Set `synchronous` of every future connection."""
 
     def prepare(dbapi_connection: DBAPIConnection, _record: ConnectionPoolEntry) -> None:
         prepare_connection(dbapi_connection, _record)

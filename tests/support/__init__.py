@@ -1,1 +1,1 @@
-"""What tests stand on: databases, servers, browsers and the stages of `./run test`."""
+"""Infrastructure of the tests: databases, servers, browsers and the stages of `./run test`."""

@@ -1,8 +1,8 @@
-"""What the product is made of: a CycloneDX bill of materials, made from the two lock files.
+"""Generate the CycloneDX bill of materials of the product from the two lock files.
 
-`python -m tests.support.bill_of_materials > docs/sbom.cdx.json` writes it anew; a test compares, so
-a dependency cannot come in without being listed. The locks name every package with its hashes, so
-nothing need be installed or asked for.
+`python -m tests.support.bill_of_materials > docs/sbom.cdx.json` rewrites it; a test compares, so a
+dependency cannot be added without being listed. The locks name every package with its hashes, so
+nothing needs to be installed or downloaded.
 """
 
 import json
@@ -20,14 +20,14 @@ PINNED = re.compile(r"^(?P<name>[a-z0-9._-]+)==(?P<version>[^ ;\\]+)")
 HASHED = re.compile(r"--hash=sha256:(?P<hash>[0-9a-f]{64})")
 BY = re.compile(r"^    #(?: via)? +(?P<who>[a-z0-9._-]+)")
 NAMESPACE = uuid.UUID("5b4f7f9e-7a51-4d0c-9a3a-6a4a3f0f7d11")
-# They stand among the dependencies, since the pages are built where nothing else of use only to
-# developers is installed; no page contains them.
+# They are listed as dependencies, since the pages are built where no development dependencies
+# are installed; no page contains them.
 BUILD_TOOLS = {"marked", "vite", "@vitejs/plugin-react"}
 Json = dict[str, Any]
 
 
 def bill_of_materials() -> Json:
-    """The bill as a CycloneDX 1.6 document; the same locks give the same bill."""
+    """Return the bill as a CycloneDX 1.6 document; equal locks give an equal bill."""
     components = [*_python(), *_javascript()]
     depended = {part["bom-ref"]: sorted(part.pop("needed_by")) for part in components}
     root = {
@@ -50,7 +50,7 @@ def bill_of_materials() -> Json:
 
 
 def _python() -> Iterator[Json]:
-    """The packages of requirements.lock, with the hashes that an installation must match."""
+    """Yield the packages of requirements.lock, with the hashes that an installation must match."""
     part: Json | None = None
     for line in (REPOSITORY / "requirements.lock").read_text(encoding="utf-8").splitlines():
         if pinned := PINNED.match(line):
@@ -66,7 +66,7 @@ def _python() -> Iterator[Json]:
 
 
 def _javascript() -> Iterator[Json]:
-    """The packages that go into the pages; tools that build them are left out."""
+    """Yield the packages that go into the pages, without the tools that build them."""
     lock = json.loads((REPOSITORY / "frontend" / "package-lock.json").read_text(encoding="utf-8"))
     packages: Json = lock["packages"]
     needed = {
@@ -87,7 +87,7 @@ def _javascript() -> Iterator[Json]:
 
 
 def _needed_by_pages(packages: Json) -> set[str]:
-    """The paths of what the pages import, and of what that needs in turn."""
+    """Return the paths of the packages that the pages import, directly or indirectly."""
     found: set[str] = set()
     names = [name for name in packages[""]["dependencies"] if name not in BUILD_TOOLS]
     while names:
@@ -112,7 +112,7 @@ def _component(kind: str, name: str, version: str) -> Json:
 
 
 def _dependencies(depended: dict[str, list[str]]) -> list[Json]:
-    """Who needs what, from who is needed by whom."""
+    """Convert the users of each package into the dependencies of each package."""
     known = {ref.rpartition("@")[0]: ref for ref in depended} | {"reembody": "reembody"}
     needs: dict[str, set[str]] = {"reembody": set()}
     for ref, users in depended.items():

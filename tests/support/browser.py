@@ -1,8 +1,8 @@
 """Headless Chromium, and pages whose errors fail the test.
 
-A page that works while its console fills with errors does not work: every context made here reports
-console errors and uncaught exceptions to one `PageWatch`, and the test fails at its end unless it
-said beforehand that it expects them.
+A page whose console fills with errors is broken even if it seems to work: every context created
+here reports console errors and uncaught exceptions to one `PageWatch`, and the test fails at its
+end unless it declared that it expects them.
 """
 
 import os
@@ -44,7 +44,7 @@ ARGUMENTS = (
 
 @contextmanager
 def launched_browser() -> Iterator[Browser]:
-    """A headless Chromium for the time of the block."""
+    """Run a headless Chromium while the block runs."""
     needs("a browser")
     chromium = find_chromium()
     # Playwright's own Node needs a library that bare machines lack.
@@ -63,7 +63,7 @@ def launched_browser() -> Iterator[Browser]:
 
 @dataclass
 class PageWatch:
-    """Collects what the pages of one test complain about."""
+    """Collect the errors that the pages of one test report."""
 
     problems: list[str] = field(default_factory=list)
     _allowed: list[re.Pattern[str]] = field(default_factory=list)
@@ -73,12 +73,12 @@ class PageWatch:
         self._allowed.append(re.compile(pattern))
 
     def attach(self, context: BrowserContext) -> None:
-        """Watch every page the context has or gets."""
+        """Watch every current and future page of the context."""
         context.on("console", self._on_console)
         context.on("weberror", lambda error: self.problems.append(f"uncaught: {error.error}"))
 
     def unexpected(self) -> list[str]:
-        """The problems that were not allowed."""
+        """Return the problems that were not allowed."""
         return [
             problem
             for problem in self.problems
@@ -93,7 +93,7 @@ class PageWatch:
 
 @dataclass(frozen=True)
 class ContextFactory:
-    """Makes contexts (one is one person's browser: own cookies, own storage) and closes them."""
+    """Create browser contexts (each with its own cookies and storage) and close them."""
 
     browser: Browser
     watch: PageWatch
@@ -106,10 +106,10 @@ class ContextFactory:
         motion: Motion = "reduce",
         **options: Any,  # Playwright's own, such as base_url or has_touch
     ) -> BrowserContext:
-        """A watched context; `size` is width x height in CSS pixels.
+        """Return a watched context; `size` is width x height in CSS pixels.
 
-        Software draws every picture of a movement, so dialogs just appear, as they do for people
-        who ask for it; `motion="no-preference"` lets them move.
+        Software renders every frame of an animation, so dialogs appear without one, as they do for
+        people who prefer that; `motion="no-preference"` enables animations.
         """
         width, height = size
         context = self.browser.new_context(
@@ -125,7 +125,7 @@ class ContextFactory:
 
 @contextmanager
 def watched_contexts(browser: Browser, watch: PageWatch) -> Iterator[ContextFactory]:
-    """A factory whose contexts are closed, and whose pages' errors are raised, at the end."""
+    """Yield a factory whose contexts are closed, and whose pages' errors are raised, at the end."""
     before = set(browser.contexts)
     try:
         yield ContextFactory(browser, watch)
@@ -138,7 +138,7 @@ def watched_contexts(browser: Browser, watch: PageWatch) -> Iterator[ContextFact
 
 
 def in_both_schemes(page: Page) -> Iterator[ColorScheme]:
-    """Show the page dark, then light again, as it is: what led to it need not happen twice."""
+    """Show the current page in dark and then in light mode, without repeating the steps to it."""
     schemes: tuple[ColorScheme, ...] = ("dark", "light")
     for scheme in schemes:
         page.emulate_media(color_scheme=scheme)
@@ -146,15 +146,15 @@ def in_both_schemes(page: Page) -> Iterator[ColorScheme]:
 
 
 def take_screenshot(page: Page, folder: Path, name: str) -> Path:
-    """Save the whole page as `folder/name.png`, without moving parts."""
+    """Save the whole page as `folder/name.png`, without animations."""
     path = folder / f"{name}.png"
     page.screenshot(path=path, full_page=True, animations="disabled")
     return path
 
 
-# A theme that changes, or a drawer that comes in, has begun to move a frame or two later, and is
-# done when nothing has moved for a few frames. A movement that was held, or that begins again and
-# again, would be waited for in vain.
+# A changed theme or an opening drawer starts to move a frame or two later, and is done when
+# nothing has moved for a few frames. A paused or endlessly repeated animation
+# would never end, so the wait is limited.
 MOVEMENTS_DONE = """async () => {
     const until = performance.now() + 3000;
     let calm = 0;
@@ -167,15 +167,16 @@ MOVEMENTS_DONE = """async () => {
 }"""
 
 
-# No rule that is on by default asks for style sheets to be fetched once more.
+# No rule that is enabled by default needs style sheets to be fetched again.
 RUN_AXE = "axe.run(document, { resultTypes: ['violations'], preload: false })"
 
 
 def accessibility_violations(page: Page) -> list[str]:
-    """What axe-core calls serious or critical on the page as it is now, one line each."""
-    # A drawer that is still coming in is paler than it will be.
+    """Return the serious and critical violations that axe-core finds on the page, one per line."""
+    # A drawer that is still opening has paler colours than at rest.
     page.evaluate(MOVEMENTS_DONE)
-    # Once in a document: anew, the engine would begin to compile it anew. Evaluated, not added as
+    # Inject it once per document: the engine would compile it again each time. Evaluated, not added
+    # as
     # an element, so that the page's content security policy stays on.
     if not page.evaluate("'axe' in window"):
         page.evaluate(axe_script().read_text(encoding="utf-8"))

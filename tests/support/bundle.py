@@ -1,8 +1,8 @@
-"""Bundling a module of the frontend for a test alone, and loading it on the server's own address.
+"""Bundle a frontend module for one test and load it under the server's own origin.
 
-The product ships no test pages. What only a test needs is bundled by the frontend's own Vite into a
-temporary folder, and the test answers when the browser asks the server for it: so it runs under the
-server's origin and content security policy, as the product's pages do.
+The product ships no test pages. A module that only a test needs is bundled by the frontend's own
+Vite into a temporary folder, and the test answers the browser's requests for it: so it runs under
+the server's origin and content security policy, as the product's pages do.
 """
 
 import json
@@ -41,7 +41,7 @@ class Bundle:
     folder: Path
 
     def open(self, context: BrowserContext, server_url: str) -> Page:
-        """A page that has run the module."""
+        """Return a page that has run the module."""
         # What a test answers comes from nowhere, in Chromium's eyes: a worker from there may reach
         # this machine only if it is allowed to.
         context.grant_permissions(["local-network-access"], origin=server_url)

@@ -1,7 +1,7 @@
-"""What captures are read, how, and how every shared file fares: docs/capture-formats.md.
+"""Generate docs/capture-formats.md: the capture formats, and how every shared file is read.
 
-`python -m tests.support.capture_table > docs/capture-formats.md` writes it anew from the shared
-data; a test compares file by file.
+`python -m tests.support.capture_table > docs/capture-formats.md` rewrites it from the shared data;
+a test compares file by file.
 """
 
 import re
@@ -18,7 +18,7 @@ from tests.support.shared_data import shared_data_folder
 REPOSITORY = Path(__file__).resolve().parents[2]
 PAGE = REPOSITORY / "docs" / "capture-formats.md"
 _FOLDERS = ("motion", "logs")
-_LEFT_ASIDE = "motion/natnet/"  # packets of a network protocol, not files of captures
+_LEFT_ASIDE = "motion/natnet/"  # packets of a network protocol, not capture files
 
 _INTRODUCTION = """# Captures: formats and files
 
@@ -97,7 +97,7 @@ How the published files that the tests use are read. In brackets: where each con
 
 @dataclass(frozen=True)
 class Row:
-    """How one file, or several of one kind, fares; numbers are ranges where files differ."""
+    """The result of reading one file, or several of one kind; ranges where the files differ."""
 
     name: str
     outcome: str
@@ -109,7 +109,7 @@ class Row:
 
     @property
     def line(self) -> str:
-        """The row in Markdown."""
+        """Return the row in Markdown."""
         cells = (
             f"`{self.name}`",
             self.outcome,
@@ -123,7 +123,7 @@ class Row:
 
 
 def page(data: Path) -> str:
-    """The whole document."""
+    """Return the whole document."""
     formats = ["| format | files | gives | unit | axes | rotations |", "|---|---|---|---|---|---|"]
     for known in FORMATS:
         cells = (
@@ -141,7 +141,7 @@ def page(data: Path) -> str:
 
 
 def rows(data: Path) -> Iterator[Row]:
-    """How each shared file fares; the trackers of UXF sessions are one row a kind."""
+    """Yield the result of each shared file; the trackers of UXF sessions have one row per kind."""
     kinds: dict[str, list[Row]] = {}
     for path in files(data):
         name = path.relative_to(data).as_posix()
@@ -151,7 +151,7 @@ def rows(data: Path) -> Iterator[Row]:
 
 
 def files(data: Path) -> list[Path]:
-    """The files of captures and logs."""
+    """Return the files of captures and logs."""
     found = (path for folder in _FOLDERS for path in sorted((data / folder).rglob("*")))
     return [
         path
@@ -161,7 +161,7 @@ def files(data: Path) -> list[Path]:
 
 
 def row_of(path: Path, name: str) -> Row:
-    """Read a file, with the skeletons beside it as companions."""
+    """Read a file, with the skeleton files of its folder as companions."""
     companions = {other.name: other.read_bytes() for other in sorted(path.parent.glob("*.asf"))}
     try:
         capture = read_capture(

@@ -1,9 +1,9 @@
-"""`./run check [PATHS]`: what a change can have broken, as far as one minute or four can tell.
+"""`./run check [PATHS]`: check for everything that a change may have broken, in 1 to 4 minutes.
 
 With paths: format and lint of these, types and import contracts of everything, and the tests that
 mirror them; `tests/` has the folders of `app/`, and a folder without a mirror has its parent's
-tests. Without: everything. Either way no server, no PostgreSQL and no browser is started: tests
-that need one are left to `./run test` (`tests.support.unit_tests`), and so are the tests of faults,
+tests. Without: everything. In both cases no server, no PostgreSQL and no browser is started: tests
+that need one run only in `./run test` (`tests.support.unit_tests`), and so do the tests of faults,
 unless their path is given.
 """
 
@@ -38,19 +38,19 @@ FAULT_TESTS = TESTS / "faults"
 
 
 class NoSuchPath(ValueError):
-    """A path that is not one of the repository; the message says what is."""
+    """Raised for a path outside the repository; the message says which paths exist."""
 
 
 @dataclass(frozen=True)
 class Chosen:
-    """What to look at: paths from the repository's root, those of the pages from its own."""
+    """The paths to check, from the repository's root; those of the pages from theirs."""
 
     python: tuple[Path, ...]
     pages: tuple[Path, ...]
 
     @classmethod
     def of(cls, paths: Iterable[str]) -> "Chosen":
-        """Sort paths; raises `NoSuchPath`."""
+        """Sort the paths into Python and pages; raises `NoSuchPath`."""
         known = [_known(path) for path in paths]
         pages = tuple(path for path in known if path.parts[:1] == ("frontend",))
         return cls(tuple(path for path in known if path not in pages), pages)
@@ -69,7 +69,7 @@ def _known(path: str) -> Path:
 
 
 def mirror(path: Path, root: Path = REPOSITORY) -> Path:
-    """The tests of `path`: its counterpart below `tests`, else the nearest parent's."""
+    """Return the tests of `path`: its counterpart below `tests`, else the nearest parent's."""
     first, *rest = path.parts or (".",)
     if first not in ("app", "tests"):
         return TESTS
@@ -86,13 +86,13 @@ def _has_tests(path: Path) -> bool:
 
 
 def without_inner(paths: Iterable[Path]) -> list[Path]:
-    """Each of `paths` that is not inside another of them."""
+    """Return each of `paths` that is not inside another of them."""
     unique = sorted(set(paths))
     return [one for one in unique if not any(other in one.parents for other in unique)]
 
 
 def plan(chosen: Chosen) -> list[Stage]:
-    """The stages for what was chosen; for everything if nothing was."""
+    """Return the stages for the chosen paths, or for everything if none were chosen."""
     everything = not (chosen.python or chosen.pages)
     planned: list[Stage] = []
     if chosen.python or everything:
@@ -100,7 +100,7 @@ def plan(chosen: Chosen) -> list[Stage]:
     if chosen.pages or everything:
         planned += _page_stages(chosen.pages)
     if chosen.python or everything:
-        # Last: where it takes both cores, nothing else is left to run.
+        # Last, because it uses both cores.
         planned.append(_units(without_inner(map(mirror, chosen.python or [Path()]))))
     return planned
 
@@ -114,7 +114,7 @@ def _source_stages(paths: Sequence[Path]) -> list[Stage]:
     ]
     return [
         *(ruff if ours else []),
-        # All of it, since what a change breaks is elsewhere; only what changed is read again.
+        # Everything, since a change can break code elsewhere; unchanged files come from the cache.
         python_stage("mypy", "-m", "mypy"),
         python_stage("imports", "-c", LINT_IMPORTS),
     ]
@@ -133,7 +133,7 @@ def _page_stages(paths: Sequence[Path]) -> list[Stage]:
 
 
 def _units(tests: Sequence[Path]) -> Stage:
-    """Every process costs the time to find and import tests, so that few tests are one's work."""
+    """Return the stage of unit tests; few tests run in one process, as each has a start-up cost."""
     options = ["-p", "tests.support.unit_tests", "-rfE"]
     if TESTS not in tests:
         return pytest_stage("unit tests", *options, *map(str, tests))
@@ -145,7 +145,7 @@ def _units(tests: Sequence[Path]) -> Stage:
 
 
 def main(arguments: list[str]) -> int:
-    """Run what the paths ask for; 2 where one is not of the repository."""
+    """Run the stages for the paths; return 2 if a path is not in the repository."""
     parser = argparse.ArgumentParser(
         prog="./run check", description=(__doc__ or "").partition(": ")[2]
     )

@@ -1,9 +1,9 @@
-"""Finds a Chromium without asking for an installation.
+"""Find a Chromium without requiring an installation.
 
 In this order: the program `$CHROMIUM`, a system one, the npm package `@sparticuz/chromium`, which
-carries Chromium's headless shell with the libraries and fonts a bare machine lacks. The package is
-installed once into `.cache/` of the checkout. (Playwright's own download is not used: it fetches
-from a host of its own, which closed networks do not reach.)
+contains Chromium's headless shell with the libraries and fonts that a bare machine lacks. The
+package is installed once into `.cache/` of the checkout. (Playwright's own download is not used: it
+fetches from a host that closed networks do not reach.)
 """
 
 import hashlib
@@ -24,14 +24,14 @@ FONTS_CONFIG = "fonts-of-the-package.conf"
 
 @dataclass(frozen=True)
 class Chromium:
-    """A program and what it needs in its environment."""
+    """A Chromium program and the environment variables it needs."""
 
     executable: Path
     environment: dict[str, str] = field(default_factory=dict)
 
 
 def find_chromium() -> Chromium:
-    """The first that exists; raises `FileNotFoundError` if `$CHROMIUM` names nothing."""
+    """Return the first Chromium that exists; raise `FileNotFoundError` if `$CHROMIUM` is wrong."""
     chosen = os.environ.get("CHROMIUM")
     if chosen:
         if not Path(chosen).is_file():
@@ -46,7 +46,7 @@ def find_chromium() -> Chromium:
 
 
 def packaged_chromium() -> Chromium:
-    """Chromium from the npm package, unpacked on first use."""
+    """Return the Chromium of the npm package, unpacked on first use."""
     unpacked = installed_packages() / "unpacked"
     executable = unpacked / "chromium"
     libraries = unpacked / "al2023" / "lib"
@@ -61,7 +61,7 @@ def packaged_chromium() -> Chromium:
 
 
 def axe_script() -> Path:
-    """The accessibility checker axe-core: the frontend's, else our own."""
+    """Return the path of the accessibility checker axe-core: the frontend's, else our own."""
     frontend = REPOSITORY / "frontend" / "node_modules" / "axe-core" / "axe.min.js"
     if frontend.is_file():
         return frontend
@@ -69,10 +69,10 @@ def axe_script() -> Path:
 
 
 def installed_packages() -> Path:
-    """The folder in `.cache/` with the packages installed and Chromium unpacked.
+    """Return the folder in `.cache/` with the packages installed and Chromium unpacked.
 
-    Its name is the hash of the lock file and of what is made here: another version gets another
-    folder.
+    Its name is the hash of the lock file and of the files generated here: another version gets
+    another folder.
     """
     what = (PACKAGE / "package-lock.json").read_bytes() + FONTS_CONFIG.encode()
     key = hashlib.sha256(what).hexdigest()[:16]

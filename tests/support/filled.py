@@ -1,7 +1,7 @@
-"""Rows in every table of a database, whatever revision its schema has.
+"""Fill every table of a database with rows, whatever revision its schema has.
 
-The tables are asked for their columns, references and checks, so a table of a later migration gets
-rows too without anybody thinking of it.
+Columns, references and checks are read from the database, so a table of a later migration gets rows
+too without a change here.
 """
 
 import re
@@ -36,23 +36,23 @@ QUOTED = re.compile(r"'(\w+)'")
 
 
 def tables_of(engine: Engine | Connection) -> list[Table]:
-    """The product's tables as they are, those that are referred to first."""
+    """Return the product's current tables, those that are referred to first."""
     if isinstance(engine, Connection):
         return _tables_in(statements_of(engine), engine)
     return _reflected(engine)
 
 
 def statements_of(connection: Connection) -> tuple[str, ...]:
-    """What a database is made of, word by word: what it tells of its schema follows from it.
+    """Return the statements that define a database's schema.
 
-    So databases with the same statements need to be asked only once.
+    Databases with the same statements have the same schema, so its description can be cached.
     """
     query = _ON_SQLITE if connection.dialect.name == "sqlite" else _ON_POSTGRES
     return tuple(sorted(connection.scalars(query)))
 
 
 _ON_SQLITE = text("SELECT type || ' ' || name || ' ' || sql FROM sqlite_master WHERE sql > ''")
-# Each column with all that the standard knows of it; the catalog is the database's own name.
+# Each column with all its standard attributes; the catalogue is the database's own name.
 _ON_POSTGRES = text("""
     SELECT 'column ' || (jsonb_strip_nulls(to_jsonb(c)) - 'table_catalog' - 'udt_catalog')::text
     FROM information_schema.columns AS c WHERE table_schema = 'public'
@@ -67,7 +67,7 @@ _ON_POSTGRES = text("""
 def remembered(
     ask: Callable[[Connection], T],
 ) -> Callable[[tuple[str, ...], Connection], T]:
-    """Keep what a database told of its schema, by what it is made of."""
+    """Cache a function of a database's schema by the statements that define it."""
     told: OrderedDict[tuple[str, ...], T] = OrderedDict()
 
     def tell(schema: tuple[str, ...], connection: Connection) -> T:
@@ -90,7 +90,7 @@ _tables_in = remembered(_reflected)
 
 
 def fill(engine: Engine, rows: int = ROWS) -> None:
-    """Put `rows` rows into every table; each refers to those of the same number."""
+    """Insert `rows` rows into every table; each refers to those of the same number."""
     writes = engine.execution_options(reembody_writes=True)
     with writes.begin() as connection:
         schema = statements_of(connection)
@@ -100,7 +100,7 @@ def fill(engine: Engine, rows: int = ROWS) -> None:
 
 
 def contents(engine: Engine) -> dict[str, list[dict[str, Any]]]:
-    """Everything that is in the tables, sorted by primary key."""
+    """Return all rows of all tables, sorted by primary key."""
     with engine.connect() as connection:
         return {
             table.name: [
@@ -114,7 +114,7 @@ def contents(engine: Engine) -> dict[str, list[dict[str, Any]]]:
 
 
 def _listed(connection: Connection) -> dict[str, dict[str, list[str]]]:
-    """For each table and each of its columns that allows only some words: those words."""
+    """Return the allowed words of each column that a check restricts, by table."""
     allowed: dict[str, dict[str, list[str]]] = {}
     for (_, table), checks in inspect(connection).get_multi_check_constraints().items():
         for check in checks:

@@ -1,13 +1,13 @@
-"""The product's worker processes, forked from one process that has already imported what they need.
+"""Fork the product's worker processes from one process that has already imported their modules.
 
 The product starts each worker with `spawn`: a new Python that imports for one to three seconds
 before its first task. In the tests `spawn` is multiprocessing's own fork server instead, a process
-with a single thread that forks a worker whenever it is asked over a socket:
+with a single thread that forks a worker on request over a socket:
 
     test process, or a server of its nursery --(socket)--> fork server --(fork)--> worker
 
-Tasks and answers are pickled as with `spawn`, but a worker does not inherit the environment, the
-limits or the output of the process that asked for it. `spawn` itself is covered by the tests that
+Tasks and results are pickled as with `spawn`, but a worker does not inherit the environment, the
+limits or the output of the process that requested it. `spawn` itself is covered by the tests that
 start a Python of their own (tests/platform/test_workers.py, tests/lan, tests/architecture).
 """
 
@@ -26,7 +26,7 @@ HEAVY = ("mujoco", "numba", "pandas", "plotly.graph_objects", "scipy.ndimage", "
 
 
 def listener() -> socket.socket:
-    """The socket of a fork server that starts later; who connects before that waits for it."""
+    """Return the socket of a fork server that starts later; earlier connections wait for it."""
     listener = socket.socket(socket.AF_UNIX)
     listener.bind("")  # Linux names it; no file is left behind
     listener.listen(100)
@@ -34,9 +34,9 @@ def listener() -> socket.socket:
 
 
 def use_fork_server(address: Callable[[], bytes]) -> None:
-    """From now on `spawn` asks the fork server at `address()`, also in forks of this process."""
+    """Make `spawn` use the fork server at `address()`, also in forks of this process."""
     server = vars(forkserver._forkserver)
-    # The descriptor is what would keep a fork server alive; this one ends with the nursery.
+    # The descriptor would keep a fork server alive; this one ends with the nursery.
     server["_forkserver_alive_fd"] = os.open(os.devnull, os.O_RDONLY)
     server["ensure_running"] = lambda: server.update(_forkserver_address=address())
     vars(multiprocessing).update(get_context=partial(_context, multiprocessing.get_context))
@@ -47,10 +47,10 @@ def _context(original: Any, method: str | None = None) -> Any:
 
 
 def leave_fork_server(listener: socket.socket, *foreign: int) -> None:
-    """Fork: the child is the fork server, and ends when this process has ended.
+    """Fork a fork server, which ends when this process has ended.
 
     Args:
-        listener: where it is asked.
+        listener: the socket of its requests.
         foreign: descriptors of this process that the child must not keep open.
     """
     ended, held = os.pipe()

@@ -1,6 +1,7 @@
-"""Skinned humanoid models as files, of `tests.support.humanoid_model`, and what is none.
+"""Write skinned humanoid models as files, and files that are not humanoid.
 
-Bones have rotations of their own at rest, as those of real rigs have.
+The models are those of `tests.support.humanoid_model`. Bones have rotations of their own at rest,
+as those of real rigs have.
 """
 
 import base64
@@ -18,12 +19,12 @@ from tests.support.humanoid_model import Array, Model, is_arm, places, skin_of
 
 
 def humanoid_file(model: Model | None = None) -> bytes:
-    """The file."""
+    """Return the file of a humanoid model."""
     return _File(Model() if model is None else model).data()
 
 
 def box_file() -> bytes:
-    """A box on a node: no bones at all."""
+    """Return the file of a box on a node, without bones."""
     return humanoid_file(Model(parts=(), skin=()))
 
 
@@ -53,7 +54,7 @@ _DOG: Mapping[str, tuple[str | None, tuple[float, float, float], str]] = {
 
 
 def dog_file(*, humans_names: bool = False) -> bytes:
-    """A dog, with the names that a rig for animals gives its bones, or with a human's."""
+    """Return the file of a dog, with bone names of an animal rig or of a human."""
     names = list(_DOG)
     nodes: list[dict[str, Any]] = []
     for name, (above, place, human) in _DOG.items():
@@ -72,7 +73,7 @@ def dog_file(*, humans_names: bool = False) -> bytes:
 
 
 def glb(document: Mapping[str, Any], binary: bytes) -> bytes:
-    """A GLB of a JSON and its chunk."""
+    """Return a GLB file of a JSON document and its binary chunk."""
     text = json.dumps(document).encode()
     text += b" " * (-len(text) % 4)
     binary += b"\0" * (-len(binary) % 4)
@@ -83,7 +84,7 @@ def glb(document: Mapping[str, Any], binary: bytes) -> bytes:
 
 
 def taken_apart(data: bytes) -> tuple[dict[str, Any], bytes]:
-    """The JSON and the chunk of a GLB of `glb`."""
+    """Return the JSON document and the binary chunk of a file made by `glb`."""
     size = struct.unpack_from("<I", data, 12)[0]
     return json.loads(data[20 : 20 + size]), data[28 + size :]
 
@@ -139,15 +140,15 @@ class _File:
         return above
 
     def _root(self) -> Array:
-        """file_from_model: a turn, and the axis that is up."""
-        # Facing -z becomes facing +z, then the turn that is asked for.
+        """Return file_from_model: a turn, and the up axis."""
+        # Facing -z becomes facing +z, then the requested turn is applied.
         turn = _matrix(np.array((0.0, np.pi + self._model.facing_rad, 0.0)))
         if self._model.up == "z":
             turn = _matrix(np.array((np.pi / 2.0, 0.0, 0.0))) @ turn
         return turn @ np.diag((*(self._model.root_scale,) * 3, 1.0))
 
     def _posed(self, part: str) -> Array:
-        """model_from_T-pose: arms that hang down a little."""
+        """Return model_from_T-pose: arms lowered by the requested angle."""
         side = next((side for side in ("Left", "Right") if part.startswith(side)), "")
         down = self._model.arms_down_rad
         if not side or not is_arm(part) or down == 0.0:
@@ -191,7 +192,7 @@ class _File:
         if joints:
             above = [max(0, row - 1) for row in joints]
             four = np.array([(row, other, 0, 0) for row, other in zip(joints, above, strict=True)])
-            # What a second bone does to a vertex changes nothing while the bones are at rest.
+            # The influence of a second bone changes nothing while the bones are at rest.
             shares = np.tile(np.array((0.8, 0.2, 0.0, 0.0)), (len(joints), 1))
             attributes["JOINTS_0"] = self._table(four.astype("<u2"), "VEC4", 5123)
             attributes["WEIGHTS_0"] = self._table(shares.astype("<f4"), "VEC4", 5126)

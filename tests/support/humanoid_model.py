@@ -1,4 +1,4 @@
-"""A made-up humanoid model: which bones it has, where they lie, and the skin around them.
+"""A synthetic humanoid model: its bones, their positions, and the skin around them.
 
 It has the joints of a person of 1.7 m with shorter arms and shoulders that lie further back, and a
 box of skin around each bone.
@@ -25,7 +25,7 @@ MIXAMO: Mapping[str, str] = {
 
 
 def mixamo_name(part: str) -> str:
-    """`mixamorig:LeftHandIndex1` for `LeftIndexProximal`."""
+    """Return Mixamo's name of a part: `mixamorig:LeftHandIndex1` for `LeftIndexProximal`."""
     side = next((side for side in ("Left", "Right") if part.startswith(side)), "")
     bare = part.removeprefix(side)
     if part not in FINGER_PARTS:
@@ -36,7 +36,7 @@ def mixamo_name(part: str) -> str:
 
 
 def without(*names: str) -> tuple[str, ...]:
-    """All parts but those whose names have one of these words in them."""
+    """Return all parts except those whose names contain one of these words."""
     return tuple(part for part in PART_NAMES if not any(name in part for name in names))
 
 
@@ -76,7 +76,7 @@ class Model:
 
 
 def places() -> dict[str, Array]:
-    """Where the joints of every part are in the T-pose, facing -z, over the floor."""
+    """Return the joint positions of every part in the T-pose, facing -z, above the floor."""
     usual = {part: np.array(place) for part, place in proportions(STATURE_M).places_m().items()}
     found = dict(usual)
     for part in PART_NAMES:
@@ -89,7 +89,10 @@ def places() -> dict[str, Array]:
 
 
 def skin_of(part: str) -> Array:
-    """(N, 3) skin of a part in its own frame: a box along the bone, a ball around the head."""
+    """Return (N, 3) skin points of a part in its own frame.
+
+    A box along the bone, or a ball around the head.
+    """
     bones = proportions(STATURE_M)
     radius = bones.radii_m[part]
     if part == "Head":
@@ -111,5 +114,5 @@ def skin_of(part: str) -> Array:
 
 
 def is_arm(part: str) -> bool:
-    """Whether a part moves with the upper arm."""
+    """Return whether a part moves with the upper arm."""
     return part in FINGER_PARTS or part.endswith(("UpperArm", "LowerArm", "Hand"))

@@ -1,4 +1,4 @@
-"""The real server with its door to the lab's network open, on the loopback only."""
+"""The real server with its network ports open, on the loopback only."""
 
 import ssl
 from collections.abc import Sequence
@@ -26,24 +26,24 @@ class LanServer(LiveServer):
 
     @property
     def secure_url(self) -> str:
-        """The address of https."""
+        """Return the base URL of https."""
         return f"https://127.0.0.1:{self.lan_port}"
 
     @property
     def help_url(self) -> str:
-        """The address of the help page."""
+        """Return the base URL of the help page."""
         return f"http://127.0.0.1:{self.help_port}"
 
     def authority(self) -> bytes:
-        """The authority's certificate as a device gets it, DER."""
+        """Return the authority's certificate as a device receives it, in DER."""
         return httpx2.get(f"{self.help_url}/reembody-ca.crt").raise_for_status().content
 
     def trusting(self) -> ssl.SSLContext:
-        """A device's trust after it installed the authority's certificate, and nothing else."""
+        """Return the trust of a device that has installed only the authority's certificate."""
         context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
         context.load_verify_locations(cadata=self.authority())
         return context
 
     def secure_client(self) -> httpx2.Client:
-        """A client over https that trusts the authority."""
+        """Return an https client that trusts the authority."""
         return httpx2.Client(base_url=self.secure_url, verify=self.trusting(), timeout=30.0)

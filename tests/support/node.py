@@ -1,4 +1,4 @@
-"""The Node that the development requirements bring, so that no machine needs one of its own."""
+"""Run the Node of the development requirements, so that no machine needs its own."""
 
 import hashlib
 import os
@@ -13,15 +13,15 @@ NPM = Path(ROOT_DIR) / "lib" / "node_modules" / "npm" / "bin" / "npm-cli.js"
 
 
 def node_environment() -> dict[str, str]:
-    """This process's environment, in which `node` by name is the wheel's."""
+    """Return this process's environment with the wheel's `node` first in the path."""
     path = f"{NODE.parent}{os.pathsep}{os.environ.get('PATH', os.defpath)}"
-    # Logs are read as text, also where CI makes tools believe in colours.
+    # Logs are read as plain text, also in CI, where tools enable colours.
     plain = {"NO_COLOR": "1", "npm_config_update_notifier": "false"}
     return {**os.environ, "PATH": path, **plain}
 
 
 def run_node(*arguments: str, cwd: Path, environment: Mapping[str, str] | None = None) -> str:
-    """Run Node and return what it printed; raises `RuntimeError` with what it complained about."""
+    """Run Node and return its output; raise `RuntimeError` with the output if it fails."""
     result = subprocess.run(
         [NODE, *arguments],
         cwd=cwd,
@@ -39,14 +39,14 @@ def run_node(*arguments: str, cwd: Path, environment: Mapping[str, str] | None =
 
 
 def npm_ci(folder: Path) -> None:
-    """Install exactly what `folder`'s lock file says, running no script of any package."""
+    """Install exactly the packages of `folder`'s lock file, without running their scripts."""
     run_node(str(NPM), "ci", "--ignore-scripts", "--no-audit", "--no-fund", cwd=folder)
 
 
 def install_packages(folder: Path) -> None:
-    """`npm_ci`, unless `node_modules` already holds what the lock file says.
+    """Run `npm_ci` unless `node_modules` already matches the lock file.
 
-    The mark is the one that the build of the pages leaves (`build_pages.py`).
+    The hash in `.lock-hash` is the one that the build of the pages writes (`build_pages.py`).
     """
     lock = hashlib.sha256((folder / "package-lock.json").read_bytes()).hexdigest()
     mark = folder / "node_modules" / ".lock-hash"

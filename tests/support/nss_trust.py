@@ -1,10 +1,10 @@
-"""Lets a Chromium of this machine trust a certificate authority, as a person would in its settings.
+"""Make a local Chromium trust a certificate authority, as a user would in its settings.
 
-On Linux Chromium reads whom its user trusts from an NSS database below the home folder. The tool
+On Linux Chromium reads the trusted authorities from an NSS database below the home folder. The tool
 that writes one (`certutil`) is seldom installed, but the library that Chromium itself loads is
-always there, so this calls it: `trusting_home(folder, authority)` gives a home folder to start
-Chromium with. It runs in a process of its own, since the library's folder has to be named before a
-process starts, and since the library keeps its state for good.
+always available, so this module calls it: `trusting_home(folder, authority)` returns a home folder
+to start Chromium with. It runs in a process of its own, since the library's folder must be named
+before a process starts, and since the library keeps its state permanently.
 """
 
 import ctypes
@@ -20,11 +20,11 @@ TRUSTED_CA = 0x18
 
 
 class TrustUnavailableError(Exception):
-    """No second trust store could be made here; the message says why."""
+    """Raised if no trust store could be created here; the message says why."""
 
 
 def trusting_home(home: Path, authority_der: Path) -> Path:
-    """Make `home` one whose Chromium trusts `authority_der`; raises TrustUnavailableError."""
+    """Make `home` a folder whose Chromium trusts `authority_der`; raises TrustUnavailableError."""
     database = home / ".pki" / "nssdb"
     database.mkdir(parents=True)
     result = subprocess.run(

@@ -1,14 +1,14 @@
-"""`reembody` commands from a process that has already imported them: a second sooner each.
+"""Start `reembody` commands by forking a process that has already imported them.
 
-A run starts hundreds of servers, and what they do first is the same: import, for longer than
-everything that follows. So each test process keeps a nursery, a process that has imported the
-command and does nothing else, with one thread. Asked for a server, it forks: the child has its own
-process group, environment, folder and output, runs the command from its arguments on as the
+A run starts hundreds of servers, and each first imports the same modules, which takes longer than
+everything that follows: about a second. So each test process has a nursery, a process with one
+thread that has imported the command and does nothing else. On request it forks: the child has its
+own process group, environment, folder and output, runs the command from its arguments on as the
 installed script does, and can be killed like any other process.
 
-    test process --(a socket, one message a request)--> nursery --(fork)--> `reembody serve ...`
+    test process --(a socket, one message per request)--> nursery --(fork)--> `reembody serve ...`
 
-Whether the script itself starts is seen by tests/lan and tests/architecture, which run it.
+Whether the script itself starts is tested by tests/lan and tests/architecture, which run it.
 """
 
 import ctypes
@@ -50,7 +50,7 @@ EAGER = (
 
 
 class Child:
-    """A process of the nursery, with what `subprocess.Popen` offers of it."""
+    """A child process of the nursery, with the interface of `subprocess.Popen`."""
 
     def __init__(self, nursery: "Nursery", pid: int) -> None:
         self.pid = pid
@@ -60,17 +60,17 @@ class Child:
 
     @property
     def returncode(self) -> int | None:
-        """The exit code, negative for a signal; None while it runs."""
+        """Return the exit code, negative for a signal; None while it runs."""
         return self.poll()
 
     def poll(self) -> int | None:
-        """The exit code as of now."""
+        """Return the exit code, or None while it runs."""
         if self._code is None and select.select([self._handle], [], [], 0)[0]:
             self._ended()
         return self._code
 
     def wait(self, timeout: float | None = None) -> int:
-        """Wait for its end; raises subprocess.TimeoutExpired."""
+        """Wait for the process to end; raises subprocess.TimeoutExpired."""
         if self._code is None:
             if not select.select([self._handle], [], [], timeout)[0]:
                 raise subprocess.TimeoutExpired("reembody", timeout or 0.0)
@@ -79,12 +79,12 @@ class Child:
         return self._code
 
     def send_signal(self, request: int) -> None:
-        """Send a signal, unless it has ended."""
+        """Send a signal, unless the process has ended."""
         if self.poll() is None:
             os.kill(self.pid, request)
 
     def kill(self) -> None:
-        """SIGKILL."""
+        """Send SIGKILL."""
         self.send_signal(signal.SIGKILL)
 
     def _ended(self) -> None:
@@ -94,7 +94,7 @@ class Child:
 
 @dataclass(frozen=True)
 class Wish:
-    """A command to run: everything that a process has of its own."""
+    """A command to run, with the environment, folder and output of its process."""
 
     arguments: Sequence[str]
     environment: dict[str, str]
@@ -107,7 +107,7 @@ class Wish:
 
 
 class Nursery:
-    """The prepared process, from the side of the test process."""
+    """The test process's connection to the prepared process."""
 
     def __init__(self) -> None:
         ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
@@ -139,7 +139,7 @@ class Nursery:
         return Child(self, int(started["pid"]))
 
     def ask(self, request: dict[str, Any]) -> dict[str, Any]:
-        """One request, one answer."""
+        """Send one request and return its response."""
         with self._one_question:
             self._socket.sendall(json.dumps(request).encode())
             answered = self._socket.recv(MOST_BYTES)
@@ -150,7 +150,7 @@ class Nursery:
 
 
 def nursery() -> Nursery:
-    """The one of this process; it ends with it."""
+    """Return the nursery of this process; it ends with it."""
     with _BEGINNING:
         return _nursery()
 
@@ -168,7 +168,7 @@ def _plain_environment() -> dict[str, str]:
 
 
 def serve_wishes(wishes: socket.socket) -> dict[str, Any] | None:
-    """Answer until nobody asks any more (None); in each child, returns what it is to run."""
+    """Answer requests until the connection closes (None); in each child, return its request."""
     while asked := wishes.recv(MOST_BYTES):
         request = json.loads(asked)
         if "reap" in request:
@@ -186,8 +186,8 @@ def serve_wishes(wishes: socket.socket) -> dict[str, Any] | None:
 
 
 def become(request: dict[str, Any]) -> None:
-    """Be a process of one's own: group, folder, environment, output."""
-    # The nursery ends with the test process, however that ends, and a server must not stay behind.
+    """Give this process its own group, folder, environment and output."""
+    # The nursery ends with the test process in any case, and no server may outlive it.
     ctypes.CDLL(None).prctl(PARENT_DEATH_SIGNAL, signal.SIGKILL)
     os.setsid()
     os.chdir(request["folder"])
@@ -202,13 +202,13 @@ def become(request: dict[str, Any]) -> None:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
     script = str(Path(sys.executable).with_name("reembody"))
     sys.argv = [script, *request["arguments"]]
-    # What the processes that it makes will look for.
+    # Settings that its child processes will need.
     main_module = sys.modules["__main__"]
     main_module.__spec__, main_module.__file__ = None, script
 
 
 def main() -> None:
-    """Import, then answer; a child leaves by running the command."""
+    """Import, then answer requests; a child leaves the loop and runs its command."""
     for name in EAGER:
         __import__(name)
     if STUDIES in os.environ:
@@ -230,7 +230,7 @@ def main() -> None:
 
 
 def make_passwords_cheap() -> None:
-    """The same kind of hash in this process from now on, with the least work."""
+    """Hash passwords at the lowest cost in this process from now on."""
     from argon2 import PasswordHasher
 
     from app.features.people.accounts import passwords
@@ -239,7 +239,7 @@ def make_passwords_cheap() -> None:
 
 
 def ship_studies_from(folder: Path) -> None:
-    """New databases of this process get the studies of `folder` from now on."""
+    """Create new databases of this process with the studies of `folder` from now on."""
     from app.features.design.studies import service
 
     instruments = service.shipped_files().instruments
@@ -248,7 +248,7 @@ def ship_studies_from(folder: Path) -> None:
 
 
 def _read_shipped_files() -> None:
-    """Every new database gets them; what was read is kept by its text."""
+    """Read the shipped files once, since every new database gets them; they are cached by text."""
     from app.features.design.studies import service
     from app.protocol.loading import load_instrument, study_source
 
@@ -260,7 +260,7 @@ def _read_shipped_files() -> None:
 
 
 def _build_routes() -> None:
-    """FastAPI builds them when they are first looked through, which takes a quarter of a second."""
+    """Let FastAPI build its routes once, which takes a quarter of a second on first use."""
     from fastapi import FastAPI
 
     from app.api.router import add_routes
@@ -272,7 +272,7 @@ def _build_routes() -> None:
 
 
 def _make_a_database() -> None:
-    """The steps to an empty database are taken once in a process."""
+    """Create an empty database once, so that its migrations are loaded in this process."""
     from app.schema_revisions import make_file
 
     with tempfile.TemporaryDirectory() as folder:

@@ -1,10 +1,11 @@
-"""docs/pages.md: every page with a picture, from the screenshots that the browser tests take.
+"""Generate docs/pages.md: every page with a screenshot that the browser tests took.
 
     REEMBODY_SCREENSHOTS=FOLDER ./run test -m browser tests/e2e
+
     python -m tests.support.page_pictures FOLDER
 
-The pictures have 256 colours, a third of the size that a browser saves, and end where a reader
-stops scrolling. A picture that the folder lacks is left as it was.
+The pictures have 256 colours, which makes them a third of the browser's size, and are cut off at a
+height that readers see. A picture that is missing in the folder is left unchanged.
 """
 
 import sys
@@ -23,7 +24,7 @@ WINDOW_PX = 800
 
 @dataclass(frozen=True)
 class Page:
-    """A page of the product: what the browser tests call its screenshot, and what it is for."""
+    """A page of the product: the name of its screenshot, its title and its purpose."""
 
     shot: str
     title: str
@@ -109,7 +110,7 @@ TABLET = (
 
 
 def small_picture(source: Path, target: Path, tallest_px: int) -> None:
-    """Write a picture with few colours."""
+    """Save a cropped copy of a picture with few colours."""
     with Image.open(source) as picture:
         top = picture.crop((0, 0, picture.width, min(picture.height, tallest_px)))
         few = top.convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
@@ -117,7 +118,7 @@ def small_picture(source: Path, target: Path, tallest_px: int) -> None:
 
 
 def section(heading: str, pages: tuple[Page, ...]) -> list[str]:
-    """The part of the document about some pages; those without a picture are not in it."""
+    """Return the document's section about these pages; pages without a picture are left out."""
     lines = [f"## {heading}", ""]
     for page in pages:
         if (PICTURES / f"{page.shot}.png").exists():
@@ -127,7 +128,7 @@ def section(heading: str, pages: tuple[Page, ...]) -> list[str]:
 
 
 def main(folder: Path) -> None:
-    """Write the pictures, and the document that shows them."""
+    """Write the pictures and the document that shows them."""
     PICTURES.mkdir(parents=True, exist_ok=True)
     for page in (*CONSOLE, *TABLET):
         source = folder / f"{page.shot}.png"

@@ -1,8 +1,8 @@
-"""A real PostgreSQL for the tests: one cluster for a whole test run, one database for each test.
+"""A real PostgreSQL for the tests: one cluster for a test run, one database for each test.
 
-The first test that asks starts the cluster, in whichever xdist worker it runs; the others join it.
-A template database is migrated once and each test gets a copy of it, which is much faster than to
-migrate again. The cluster listens on a unix socket in a private folder only.
+The first test that needs the cluster starts it, in whichever xdist worker it runs; the others join
+it. A template database is migrated once and each test gets a copy of it, which is much faster than
+a migration. The cluster listens only on a unix socket in a private folder.
 """
 
 import json
@@ -29,14 +29,14 @@ from tests.support.unit_tests import needs
 STARTS_WITHIN_S = 60.0
 STOPS_WITHIN_S = 30.0
 TEMPLATE = "migrated"
-# A test database never has to survive a power loss, and syncing is most of the time it would take.
+# A test database need not survive a power loss, and syncing would take most of its time.
 SETTINGS = {
     "fsync": "off",
     "full_page_writes": "off",
     "synchronous_commit": "off",
     "max_connections": "100",
     "shared_buffers": "64MB",
-    # Compiling a question about the schema takes longer than answering it.
+    # Compiling a query about the schema takes longer than answering it.
     "jit": "off",
     "listen_addresses": "",
     "timezone": "UTC",
@@ -45,16 +45,16 @@ SETTINGS = {
 
 @dataclass(frozen=True)
 class Cluster:
-    """A running PostgreSQL; `folder` holds its socket, its data and its log."""
+    """A running PostgreSQL; `folder` contains its socket, its data and its log."""
 
     folder: Path
 
     def url(self, database: str) -> str:
-        """The address of a database, as SQLAlchemy reads it."""
+        """Return the URL of a database for SQLAlchemy."""
         return f"postgresql+psycopg://postgres@/{database}?host={self.folder}"
 
     def execute(self, statement: LiteralString, *databases: str) -> None:
-        """Run a statement outside of any transaction; each `{}` becomes the name of a database."""
+        """Run a statement outside any transaction; each `{}` becomes the name of a database."""
         query = sql.SQL(statement).format(*map(sql.Identifier, databases))
         with psycopg.connect(
             host=str(self.folder), user="postgres", dbname="postgres", autocommit=True
@@ -64,9 +64,9 @@ class Cluster:
 
 @contextmanager
 def fresh_postgres() -> Iterator[str]:
-    """The address of a migrated, empty database that nobody else uses meanwhile.
+    """Yield the URL of a migrated, empty database that nothing else uses meanwhile.
 
-    To copy one takes a quarter of a second, so it is emptied afterwards and lent again, unless a
+    Copying one takes a quarter of a second, so it is emptied afterwards and used again, unless a
     test left anything in it that differs from a fresh one.
     """
     cluster = migrated_cluster()
@@ -85,7 +85,7 @@ _idle: list[str] = []
 
 
 def _renamed(cluster: Cluster, database: str) -> str:
-    """Under a new name: what the product keeps of a database it keeps by its address."""
+    """Rename a database: the product caches data about a database by its URL."""
     name = _new_name()
     cluster.execute("ALTER DATABASE {} RENAME TO {}", database, name)
     return name
@@ -102,13 +102,13 @@ def _copied(cluster: Cluster) -> str:
 
 
 def is_like_new(cluster: Cluster, database: str) -> bool:
-    """Empty a database; whether it then is what the template is."""
+    """Empty a database and return whether it then equals the template."""
     return emptied(cluster.folder, database) == _template_marks(cluster)
 
 
 @lru_cache
 def _template_marks(cluster: Cluster) -> str | None:
-    """The marks of a copy of the template: the template itself lets nobody in."""
+    """Return the marks of a copy of the template, which itself allows no connections."""
     database = _copied(cluster)
     try:
         return emptied(cluster.folder, database)
@@ -117,7 +117,7 @@ def _template_marks(cluster: Cluster) -> str | None:
 
 
 def migrated_cluster() -> Cluster:
-    """The cluster of this run with its migrated template; started by whoever asks first."""
+    """Return the cluster of this run with its migrated template; the first caller starts it."""
     cluster = running_cluster()
     with once("postgres-template") as mark:
         if mark:
@@ -125,8 +125,8 @@ def migrated_cluster() -> Cluster:
 
             cluster.execute("CREATE DATABASE {}", TEMPLATE)
             migrate(cluster.url(TEMPLATE))
-            # A template can be copied only while nobody is connected to it. No test has a database
-            # yet, so whatever is connected is a left-over of migrating.
+            # A template can be copied only while it has no connections. No test has a database
+            # yet, so any remaining connection comes from the migration.
             cluster.execute("ALTER DATABASE {} ALLOW_CONNECTIONS false", TEMPLATE)
             cluster.execute(
                 "SELECT pg_terminate_backend(pid) FROM pg_stat_activity "
@@ -137,7 +137,7 @@ def migrated_cluster() -> Cluster:
 
 
 def running_cluster() -> Cluster:
-    """The cluster of this run, without anything of ours in it."""
+    """Return the cluster of this run, without a template or test databases."""
     needs("PostgreSQL")
     folder = run_folder() / "postgres"
     with once("postgres") as mark:
@@ -148,14 +148,14 @@ def running_cluster() -> Cluster:
 
 
 def stop_cluster() -> None:
-    """End the cluster of this run if there is one; the controller calls it last."""
+    """Stop the cluster of this run if there is one; the controller calls it last."""
     mark = run_folder() / "postgres.done"
     if mark.exists():
         stop_keeper(json.loads(mark.read_text())["keeper_pid"], run_folder() / "postgres")
 
 
 def stop_keeper(keeper_pid: int, folder: Path) -> None:
-    """End the cluster in `folder` by its keeper."""
+    """Stop the cluster in `folder` through its keeper."""
     try:
         os.kill(keeper_pid, signal.SIGTERM)
     except ProcessLookupError:
@@ -164,7 +164,7 @@ def stop_keeper(keeper_pid: int, folder: Path) -> None:
 
 
 def start_keeper(folder: Path, settings: Mapping[str, str]) -> int:
-    """Make and start a cluster in `folder`; returns the pid of its keeper, PostgreSQL's parent."""
+    """Create and start a cluster in `folder`; return the pid of its keeper, PostgreSQL's parent."""
     account = Account.for_postgres()
     folder.mkdir(mode=0o700)
     programs = folder / "programs"

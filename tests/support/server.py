@@ -1,8 +1,8 @@
-"""The real server, as a process that tests can talk to, kill and start again.
+"""The real server, as a process that tests can send requests to, kill and restart.
 
 It runs what an operator runs (`reembody serve`): the tests go through argument parsing, settings,
-migrations and the network, and a `kill()` is the crash that it looks like. Only the imports were
-made before (tests/support/nursery.py).
+migrations and the network, and a `kill()` is a real crash. Only the imports were made before
+(tests/support/nursery.py).
 """
 
 import os
@@ -25,15 +25,15 @@ from tests.support.unit_tests import needs
 ADMIN_PASSWORD = "only-for-this-test-run"
 STARTS_WITHIN_S = 240.0
 STOPS_WITHIN_S = 60.0
-# The server hangs up on a connection that was idle for five seconds. Where a busy machine wakes a
-# client just then, its request meets a closed door; so the client hangs up first.
+# The server closes a connection that was idle for five seconds. If a busy machine lets a
+# client send just then, the request fails; so the client closes first.
 CONNECTIONS = httpx2.Limits(max_connections=100, max_keepalive_connections=20, keepalive_expiry=1.0)
 REEMBODY = (str(Path(sys.executable).with_name("reembody")),)
 
 
 @cache
 def _certificates() -> ssl.SSLContext:
-    """The system's, read once: to read them takes longer than most of a client's life."""
+    """Return the system's certificates, read once: reading takes most of a client's lifetime."""
     return ssl.create_default_context()
 
 
@@ -41,7 +41,7 @@ class LiveServer:
     """A server on a free port of the loopback, with its data in `folder`.
 
     The port and the data stay the same over `kill()`, `stop()` and `start()`. `environment` adds
-    `REEMBODY_*` variables (such as `REEMBODY_DATABASE_URL`); none of the caller's get through.
+    `REEMBODY_*` variables (such as `REEMBODY_DATABASE_URL`); the caller's own are not passed on.
     """
 
     def __init__(
@@ -63,23 +63,23 @@ class LiveServer:
 
     @property
     def url(self) -> str:
-        """`http://localhost:PORT`: browsers count this name, not every address, as secure."""
+        """Return `http://localhost:PORT`: browsers treat this name as secure, not every address."""
         return f"http://localhost:{self.port}"
 
     @property
     def pid(self) -> int:
-        """The process id of the running server."""
+        """Return the process id of the running server."""
         if self._process is None:
             raise RuntimeError("the server is not running: call start() first")
         return self._process.pid
 
     @property
     def log(self) -> str:
-        """Everything it wrote to standard output and error, over all its starts."""
+        """Return everything it wrote to standard output and error, over all its starts."""
         return self._log_file.read_text(errors="replace") if self._log_file.exists() else ""
 
     def start(self) -> Self:
-        """Start it and wait until it answers; raises `RuntimeError` with its log if it does not."""
+        """Start it and wait until it responds; raise `RuntimeError` with its log if it fails."""
         if self._process is not None:
             raise RuntimeError(f"the server already runs as process {self._process.pid}")
         needs("a server")
@@ -112,20 +112,20 @@ class LiveServer:
         return process
 
     def stop(self) -> None:
-        """Ask it to end, as a service manager does; kill it if it does not."""
+        """Terminate it as a service manager does; kill it if it does not end."""
         self._end(signal.SIGTERM)
 
     def kill(self) -> None:
-        """SIGKILL: the server gets no chance to do anything."""
+        """Send SIGKILL: the server has no chance to clean up."""
         self._end(signal.SIGKILL)
 
     def restart(self) -> Self:
-        """Start it again on the same port and data, stopping it first if it runs."""
+        """Restart it on the same port and data."""
         self.stop()
         return self.start()
 
     def client(self) -> httpx2.Client:
-        """A client of this server, not signed in; close it, or use it with `with`."""
+        """Return a client of this server, not signed in; close it, or use it with `with`."""
         return httpx2.Client(
             base_url=self.url, timeout=30.0, verify=_certificates(), limits=CONNECTIONS
         )
@@ -184,7 +184,7 @@ class LiveServer:
 
 
 def free_port() -> int:
-    """A port of the loopback that nobody listens on now, and that was not given before."""
+    """Return a port of the loopback that is not in use and was not returned before."""
     while True:
         with socket.socket() as probe:
             probe.bind(("127.0.0.1", 0))
@@ -194,5 +194,5 @@ def free_port() -> int:
             return port
 
 
-# The system may name a port again as soon as it is let go: a server that opens two needs two.
+# The system may offer a port again as soon as it is closed: a server that opens two needs two.
 _GIVEN: set[int] = set()

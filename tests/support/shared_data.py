@@ -1,6 +1,7 @@
-"""Where the published data are that tests and benchmarks compare with.
+"""Locate the published data that tests and benchmarks compare with.
 
-They are not part of the repository. No pytest here: a benchmark should pay for itself alone.
+They are not part of the repository. This module does not import pytest, since a benchmark should
+not spend time on that.
 """
 
 import os
@@ -11,8 +12,8 @@ BESIDE = Path(__file__).resolve().parents[3] / "shared" / "data"
 
 
 def shared_data_folder() -> Path:
-    """The folder that $REEMBODY_SHARED_DATA names, else the one beside the repository.
+    """Return the folder that $REEMBODY_SHARED_DATA names, else the one next to the repository.
 
-    Whether it exists is for the caller to find out.
+    The caller must check whether it exists.
     """
     return Path(os.environ.get(SHARED_DATA_VARIABLE) or BESIDE)

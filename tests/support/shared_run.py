@@ -1,7 +1,7 @@
-"""One folder for everything the processes of one test run share.
+"""One folder for everything that the processes of one test run share.
 
-pytest-xdist spreads a run over worker processes that start alone and end alone. The process that
-was called (the controller, or the only process) makes the folder, tells the workers by an
+pytest-xdist spreads a run over worker processes that start and end independently. The process that
+was called (the controller, or the only process) creates the folder, passes it to the workers in an
 environment variable, and removes it at the end.
 """
 
@@ -18,7 +18,7 @@ OWNER_VARIABLE = "REEMBODY_TEST_RUN_OWNER"
 
 
 def open_run() -> None:
-    """Make the folder; call it in the controller before workers start."""
+    """Create the folder; call it in the controller before workers start."""
     # Not the temporary folder of the environment: the path of a unix socket ends after 107 bytes,
     # and PostgreSQL, run as `nobody` where the tests run as root, must be able to reach it.
     short = Path("/tmp")  # noqa: S108  # mkdtemp makes the name unguessable
@@ -30,12 +30,12 @@ def open_run() -> None:
 
 
 def run_folder() -> Path:
-    """The folder of this run."""
+    """Return the folder of this run."""
     return Path(os.environ[FOLDER_VARIABLE])
 
 
 def owner_pid() -> int:
-    """The process whose end is the end of the run."""
+    """Return the id of the process whose end is the end of the run."""
     return int(os.environ[OWNER_VARIABLE])
 
 
@@ -46,7 +46,7 @@ def close_run() -> None:
 
 @contextmanager
 def locked(path: Path) -> Iterator[None]:
-    """Hold `path` as a lock between processes; a process that dies lets go of it."""
+    """Hold `path` as a lock between processes; the lock of a process that ends is released."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with path.open("a") as file:
         fcntl.flock(file, fcntl.LOCK_EX)
@@ -55,9 +55,9 @@ def locked(path: Path) -> Iterator[None]:
 
 @contextmanager
 def once(name: str) -> Iterator[Path | None]:
-    """Do something in one process of the run only: yields the mark to write, or None if done.
+    """Do something in only one process of the run: yield the mark to write, or None if done.
 
-    The mark is the caller's: whatever it writes there is read by the others.
+    The caller decides what to write into the mark; the other processes can read it.
     """
     mark = run_folder() / f"{name}.done"
     with locked(run_folder() / f"{name}.lock"):

@@ -1,7 +1,7 @@
-"""Servers of tests ship the studies with a delayed copy for a body.
+"""Ship studies with a delayed copy as the avatar in the servers of tests.
 
-The product's studies are moved by physics, and a headset that cannot simulate is refused. Most
-tests are about something else, and their headsets are a few lines long. A test of physics stores
+The product's studies use a physics avatar, and a headset that cannot simulate one is refused. Most
+tests concern something else, and their headsets are a few lines long. A test of physics stores
 `tests.protocol.helpers.SHIPPED`, or rehearses with `physics=True`.
 """
 
@@ -12,7 +12,7 @@ from tests.support.shared_run import once, run_folder
 
 
 def delayed_copies() -> Path:
-    """The folder with them, made once in a run."""
+    """Return the folder with the changed studies, created once in a run."""
     folder = run_folder() / "shipped-studies"
     with once("shipped-studies") as mark:
         if mark:
@@ -22,7 +22,7 @@ def delayed_copies() -> Path:
 
 
 def write_delayed_copies(folder: Path) -> None:
-    """Make the folder with them."""
+    """Create the folder with the changed studies."""
     folder.mkdir()
     for file in CONFIGS.glob("*.yaml"):
         text = as_delayed_copy(file.read_text(encoding="utf-8"))

@@ -31,12 +31,7 @@ _STILL_S = 1.0
 
 @dataclass(frozen=True, eq=False)
 class ShortWalkTable:
-    """Peak speed and duration of every walk; NaN where a trial is missing (zero in the file).
-
-    Attributes:
-        distances_m: the D distances.
-        peak_speeds_m_s, durations_s: (S, D, trials).
-    """
+    """Peak speed and duration of every walk; NaN where a trial is missing (zero in the file)."""
 
     distances_m: tuple[float, ...]
     peak_speeds_m_s: FloatArray
@@ -44,7 +39,7 @@ class ShortWalkTable:
 
 
 def read_short_walk_table(data: bytes) -> ShortWalkTable:
-    """Read `peak_speed_all_sub.mat`; raises CaptureError where it is another file."""
+    """Read `peak_speed_all_sub.mat`; raise CaptureError if it is another file."""
     content = _content(data)
     arrays = []
     for key in ("peak_speed_all_sub", "walk_duration_all_sub"):
@@ -56,10 +51,10 @@ def read_short_walk_table(data: bytes) -> ShortWalkTable:
 
 
 def read_foot_walk(data: bytes, *, name: str, subject: str, stature_m: float | None = None) -> Walk:
-    """Read one walk; it leads straight ahead, from rest to rest.
+    """Read one walk, which leads straight ahead, from rest to rest.
 
     Raises:
-        CaptureError: the file is no MATLAB file, or has not both feet's paths and flat frames.
+        CaptureError: the file is not a MATLAB file, or lacks a foot's path or flat frames.
     """
     content = _content(data)
     feet = [_foot(content, key) for key in ("left_walk_info", "right_walk_info")]
@@ -72,7 +67,7 @@ def read_foot_walk(data: bytes, *, name: str, subject: str, stature_m: float | N
 
 
 def _foot(content: dict[str, Any], key: str) -> tuple[FloatArray, FloatArray]:
-    """Times at which the foot is flat, and how far it has come by then."""
+    """Return the times at which the foot is flat, and its distance at each."""
     foot = content.get(key)
     places = np.array(getattr(foot, "P", ()), dtype=np.float64)
     starts = np.atleast_1d(np.array(getattr(foot, "FFstart", ()), dtype=np.int64))
@@ -91,7 +86,7 @@ def _foot(content: dict[str, Any], key: str) -> tuple[FloatArray, FloatArray]:
 
 
 def _between(times_s: FloatArray, flat_s: FloatArray, ahead_m: FloatArray) -> FloatArray:
-    """Go smoothly and never backwards through the flat places, at rest before and after."""
+    """Interpolate monotonically between the flat places, at rest before and after."""
     knots_s = np.concatenate([[flat_s[0] - _STILL_S], flat_s, [flat_s[-1] + _STILL_S]])
     knots_m = np.concatenate([ahead_m[:1], ahead_m, ahead_m[-1:]])
     within = np.clip(times_s, flat_s[0], flat_s[-1])
@@ -100,7 +95,7 @@ def _between(times_s: FloatArray, flat_s: FloatArray, ahead_m: FloatArray) -> Fl
 
 def _content(data: bytes) -> dict[str, Any]:
     try:
-        # An open file serves as well as a path.
+        # An open file is accepted as well as a path.
         opened = cast("str", io.BytesIO(data))
         content: dict[str, Any] = loadmat(opened, squeeze_me=True, struct_as_record=False)
     except Exception as error:  # the reader raises whatever a broken file makes it trip over

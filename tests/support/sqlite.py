@@ -1,4 +1,4 @@
-"""A migrated SQLite file for each test, copied from one that was migrated once in the run."""
+"""Give each test a migrated SQLite file, copied from one that is migrated once per run."""
 
 import shutil
 import sqlite3
@@ -9,7 +9,7 @@ from tests.support.shared_run import once, run_folder
 
 
 def fresh_sqlite(path: Path) -> str:
-    """Make `path` a migrated, empty database; returns its address."""
+    """Make `path` a migrated, empty database and return its URL."""
     shutil.copyfile(_template(), path)
     return f"sqlite:///{path}"
 
@@ -21,7 +21,7 @@ def _template() -> Path:
             from app.schema_revisions import migrate
 
             migrate(f"sqlite:///{template}")
-            # Everything into the one file that is copied.
+            # Move everything into the one file that is copied.
             with closing(sqlite3.connect(template)) as connection:
                 connection.execute("PRAGMA wal_checkpoint(TRUNCATE)")
             mark.touch()

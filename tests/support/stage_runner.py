@@ -1,8 +1,8 @@
-"""Stages of a check of the project: how they share two cores, and what is told of them.
+"""Run the stages of a project check on two cores and report their results.
 
-A stage that fails does not keep the others from running: one call shows everything that is wrong.
-Two run at a time, whichever are next, and print what they have to say when they end; so neither
-core waits for the slowest of the other's. One that must be alone is, and prints as it goes.
+A stage that fails does not prevent the others from running: one call shows everything that is
+wrong. Two stages run at a time and print their output when they end, so no core stays idle for
+long. A stage that must run alone does so, and prints as it goes.
 """
 
 # ruff: noqa: T201  # what it prints is what it is for
@@ -32,9 +32,9 @@ ONE_AT_A_TIME = Lock()
 
 @dataclass(frozen=True)
 class Stage:
-    """A command, where it runs, and what must be there before it does.
+    """A command, its folder, and the preparation it needs.
 
-    `alone`: nothing else may run meanwhile. `aloud`: it prints as it goes.
+    `alone`: nothing else may run at the same time. `aloud`: it prints as it goes.
     """
 
     name: str
@@ -48,7 +48,7 @@ class Stage:
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a stage went."""
+    """The result of a stage."""
 
     stage: Stage
     ended: Ended
@@ -56,19 +56,19 @@ class Outcome:
 
     @property
     def passed(self) -> bool:
-        """Whether it found nothing wrong."""
+        """Return whether it found no problem."""
         return self.ended.code == 0
 
 
 def inherited() -> dict[str, str]:
-    """The environment of a stage: what one has compiled the next need not compile again."""
+    """Return the environment of a stage: compiled modules are shared between stages."""
     return {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
 
 
 def run_stages(planned: Sequence[Stage], *, brief: bool = False) -> list[Outcome]:
-    """Run every stage in order, two at a time where they may be.
+    """Run every stage in order, two at a time where allowed.
 
-    If `brief`, those that find nothing wrong get one line.
+    If `brief`, stages that find no problem get one line.
     """
     outcomes: list[Outcome] = []
     for alone, neighbours in groupby(planned, lambda stage: stage.alone):
@@ -103,7 +103,7 @@ def _run_aloud(stage: Stage) -> Outcome:
 
 
 def _run_silently(stage: Stage, *, brief: bool) -> Outcome:
-    """Run a stage and print what it said in one piece: its neighbour says something too."""
+    """Run a stage and print its output in one piece, separate from a parallel stage's."""
     with tempfile.TemporaryFile() as output:
         outcome = _run(stage, output)
         output.seek(0)
@@ -144,7 +144,7 @@ def _ending(outcome: Outcome) -> str:
 
 
 def summed(outcomes: Sequence[Outcome]) -> Tally:
-    """What all pytest runs came to."""
+    """Return the sum of the tallies of all pytest runs."""
     total = Tally()
     for outcome in outcomes:
         total.add(outcome.tally)
@@ -152,7 +152,7 @@ def summed(outcomes: Sequence[Outcome]) -> Tally:
 
 
 def print_tests(outcomes: Sequence[Outcome]) -> None:
-    """Which tests were skipped, and which took longest."""
+    """Print which tests were skipped, and which took longest."""
     total = summed(outcomes)
     if total.skips:
         print("\nSkipped:")
@@ -165,7 +165,7 @@ def print_tests(outcomes: Sequence[Outcome]) -> None:
 
 
 def print_stages(outcomes: Sequence[Outcome], wall_s: float) -> None:
-    """The closing table; the very last line is the sum of all pytest runs."""
+    """Print the closing table; the very last line is the sum of all pytest runs."""
     print(_heading("summary"))
     print(f"{'':<29} {'wall':>10} {'processor':>12}")
     for outcome in outcomes:
@@ -182,7 +182,7 @@ def _times(ended: Ended) -> str:
 
 
 def as_json(outcomes: Sequence[Outcome], wall_s: float) -> dict[str, Any]:
-    """The same for machines; `./run test --help` describes it."""
+    """Return the results for machines; `./run test --help` describes them."""
     total = summed(outcomes)
     return {
         "ok": all(outcome.passed for outcome in outcomes),

@@ -1,6 +1,6 @@
-"""`./run test`: every check of the project, cheap ones first, and tables at the end.
+"""`./run test`: run every check of the project, cheap ones first, and print tables at the end.
 
-With arguments of pytest only pytest runs, with those arguments.
+Given arguments of pytest, only pytest runs, with those arguments.
 """
 
 import argparse
@@ -26,9 +26,9 @@ from tests.support.stage_runner import (
 FRONTEND = REPOSITORY / "frontend"
 # Not ".": outside of a git checkout ruff does not know what is ignored, such as uv in `.uv`.
 OURS = ("app", "migrations", "tests", "build_pages.py", "hatch_build.py", "set_up.py")
-# Everything in there is a browser test, and nothing else is one.
+# All tests in there are browser tests, and no others are.
 BROWSER_TESTS = "tests/e2e"
-# These look at the repository as a whole and build it: alone, so that nobody reads half a build.
+# These check and build the whole repository: they run alone, so that no test reads half a build.
 ARCHITECTURE_TESTS = "tests/architecture"
 LINT_IMPORTS = "from importlinter.cli import lint_imports_command; lint_imports_command()"
 DESCRIPTION = """\
@@ -46,24 +46,24 @@ included; "skips" are {"name", "reason"}.
 
 
 def python_stage(name: str, *arguments: str, alone: bool = False, aloud: bool = False) -> Stage:
-    """A stage that is a Python module or program."""
+    """Return a stage that is a Python module or program."""
     return Stage(name, [sys.executable, *arguments], alone=alone, aloud=aloud)
 
 
 def pytest_stage(name: str, *arguments: str, alone: bool = False, aloud: bool = False) -> Stage:
-    """A stage that is a pytest run whose counts go into the total."""
+    """Return a stage that is a pytest run whose counts are added to the total."""
     plugin = ["-m", "pytest", "-p", "tests.support.tally", "-q"]
     return python_stage(name, *plugin, *arguments, alone=alone, aloud=aloud)
 
 
 def node_stage(name: str, *command: str) -> Stage:
-    """A stage of the pages."""
+    """Return a stage of the pages."""
     environment = node_environment()
     return Stage(name, [*command], FRONTEND, environment, prepare=_install_packages_once)
 
 
 def frontend_stage(name: str, script: str, *arguments: str) -> Stage:
-    """A stage that is a script of the frontend's package.json."""
+    """Return a stage that is a script of the frontend's package.json."""
     passed_on = ["--", *arguments] if arguments else []
     return node_stage(name, str(NODE), str(NPM), "run", "--silent", script, *passed_on)
 
@@ -74,7 +74,10 @@ def _install_packages_once() -> None:
 
 
 def static_stages() -> list[Stage]:
-    """What looks at the sources; mypy takes as long as the others together, so it begins."""
+    """Return the checks of the sources.
+
+    Mypy takes as long as the others together, so it is first.
+    """
     return [
         python_stage("mypy", "-m", "mypy"),
         python_stage("ruff check", "-m", "ruff", "check", *OURS),
@@ -84,7 +87,7 @@ def static_stages() -> list[Stage]:
 
 
 def frontend_stages() -> list[Stage]:
-    """The pages: lint, types and tests without a browser."""
+    """Return the checks of the pages: lint, types and tests without a browser."""
     return [
         frontend_stage("frontend lint", "lint"),
         frontend_stage("frontend types", "typecheck"),
@@ -93,14 +96,14 @@ def frontend_stages() -> list[Stage]:
 
 
 def stages(*, long: bool) -> list[Stage]:
-    """Everything, cheap checks first."""
+    """Return all stages, cheap checks first."""
     also_long = ["--long"] if long else []
     spread = ["-n", str(CORES), "--dist", "worksteal"]
     ignored = [f"--ignore={folder}" for folder in (ARCHITECTURE_TESTS, BROWSER_TESTS)]
     return [
         *static_stages(),
         *frontend_stages(),
-        # Together: tests wait for servers, pages and clocks, and what waits needs no core.
+        # In parallel: tests wait for servers, pages and clocks, and waiting needs no core.
         pytest_stage("tests", *spread, "-m", "not browser", *ignored, *also_long, aloud=True),
         pytest_stage("browser tests", BROWSER_TESTS, *also_long),
         pytest_stage("architecture", ARCHITECTURE_TESTS, *also_long, alone=True, aloud=True),
@@ -108,13 +111,13 @@ def stages(*, long: bool) -> list[Stage]:
 
 
 def compile_ours() -> None:
-    """Hundreds of servers start; where none may write, each would compile all of it."""
+    """Compile all modules once, so that servers that may not write need not compile them."""
     for folder in ("app", "migrations", "tests"):
         compileall.compile_dir(REPOSITORY / folder, quiet=1)
 
 
 def main(arguments: list[str]) -> int:
-    """Run the stages, or pytest alone; returns the exit code."""
+    """Run the stages, or pytest alone; return the exit code."""
     parser = argparse.ArgumentParser(
         prog="./run test",
         usage="%(prog)s [--long] [--json FILE] [PYTEST ARGUMENTS]",

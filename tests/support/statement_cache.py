@@ -1,9 +1,9 @@
-"""SQL that was compiled once in a test process is not compiled again for its next database.
+"""Share compiled SQL between all databases of a test process.
 
-SQLAlchemy keeps what it compiled with the engine, and for the object that speaks the engine's
-dialect. Almost every test has a database and so an engine of its own, which would compile the same
-hundred statements again: for longer than the database takes to answer them. Here all engines of a
-process share one cache, and two dialects are the same key where they write the same SQL.
+SQLAlchemy caches compiled SQL per engine and per dialect object. Almost every test has a database
+and so an engine of its own, which would compile the same hundred statements again: this takes
+longer than the database takes to answer them. Here all engines of a process share one cache, and
+two dialects are the same key if they write the same SQL.
 """
 
 from typing import Any
@@ -27,7 +27,7 @@ _compiled: LRUCache[Any, Any] = LRUCache(MOST_STATEMENTS)
 
 
 def share_statement_caches() -> None:
-    """Engines that this process makes from now on share what was compiled."""
+    """Share compiled statements between all engines that this process creates from now on."""
     for dialect in (SQLiteDialect_pysqlite, PGDialect_psycopg):
         methods = {"engine_created": classmethod(_use), "__eq__": _alike, "__hash__": _hash}
         for name, method in methods.items():
@@ -45,5 +45,5 @@ def _alike(one: Dialect, other: object) -> bool:
 
 
 def _hash(dialect: Dialect) -> int:
-    # Not by its settings: the version is only known once it has connected.
+    # Not by its settings: the version is unknown before it has connected.
     return hash(type(dialect))

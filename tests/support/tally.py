@@ -1,4 +1,4 @@
-"""A pytest plugin that writes what a run came to, for `./run test` to add up."""
+"""A pytest plugin that writes the counts of a run, for `./run test` to add up."""
 
 import json
 import os
@@ -17,7 +17,7 @@ SLOWEST = 20
 class Tally:
     """Counts of one run or of several; an error outside a test's own body counts as failed.
 
-    `slowest` are names with seconds, the slowest first, with what their fixtures took.
+    `slowest` are names with seconds, the slowest first, including their fixtures.
     """
 
     passed: int = 0
@@ -27,7 +27,7 @@ class Tally:
     slowest: list[tuple[str, float]] = field(default_factory=list)
 
     def add(self, other: "Tally") -> None:
-        """Count `other` in."""
+        """Add the counts of `other`."""
         self.passed += other.passed
         self.failed += other.failed
         self.skipped += other.skipped
@@ -37,12 +37,12 @@ class Tally:
 
     @classmethod
     def read(cls, path: Path) -> "Tally":
-        """What a run wrote; nothing if it did not get that far."""
+        """Read the tally of a run; empty if it wrote none."""
         return cls(**json.loads(path.read_text())) if path.exists() else cls()
 
 
 def pytest_terminal_summary(terminalreporter: TerminalReporter) -> None:
-    """Write the tally to the file that the variable names."""
+    """Write the tally to the file that the environment variable names."""
     stats = terminalreporter.stats
     skips = [(report.nodeid, _reason(report)) for report in stats.get("skipped", [])]
     tally = Tally(
@@ -57,7 +57,7 @@ def pytest_terminal_summary(terminalreporter: TerminalReporter) -> None:
 
 
 def _slowest(stats: dict[str, list[Any]]) -> list[tuple[str, float]]:
-    """Each test's setup, call and teardown together; each is a report in one of the groups."""
+    """Return the slowest tests, by the sum of setup, call and teardown."""
     durations_s: dict[str, float] = {}
     for report in (one for group in stats.values() for one in group):
         if isinstance(report, pytest.TestReport):

@@ -1,4 +1,4 @@
-"""When a page has come to rest: nothing it asked for is still on its way.
+"""Wait until a page is idle: none of its requests is pending.
 
 Going from `#/a` to `#/b` loads no document, so the browser's own "network idle" stays true all the
 time and waits for nothing.
@@ -17,19 +17,19 @@ ENDLESS = "/live"
 
 @dataclass
 class Traffic:
-    """Follows what `page` asks for, from its making on."""
+    """Track the pending requests of `page`, from its creation on."""
 
     page: Page
     _on_the_way: set[Request] = field(default_factory=set)
 
     def __post_init__(self) -> None:
-        """Begin to listen."""
+        """Start to track requests."""
         self.page.on("request", self._asked)
         self.page.on("requestfinished", self._over)
         self.page.on("requestfailed", self._over)
 
     def settle(self, within_s: float = 30.0) -> None:
-        """Wait until nothing has been on its way for a moment; raises TimeoutError."""
+        """Wait until no request has been pending for a moment; raises TimeoutError."""
         until_s, quiet = time.monotonic() + within_s, 0
         while quiet < QUIET_LOOKS:
             if time.monotonic() > until_s:

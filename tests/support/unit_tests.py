@@ -1,9 +1,9 @@
-"""A pytest plugin that leaves tests out which need more than this process: `./run check`'s choice.
+"""A pytest plugin for `./run check`: skip tests that need more than this process.
 
-A test is left out when it asks for a server in a process of its own, for PostgreSQL or for a
-browser. Where its fixtures tell, it is deselected before it begins. Where only its body does, the
-helper of `tests.support` that would start such a thing calls `needs` and the test is skipped there:
-so nothing here, and nobody who writes a test, keeps a list.
+A test is skipped if it needs a server in a process of its own, PostgreSQL or a browser. If its
+fixtures show that, it is deselected before it runs. If only its body does, the helper of
+`tests.support` that would start such a thing calls `needs` and the test is skipped there: so no
+list of tests has to be maintained.
 """
 
 import os
@@ -16,18 +16,18 @@ STARTERS = frozenset({"live_server", "shared_server", "postgres_url", "browser"}
 
 
 def needs(what: str) -> None:
-    """Skip the test that runs, if it is to be left out where it needs `what`."""
+    """Skip the running test if tests that need `what` are to be skipped."""
     if os.environ.get(UNITS_VARIABLE):
         pytest.skip(f"left to ./run test: it needs {what}")
 
 
 def pytest_configure() -> None:
-    """Tell the worker processes, too."""
+    """Pass the choice on to the worker processes."""
     os.environ[UNITS_VARIABLE] = "1"
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Deselect what is known to need more."""
+    """Deselect the tests whose fixtures need more than this process."""
     left_out = [item for item in items if _needs_more(item)]
     if left_out:
         config.hook.pytest_deselected(items=left_out)
@@ -35,7 +35,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 
 def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
-    """A folder whose tests all need more has nothing to find wrong here."""
+    """Succeed if all tests of a folder were deselected."""
     if exitstatus == pytest.ExitCode.NO_TESTS_COLLECTED:
         session.exitstatus = pytest.ExitCode.OK
 

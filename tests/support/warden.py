@@ -1,14 +1,13 @@
-"""Runs a command and leaves nothing of it behind: neither a process nor the time it took.
+"""Run a command, end all its descendants, and measure their processor time.
 
     this process --(starts)--> warden --(starts)--> command --> ... its descendants
 
 On Linux the warden becomes the parent of every descendant that loses its own, so it can wait for
 all of them: a server started by a helper that has ended, a database that put itself into the
 background. The system then adds their processor time to the warden's, and the one number that
-`run_warded` reads from it is that of the whole tree. What still runs when the command has ended is
-given some seconds, then ended. If this process is killed, the warden ends everything at once.
-
-Elsewhere a warden only starts the command and passes its exit code on.
+`run_warded` reads from it is that of the whole tree. Processes that still run when the command has
+ended are given some seconds, then ended. If this process is killed, the warden ends everything
+immediately. On other systems a warden only starts the command and passes its exit code on.
 """
 
 import ctypes
@@ -43,12 +42,12 @@ class Ended:
 
     @property
     def processor_s(self) -> float:
-        """User and system time."""
+        """Return user and system time."""
         return self.user_s + self.system_s
 
     @property
     def exit_code(self) -> int:
-        """The code as a shell tells it: 128 and its number for a signal."""
+        """Return the code as a shell reports it: 128 plus the signal's number for a signal."""
         return self.code if self.code >= 0 else 128 - self.code
 
 
@@ -60,9 +59,9 @@ def run_warded(
     output: IO[bytes] | None = None,
     errors: IO[bytes] | int | None = None,
 ) -> Ended:
-    """Run `command` in `folder` with a warden of its own; `output` and `errors` as of Popen.
+    """Run `command` in `folder` with a warden of its own; `output` and `errors` are Popen's.
 
-    Raises `OSError` where the warden itself cannot start. An exception that arrives meanwhile waits
+    Raises `OSError` if the warden itself cannot start. An exception that arrives meanwhile waits
     until the warden has ended everything.
     """
     began_s = time.monotonic()
@@ -87,12 +86,12 @@ def run_warded(
 
 
 def is_warded() -> bool:
-    """Whether this process is what a warden was asked to run."""
+    """Return whether this process is the command of a warden."""
     return os.environ.get(WARDEN_VARIABLE) == str(os.getppid())
 
 
 def _end(warden: "subprocess.Popen[bytes]", patience_s: float) -> None:
-    """A terminal has sent Ctrl+C to everybody, so the command may be ending in its own way."""
+    """Wait for a command that may be ending after Ctrl+C, then terminate the warden."""
     try:
         warden.wait(patience_s)
     except subprocess.TimeoutExpired:
@@ -101,7 +100,7 @@ def _end(warden: "subprocess.Popen[bytes]", patience_s: float) -> None:
 
 
 class _Stop(Exception):
-    """Everything is to end now."""
+    """Raised when everything is to end now."""
 
 
 def _stop(number: int, _frame: FrameType | None) -> NoReturn:
@@ -109,17 +108,18 @@ def _stop(number: int, _frame: FrameType | None) -> NoReturn:
 
 
 def _control(option: int, value: int) -> None:
-    """prctl, where there is one."""
+    """Call prctl on systems that have it."""
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(option, value, 0, 0, 0)
 
 
 def _watch(caller: int, command: list[str]) -> int:
-    """Be the warden; returns the exit code of the command, 128 and its number for a signal."""
+    """Act as the warden; return the command's exit code, 128 plus the number for a signal."""
     signal.signal(signal.SIGTERM, _stop)
     signal.signal(signal.SIGHUP, _stop)
-    # A terminal sends Ctrl+C to the command too, which then ends in its own way; one that a shell
-    # has put into the background is to ignore it, and inherits that.
+    # A terminal sends Ctrl+C to the command too, which then ends in its own way; a command that a
+    # shell
+    # has put into the background must ignore it, and inherits that.
     if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
         signal.signal(signal.SIGINT, lambda *_: None)
     _control(CHILD_SUBREAPER, 1)
@@ -148,7 +148,7 @@ def _started(command: list[str]) -> int:
     try:
         for number in (signal.SIGTERM, signal.SIGHUP):
             signal.signal(number, signal.SIG_DFL)
-        # A warden that is killed cannot end the command: then the command is at least asked to.
+        # A killed warden cannot end the command: then the command is at least asked to end.
         _control(PARENT_DEATH_SIGNAL, signal.SIGTERM)
         os.environ[WARDEN_VARIABLE] = str(warden)
         if os.getppid() == warden:
@@ -166,7 +166,7 @@ def _wait_for(command: int) -> int:
 
 
 def _all_ended(within_s: float) -> bool:
-    """Wait for every child, also those that become ours meanwhile; False if it takes too long."""
+    """Wait for every child, also newly adopted ones; return False if it takes too long."""
     deadline_s = time.monotonic() + within_s
     while time.monotonic() < deadline_s:
         try:
@@ -178,7 +178,7 @@ def _all_ended(within_s: float) -> bool:
 
 
 def _end_all() -> None:
-    """Ask every child to end, also those that become ours meanwhile; later kill what remains."""
+    """Ask every child to end, also newly adopted ones; later kill those that remain."""
     kills_from_s = time.monotonic() + ENDS_WHEN_ASKED_WITHIN_S
     asked: set[int] = set()
     while not _all_ended(5 * LOOKS_EVERY_S):
@@ -199,7 +199,10 @@ def _signal_all(children: Iterable[int], number: int) -> None:
 
 
 def _children() -> list[int]:
-    """Our own; of each process the second word behind its name in brackets is its parent."""
+    """Return our own child processes.
+
+    In /proc, the second word after the name in brackets is the parent.
+    """
     ours = str(os.getpid())
     names = [entry.name for entry in Path("/proc").glob("[0-9]*")]
     return [int(name) for name in names if _stat(name).rpartition(")")[2].split()[1:2] == [ours]]

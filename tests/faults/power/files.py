@@ -45,8 +45,10 @@ class TracedFile:
         return found
 
     def image(self, sector: int, choose: Choice, size: int, fill: bytes) -> bytes:
-        """What the disk holds: of every sector the version that `choose` says, cut or grown to
-        `size`; `fill` (as long as the greatest size) lies where nothing was written.
+        """Return the file as the disk holds it, with sector versions selected by `choose`.
+
+        The result is cut or extended to `size`; unwritten parts are filled from `fill` (as long as
+        the greatest size).
         """
         held = bytearray(fill[: max(self.sizes())])
         held[: len(self.certain)] = self.certain

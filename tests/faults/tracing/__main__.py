@@ -1,4 +1,7 @@
-"""`python -m tests.faults.tracing RECORD FOLDER -- COMMAND ...`; exit code 77 where refused."""
+"""Run `python -m tests.faults.tracing RECORD FOLDER -- COMMAND ...`.
+
+The exit code is 77 if the kernel does not allow tracing.
+"""
 
 import sys
 from pathlib import Path

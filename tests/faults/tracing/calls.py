@@ -1,7 +1,7 @@
-"""The system calls that change files or send, with their numbers.
+"""The system calls that change files or send data, with their numbers.
 
-Opening is only watched where it may create a file or empty it, closing not at all: neither changes
-what a disk holds.
+Opening is only traced if it may create or empty a file, closing not at all: neither changes what a
+disk holds.
 """
 
 import platform
@@ -70,19 +70,19 @@ AT_REMOVEDIR = 0x200
 
 @dataclass(frozen=True)
 class Machine:
-    """What the kernel calls things on this processor."""
+    """The kernel's numbers for system calls on this processor."""
 
     audit_arch: int
     number: dict[str, int]
 
     @property
     def name(self) -> dict[int, str]:
-        """Names by number."""
+        """Return the names of the calls by number."""
         return {number: name for name, number in self.number.items()}
 
 
 def this_machine() -> Machine | None:
-    """The machine this runs on, None if its calls are not listed."""
+    """Return the current machine, or None if its calls are not listed."""
     kind = platform.machine()
     if platform.system() != "Linux" or kind not in NUMBERS:
         return None

@@ -1,4 +1,4 @@
-"""From a call's number and arguments to an event: which file or socket, which bytes, where."""
+"""Decode a system call's number and arguments to an event: file or socket, bytes, offset."""
 
 import os
 import struct
@@ -23,12 +23,12 @@ Arguments = Sequence[int]
 
 @dataclass(frozen=True)
 class Reader:
-    """Reads the calls of traced threads. Files outside of `folder` do not matter."""
+    """Read the calls of traced threads. Files outside `folder` are ignored."""
 
     folder: Path
 
     def read(self, thread: int, call: str, arguments: Arguments) -> Event | None:
-        """The event so far, None if the call does not matter."""
+        """Return the event without its result, or None if the call is ignored."""
         if call in WRITES or call in SENDS:
             return self._written(thread, call, arguments)
         if call in ("fsync", "fdatasync"):
@@ -57,7 +57,7 @@ class Reader:
         return _event(what, call, target, size=size)
 
     def _named(self, thread: int, call: str, arguments: Arguments) -> Event | None:
-        """Calls that name a file by its path."""
+        """Read calls that name a file by its path."""
         at = call in WITH_FOLDER
         path = path_of(thread, arguments[0] if at else AT_FDCWD, arguments[1 if at else 0])
         if call.startswith(("rename", "link")):
@@ -81,7 +81,7 @@ class Reader:
 
 
 def _opened(call: str, path: str, arguments: Arguments) -> Event | None:
-    """Opening creates a file where none was, and may empty one."""
+    """Return the event of an opening that creates a missing file or empties an existing one."""
     flags = O_CREAT | O_TRUNC if call == "creat" else arguments[OPEN_FLAGS_AT[call]]
     exists = Path(path).exists()
     if not exists:
@@ -99,7 +99,7 @@ def _event(
     to_path: str = "",
     data: bytes = b"",
 ) -> Event:
-    """An event that has not got its stamps yet."""
+    """Return an event that has no stamps yet."""
     return Event(
         what=what,
         call=call,
@@ -116,7 +116,7 @@ def _event(
 
 
 def target_of(thread: int, file: int) -> str:
-    """What an open file of a thread is: its path, or `socket:[NUMBER]`; empty if it is none."""
+    """Return the path of a thread's open file, or `socket:[NUMBER]`; empty if it has none."""
     try:
         return str(Path(f"/proc/{thread}/fd/{_signed(file)}").readlink())
     except OSError:
@@ -131,7 +131,7 @@ def _position(thread: int, file: int) -> int:
 
 
 def _signed(value: int) -> int:
-    """Descriptors are C ints; the upper half of the register is not theirs."""
+    """Return a descriptor as a C int; the upper half of the register is undefined."""
     low = value & 0xFFFFFFFF
     return low - 2**32 if low >= 2**31 else low
 
@@ -147,14 +147,14 @@ def _data(thread: int, call: str, arguments: Arguments) -> bytes:
 
 
 def _gathered(thread: int, vector: int, count: int) -> bytes:
-    """The bytes that an array of struct iovec points at."""
+    """Return the bytes that an array of struct iovec points at."""
     raw = read_memory(thread, vector, 16 * count)
     pieces = struct.iter_unpack("=QQ", raw)
     return b"".join(read_memory(thread, address, length) for address, length in pieces if length)
 
 
 def path_of(thread: int, folder: int, address: int) -> str:
-    """A path as the kernel will understand it: relative ones start where the thread stands."""
+    """Return a path as the kernel resolves it: relative to the thread's folder."""
     text = os.fsdecode(_string(thread, address, read_memory))
     if not text or text.startswith("/"):
         return os.path.normpath(text) if text else ""
@@ -166,7 +166,7 @@ def path_of(thread: int, folder: int, address: int) -> str:
 def _string(thread: int, address: int, read: Callable[[int, int, int], bytes]) -> bytes:
     found = b""
     while b"\0" not in found and len(found) < PATH_MAX:
-        # To the end of a page: the next one may not be there.
+        # Read to the end of a page: the next one may not be mapped.
         piece = read(thread, address + len(found), PAGE - (address + len(found)) % PAGE)
         if not piece:
             break

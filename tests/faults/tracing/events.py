@@ -1,4 +1,4 @@
-"""What a record is made of: one event per system call, with the bytes that went through it."""
+"""The events of a trace: one per system call, with the bytes written or sent."""
 
 import json
 from collections.abc import Iterator
@@ -12,13 +12,13 @@ NEVER = 2**62
 
 @dataclass(frozen=True)
 class Event:
-    """A system call. Stamps count all that was seen, so they order events of different threads.
+    """A system call. Stamps count all stops, so they order events of different threads.
 
     `what`: write, truncate, sync, create, unlink, rename, send, or other (a way to change a file
-    that nothing here understands). `path`: the file, or `socket:[NUMBER]`, which names a
-    connection. `began`, `ended` and the times (ns, monotonic) are those of the call's entry and
-    return: before the entry nothing of it has happened, after the return all of it has.
-    `data`: what was written or sent, as much as the kernel took. `size`: a truncated file's.
+    that is not decoded). `path`: the file, or `socket:[NUMBER]`, which names a connection. `began`,
+    `ended` and the times (ns, monotonic) are those of the call's entry and return: before the entry
+    none of it has happened, after the return all of it has. `data`: what was written or sent, as
+    much as the kernel accepted. `size`: that of a truncated file.
     """
 
     what: str
@@ -36,7 +36,7 @@ class Event:
 
     @property
     def failed(self) -> bool:
-        """Whether the kernel refused."""
+        """Return whether the kernel returned an error."""
         return self.result < 0
 
 
@@ -48,7 +48,7 @@ def write_event(file: BinaryIO, event: Event) -> None:
 
 
 def read_events(path: Path) -> list[Event]:
-    """The events of a record in the order in which they began."""
+    """Return the events of a trace in the order in which they began."""
     with path.open("rb") as file:
         return sorted(_events(file), key=lambda event: event.began)
 

@@ -1,8 +1,8 @@
-"""Letting one system call of a traced process fail, as a broken or full disk would.
+"""Make one system call of a traced process fail, as a broken or full disk would.
 
-The process is stopped before the call; the number of the call is taken away, so that the kernel
-skips it, and the error is put where its result would be. What the process asks of files in one
-folder is counted from the moment on when it opens the file `BEGIN` there.
+The process is stopped before the call; the number of the call is removed, so that the kernel skips
+it, and the error is put in place of its result. Calls to files in one folder are counted after the
+process opens the file `BEGIN` there.
 """
 
 import ctypes
@@ -61,10 +61,10 @@ _DRAWN = re.compile(r"[0-9a-f]{6,}|\d{2,}|(?<=-)[a-z0-9_]{8}(?=/|$)|(?<=\.)[a-z0
 
 @dataclass(frozen=True)
 class Site:
-    """A place where something is asked of a file: which kind of call, of which file, how often yet.
+    """A call to a file: the kind of call, the file, and how many such calls came before.
 
-    `path` is relative to the folder, with `*` for what is drawn or dated. `writes`: of an opening,
-    whether it is to write.
+    `path` is relative to the folder, with `*` for random or dated parts. `writes`: whether an
+    opening is for writing.
     """
 
     kind: str
@@ -75,7 +75,7 @@ class Site:
 
 @dataclass(frozen=True)
 class Fault:
-    """The call at `site` fails with `errno`."""
+    """A call at `site` that fails with `errno`."""
 
     site: Site
     errno: int
@@ -83,7 +83,7 @@ class Fault:
 
 @dataclass
 class Injector:
-    """Follows a process; notes what it asks of `folder`, and lets one call fail."""
+    """Follow a process, record its calls to files in `folder`, and make one call fail."""
 
     machine: Machine
     folder: Path
@@ -94,7 +94,7 @@ class Injector:
     _begun: bool = False
 
     def follow(self, child: int) -> int:
-        """Until it and all that it started have ended; its exit code, negative for a signal."""
+        """Follow until all processes have ended; return the exit code, negative for a signal."""
         code = 0
         while True:
             try:
@@ -141,7 +141,7 @@ class Injector:
     def _asked(
         self, thread: int, call: str, arguments: Sequence[int]
     ) -> tuple[str, str, bool] | None:
-        """Kind, file and whether it is to write; None for what is not asked of the folder."""
+        """Return kind, file and whether it is for writing; None for calls outside the folder."""
         if call in _BY_PATH:
             at = call in _WITH_FOLDER
             path = path_of(thread, arguments[0] if at else AT_FDCWD, arguments[1 if at else 0])
@@ -155,7 +155,7 @@ class Injector:
 
 
 def fail(thread: int, errno: int) -> None:
-    """Skip the call that a thread has stopped before, and let it answer with this error."""
+    """Skip the call that a stopped thread is about to make, and return this error from it."""
     registers = (ctypes.c_ulonglong * _REGISTERS)()
     kernel.ptrace(_GET_REGISTERS, thread, 0, ctypes.addressof(registers))
     registers[_NUMBER] = ctypes.c_ulonglong(-1).value
@@ -164,7 +164,7 @@ def fail(thread: int, errno: int) -> None:
 
 
 def injecting_machine() -> Machine | None:
-    """The calls that can be made to fail here; None where they are not known."""
+    """Return the calls that can be made to fail here; None if they are unknown."""
     machine = this_machine()
     if machine is None or platform.machine() != "x86_64":
         return None
@@ -172,9 +172,9 @@ def injecting_machine() -> Machine | None:
 
 
 def followed(injector: Injector, work: Callable[[], int]) -> int:
-    """Do `work` in a child under the injector; its exit code. Raises OSError where refused.
+    """Run `work` in a child under the injector and return its exit code.
 
-    Call it in a process that has no other children.
+    Raises OSError if tracing is not allowed. Call it in a process that has no other children.
     """
     gate, opener = os.pipe()
     child = os.fork()

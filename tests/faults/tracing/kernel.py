@@ -1,4 +1,4 @@
-"""The kernel's tracing interface, by way of the C library: ptrace(2) and seccomp(2).
+"""Call the kernel's tracing interface through the C library: ptrace(2) and seccomp(2).
 
 Numbers are from the kernel's headers `ptrace.h`, `seccomp.h`, `prctl.h` and `bpf_common.h`.
 """
@@ -51,14 +51,17 @@ class _Program(ctypes.Structure):
 
 @dataclass(frozen=True)
 class Stop:
-    """A stop at a system call: `values` are number and arguments, at the exit the result."""
+    """A stop at a system call: `values` are number and arguments, or at the exit the result."""
 
     at_exit: bool
     values: tuple[int, ...]
 
 
 def ptrace(request: int, thread: int, address: int = 0, data: int = 0) -> int:
-    """One request; raises OSError. A thread that was killed meanwhile is a ProcessLookupError."""
+    """Make one ptrace request.
+
+    Raises OSError on failure, and ProcessLookupError if the thread was killed meanwhile.
+    """
     ctypes.set_errno(0)
     answer: int = libc.ptrace(request, thread, address, data)
     if answer == -1 and ctypes.get_errno():
@@ -67,7 +70,7 @@ def ptrace(request: int, thread: int, address: int = 0, data: int = 0) -> int:
 
 
 def stop_of(thread: int) -> Stop:
-    """The system call that a thread has stopped at."""
+    """Return the system call at which a thread has stopped."""
     info = _Info()
     ptrace(GET_SYSCALL_INFO, thread, ctypes.sizeof(info), ctypes.addressof(info))
     if info.op == INFO_EXIT:
@@ -77,7 +80,7 @@ def stop_of(thread: int) -> Stop:
 
 
 def read_memory(thread: int, address: int, length: int) -> bytes:
-    """Bytes of the traced process's memory; fewer where its memory ends."""
+    """Return bytes of the traced process's memory; fewer if its memory ends."""
     file = os.open(f"/proc/{thread}/mem", os.O_RDONLY)
     try:
         return os.pread(file, length, address)
@@ -86,11 +89,10 @@ def read_memory(thread: int, address: int, length: int) -> bytes:
 
 
 def only_stop_at(machine: Machine, *, every_opening: bool = False) -> None:
-    """Let this process, and what it starts, stop at the watched calls only; for ever.
+    """Restrict the stops of this process and its children to the watched calls, permanently.
 
-    `every_opening`: also at openings that neither create a file nor empty it.
-
-    Raises OSError. A process with this filter needs its tracer: without one those calls fail.
+    `every_opening`: also stop at openings that neither create a file nor empty it. Raises OSError.
+    A process with this filter needs its tracer: without one those calls fail.
     """
     program = _program(machine, every_opening=every_opening)
     array = (_Instruction * len(program))(*program)
@@ -105,7 +107,7 @@ def _require(answer: int) -> None:
 
 
 def _program(machine: Machine, *, every_opening: bool) -> list[_Instruction]:
-    """In words: another architecture is let through; each watched number stops."""
+    """Return the filter: other architectures pass, and each watched number stops."""
     arch_at, number_at, arguments_at = 4, 0, 16
     lines = [
         _Instruction(LOAD, 0, 0, arch_at),

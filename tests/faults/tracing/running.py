@@ -1,4 +1,4 @@
-"""The real server under the tracer."""
+"""Run the real server under the tracer."""
 
 import subprocess
 import sys
@@ -13,13 +13,16 @@ RECORD = "trace"
 
 
 def traced(record: Path, folder: Path, command: Sequence[str]) -> list[str]:
-    """The command that runs `command` under the tracer; it needs the repository as PYTHONPATH."""
+    """Return the command that runs `command` under the tracer.
+
+    It needs the repository as PYTHONPATH.
+    """
     tracer = [sys.executable, "-m", "tests.faults.tracing"]
     return [*tracer, str(record), str(folder), "--", *command]
 
 
 def traced_server(folder: Path, command: Sequence[str] = REEMBODY) -> LiveServer:
-    """A server whose record is `folder / RECORD`, complete once the server has stopped."""
+    """Return a server whose trace is `folder / RECORD`, complete once it has stopped."""
     return LiveServer(
         folder,
         command=traced(folder / RECORD, folder / "data", command),
@@ -28,7 +31,7 @@ def traced_server(folder: Path, command: Sequence[str] = REEMBODY) -> LiveServer
 
 
 def why_not(folder: Path) -> str | None:
-    """Why nothing can be traced here, None if it can; leaves a record of a small command."""
+    """Return why tracing is impossible here, or None; leaves a trace of a small command."""
     done = subprocess.run(
         traced(folder / RECORD, folder, ["true"]),
         cwd=REPOSITORY,

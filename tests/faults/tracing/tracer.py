@@ -1,7 +1,7 @@
-"""Runs a command and follows it: every stop of every thread is handled here, one at a time.
+"""Run a command under ptrace and handle every stop of every thread, one at a time.
 
-A stopped thread goes on only after its stop was recorded. So whatever one thread does because of
-another's system call gets the later stamp.
+A stopped thread continues only after its stop was recorded. So an action that one thread takes
+because of another's system call gets the later stamp.
 """
 
 import os
@@ -26,7 +26,7 @@ GROUP_STOPS = (signal.SIGSTOP, signal.SIGTSTP, signal.SIGTTIN, signal.SIGTTOU)
 
 @dataclass
 class Tracer:
-    """Follows one command and all that it starts."""
+    """Follow one command and all its children."""
 
     machine: Machine
     reader: Reader
@@ -35,7 +35,7 @@ class Tracer:
     _begun: dict[int, Event] = field(default_factory=dict)
 
     def follow(self, child: int) -> int:
-        """Until everything has ended; the command's own exit code, negative for a signal."""
+        """Follow until all processes have ended; return the exit code, negative for a signal."""
         code = 0
         while True:
             try:
@@ -50,7 +50,7 @@ class Tracer:
                 code = os.waitstatus_to_exitcode(status)
 
     def _go_on(self, thread: int, status: int) -> None:
-        """Handle a stop and let the thread go on."""
+        """Handle a stop and let the thread continue."""
         number, event = os.WSTOPSIG(status), status >> 16
         request, deliver = kernel.CONT, 0
         try:
@@ -68,7 +68,7 @@ class Tracer:
             return
 
     def _enter(self, thread: int) -> bool:
-        """Read a call before it is done; whether its return matters."""
+        """Read a call before it is executed; return whether its return is recorded."""
         began_ns = time.monotonic_ns()
         number, *arguments = kernel.stop_of(thread).values
         event = self.reader.read(thread, self.machine.name[number], arguments)
@@ -103,7 +103,7 @@ class Tracer:
 
 
 def trace(record: Path, folder: Path, command: Sequence[str]) -> int:
-    """Run `command` and write what it does to files of `folder` and to sockets; its exit code."""
+    """Run `command`, record its changes to `folder` and its sends, and return its exit code."""
     machine = this_machine()
     if machine is None:
         return _refuse("this system's calls are not known to the tracer")
@@ -129,7 +129,7 @@ def trace(record: Path, folder: Path, command: Sequence[str]) -> int:
 
 
 def _become(command: Sequence[str], machine: Machine, gate: int) -> None:
-    """The child: wait for the tracer, take the filter, become the command."""
+    """Wait for the tracer, install the filter and execute the command, in the child."""
     try:
         os.read(gate, 1)
         kernel.only_stop_at(machine)
