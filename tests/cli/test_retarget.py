@@ -180,7 +180,7 @@ def test_broken_files_are_refused_and_nothing_is_written(
     assert not out.exists()
 
 
-def test_a_map_that_does_not_fit_is_refused(clip: Path, tmp_path: Path) -> None:
+def test_an_invalid_joint_map_is_refused(clip: Path, tmp_path: Path) -> None:
     """A joint the clip does not have, a body joint that is none, and a map that is no object."""
     path = tmp_path / "map.json"
     for told, reason in (

@@ -1,1 +1,1 @@
-"""Tests of the wing `movement`."""
+"""Tests of the features in `app/features/movement`."""

@@ -1,4 +1,4 @@
-"""One worker process for all applications of a package's tests: starting one takes seconds."""
+"""One worker process for all applications of a package's tests, as starting one takes seconds."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -12,12 +12,12 @@ class SharedWorker(Worker):
     """A worker that outlives the applications that use it."""
 
     def end(self) -> None:
-        """Keep the process for the next application."""
+        """Keep the process running for the next application."""
 
 
 @contextmanager
 def shared_worker(prepare: Callable[[], None], *makers: tuple[object, str]) -> Iterator[None]:
-    """Let each maker (its module and name) return the same worker, and end it afterwards."""
+    """Make each maker (its module and name) return one worker, and end it afterwards."""
     worker = SharedWorker(prepare)
     with pytest.MonkeyPatch.context() as patch:
         for module, name in makers:

@@ -1,1 +1,1 @@
-"""Tests of the wing `results`."""
+"""Tests of the features in `app/features/results`."""

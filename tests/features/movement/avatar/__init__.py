@@ -1,1 +1,1 @@
-"""Configurations of avatars."""
+"""Tests of configurations of avatars."""

@@ -1,4 +1,4 @@
-"""Avatars' configurations over HTTP: names, versions, files, and who may change them."""
+"""Tests of avatar configurations over HTTP: keys, versions, files and permissions."""
 
 import json
 
@@ -25,13 +25,13 @@ PATH = "/api/avatars"
 
 
 def as_json(configuration: Configuration) -> Json:
-    """The configuration as it travels."""
+    """Return the configuration as it is sent in JSON."""
     body: Json = file_of(configuration).model_dump(mode="json")
     return body
 
 
 def new(lab: Lab, key: str, configuration: Configuration = SOFT) -> Json:
-    """Save a configuration under a key."""
+    """Save a configuration as a new avatar."""
     body = {
         "key": key,
         "title": "Soft neck",
@@ -46,7 +46,7 @@ def new(lab: Lab, key: str, configuration: Configuration = SOFT) -> Json:
 def save(
     lab: Lab, key: str, configuration: Configuration, based_on: int, origin: str = "by_hand"
 ) -> Json:
-    """Append a version."""
+    """Save a configuration as a new version of an avatar."""
     view: Json = ok(
         lab.operator.post(
             f"{PATH}/{key}/versions",
@@ -62,7 +62,7 @@ def save(
 
 @pytest.mark.one_engine
 def test_a_lab_begins_with_the_standard_avatar(fresh_lab: Lab) -> None:
-    """It drives the whole body, and nobody has used it yet."""
+    """A new installation has the shipped standard avatar, which no session has used."""
     (listed,) = ok(fresh_lab.operator.get(PATH))
     assert (listed["key"], listed["versions"], listed["axes"]) == ("standard", 1, 91)
     assert (listed["newest"]["origin"], listed["newest"]["by"]) == ("shipped", "system")
@@ -73,7 +73,7 @@ def test_a_lab_begins_with_the_standard_avatar(fresh_lab: Lab) -> None:
 
 
 def test_versions_are_appended_and_stay(fresh_lab: Lab) -> None:
-    """With who, when, how and why; the old content can still be had."""
+    """Versions are appended with author, origin and note, and earlier ones can be read."""
     first = new(fresh_lab, "soft")
     second = save(fresh_lab, "soft", CAST, 1, "tuned")
     assert [one["number"] for one in second["versions"]] == [2, 1]
@@ -98,15 +98,15 @@ def test_versions_are_appended_and_stay(fresh_lab: Lab) -> None:
 
 @pytest.mark.one_engine
 def test_the_same_content_is_not_saved_twice_in_a_row(fresh_lab: Lab) -> None:
-    """Also by somebody who saw an older version: what they want is there."""
+    """Saving the newest content again makes no version, even if based on an older one."""
     new(fresh_lab, "soft")
     save(fresh_lab, "soft", CAST, 1)
     again = save(fresh_lab, "soft", CAST, 1)
     assert len(again["versions"]) == 2
 
 
-def test_two_people_do_not_overwrite_each_other(fresh_lab: Lab) -> None:
-    """Whoever decided on a version that has passed is told the newest one."""
+def test_saving_on_an_outdated_version_is_refused(fresh_lab: Lab) -> None:
+    """Saving based on an outdated version is refused with the newest number."""
     new(fresh_lab, "soft")
     save(fresh_lab, "soft", CAST, 1)
     body = {"based_on": 1, "origin": "by_hand", "configuration": as_json(SHIPPED)}
@@ -115,8 +115,8 @@ def test_two_people_do_not_overwrite_each_other(fresh_lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_key_is_given_once(fresh_lab: Lab) -> None:
-    """The other avatar is not touched."""
+def test_an_avatars_key_is_unique(fresh_lab: Lab) -> None:
+    """A second avatar with the same key is refused, and the first is unchanged."""
     new(fresh_lab, "soft")
     body = {"key": "soft", "title": "Other", "origin": "loaded", "configuration": as_json(CAST)}
     error(fresh_lab.operator.post(PATH, json=body), 409, "conflict")
@@ -124,16 +124,16 @@ def test_a_key_is_given_once(fresh_lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_what_is_not_there_is_named(fresh_lab: Lab) -> None:
-    """With what there is."""
+def test_an_unknown_avatar_is_not_found(fresh_lab: Lab) -> None:
+    """The error for an unknown avatar lists the existing ones."""
     refusal = error(fresh_lab.operator.get(f"{PATH}/nobody"), 404, "not_found")
     assert refusal["valid"] == ["standard"]
     error(fresh_lab.operator.get(f"{PATH}/standard/versions/9"), 404, "not_found")
 
 
 @pytest.mark.one_engine
-def test_a_contradiction_is_refused_with_its_place(fresh_lab: Lab) -> None:
-    """What no single key can know: crossed limits, a missing axis. Nothing is saved."""
+def test_an_invalid_configuration_is_refused_with_its_path(fresh_lab: Lab) -> None:
+    """Crossed limits or a missing axis are refused with their path, and nothing is saved."""
     wrong = as_json(SHIPPED)
     wrong["axes"]["HeadX"] |= {"low_deg": 20.0, "high_deg": 10.0}
     body = {"key": "wrong", "title": "Wrong", "origin": "by_hand", "configuration": wrong}
@@ -151,8 +151,8 @@ def test_a_contradiction_is_refused_with_its_place(fresh_lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_file_goes_out_and_comes_in_again(fresh_lab: Lab) -> None:
-    """The same content under the same hash, and known by its places."""
+def test_a_downloaded_configuration_can_be_loaded(fresh_lab: Lab) -> None:
+    """A downloaded configuration loads with the same content and hash."""
     new(fresh_lab, "soft")
     answer = fresh_lab.operator.get(f"{PATH}/soft/versions/1/file")
     assert answer.headers["content-disposition"] == 'attachment; filename="soft-v1.json"'
@@ -173,8 +173,8 @@ def test_a_file_goes_out_and_comes_in_again(fresh_lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_wrong_file_tells_its_lines(fresh_lab: Lab) -> None:
-    """Checking stores nothing and is no error."""
+def test_checking_an_invalid_file_reports_its_lines(fresh_lab: Lab) -> None:
+    """Checking an invalid configuration file reports its problems with path and line."""
     text = avatar_text(SOFT).replace('"carried"', '"loose"')
     told = ok(fresh_lab.operator.post(f"{PATH}/check", json={"text": text}))
     assert (told["ok"], told["configuration"]) == (False, None)
@@ -183,8 +183,8 @@ def test_a_wrong_file_tells_its_lines(fresh_lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_the_lab_reads_and_designers_change(fresh_lab: Lab) -> None:
-    """Operators and analysts get the configuration, but nothing of theirs is stored."""
+def test_only_designers_may_change_avatars(fresh_lab: Lab) -> None:
+    """Operators and analysts may read configurations, but only study designers may save them."""
     body = {"key": "own", "title": "Own", "origin": "by_hand", "configuration": as_json(SOFT)}
     for role in ("operator", "analyst"):
         client = sign_in(fresh_lab, role)
@@ -196,7 +196,7 @@ def test_the_lab_reads_and_designers_change(fresh_lab: Lab) -> None:
 
 
 def test_sessions_are_counted_by_the_content_they_used(fresh_lab: Lab) -> None:
-    """And the content is found by the hash on the session."""
+    """A version counts the sessions that used its content, found by the session's hash."""
     view = fresh_lab.join(kind="test")
     assert view["avatar_configuration_hash"] is None
     content_hash = new(fresh_lab, "soft")["newest"]["content_hash"]
@@ -211,8 +211,8 @@ def test_sessions_are_counted_by_the_content_they_used(fresh_lab: Lab) -> None:
     assert ok(fresh_lab.operator.get(f"{PATH}/soft/versions/1"))["sessions"] == 1
 
 
-def test_a_release_brings_its_standard_unless_the_lab_has_its_own(fresh_lab: Lab) -> None:
-    """An old shipped content is followed by the new one; what somebody saved stays the newest."""
+def test_a_release_updates_the_standard_avatar_unless_the_lab_changed_it(fresh_lab: Lab) -> None:
+    """A new release adds its standard avatar as a version, unless the lab saved its own."""
     now = Clock().utc_now()
     with fresh_lab.database.writing() as db:
         row = db.get_one(AvatarVersion, ("standard", 1))
@@ -231,7 +231,7 @@ def test_a_release_brings_its_standard_unless_the_lab_has_its_own(fresh_lab: Lab
 
 
 def test_the_canonical_form_is_what_is_stored(fresh_lab: Lab) -> None:
-    """Whoever reads the database finds the whole configuration, and its hash is its own."""
+    """The database stores the canonical form of the whole configuration."""
     new(fresh_lab, "soft")
     with fresh_lab.database.reading() as db:
         row = db.get_one(AvatarVersion, ("soft", 1))
@@ -240,8 +240,8 @@ def test_the_canonical_form_is_what_is_stored(fresh_lab: Lab) -> None:
     assert json.loads(row.canonical_json) == told
 
 
-def test_what_tuning_measured_is_kept_with_its_version(fresh_lab: Lab) -> None:
-    """With the settings it used; a version made by hand has no report."""
+def test_a_tuning_report_is_stored_with_its_version(fresh_lab: Lab) -> None:
+    """The report of a tuning is stored with its version; other versions have none."""
     report = {"heuristic": "pd", "axes": [{"name": "HeadX", "overshoot_percent": 2.5}]}
     wish = NewAvatarVersion(based_on=1, origin="tuned", configuration=file_of(SOFT))
     with fresh_lab.database.writing() as db:

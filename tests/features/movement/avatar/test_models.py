@@ -1,4 +1,4 @@
-"""The model of an avatar over HTTP: the same text for the same content, and had only once."""
+"""Tests of avatar models over HTTP: the same content gives the same text, sent once."""
 
 import hashlib
 import subprocess
@@ -16,8 +16,8 @@ from tests.features.movement.avatar.test_avatars import CAST, PATH, SHIPPED, new
 pytestmark = pytest.mark.one_engine
 
 
-def test_a_model_is_had_by_its_hash(fresh_lab: Lab) -> None:
-    """The tag names the bytes; who has them gets none."""
+def test_a_models_etag_is_its_hash(fresh_lab: Lab) -> None:
+    """A model's ETag is the hash of its text, and a client that has it gets 304."""
     path = f"{PATH}/standard/model?stature_m=1.7001"
     answer = fresh_lab.operator.get(path)
     assert answer.headers["content-type"] == "application/xml"
@@ -30,8 +30,8 @@ def test_a_model_is_had_by_its_hash(fresh_lab: Lab) -> None:
     assert taller.headers["etag"] != tag
 
 
-def test_a_cast_takes_the_hinges_of_its_group(fresh_lab: Lab) -> None:
-    """Of the version that is asked for."""
+def test_locked_groups_have_no_hinges_in_the_model(fresh_lab: Lab) -> None:
+    """Locked joint groups have no hinges in the model of that version."""
     new(fresh_lab, "soft")
     save(fresh_lab, "soft", CAST, 1)
     for query, hinges in (("&version=1", 89), ("&version=2", 69), ("", 69)):
@@ -41,7 +41,7 @@ def test_a_cast_takes_the_hinges_of_its_group(fresh_lab: Lab) -> None:
 
 
 def test_a_model_may_lack_fingers_but_no_arm(fresh_lab: Lab) -> None:
-    """The missing part is named."""
+    """A model without fingers is built; one without a forearm is refused by name."""
     new(fresh_lab, "mitten", without_parts(SHIPPED, frozenset(FINGER_PARTS)))
     assert fresh_lab.operator.get(f"{PATH}/mitten/model?stature_m=1.7").is_success
     new(fresh_lab, "armless", without_parts(SHIPPED, frozenset({"LeftLowerArm"})))
@@ -49,23 +49,23 @@ def test_a_model_may_lack_fingers_but_no_arm(fresh_lab: Lab) -> None:
     assert "LeftLowerArm" in error(answer, 409, "conflict")["message"]
 
 
-def test_a_stature_is_a_humans(fresh_lab: Lab) -> None:
-    """From 0.5 to 2.6 m."""
+def test_an_impossible_stature_is_refused(fresh_lab: Lab) -> None:
+    """A model's stature must be a number from 0.5 to 2.6 m."""
     for stature in ("0.4", "2.7", "nan", "tall"):
         answer = fresh_lab.operator.get(f"{PATH}/standard/model?stature_m={stature}")
         error(answer, 422, "invalid_input")
 
 
 def test_locking_keeps_the_rest_of_the_model() -> None:
-    """A held angle turns the part; every other hinge stays."""
+    """Locking a group at another angle changes the model but not its masses."""
     held = lock(SHIPPED, "left_fingers", {"LeftIndexProximalZ": 0.5})
     flat, bent = (avatar_model(one, 1.7) for one in (CAST, held))
     assert flat.mjcf != bent.mjcf
     assert flat.masses == bent.masses
 
 
-def test_a_server_that_only_writes_models_does_not_load_the_simulator() -> None:
-    """MuJoCo is for who simulates; the text is ours."""
+def test_writing_a_model_does_not_load_mujoco() -> None:
+    """A server that only writes models does not load MuJoCo."""
     code = (
         "import sys, app.main; from app.science.avatar.mjcf import avatar_model;"
         "from app.science.avatar.mjcf import default_configuration;"

@@ -1,4 +1,4 @@
-"""Which avatar a study's sessions use: named by the study, kept on the session by its hash."""
+"""Tests of the avatar that a study names and its sessions store by hash."""
 
 import pytest
 
@@ -10,15 +10,15 @@ KEY = "physics-study"
 
 
 def study(configuration: str) -> str:
-    """The shipped study with a physics avatar."""
+    """Return the shipped study with a physics avatar of this configuration."""
     return edited(
         ("key: reembodiment-latency", f"key: {KEY}"),
         ("avatar: delayed_copy", f"avatar: physics\navatar_configuration: {configuration}"),
     )
 
 
-def test_a_session_keeps_the_content_that_its_study_named(fresh_lab: Lab) -> None:
-    """Also when the avatar gets further versions; another version is another study version."""
+def test_a_session_keeps_its_studys_avatar_version(fresh_lab: Lab) -> None:
+    """A session keeps the avatar version that its study named when later ones are saved."""
     first = new(fresh_lab, "soft")["newest"]["content_hash"]
     ok(fresh_lab.operator.post("/api/studies", json={"yaml": study("{key: soft, version: 1}")}))
     second = save(fresh_lab, "soft", CAST, 1)["newest"]["content_hash"]
@@ -34,8 +34,8 @@ def test_a_session_keeps_the_content_that_its_study_named(fresh_lab: Lab) -> Non
 
 
 @pytest.mark.one_engine
-def test_a_study_cannot_name_an_avatar_that_is_not_there(fresh_lab: Lab) -> None:
-    """Neither while it is written nor when it is stored."""
+def test_a_study_cannot_name_an_unknown_avatar(fresh_lab: Lab) -> None:
+    """A study that names an unknown avatar fails the check and is not stored."""
     body = {"yaml": study("{key: hard, version: 1}")}
     told = ok(fresh_lab.operator.post("/api/studies/check", json=body))
     assert [one["path"] for one in told["problems"]] == ["avatar_configuration.key"]
@@ -45,8 +45,8 @@ def test_a_study_cannot_name_an_avatar_that_is_not_there(fresh_lab: Lab) -> None
 
 
 @pytest.mark.one_engine
-def test_a_tuned_cast_is_what_its_file_says(fresh_lab: Lab) -> None:
-    """Locked groups are part of the content that a session records."""
+def test_locked_groups_are_part_of_the_configuration(fresh_lab: Lab) -> None:
+    """Locked joint groups are part of the stored configuration."""
     view = new(fresh_lab, "cast", CAST)
     assert view["newest"]["configuration"] == as_json(CAST)
     assert view["newest"]["configuration"]["locked_groups"] == ["left_fingers"]

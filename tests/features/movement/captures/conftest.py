@@ -1,4 +1,4 @@
-"""One process reads the captures of all applications in this package."""
+"""A fixture that lets one process read the captures of all applications in this package."""
 
 from collections.abc import Iterator
 

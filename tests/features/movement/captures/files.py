@@ -1,4 +1,4 @@
-"""Small capture files, written by hand, and how they are sent."""
+"""Small generated capture files, and helpers to upload them."""
 
 import json
 import struct
@@ -19,7 +19,7 @@ SPEED_M_S, LIFT_M = 1.2, 0.12
 
 
 def walk_bvh(frames: int = 150, *, metres_per_unit: float = 0.01) -> bytes:
-    """A whole body that walks forward: a stride of 1.2 m a second, each foot in the air half."""
+    """Return a body that walks forward at 1.2 m/s, each foot in the air half of the time."""
     joints: list[str] = []
     lines = ["HIERARCHY", *_hierarchy(joints, metres_per_unit), "MOTION"]
     lines += [f"Frames: {frames}", f"Frame Time: {1.0 / FPS}"]
@@ -70,7 +70,7 @@ def _frame(joints: list[str], time_s: float, unit: float) -> str:
 
 
 def _leg_deg(side: str, time_s: float) -> Mapping[str, float]:
-    """Turns about x that bring the ankle to its place, by the law of cosines; the foot is flat."""
+    """Return the turns about x that put the ankle in place with a flat foot (law of cosines)."""
     forward_m, up_m = _ankle_m(time_s + (0.5 if side == "Right" else 0.0))
     down_m = HIPS_M - 0.05 - up_m
     far_m = float(np.hypot(forward_m, down_m))
@@ -81,7 +81,7 @@ def _leg_deg(side: str, time_s: float) -> Mapping[str, float]:
 
 
 def _ankle_m(time_s: float) -> tuple[float, float]:
-    """Ahead of the hips, and above the ground: half a second down, half a second in the air."""
+    """Return the ankle's place ahead of the hips and above the ground; it swings half the time."""
     phase = time_s % 1.0
     reach_m = SPEED_M_S / 4.0
     if phase < 0.5:
@@ -93,23 +93,23 @@ def _ankle_m(time_s: float) -> tuple[float, float]:
 
 
 def _corner(a: float, b: float, opposite: float) -> float:
-    """The angle between two sides of a triangle."""
+    """Return the angle between two sides of a triangle."""
     return float(np.arccos(np.clip((a * a + b * b - opposite**2) / (2.0 * a * b), -1.0, 1.0)))
 
 
 def upload(client: TestClient, data: bytes, name: str = "walk.bvh", **more: Any) -> Response:
-    """Send a capture."""
+    """Upload a capture and return the response, whatever it is."""
     return client.post("/api/captures", params={"name": name, **more}, content=data)
 
 
 def uploaded(client: TestClient, data: bytes, name: str = "walk.bvh", **more: Any) -> Json:
-    """Send a capture that is taken."""
+    """Upload a capture that must be accepted and return it."""
     view: Json = ok(upload(client, data, name, **more))
     return view
 
 
 def positions_of(body: bytes) -> tuple[Json, npt.NDArray[np.float32]]:
-    """Header and positions (N, J, 3) of a preview, read as a page reads it."""
+    """Return header and positions (N, J, 3) of a preview, decoded as a page does."""
     (length,) = struct.unpack("<I", body[:4])
     header: Json = json.loads(body[4 : 4 + length])
     numbers = np.frombuffer(body[4 + length :], dtype="<f4")

@@ -1,32 +1,32 @@
-"""Tasks that a file could make of the process that reads it."""
+"""Tasks that a hostile file could cause in the process that reads it."""
 
 import os
 import time
 
 
 def never_end() -> bytes:
-    """Compute for ever."""
+    """Run without end."""
     while True:
         time.sleep(0.01)
 
 
 def fill_the_memory() -> bytes:
-    """Take as much as there is."""
+    """Allocate memory without end."""
     taken = []
     while True:
         taken.append(bytearray(2**26))
 
 
 def die() -> bytes:
-    """What a crash in compiled code looks like."""
+    """End the process, as a crash in compiled code does."""
     os._exit(1)
 
 
 def fail() -> bytes:
-    """A mistake of ours."""
+    """Raise an error, as a mistake in our code does."""
     raise KeyError("no such thing")
 
 
 def answer() -> bytes:
-    """What usually happens."""
+    """Return a normal result."""
     return b"done"

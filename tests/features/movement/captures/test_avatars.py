@@ -1,4 +1,4 @@
-"""A capture on avatars: the paper's verification, previews, and files to keep."""
+"""Tests of a capture on avatars: the paper's verification, previews and files."""
 
 import csv
 
@@ -22,12 +22,12 @@ AVATARS = "avatars=130cm&avatars=165cm&avatars=190cm"
 
 @pytest.fixture(scope="module")
 def walk(lab: Lab) -> Json:
-    """A walk of five strides."""
+    """Return an uploaded walk of five strides."""
     return uploaded(lab.operator, walk_bvh())
 
 
-def test_a_walk_keeps_its_character_on_every_avatar(lab: Lab, walk: Json) -> None:
-    """As many lifts at the same times, steps that grow with the legs."""
+def test_a_walk_keeps_its_steps_on_every_avatar(lab: Lab, walk: Json) -> None:
+    """A walk has the same foot lifts at the same times on every avatar, scaled to its legs."""
     told = ok(lab.operator.get(f"/api/captures/{walk['id']}/verification?{AVATARS}"))
     assert (told["frames"], told["rate_hz"], told["lock_feet"]) == (150, 30.0, False)
     assert len(told["times_s"]) == 150
@@ -51,15 +51,15 @@ def test_a_walk_keeps_its_character_on_every_avatar(lab: Lab, walk: Json) -> Non
 
 
 def test_locked_feet_slide_less(lab: Lab, walk: Json) -> None:
-    """Before and after are told; feet that do not slide stay as they are."""
+    """Locking the feet does not increase their sliding, which is reported before and after."""
     address = f"/api/captures/{walk['id']}/verification?avatars=190cm&lock_feet=true"
     (avatar,) = ok(lab.operator.get(address))["avatars"]
     assert avatar["slide_m_s"] <= avatar["slide_before_m_s"]
     assert avatar["lowered_m"] >= 0.0
 
 
-def test_an_avatar_can_be_looked_at(lab: Lab, walk: Json) -> None:
-    """In the form of the recorded preview, standing on the ground, its size as asked for."""
+def test_a_preview_on_an_avatar_has_its_size(lab: Lab, walk: Json) -> None:
+    """A preview of a capture on an avatar stands on the ground and has the avatar's size."""
     path = f"/api/captures/{walk['id']}/retargeted-motion"
     heights = {}
     for avatar in ("130cm", "190cm"):
@@ -71,8 +71,8 @@ def test_an_avatar_can_be_looked_at(lab: Lab, walk: Json) -> None:
     assert heights["130cm"] / heights["190cm"] == pytest.approx(130 / 190, rel=0.02)
 
 
-def test_an_avatars_movement_can_be_kept(lab: Lab, walk: Json) -> None:
-    """As BVH that reads back to the same places, and as a table of them."""
+def test_an_avatars_movement_can_be_downloaded(lab: Lab, walk: Json) -> None:
+    """An avatar's movement downloads as BVH and as CSV with the same positions."""
     path = f"/api/captures/{walk['id']}"
     preview = lab.operator.get(f"{path}/retargeted-motion?avatar=165cm")
     header, shown_m = positions_of(preview.content)
@@ -91,8 +91,8 @@ def test_an_avatars_movement_can_be_kept(lab: Lab, walk: Json) -> None:
     assert float(rows[30][columns.index("time_s")]) == pytest.approx(1.0)
 
 
-def test_only_avatars_that_can_be_are_made(lab: Lab, walk: Json) -> None:
-    """Statures are in centimetres, within what bodies have."""
+def test_invalid_avatar_sizes_are_refused(lab: Lab, walk: Json) -> None:
+    """Avatars that are not given as a possible stature in centimetres, or too many, are refused."""
     path = f"/api/captures/{walk['id']}"
     for avatar in ("165", "1.65m", "20cm", "999cm", "faye"):
         error(lab.operator.get(f"{path}/retargeted-motion?avatar={avatar}"), 422, "invalid_input")
@@ -102,7 +102,7 @@ def test_only_avatars_that_can_be_are_made(lab: Lab, walk: Json) -> None:
 
 
 def test_without_legs_there_is_no_verification(fresh_lab: Lab) -> None:
-    """The refusal names what to map."""
+    """A verification without mapped legs is refused and names the joints to map."""
     view = uploaded(fresh_lab.operator, walk_bvh())
     path = f"/api/captures/{view['id']}"
     told = ok(fresh_lab.operator.get(f"{path}/joint-map"))

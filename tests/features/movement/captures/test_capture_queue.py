@@ -1,4 +1,4 @@
-"""Whatever a file does to the process that reads it, it is refused, and the next one is read."""
+"""Tests that a file which breaks the reading process is refused, and the next one is read."""
 
 import asyncio
 from collections.abc import Callable, Iterator
@@ -16,14 +16,14 @@ LIMITED = 512 * 2**20
 
 
 def limit_to_little() -> None:
-    """The process's own limit, but with less to take."""
+    """Limit the process's memory as usual, but to less."""
     capture_queue.MEMORY_BYTES = LIMITED
     capture_queue.limit_memory()
 
 
 @pytest.fixture(scope="module")
 def bench() -> Iterator[CaptureQueue]:
-    """A process with a small memory."""
+    """Yield a capture queue whose process has little memory."""
     bench = CaptureQueue(_worker=Worker(limit_to_little))
     yield bench
     bench.stop()
@@ -38,13 +38,13 @@ def bench() -> Iterator[CaptureQueue]:
         (hostile.fail, "KeyError"),
     ],
 )
-def test_a_hostile_file_hurts_nobody(
+def test_a_hostile_file_is_refused_and_the_next_is_read(
     bench: CaptureQueue, task: Callable[[], bytes], why: str
 ) -> None:
-    """It is refused with the reason, and the next file is read by a process that works."""
+    """A file that blocks, exhausts or kills the process is refused, and the next one is read."""
 
     async def one_after_the_other() -> bytes:
-        # The process takes some seconds to start, which counts.
+        # Starting the process takes some seconds, which count towards the limit.
         assert await bench.run(hostile.answer) == b"done"
         bench.within_s = 2.0 if task is hostile.never_end else 120.0
         with pytest.raises(InvalidInput, match=why):
@@ -56,10 +56,10 @@ def test_a_hostile_file_hurts_nobody(
     assert asyncio.run(one_after_the_other()) == b"done"
 
 
-def test_whoever_waits_too_long_a_line_is_told(
+def test_a_full_queue_refuses_further_requests(
     bench: CaptureQueue, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Rather than to fill the server with requests that wait."""
+    """A full capture queue refuses further requests."""
     monkeypatch.setattr(working_line, "WAITING", 2)
 
     async def crowd() -> list[bytes | BaseException]:
@@ -73,10 +73,10 @@ def test_whoever_waits_too_long_a_line_is_told(
     assert [type(one) for one in answers[2:]] == [NotDurable, NotDurable]
 
 
-def test_what_was_computed_is_kept_within_bounds(
+def test_the_cache_of_results_is_bounded(
     bench: CaptureQueue, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The oldest go first."""
+    """The cache of computed results is bounded and evicts the oldest first."""
     monkeypatch.setattr(capture_queue, "MAX_CACHED_BYTES", 10)
 
     async def ask() -> None:

@@ -1,4 +1,4 @@
-"""Captures are in backups and come back from them."""
+"""A test that captures are contained in backups."""
 
 from pathlib import Path
 
@@ -16,7 +16,7 @@ from tests.support.sqlite import fresh_sqlite
 def test_a_restored_capture_is_the_file_that_was_uploaded(
     fresh_lab: Lab, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """In pieces small enough for whoever copies many rows, with its summary and joint map."""
+    """A restored capture is the uploaded file, in small pieces, with its summary and joint map."""
     monkeypatch.setattr(contents, "PIECE_BYTES", 4096)
     walk = walk_bvh(2_000)
     view = uploaded(fresh_lab.operator, walk)

@@ -1,4 +1,4 @@
-"""Joint maps: proposed, saved for a skeleton as versions, and refused with every problem."""
+"""Tests of joint maps: proposed, saved in versions per skeleton, and validated."""
 
 import pytest
 
@@ -8,13 +8,13 @@ from tests.features.movement.captures.files import uploaded, walk_bvh
 
 
 def joint_map_path(view: Json) -> str:
-    """The address of a capture's joint map."""
+    """Return the address of a capture's joint map."""
     return f"/api/captures/{view['id']}/joint-map"
 
 
 @pytest.mark.one_engine
-def test_a_map_is_proposed(fresh_lab: Lab) -> None:
-    """From names, with what is left open on both sides."""
+def test_a_joint_map_is_proposed_from_names(fresh_lab: Lab) -> None:
+    """A joint map is proposed from joint names, and lists what is unmapped on both sides."""
     view = uploaded(fresh_lab.operator, walk_bvh())
     told = ok(fresh_lab.operator.get(joint_map_path(view)))
     assert (told["version"], told["chosen"], told["by"]) == (0, False, None)
@@ -27,8 +27,8 @@ def test_a_map_is_proposed(fresh_lab: Lab) -> None:
     assert (told["usable"], told["missing"], told["captures"]) == (True, [], 1)
 
 
-def test_a_saved_map_holds_for_the_skeleton(fresh_lab: Lab) -> None:
-    """Another recording of the same skeleton has it, too; every version stays."""
+def test_a_saved_joint_map_applies_to_every_capture_of_the_skeleton(fresh_lab: Lab) -> None:
+    """A saved joint map applies to every capture of the same skeleton and keeps its versions."""
     first = uploaded(fresh_lab.operator, walk_bvh())
     second = uploaded(fresh_lab.operator, walk_bvh(60), "short.bvh")
     told = ok(fresh_lab.operator.get(joint_map_path(first)))
@@ -52,8 +52,8 @@ def test_a_saved_map_holds_for_the_skeleton(fresh_lab: Lab) -> None:
     assert [one["action"] for one in trail[:2]] == ["capture.unmapped", "capture.mapped"]
 
 
-def test_two_people_do_not_overwrite_each_other(fresh_lab: Lab) -> None:
-    """Whoever decided on a version that has passed is told the newest one."""
+def test_saving_on_an_outdated_version_is_refused(fresh_lab: Lab) -> None:
+    """Saving a joint map based on an outdated version is refused with the newest number."""
     view = uploaded(fresh_lab.operator, walk_bvh())
     told = ok(fresh_lab.operator.get(joint_map_path(view)))
     wish = {"joint_map": told["joint_map"], "version": 0}
@@ -64,8 +64,8 @@ def test_two_people_do_not_overwrite_each_other(fresh_lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_map_that_does_not_fit_is_refused(fresh_lab: Lab) -> None:
-    """With every problem at its joint: unknown joints, one used twice, no hips."""
+def test_an_invalid_joint_map_is_refused(fresh_lab: Lab) -> None:
+    """A joint map with unknown, duplicate or missing joints is refused with every problem."""
     view = uploaded(fresh_lab.operator, walk_bvh())
     told = ok(fresh_lab.operator.get(joint_map_path(view)))
     wrong = {**told["joint_map"], "Tail": "Spine", "Head": "Hut", "LeftHand": "RightHand"}

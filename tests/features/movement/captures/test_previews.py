@@ -1,4 +1,4 @@
-"""Positions for a preview: the form, the rate, the bounds."""
+"""Tests of the positions for previews: format, rate and size limits."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ HAND = Points("markers", ("LHAND", "RHÄND"), (-1, -1), 100.0, np.zeros((10, 2, 
 
 
 def test_a_page_can_read_a_preview(lab: Lab) -> None:
-    """Names, parents and metres: the hips at their height, moving at their speed."""
+    """A preview has names, parents and positions in metres, with the capture's height and speed."""
     view = uploaded(lab.operator, walk_bvh())
     answer = lab.operator.get(f"/api/captures/{view['id']}/motion")
     assert answer.headers["content-type"] == "application/octet-stream"
@@ -37,16 +37,16 @@ def test_a_page_can_read_a_preview(lab: Lab) -> None:
     assert positions_m[:, ankle, 1].min() == pytest.approx(ANKLE_M, abs=1e-5)
 
 
-def test_the_numbers_begin_at_a_multiple_of_four() -> None:
-    """So that a page can look at them where they are, whatever the names."""
+def test_the_numbers_of_a_preview_are_aligned() -> None:
+    """The numbers of a preview begin at a multiple of four bytes, whatever the names."""
     for name in ("L", "LH", "LHA", "LHÄ", "LHAND"):
         body = encode(Points("markers", (name,), (-1,), 50.0, np.ones((3, 1, 3))))
         assert (4 + int.from_bytes(body[:4], "little")) % 4 == 0
         assert positions_of(body)[1].tolist() == np.ones((3, 1, 3)).tolist()
 
 
-def test_faster_recordings_are_thinned() -> None:
-    """To sixty frames a second or fewer, every so manieth frame as it was recorded."""
+def test_a_fast_recording_is_downsampled() -> None:
+    """A recording above 60 Hz is downsampled to whole frames at 60 Hz or less."""
     positions_m = np.arange(240.0 * 3).reshape(240, 1, 3)
     header, seen = positions_of(encode(Points("markers", ("M",), (-1,), 240.0, positions_m)))
     assert (header["rate_hz"], header["recorded_rate_hz"], header["frames"]) == (60.0, 240.0, 60)
@@ -54,15 +54,15 @@ def test_faster_recordings_are_thinned() -> None:
 
 
 def test_a_long_recording_stays_within_its_bound(monkeypatch: pytest.MonkeyPatch) -> None:
-    """However long it is."""
+    """A preview of a long recording stays within its size limit."""
     long = Points("markers", ("M",), (-1,), 60.0, np.zeros((500_000, 1, 3)))
     monkeypatch.setattr(preview, "MAX_NUMBERS", 30_000)
     step = preview.step_for(500_000, 60.0, 3, preview.MAX_NUMBERS)
     assert 3 * len(long.positions_m[::step]) <= 30_000
 
 
-def test_what_was_not_seen_is_not_a_number() -> None:
-    """A marker that was hidden has no place."""
+def test_a_hidden_marker_is_nan() -> None:
+    """A marker that was hidden has NaN as its position."""
     positions_m = np.zeros((4, 2, 3))
     positions_m[1, 0] = np.nan
     header, seen = positions_of(encode(points_of(MarkerMotion(HAND.names, 50.0, positions_m))))
@@ -71,8 +71,8 @@ def test_what_was_not_seen_is_not_a_number() -> None:
     assert np.isfinite(seen).sum() == 7 * 3
 
 
-def test_a_logger_is_put_on_an_even_grid() -> None:
-    """Each moment as the nearest sample says, and none where the log has a gap."""
+def test_uneven_samples_are_resampled_with_gaps() -> None:
+    """Samples at uneven times are resampled to an even rate, with NaN in gaps."""
     times_s = np.concatenate((np.arange(50) * 0.02, 5.0 + np.arange(50) * 0.02))
     positions_m = np.repeat(times_s, 3).reshape(100, 1, 3)
     motion = BodyMotion(("hand",), times_s, positions_m, identity(100)[:, None])
@@ -85,8 +85,8 @@ def test_a_logger_is_put_on_an_even_grid() -> None:
     assert there.sum() == pytest.approx(100, abs=4)
 
 
-def test_a_preview_of_nothing_is_refused(lab: Lab) -> None:
-    """An unknown capture, and an unknown kind of preview."""
+def test_an_unknown_preview_is_refused(lab: Lab) -> None:
+    """A preview of an unknown capture or of an unknown kind is refused."""
     error(lab.operator.get(f"/api/captures/{'0' * 32}/motion"), 404, "not_found")
     view = uploaded(lab.operator, walk_bvh())
     answer = lab.operator.get(f"/api/captures/{view['id']}/motion?shown=ghost")

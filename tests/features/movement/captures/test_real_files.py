@@ -1,4 +1,4 @@
-"""Real recordings through the whole way: two files at once, markers, and rigid bodies."""
+"""Tests with real recordings: ASF/AMC pairs, markers and rigid bodies."""
 
 from pathlib import Path
 
@@ -12,7 +12,7 @@ pytestmark = pytest.mark.one_engine
 
 
 def test_an_amc_comes_with_its_asf(fresh_lab: Lab, shared_data: Path) -> None:
-    """Both are kept, and both come back to the byte."""
+    """An AMC file and its ASF companion are both stored and downloaded unchanged."""
     folder = shared_data / "motion" / "cmu_asfamc"
     amc, asf = ((folder / name).read_bytes() for name in ("02_01.amc", "02.asf"))
     more = {"companion": "02.asf", "companion_bytes": len(asf)}
@@ -26,8 +26,8 @@ def test_an_amc_comes_with_its_asf(fresh_lab: Lab, shared_data: Path) -> None:
     assert told["lifts_agree"] is True
 
 
-def test_markers_show_as_they_are_and_as_a_skeleton(fresh_lab: Lab, shared_data: Path) -> None:
-    """The fitted skeleton moves where the markers move."""
+def test_markers_are_shown_with_their_fitted_skeleton(fresh_lab: Lab, shared_data: Path) -> None:
+    """A capture of markers has a fitted skeleton that moves with them."""
     c3d = (shared_data / "motion" / "cmu_c3d" / "02_01.c3d").read_bytes()
     view = uploaded(fresh_lab.operator, c3d, "02_01.c3d")
     skeleton = view["summary"]["skeleton"]
@@ -44,7 +44,7 @@ def test_markers_show_as_they_are_and_as_a_skeleton(fresh_lab: Lab, shared_data:
 
 
 def test_a_capture_without_a_skeleton_says_why(fresh_lab: Lab, shared_data: Path) -> None:
-    """It can be looked at; a joint map and avatars are refused with the same reason."""
+    """A capture without a skeleton has a preview, and its joint map is refused with the reason."""
     file = shared_data / "motion" / "optitrack_csv" / "sample_optitrack_take.csv"
     view = uploaded(fresh_lab.operator, file.read_bytes(), file.name)
     assert (view["kind"], view["has_skeleton"]) == ("bodies", False)

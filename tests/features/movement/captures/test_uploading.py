@@ -1,4 +1,4 @@
-"""Captures come in once, are listed, changed and deleted; what cannot be read is not kept."""
+"""Tests of uploading, listing, changing and deleting captures."""
 
 import hashlib
 
@@ -14,7 +14,7 @@ WALK = walk_bvh()
 
 
 def counted(lab: Lab) -> tuple[int, int, int]:
-    """Rows of captures, contents and pieces."""
+    """Return the numbers of stored captures, contents and pieces."""
     with lab.database.reading() as db:
         return (
             db.scalars(select(func.count()).select_from(CaptureRow)).one(),
@@ -23,8 +23,8 @@ def counted(lab: Lab) -> tuple[int, int, int]:
         )
 
 
-def test_a_capture_comes_in_and_goes_out(fresh_lab: Lab) -> None:
-    """It tells what it holds, and its file comes back to the byte."""
+def test_an_uploaded_capture_is_described_and_downloaded_unchanged(fresh_lab: Lab) -> None:
+    """An uploaded capture is described by its content, and its file downloads unchanged."""
     view = uploaded(fresh_lab.operator, WALK)
     assert (view["format"], view["kind"], view["frames"]) == ("bvh", "skeleton", 150)
     assert (view["rate_hz"], view["tracks"], view["size_bytes"]) == (30.0, 21, len(WALK))
@@ -46,7 +46,7 @@ def test_a_capture_comes_in_and_goes_out(fresh_lab: Lab) -> None:
 
 
 def test_the_same_content_is_stored_once(fresh_lab: Lab) -> None:
-    """A second upload under another name answers the first one."""
+    """Uploading the same content under another name returns the first capture."""
     first = upload(fresh_lab.operator, WALK)
     again = upload(fresh_lab.operator, WALK, "copy.bvh")
     assert (first.status_code, again.status_code) == (201, 200)
@@ -55,8 +55,8 @@ def test_the_same_content_is_stored_once(fresh_lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_what_cannot_be_read_is_not_kept(fresh_lab: Lab) -> None:
-    """The refusal names file, line and reason."""
+def test_an_unreadable_capture_is_refused(fresh_lab: Lab) -> None:
+    """An unreadable capture is refused with file, line and reason, and not stored."""
     broken = WALK.replace(b"Frame Time", b"Frome Time")
     refusal = error(upload(fresh_lab.operator, broken), 422, "invalid_input")
     (where,) = refusal["details"]
@@ -69,8 +69,8 @@ def test_what_cannot_be_read_is_not_kept(fresh_lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_another_reading_reads_the_file_anew(fresh_lab: Lab) -> None:
-    """Lengths follow the unit that somebody chose, and the convention says that it was chosen."""
+def test_a_chosen_unit_rereads_the_file(fresh_lab: Lab) -> None:
+    """Choosing another unit rereads the file and marks the convention as chosen."""
     view = uploaded(fresh_lab.operator, WALK)
     assert view["summary"]["conventions"]["length"]["origin"] == "guessed"
     path = f"/api/captures/{view['id']}"
@@ -84,8 +84,8 @@ def test_another_reading_reads_the_file_anew(fresh_lab: Lab) -> None:
     error(fresh_lab.operator.patch(path, json={"reading": {"up": "w"}}), 422, "invalid_input")
 
 
-def test_a_deleted_capture_takes_its_content_along(fresh_lab: Lab) -> None:
-    """Unless another capture uses it; the audit trail keeps that it was there."""
+def test_deleting_a_capture_deletes_its_content(fresh_lab: Lab) -> None:
+    """Deleting a capture deletes its content unless another uses it, and is recorded."""
     view = uploaded(fresh_lab.operator, WALK)
     other = uploaded(fresh_lab.operator, walk_bvh(60), "short.bvh")
     with fresh_lab.database.writing() as db:
@@ -107,7 +107,7 @@ def test_a_deleted_capture_takes_its_content_along(fresh_lab: Lab) -> None:
 
 @pytest.mark.one_engine
 def test_a_companion_needs_name_and_size(fresh_lab: Lab) -> None:
-    """One without the other is refused, and so is a companion that leaves no file."""
+    """A companion file without both name and size, or as large as the whole upload, is refused."""
     operator = fresh_lab.operator
     error(upload(operator, WALK, companion="01.asf"), 422, "invalid_input")
     error(upload(operator, WALK, companion_bytes=5), 422, "invalid_input")
@@ -117,8 +117,8 @@ def test_a_companion_needs_name_and_size(fresh_lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_operators_look_and_change_nothing(lab: Lab) -> None:
-    """Everybody of the lab may see a capture, designers of studies may bring one in."""
+def test_only_designers_may_change_captures(lab: Lab) -> None:
+    """Operators and analysts may see captures, but only study designers may change them."""
     view = uploaded(lab.operator, WALK)
     path = f"/api/captures/{view['id']}"
     for role in ("operator", "analyst"):

@@ -1,1 +1,1 @@
-"""Humanoid models over HTTP."""
+"""Tests of humanoid models over HTTP."""

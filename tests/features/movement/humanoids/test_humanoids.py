@@ -1,4 +1,4 @@
-"""Humanoid models come in once, tell what they have, and lend avatars their body."""
+"""Tests of humanoid models: stored once, described, and used as an avatar's body."""
 
 import hashlib
 from dataclasses import replace
@@ -32,12 +32,12 @@ HASH = hashlib.sha256(FIVE).hexdigest()
 
 
 def upload(lab: Lab, data: bytes = FIVE, name: str = "figure.glb") -> Response:
-    """Send a model's file."""
+    """Upload a model's file."""
     return lab.operator.post(f"{PATH}?name={name}", content=data)
 
 
 def counted(lab: Lab) -> tuple[int, int]:
-    """Rows of models and contents."""
+    """Return the numbers of stored models and contents."""
     with lab.database.reading() as db:
         return (
             db.scalars(select(func.count()).select_from(HumanoidRow)).one(),
@@ -45,8 +45,8 @@ def counted(lab: Lab) -> tuple[int, int]:
         )
 
 
-def test_a_model_comes_in_and_tells_what_it_has(fresh_lab: Lab) -> None:
-    """Parts, fingers, lengths and pieces; its file comes back to the byte."""
+def test_an_uploaded_model_is_described_and_downloaded_unchanged(fresh_lab: Lab) -> None:
+    """An uploaded model is described by parts, fingers and lengths, and downloads unchanged."""
     answer = upload(fresh_lab)
     assert answer.status_code == 201
     view: Json = answer.json()
@@ -70,7 +70,7 @@ def test_a_model_comes_in_and_tells_what_it_has(fresh_lab: Lab) -> None:
 
 
 def test_the_same_file_is_stored_once(fresh_lab: Lab) -> None:
-    """A second upload under another name answers the first one."""
+    """Uploading the same file under another name returns the first model."""
     first, again = upload(fresh_lab), upload(fresh_lab, name="copy.glb")
     assert (first.status_code, again.status_code) == (201, 200)
     assert first.json() == again.json()
@@ -78,8 +78,8 @@ def test_the_same_file_is_stored_once(fresh_lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_what_is_no_humanoid_is_not_kept(fresh_lab: Lab) -> None:
-    """The missing parts are named, or the place in the file."""
+def test_a_model_that_is_not_humanoid_is_refused(fresh_lab: Lab) -> None:
+    """A model without human parts, or a damaged file, is refused and not stored."""
     dog = error(upload(fresh_lab, dog_file(), "dog.glb"), 422, "invalid_input")
     assert "no LeftUpperArm, LeftLowerArm, LeftHand" in dog["message"]
     cut = error(upload(fresh_lab, FIVE[:4000]), 422, "invalid_input")
@@ -98,7 +98,7 @@ def test_what_is_no_humanoid_is_not_kept(fresh_lab: Lab) -> None:
 
 @pytest.mark.one_engine
 def test_an_avatar_has_the_body_of_its_model(fresh_lab: Lab) -> None:
-    """Four fingers from a configuration of five, pieces of skin, the same text as built here."""
+    """An avatar with a humanoid model has that model's fingers and convex pieces."""
     four = upload(fresh_lab, FOUR).json()
     assert (four["left_fingers"], four["bones_by"]) == (4, "vrm")
     assert "LeftLittleProximal" in four["absent"]
@@ -115,8 +115,8 @@ def test_an_avatar_has_the_body_of_its_model(fresh_lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_pieces_need_a_model_that_is_here(fresh_lab: Lab) -> None:
-    """A configuration without one, or with one that nobody uploaded, is not saved."""
+def test_mesh_colliders_need_a_stored_model(fresh_lab: Lab) -> None:
+    """A configuration with mesh colliders or a humanoid that is not stored is refused."""
     for configuration, path in (
         (replace(SHIPPED, colliders="mesh"), "configuration.colliders"),
         (replace(SHIPPED, part_colliders={"Head": "mesh"}), "configuration.part_colliders.Head"),
@@ -134,8 +134,8 @@ def test_pieces_need_a_model_that_is_here(fresh_lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_file_of_another_lab_is_told_what_it_lacks(fresh_lab: Lab) -> None:
-    """A check before saving says that the model is missing, and is content once it is here."""
+def test_a_configuration_file_with_a_missing_model_is_reported(fresh_lab: Lab) -> None:
+    """The check of a configuration file reports a missing humanoid model until it is uploaded."""
     text = avatar_text(replace(SHIPPED, humanoid=HASH, colliders="mesh"))
     (problem,) = ok(fresh_lab.operator.post(f"{AVATARS}/check", json={"text": text}))["problems"]
     assert (problem["path"], problem["value"]) == ("humanoid", HASH)
@@ -150,7 +150,7 @@ def test_a_file_of_another_lab_is_told_what_it_lacks(fresh_lab: Lab) -> None:
 
 
 def test_a_configuration_without_a_model_keeps_its_hash() -> None:
-    """What is not named leaves no trace in the canonical form; what is named does."""
+    """The canonical form of a configuration has a humanoid only if one is named."""
     assert "humanoid" not in loaded(SHIPPED).canonical_json
     named = replace(SHIPPED, humanoid=HASH)
     assert f'"humanoid":"{HASH}"' in loaded(named).canonical_json
@@ -159,8 +159,8 @@ def test_a_configuration_without_a_model_keeps_its_hash() -> None:
     assert load_avatar(text).configuration == named
 
 
-def test_a_figure_is_stored_as_it_is() -> None:
-    """The same bytes for the same model, and the same model again."""
+def test_a_figure_survives_being_stored() -> None:
+    """A figure read back from its stored text is the same figure."""
     for own in (figure(), figure("Little")):
         text = figure_json(own)
         assert figure_json(parse_figure(text)) == text
@@ -168,7 +168,7 @@ def test_a_figure_is_stored_as_it_is() -> None:
 
 
 def test_a_restored_model_is_the_file_that_was_uploaded(fresh_lab: Lab, tmp_path: Path) -> None:
-    """Backups have it; what is still used is not dropped."""
+    """A humanoid model restored from a backup is the uploaded file."""
     upload(fresh_lab)
     with fresh_lab.database.writing() as db:
         drop_unused(db, HASH)
@@ -182,8 +182,8 @@ def test_a_restored_model_is_the_file_that_was_uploaded(fresh_lab: Lab, tmp_path
 
 
 @pytest.mark.one_engine
-def test_designers_bring_models_in_and_everybody_sees_them(fresh_lab: Lab) -> None:
-    """An analyst may look, not upload."""
+def test_only_designers_may_upload_models(fresh_lab: Lab) -> None:
+    """An analyst may see humanoid models but not upload one."""
     upload(fresh_lab)
     analyst = sign_in(fresh_lab, "analyst")
     assert ok(analyst.get(PATH))["total"] == 1

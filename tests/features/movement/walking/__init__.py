@@ -1,1 +1,1 @@
-"""Models of how people walk, over HTTP."""
+"""Tests of models of how people walk, over HTTP."""

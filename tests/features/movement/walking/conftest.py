@@ -1,4 +1,4 @@
-"""One process fits models for all applications in this package."""
+"""Fixtures that let one process fit models for all applications in this package."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -21,6 +21,6 @@ def _one_process() -> Iterator[None]:
 
 @pytest.fixture(scope="module")
 def walking_lab(lab: Lab, tmp_path_factory: pytest.TempPathFactory) -> Lab:
-    """The module's application; its fits have a folder of their own."""
+    """Return the module's application with a separate folder for its fits."""
     lab.context.part(FitQueue).folder = Path(tmp_path_factory.mktemp("fits"))
     return lab

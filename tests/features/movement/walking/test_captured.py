@@ -1,4 +1,4 @@
-"""Walks are cut from stored captures, and fits that a stop of the server left are told."""
+"""Tests of walks extracted from stored captures, and of fits interrupted by a server stop."""
 
 import hashlib
 from pathlib import Path
@@ -16,8 +16,8 @@ from tests.features.lab import Lab, ok
 from tests.features.movement.captures.files import SPEED_M_S, walk_bvh
 
 
-def kept(url: str, data: bytes, folder: Path) -> str:
-    """Store a content as an upload does; its hash."""
+def store_content(url: str, data: bytes, folder: Path) -> str:
+    """Store a content as an upload does and return its hash."""
     file, packed = folder / "file", folder / "packed"
     file.write_bytes(data)
     compress(file, packed)
@@ -30,30 +30,30 @@ def kept(url: str, data: bytes, folder: Path) -> str:
     return content_hash
 
 
-def test_a_captured_person_walks(database_url: str, tmp_path: Path) -> None:
-    """A skeleton's way becomes a table and a walk of the person it is said to be."""
-    content = kept(database_url, walk_bvh(150), tmp_path)
+def test_a_walk_is_extracted_from_a_capture(database_url: str, tmp_path: Path) -> None:
+    """A walk extracted from a captured skeleton has its person, speed and stature."""
+    content = store_content(database_url, walk_bvh(150), tmp_path)
     walk = CapturedWalk("walk.bvh", content, None, None, None, None, None, 10**7)
     source = TrackSource("captures", "", subjects=(("c0", "Ann"),), statures_m=(("Ann", 1.7),))
     found = captured_table(Store(database_url), (("c0", walk),), source)
     assert found.table.startswith(b"id,time_s,x_m,y_m\nc0,0.0,")
     assert (found.summary["walks"], found.summary["people"]) == (1, 1)
-    # It begins and ends in stride.
+    # It begins and ends in mid-stride.
     assert found.summary["cut_by_recording"] == 1
     assert found.summary["speed_m_s"]["mean"] == pytest.approx(SPEED_M_S, rel=0.05)
     assert found.summary["dependencies"]["stature_m"]["low"] == 1.7
 
 
 @pytest.mark.one_engine
-def test_a_capture_that_is_gone_is_said(database_url: str) -> None:
-    """Nothing is made up in place of a deleted file."""
+def test_a_deleted_capture_is_reported(database_url: str) -> None:
+    """Extracting a walk from a capture that is no longer stored is an error."""
     walk = CapturedWalk("walk.bvh", "0" * 64, None, None, None, None, None, 10**7)
     with pytest.raises(Cannot, match="no longer stored"):
         captured_table(Store(database_url), (("c0", walk),), TrackSource("captures", ""))
 
 
-def test_a_fit_that_the_server_left_is_stopped(fresh_lab: Lab) -> None:
-    """After a crash a model is not said to be fitted for ever."""
+def test_an_interrupted_fit_is_marked_as_stopped(fresh_lab: Lab) -> None:
+    """A fit that was interrupted by the server's end is marked as stopped at the next start."""
     row = WalkingModelRow(
         title="Left",
         kind="human",

@@ -1,4 +1,4 @@
-"""From walks to a model and its answers; what cannot be is refused, and nothing is half-written."""
+"""Tests of fitting walking models and querying them, and of refused inputs."""
 
 import io
 import threading
@@ -10,14 +10,21 @@ from sqlalchemy import func, select
 from app.features.movement.walking.fit_queue import FitQueue
 from app.models import CaptureContent, WalkSetRow
 from tests.features.lab import Json, Lab, error, ok
-from tests.features.movement.walking.walkers import FLOOR, SMALL, bring_in, fitted, settled, table
+from tests.features.movement.walking.walkers import (
+    FLOOR,
+    SMALL,
+    fitted,
+    settled,
+    table,
+    upload_tracks,
+)
 
 RACKS = "car-and-three-racks"
 
 
 @pytest.fixture(scope="module")
 def model(walking_lab: Lab) -> Json:
-    """A small model on made-up walkers."""
+    """Return a small model fitted to generated walkers."""
     ok(walking_lab.operator.post("/api/walking/scenes", json={"text": FLOOR}))
     origin = {"kind": "population", "population": "students", "people": 3, "repetitions": 1}
     wish = {"title": "Students", "origin": origin | {"scene": "floor"}}
@@ -26,7 +33,7 @@ def model(walking_lab: Lab) -> Json:
 
 
 def counted(lab: Lab) -> tuple[int, int]:
-    """Sets of walks and stored contents."""
+    """Return the numbers of walk sets and stored contents."""
     with lab.database.reading() as db:
         return (
             db.scalars(select(func.count()).select_from(WalkSetRow)).one(),
@@ -34,8 +41,8 @@ def counted(lab: Lab) -> tuple[int, int]:
         )
 
 
-def test_a_model_tells_what_it_is(walking_lab: Lab, model: Json) -> None:
-    """It says that nobody walked, what it was fitted on, and its file names itself by its hash."""
+def test_a_models_summary_states_its_data(walking_lab: Lab, model: Json) -> None:
+    """A model's summary states that it is synthetic, its walks and people, and its hash."""
     assert (model["state"], model["kind"]) == ("ready", "synthetic")
     summary = model["summary"]
     assert (summary["walks"], summary["people"]) == (9, 3)
@@ -48,8 +55,8 @@ def test_a_model_tells_what_it_is(walking_lab: Lab, model: Json) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_path_is_answered_with_a_distribution(walking_lab: Lab, model: Json) -> None:
-    """The same seed gives the same, another another; quantiles are in order; walkers arrive."""
+def test_a_prediction_is_a_distribution_of_durations(walking_lab: Lab, model: Json) -> None:
+    """A prediction for a path is a distribution of durations that depends only on the seed."""
     path = f"/api/walking/models/{model['id']}/prediction"
     asked = {"scene": RACKS, "points_m": [[2.05, 2.05], [0, 0]], "planned": True, "count": 60}
     first, other = (
@@ -62,14 +69,14 @@ def test_a_path_is_answered_with_a_distribution(walking_lab: Lab, model: Json) -
     assert first["assumed"] == ["stature_m"]
     assert list(first["quantiles_s"].values()) == sorted(first["quantiles_s"].values())
     for walker in first["walkers"]:
-        # Within the radius of arrival, and two steps at 2 m/s.
+        # Within the radius of arrival plus two time steps at 2 m/s.
         assert np.hypot(*walker["xy_m"][-1]) < 0.05 + 2 * 2.0 / 60.0
     assert (first["stat"], first["adapt"]) == (other["stat"], other["adapt"])
 
 
 @pytest.mark.one_engine
 def test_a_slice_is_part_of_the_map(walking_lab: Lab, model: Json) -> None:
-    """Rows are values of y; nothing is larger than the whole map's largest; an unknown is named."""
+    """A slice of the model has values within the map's range; an unknown axis is refused."""
     path = f"/api/walking/models/{model['id']}/slice"
     asked = {
         "dependencies": {"length_m": 2.0, "turning_per_m": 0.0, "stature_m": 1.8},
@@ -89,7 +96,7 @@ def test_a_slice_is_part_of_the_map(walking_lab: Lab, model: Json) -> None:
 
 @pytest.mark.one_engine
 def test_impossible_paths_are_refused(walking_lab: Lab, model: Json) -> None:
-    """Through an obstacle, into one, out of the scene, nowhere: each says which and where."""
+    """A path through or into an obstacle, out of bounds or without length is refused."""
     path = f"/api/walking/models/{model['id']}/prediction"
     for points, planned, told in (
         ([[0, 0], [0, 3]], False, "through obstacle 'rack 3'"),
@@ -103,8 +110,8 @@ def test_impossible_paths_are_refused(walking_lab: Lab, model: Json) -> None:
 
 
 def test_tracks_of_people_are_fitted(walking_lab: Lab) -> None:
-    """A table becomes walks of people; a model on them is not called synthetic; both can go."""
-    walks = ok(bring_in(walking_lab, table(), stature=["P0=1.6", "P1=1.7", "P2=1.8"]))
+    """A model fitted to an uploaded table of tracks is human; model and walks can be deleted."""
+    walks = ok(upload_tracks(walking_lab, table(), stature=["P0=1.6", "P1=1.7", "P2=1.8"]))
     assert (walks["kind"], walks["summary"]["walks"], walks["summary"]["people"]) == ("human", 9, 3)
     model = fitted(walking_lab, walks["id"])
     assert (model["state"], model["kind"]) == ("ready", "human")
@@ -126,17 +133,17 @@ def test_tracks_of_people_are_fitted(walking_lab: Lab) -> None:
         (b"id,time_s,y_m\nA,0,0\n", "no column x"),
     ],
 )
-def test_bad_tables_leave_nothing(walking_lab: Lab, data: bytes, told: str) -> None:
-    """NaN, a walk of one point, standing still, a missing column: said, and nothing is stored."""
+def test_an_invalid_table_of_tracks_is_refused(walking_lab: Lab, data: bytes, told: str) -> None:
+    """An invalid table of tracks is refused with the reason, and nothing is stored."""
     before = counted(walking_lab)
-    assert told in error(bring_in(walking_lab, data), 422, "invalid_input")["message"]
+    assert told in error(upload_tracks(walking_lab, data), 422, "invalid_input")["message"]
     assert counted(walking_lab) == before
 
 
 @pytest.mark.one_engine
 def test_one_person_is_too_few(walking_lab: Lab) -> None:
-    """The fit fails with the reason, and can still be looked at and deleted."""
-    walks = ok(bring_in(walking_lab, table(people=1)))
+    """Fitting a model to the walks of one person fails with the reason."""
+    walks = ok(upload_tracks(walking_lab, table(people=1)))
     model = fitted(walking_lab, walks["id"])
     assert model["state"] == "failed"
     assert "all 3 walks are of one person, 'P0'" in model["trouble"]
@@ -147,8 +154,8 @@ def test_one_person_is_too_few(walking_lab: Lab) -> None:
 
 
 def test_a_fit_is_stopped_and_resumed(walking_lab: Lab) -> None:
-    """Stopped while it waits, it is not fitted; resumed, it is; neither can be done twice."""
-    walks = ok(bring_in(walking_lab, table(people=2)))
+    """A fit can be stopped and then resumed, each only once."""
+    walks = ok(upload_tracks(walking_lab, table(people=2)))
     held = threading.Event()
     walking_lab.context.part(FitQueue)._maker.submit(held.wait)
     wish = {"title": "Again", "walk_set_id": walks["id"], "options": SMALL}

@@ -1,4 +1,4 @@
-"""A fit that was cut off goes on behind its last whole map."""
+"""A test that an interrupted fit continues after its last complete map."""
 
 from pathlib import Path
 
@@ -16,8 +16,8 @@ paths:
 NODES = 27
 
 
-def test_a_cut_fit_gives_the_same_model(tmp_path: Path) -> None:
-    """Two whole maps and half of one are left of it: the half goes, the model is the same."""
+def test_an_interrupted_fit_gives_the_same_model(tmp_path: Path) -> None:
+    """A fit that is interrupted within a map discards that map and gives the same model."""
     order = FitOrder(
         PopulationSource("workers", 2, 2, 1, SCENE),
         scene=None,

@@ -1,4 +1,4 @@
-"""Scenes are listed, brought in with every problem named, and deleted."""
+"""Tests of listing, uploading, validating and deleting scenes."""
 
 import pytest
 
@@ -15,8 +15,8 @@ paths:
 """
 
 
-def test_shipped_scenes_are_there(walking_lab: Lab) -> None:
-    """Both workplaces of the paper, with their paths; nobody deletes them."""
+def test_shipped_scenes_are_listed_and_cannot_be_deleted(walking_lab: Lab) -> None:
+    """Both workplaces of the paper are listed with their paths and cannot be deleted."""
     calls = walking_lab.operator
     listed = ok(calls.get("/api/walking/scenes"))
     paths = {
@@ -28,8 +28,8 @@ def test_shipped_scenes_are_there(walking_lab: Lab) -> None:
     error(calls.delete("/api/walking/scenes/car-and-three-racks"), 409, "conflict")
 
 
-def test_a_scene_comes_in_once_and_goes(walking_lab: Lab) -> None:
-    """Its file comes back as it was; the same key is refused; a deleted one is gone."""
+def test_a_scene_is_uploaded_once_and_can_be_deleted(walking_lab: Lab) -> None:
+    """An uploaded scene downloads unchanged, its key is unique, and it can be deleted."""
     calls = walking_lab.operator
     made = ok(calls.post("/api/walking/scenes", json={"text": HALL}))
     assert made["obstacles"][0]["name"] == "table"
@@ -41,7 +41,7 @@ def test_a_scene_comes_in_once_and_goes(walking_lab: Lab) -> None:
 
 @pytest.mark.one_engine
 def test_every_problem_of_a_scene_is_named(walking_lab: Lab) -> None:
-    """A goal inside an obstacle and an unknown place, each with its line; nothing is stored."""
+    """Every problem of a scene is reported with its line, and the scene is not stored."""
     broken = HALL.replace("goal: [0, 3]", "goal: [0, 1]").replace("from: start", "from: nowhere")
     refusal = error(
         walking_lab.operator.post("/api/walking/scenes", json={"text": broken}),

@@ -1,4 +1,4 @@
-"""Tables of tracks and small models, for tests."""
+"""Tables of tracks, small models and a scene for tests."""
 
 import time
 from typing import Any
@@ -8,7 +8,7 @@ import numpy as np
 from tests.features.lab import Json, Lab, ok
 
 SMALL = {"steps": 3, "k": 5, "entries": 30, "reading": "time-aware", "seed": 1}
-"""Fitted within a second."""
+"""Options of a model that is fitted within a second."""
 
 
 FLOOR = """key: floor
@@ -20,11 +20,11 @@ paths:
   - {name: half, from: start, to: middle}
   - {name: rest, from: middle, to: goal}
 """
-"""Nothing stands in the way, so that planning takes no time."""
+"""A scene without obstacles, so that planning takes no time."""
 
 
 def table(people: int = 3, walks: int = 3, bad_line: int | None = None) -> bytes:
-    """Straight walks there and back along y, of minimum jerk; each person has a pace of theirs."""
+    """Return minimum-jerk walks back and forth along y; each person has their own pace."""
     lines = ["id,time_s,x_m,y_m"]
     for person in range(people):
         now_s, at_m = 0.0, 0.0
@@ -43,21 +43,21 @@ def table(people: int = 3, walks: int = 3, bad_line: int | None = None) -> bytes
     return "\n".join(lines).encode()
 
 
-def bring_in(lab: Lab, data: bytes, **query: Any) -> Any:
-    """Upload a table of tracks; the answer."""
+def upload_tracks(lab: Lab, data: bytes, **query: Any) -> Any:
+    """Upload a table of tracks and return the response."""
     asked = {"name": "tracks.csv", "title": "Corridor", **query}
     return lab.operator.post("/api/walking/walk-sets/tracks", params=asked, content=data)
 
 
 def fitted(lab: Lab, set_id: str, **options: Any) -> Json:
-    """A model on a set, once it is no longer being fitted."""
+    """Order a model of a walk set and return it once its fit has ended."""
     wish = {"title": "A model", "walk_set_id": set_id, "options": SMALL | options}
     model: Json = ok(lab.operator.post("/api/walking/models", json=wish))
     return settled(lab, model["id"])
 
 
 def settled(lab: Lab, model_id: str) -> Json:
-    """The model once nothing is computed for it any more."""
+    """Wait until a model is no longer being fitted, and return it."""
     for _ in range(600):
         model: Json = ok(lab.operator.get(f"/api/walking/models/{model_id}"))
         if model["state"] != "fitting":

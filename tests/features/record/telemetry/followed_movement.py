@@ -1,8 +1,8 @@
-"""Streams as a body driven by motors would send them: the actual follows the target, filtered.
+"""Streams as a motor-driven body would send them: the actual one follows the target, filtered.
 
 Each number of the actual stream goes through a critically damped second-order filter, as a joint
-under proportional-derivative control does, behind the study's delay; then the quaternions are
-normalised and get a noise of their own. So no frame of it is a copy of a target frame.
+under proportional-derivative control does, after the study's delay; then the quaternions are
+normalised and get their own noise. So no frame of it is a copy of a target frame.
 """
 
 from collections.abc import Iterator
@@ -31,14 +31,14 @@ STATURE_M = 1.72
 
 @dataclass(frozen=True)
 class Streams:
-    """`times_s` (n,) and the values (n, 91) of both streams at 90 Hz."""
+    """Both streams at 90 Hz: `times_s` (n,) and the values (n, 91) of each."""
 
     times_s: NDArray[np.float64]
     target: NDArray[np.float32]
     actual: NDArray[np.float32]
 
     def chunks(self, frames: int = CHUNK_FRAMES) -> Iterator[tuple[Columns, Columns]]:
-        """Whole chunks of target and actual, as they are folded."""
+        """Yield whole chunks of target and actual stream, as they are folded."""
         for begin in range(0, len(self.times_s) - frames + 1, frames):
             at = slice(begin, begin + frames)
             flags = np.ones(frames, np.uint8)
@@ -51,7 +51,7 @@ class Streams:
 def followed(
     movement: Movement, rng: np.random.Generator, *, noise_deg: float = OWN_NOISE_DEG
 ) -> Streams:
-    """Both streams of a movement at 90 Hz, the actual one with `noise_deg` of its own."""
+    """Return both streams of a movement at 90 Hz, the actual one with `noise_deg` of noise."""
     count = movement.frame_count
     times_s = 1000.0 + np.arange(count) / RATE_HZ + rng.normal(0.0, TIME_JITTER_S, count)
     turns = continuous(movement.rotations).reshape(count, -1)
@@ -64,7 +64,7 @@ def followed(
 def made_movement(
     duration_s: float, rng: np.random.Generator, *, noise_deg: float = TRACKING_NOISE_DEG
 ) -> Movement:
-    """All 22 joints swinging at 0.1 to 2 Hz, tracked with noise."""
+    """Return a movement of all 22 joints, swinging at 0.1 to 2 Hz and tracked with noise."""
     count = round(duration_s * RATE_HZ)
     time_s = np.arange(count)[:, np.newaxis, np.newaxis] / RATE_HZ
     values = np.zeros((count, 91))
@@ -80,25 +80,25 @@ def made_movement(
 
 
 def captured_movement(capture: Path) -> Movement:
-    """A capture on our skeleton at 90 Hz, as the rehearsal takes it, but not looped."""
+    """Return a capture on our skeleton at 90 Hz, as the rehearsal uses it but not looped."""
     return resample(on_skeleton(capture, build_skeleton(STATURE_M)), RATE_HZ)
 
 
 def noisy(
     values: NDArray[np.float64], rng: np.random.Generator, noise_deg: float
 ) -> NDArray[np.float64]:
-    """Values (n, 91) with white noise: `noise_deg` about each axis of a joint, and the root's."""
+    """Return values (n, 91) with white noise: `noise_deg` about joint axes, and the root's."""
     count = len(values)
     move_m = NOISE_MM_PER_DEG * noise_deg / 1000.0
     root = values[:, :3] + rng.normal(0.0, move_m, (count, 3))
     turns = normalise(values[:, 3:].reshape(count, 22, 4))
-    # A turn by a small angle moves a unit quaternion by half of it, across its own direction.
+    # A turn by a small angle moves a unit quaternion by half that angle, perpendicular to itself.
     turned = normalise(turns + rng.normal(0.0, np.radians(noise_deg) / 2.0, turns.shape))
     return np.concatenate((root, turned.reshape(count, -1)), axis=1)
 
 
 def _filtered(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Values (n, 91) behind two equal one-pole filters: critical damping, at rest at first."""
+    """Return values (n, 91) after two one-pole filters: critical damping, from rest."""
     keep = np.exp(-2.0 * np.pi * NATURAL_HZ / RATE_HZ)
     for _ in range(2):
         change = lfilter([1.0 - keep], [1.0, -keep], values - values[0], axis=0)

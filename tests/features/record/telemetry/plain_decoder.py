@@ -1,4 +1,4 @@
-"""docs/telemetry-encoding.md as a program: "f32-predicted-zstd/1" with whole numbers and lists."""
+"""A decoder of "f32-predicted-zstd/1" written from docs/telemetry-encoding.md with plain lists."""
 
 import math
 import struct
@@ -12,7 +12,7 @@ U32, U64 = 1 << 32, 1 << 64
 
 @dataclass(frozen=True)
 class PlainChunk:
-    """Bits of the times (n), flags (n), and bits of the values (n of w)."""
+    """The bits of the times (n), the flags (n), and the bits of the values (n of w)."""
 
     times: list[int]
     flags: list[int]
@@ -20,13 +20,13 @@ class PlainChunk:
 
 
 class Bits:
-    """Reads numbers of any width, highest bit first."""
+    """Read numbers of any width, highest bit first."""
 
     def __init__(self, data: bytes) -> None:
         self._data, self._at = data, 0
 
     def take(self, width: int) -> int:
-        """The next `width` bits as a number."""
+        """Return the next `width` bits as a number."""
         number = 0
         for _ in range(width):
             byte = self._data[self._at // 8]
@@ -36,7 +36,7 @@ class Bits:
 
 
 def decode_plainly(data: bytes) -> PlainChunk:
-    """Follow the document step by step."""
+    """Decode a chunk by following the document step by step."""
     crc, n, w, length = struct.unpack_from("<IIHI", data)
     assert zlib.crc32(data[4:]) == crc
     raw = memoryview(zstandard.ZstdDecompressor().decompress(data[14 : 14 + length]))

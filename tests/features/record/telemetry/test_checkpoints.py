@@ -1,4 +1,4 @@
-"""SQLite's log is emptied beside the commits."""
+"""Tests that SQLite's write-ahead log is checkpointed separately from the commits."""
 
 import itertools
 import sqlite3
@@ -14,8 +14,8 @@ PAGE_BYTES = 4096
 BETWEEN_TURNS_BYTES = 1024 * PAGE_BYTES
 
 
-def test_the_log_does_not_grow_for_ever(tmp_path: Path) -> None:
-    """While more is written than the log may hold, it is begun anew and stays bounded."""
+def test_the_write_ahead_log_stays_bounded(tmp_path: Path) -> None:
+    """Checkpoints restart the write-ahead log, so that its size stays bounded under writing."""
     database = open_database(fresh_sqlite(tmp_path / "some.sqlite"))
     checkpointer, now_s = Checkpointer(database, lambda: now_s), 0.0
     with database.writing() as db:
@@ -38,8 +38,8 @@ def test_the_log_does_not_grow_for_ever(tmp_path: Path) -> None:
     read.close()
 
 
-def test_nothing_waits_for_a_reader(tmp_path: Path) -> None:
-    """A long read keeps the log from being begun anew, and holds nobody up."""
+def test_a_checkpoint_does_not_wait_for_a_reader(tmp_path: Path) -> None:
+    """A checkpoint does not wait for a long read."""
     database = open_database(fresh_sqlite(tmp_path / "some.sqlite"))
     with database.reading() as reader:
         reader.connection().exec_driver_sql("SELECT count(*) FROM sessions").fetchall()
@@ -51,10 +51,10 @@ def test_nothing_waits_for_a_reader(tmp_path: Path) -> None:
     database.close()
 
 
-def test_a_log_that_is_copied_is_left_alone(
+def test_a_fully_copied_log_is_not_copied_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A copy starts only when something was committed since the last complete one."""
+    """The log is copied only if something was committed since the last complete copy."""
     database = open_database(fresh_sqlite(tmp_path / "some.sqlite"))
     with database.writing() as db:
         db.connection().exec_driver_sql("CREATE TABLE some (x)")

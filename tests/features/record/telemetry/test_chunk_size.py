@@ -1,4 +1,4 @@
-"""A session-minute of real movement stays within its limit, whatever the avatar does with it."""
+"""Tests that a minute of recorded movement stays within its size limit."""
 
 from pathlib import Path
 
@@ -20,7 +20,7 @@ CAPTURES = ("02_01", "05_06", "06_01", "12_02")
 
 
 def session_minute_mb(streams: Streams) -> float:
-    """What 60 s of both streams take in chunks of a second, in 10^6 bytes."""
+    """Return the size of 60 s of both streams in one-second chunks, in 10^6 bytes."""
     sizes = [
         len(encode_frames(one.times_s, one.flags, one.values))
         for pair in streams.chunks()
@@ -31,8 +31,8 @@ def session_minute_mb(streams: Streams) -> float:
 
 
 @pytest.mark.parametrize("noise_deg", [0.0, 0.01, 0.1, 1.0])
-def test_a_made_up_session_minute_stays_within_the_limit(noise_deg: float) -> None:
-    """All 22 joints moving, the actual stream filtered, both with noise: at most 3 MB a minute."""
+def test_a_generated_session_minute_stays_within_the_limit(noise_deg: float) -> None:
+    """A minute of generated movement of all joints with noise takes at most 3 MB."""
     rng = np.random.default_rng(1)
     movement = made_movement(10.0, rng, noise_deg=noise_deg)
     assert session_minute_mb(followed(movement, rng, noise_deg=noise_deg)) <= LIMIT_MB
@@ -40,13 +40,13 @@ def test_a_made_up_session_minute_stays_within_the_limit(noise_deg: float) -> No
 
 @pytest.mark.parametrize("capture", CAPTURES)
 def test_a_captured_session_minute_stays_within_the_limit(shared_data: Path, capture: str) -> None:
-    """A person's movement and a body that follows it: at most 3 MB a minute."""
+    """A minute of a captured movement and a body that follows it takes at most 3 MB."""
     movement = captured_movement(shared_data / "motion" / "cmu_bvh" / f"{capture}.bvh")
     assert session_minute_mb(followed(movement, np.random.default_rng(2))) <= LIMIT_MB
 
 
-def test_the_followed_stream_is_no_copy() -> None:
-    """No joint of any actual frame is a target frame's, or the limit would be met by repetition."""
+def test_the_followed_stream_is_not_a_copy() -> None:
+    """No joint rotation of the generated actual stream equals one of the target."""
     rng = np.random.default_rng(3)
     streams = followed(made_movement(3.0, rng), rng)
     target = {row.tobytes() for row in streams.target[:, 3:].reshape(-1, 4)}

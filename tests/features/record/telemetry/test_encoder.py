@@ -1,4 +1,4 @@
-"""Compressing in a process of its own."""
+"""Tests of compressing chunks in a separate process."""
 
 import os
 import signal
@@ -17,7 +17,7 @@ from tests.features.record.telemetry.test_storage import LATER, fold, numbered, 
 
 @pytest.fixture
 def encoder(lab: Lab) -> Iterator[Encoder]:
-    """A process of its own beside the application's."""
+    """Yield an encoder with its process, in addition to the application's."""
     encoder = Encoder(lab.context.settings.resolved_database_url)
     yield encoder
     encoder.end()
@@ -25,18 +25,18 @@ def encoder(lab: Lab) -> Iterator[Encoder]:
 
 @pytest.fixture
 def session_id(lab: Lab) -> str:
-    """A session with movement that is due a minute after it came."""
-    fold(lab)  # what others have left
+    """Return a session with batches that are due for folding at `LATER`."""
+    fold(lab)  # from earlier tests
     session_id = str(lab.join()["id"])
     for first in range(0, 300, 10):
         store(lab, session_id, first, numbered(first, 10))
     return session_id
 
 
-def test_the_process_gives_the_chunks_that_a_thread_would(
+def test_the_process_makes_the_same_chunks_as_a_thread(
     lab: Lab, session_id: str, encoder: Encoder
 ) -> None:
-    """The same rows to the last bit; what is not due is not there."""
+    """The encoder's process makes exactly the chunks that are made in this process."""
     now = lab.context.clock.utc_now()
     with lab.database.reading() as db:
         here = due_chunks(db, now + LATER)
@@ -46,10 +46,8 @@ def test_the_process_gives_the_chunks_that_a_thread_would(
 
 
 @pytest.mark.one_engine
-def test_a_process_that_was_killed_is_started_anew(
-    lab: Lab, session_id: str, encoder: Encoder
-) -> None:
-    """The turn in which it is found dead fails, the next one folds."""
+def test_a_killed_process_is_restarted(lab: Lab, session_id: str, encoder: Encoder) -> None:
+    """A killed encoder process makes one call fail and is restarted by the next."""
     now = lab.context.clock.utc_now() + LATER
     assert encoder.due_chunks(now)
     killed = encoder.pid
@@ -61,8 +59,8 @@ def test_a_process_that_was_killed_is_started_anew(
     assert encoder.pid != killed
 
 
-def test_what_goes_wrong_there_is_told_here(tmp_path: Path) -> None:
-    """A database without tables: the error names what is missing, and the process lives on."""
+def test_an_error_in_the_process_is_reported(tmp_path: Path) -> None:
+    """An error in the encoder's process is reported to the caller; the process keeps running."""
     encoder = Encoder(f"sqlite:///{tmp_path / 'empty.sqlite'}")
     try:
         for _ in range(2):
@@ -73,8 +71,8 @@ def test_what_goes_wrong_there_is_told_here(tmp_path: Path) -> None:
 
 
 @pytest.mark.one_engine
-def test_it_ends_when_nobody_asks_any_more(lab: Lab, encoder: Encoder) -> None:
-    """The end of the line is the end of the process, also of a server that was killed."""
+def test_the_process_ends_when_its_pipe_closes(lab: Lab, encoder: Encoder) -> None:
+    """The encoder's process ends when its pipe closes, as after the server was killed."""
     encoder.due_chunks(lab.context.clock.utc_now())
     assert encoder.pid is not None
     process = psutil.Process(encoder.pid)

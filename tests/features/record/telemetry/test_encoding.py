@@ -1,4 +1,4 @@
-"""A chunk gives back every bit, notices damage, stays small, and can be read from its document."""
+"""Tests of the chunk encoding: lossless, checked for damage, readable from its document."""
 
 import base64
 
@@ -26,7 +26,7 @@ from tests.wire.samples import bits, every_odd_float, standing
 
 Words = NDArray[np.uint32]
 BEFORE = "f32-columns-zstd/1"
-# `sample()` as it was first written in each encoding, in base 85.
+# `sample()` as first written in each encoding, in base 85.
 WRITTEN = {
     BEFORE: (
         "D77#BU<VKN1ps2l8zhiN9s8Y3{d^z^wR!fo2nTZuBQj})Xiv3P*CwaON5B97P64Xk+|5jeNvBo!QtVPEyk2Loa"
@@ -42,7 +42,7 @@ WRITTEN = {
 
 
 def sample() -> tuple[NDArray[np.float64], NDArray[np.uint8], NDArray[np.float32]]:
-    """Times, flags and values of a chunk with every kind of odd float."""
+    """Return the times, flags and values of a chunk with every kind of unusual float."""
     values = every_odd_float()
     count = len(values)
     return 5.0 + np.arange(count) / 90, np.arange(count, dtype=np.uint8), values
@@ -58,7 +58,7 @@ def read(data: bytes, count: int, *, encoding: str = ENCODING, width: int = 91) 
 def require_same(
     frames: Frames, times_s: NDArray[np.float64], flags: NDArray[np.uint8], words: Words
 ) -> None:
-    """Every bit is as it was; NaNs are not equal to themselves, so bits are compared."""
+    """Require the same bits; bits are compared because NaNs are not equal to themselves."""
     assert frames.times_s.tobytes() == times_s.tobytes()
     assert frames.flags.tobytes() == flags.tobytes()
     assert np.array_equal(bits(frames.values), words)
@@ -66,7 +66,7 @@ def require_same(
 
 @st.composite
 def chunks(draw: st.DrawFn) -> tuple[NDArray[np.float64], NDArray[np.uint8], Words]:
-    """Standing, moving or meaningless frames, with any words at a few places."""
+    """Draw standing, moving or random frames, with arbitrary words in a few places."""
     count = draw(st.integers(1, 30))
     kind = draw(st.sampled_from(["standing", "moving", "anything"]))
     if kind == "anything":
@@ -84,10 +84,10 @@ def chunks(draw: st.DrawFn) -> tuple[NDArray[np.float64], NDArray[np.uint8], Wor
 
 @given(chunk=chunks())
 @settings(max_examples=usually(50, at_length=150), deadline=None)
-def test_every_bit_comes_back(
+def test_encoding_is_lossless(
     chunk: tuple[NDArray[np.float64], NDArray[np.uint8], Words],
 ) -> None:
-    """Any bits of times, flags and values survive, whatever they mean as numbers."""
+    """Encoding keeps any bits of times, flags and values, whatever they mean as numbers."""
     times_s, flags, words = chunk
     data = encode_frames(times_s, flags, words.view(np.float32))
     frames = read(data, len(words))
@@ -97,7 +97,7 @@ def test_every_bit_comes_back(
 
 @pytest.mark.parametrize("count", [1, 2, 3, 4, 5, 90, 1024, 4000])
 def test_a_chunk_may_have_any_length(count: int) -> None:
-    """One frame is a chunk, and so are several thousand."""
+    """A chunk may have from one to several thousand frames."""
     rng = np.random.default_rng(count)
     moving = followed(made_movement(count / 90, rng), rng)
     flags = np.ones(count, np.uint8)
@@ -110,7 +110,7 @@ def test_a_chunk_may_have_any_length(count: int) -> None:
 def test_the_document_is_enough_to_read_a_chunk(
     chunk: tuple[NDArray[np.float64], NDArray[np.uint8], Words],
 ) -> None:
-    """A decoder written from the document alone, without numpy, agrees."""
+    """A decoder written from the document alone, without numpy, reads the same chunk."""
     times_s, flags, words = chunk
     plain = decode_plainly(encode_frames(times_s, flags, words.view(np.float32)))
     assert plain.values == words.tolist()
@@ -119,15 +119,15 @@ def test_the_document_is_enough_to_read_a_chunk(
 
 
 @pytest.mark.parametrize("encoding", WRITTEN)
-def test_what_was_written_once_is_read_for_ever(encoding: str) -> None:
-    """Stored chunks of every encoding there was give the same frames."""
+def test_stored_chunks_of_every_encoding_can_be_read(encoding: str) -> None:
+    """Stored chunks of every encoding that was ever used give the same frames."""
     times_s, flags, values = sample()
     frames = read(base64.b85decode(WRITTEN[encoding]), len(flags), encoding=encoding)
     require_same(frames, times_s, flags, bits(values))
 
 
-def test_new_chunks_are_written_in_an_encoding_that_is_kept() -> None:
-    """The current encoding is among those of which a stored chunk is kept for this test."""
+def test_the_current_encoding_has_a_stored_sample() -> None:
+    """The current encoding is among those with a stored sample chunk."""
     assert ENCODING in WRITTEN
 
 
@@ -137,7 +137,7 @@ def test_new_chunks_are_written_in_an_encoding_that_is_kept() -> None:
     )
 )
 def test_bit_fields_hold_any_widths(numbers: list[tuple[int, int]]) -> None:
-    """Numbers of 0 to 32 bits come back from any place, and take no bit more than their widths."""
+    """Numbers of 0 to 32 bits are packed without gaps and read back from any position."""
     values = np.array([number for number, _ in numbers], np.uint32)
     widths = np.array([width for _, width in numbers], np.int64)
     data = pack(values, widths)
@@ -148,7 +148,7 @@ def test_bit_fields_hold_any_widths(numbers: list[tuple[int, int]]) -> None:
 
 
 def test_the_fourth_component_follows_from_three() -> None:
-    """What is left out of a normalised quaternion is within two float32 steps of the expected."""
+    """The omitted component of a quaternion is within two float32 steps of its prediction."""
     rng = np.random.default_rng(4)
     rows = bits(followed(made_movement(2.0, rng), rng).actual.T)
     left_out = choose(rows)
@@ -157,8 +157,8 @@ def test_the_fourth_component_follows_from_three() -> None:
 
 
 @given(at=st.floats(0, 1, exclude_max=True), change=st.integers(1, 255))
-def test_a_changed_byte_is_noticed(at: float, change: int) -> None:
-    """No single byte can be changed unnoticed, and the error says what to do."""
+def test_a_changed_byte_is_detected(at: float, change: int) -> None:
+    """Changing any byte of a chunk raises an error that says what to do."""
     times_s, flags, values = sample()
     damaged = bytearray(encode_frames(times_s, flags, values))
     damaged[int(at * len(damaged))] ^= change
@@ -168,8 +168,8 @@ def test_a_changed_byte_is_noticed(at: float, change: int) -> None:
 
 @pytest.mark.parametrize("encoding", WRITTEN)
 @pytest.mark.parametrize("length", [0, 3, 13, 14, 100])
-def test_a_chunk_that_was_cut_short_is_noticed(encoding: str, length: int) -> None:
-    """Half a chunk is damage in either encoding, not fewer frames."""
+def test_a_truncated_chunk_is_detected(encoding: str, length: int) -> None:
+    """A truncated chunk is reported as damaged in every encoding."""
     data = base64.b85decode(WRITTEN[encoding])[:length]
     with pytest.raises(DamagedChunkError):
         read(data, 11, encoding=encoding)
@@ -177,15 +177,15 @@ def test_a_chunk_that_was_cut_short_is_noticed(encoding: str, length: int) -> No
 
 @pytest.mark.parametrize("encoding", WRITTEN)
 @pytest.mark.parametrize(("count", "width"), [(10, 91), (12, 91), (11, 87)])
-def test_a_chunk_in_the_wrong_row_is_noticed(encoding: str, count: int, width: int) -> None:
-    """The row's count of frames and values must be the chunk's own."""
+def test_a_chunk_with_wrong_counts_is_detected(encoding: str, count: int, width: int) -> None:
+    """A chunk is damaged if its row has other counts of frames or values."""
     with pytest.raises(DamagedChunkError):
         read(base64.b85decode(WRITTEN[encoding]), count, encoding=encoding, width=width)
 
 
 @pytest.mark.parametrize("shape", [(0, 91), (3, 90), (3, 2)])
-def test_what_is_not_frames_is_refused(shape: tuple[int, int]) -> None:
-    """No frames, or values that are no root and whole quaternions, are a mistake of the caller."""
+def test_encoding_no_frames_or_partial_quaternions_is_refused(shape: tuple[int, int]) -> None:
+    """Encoding no frames, or values that are not a root and whole quaternions, is an error."""
     count = shape[0]
     with pytest.raises(ValueError, match="expected"):
         encode_frames(np.zeros(count), np.zeros(count, np.uint8), np.zeros(shape, np.float32))

@@ -1,4 +1,4 @@
-"""The course of a phase's joint error, from its stored frames into its rows."""
+"""Tests of the course of a phase's joint error, from stored frames to stored rows."""
 
 import time
 from collections.abc import Sequence
@@ -36,7 +36,7 @@ def _frames(rotations: FloatArray, times_s: FloatArray, active: NDArray[np.bool_
 def _turned(
     angles_rad: FloatArray, active: NDArray[np.bool_], *, epoch: int = 1, begin_s: float = 9.0
 ) -> Run:
-    """A participant who stands still, and an avatar all of whose joints are off by so much."""
+    """Return a run in which the target stands still and all avatar joints are off by an angle."""
     times_s = begin_s + np.arange(len(angles_rad)) / RATE_HZ
     vectors = np.zeros((len(angles_rad), 22, 3))
     vectors[:, :, 0] = angles_rad[:, np.newaxis]
@@ -58,12 +58,12 @@ def _present(runs: Sequence[Run], active_s: float) -> JointErrorCourseRow:
 
 
 def _growing(frames: int) -> FloatArray:
-    """Angles of so many frames, in rad."""
+    """Return angles (rad) that grow evenly over so many frames."""
     return GROWTH_RAD_PER_S / RATE_HZ * np.arange(frames, dtype=np.float64)
 
 
 def _middles_rad(frames: int) -> list[float]:
-    """What an error that grows evenly over so many frames is in the middle of each bin."""
+    """Return the expected mean of an evenly growing error in each bin."""
     firsts = range(0, frames, BIN_FRAMES)
     ends = [min(first + BIN_FRAMES, frames) for first in firsts]
     return [
@@ -72,8 +72,8 @@ def _middles_rad(frames: int) -> list[float]:
     ]
 
 
-def test_an_error_that_grows_is_seen_growing() -> None:
-    """Bin by bin what was put in, in the precision of the wire; the last bin has two seconds."""
+def test_the_course_follows_a_growing_error() -> None:
+    """The course of an evenly growing error has its mean in each bin, with a short last bin."""
     frames = round(22.0 * RATE_HZ)
     row = _present([_turned(_growing(frames), np.ones(frames, np.bool_))], 22.0)
     assert row.mean_rad == pytest.approx(_middles_rad(frames), abs=1e-6)
@@ -81,8 +81,8 @@ def test_an_error_that_grows_is_seen_growing() -> None:
     assert row.bin_s == COURSE_BIN_S
 
 
-def test_pauses_are_no_time_and_a_restarted_headset_goes_on() -> None:
-    """The same course with a pause of seven seconds in it, and in two runs with their clocks."""
+def test_a_course_leaves_out_pauses_and_continues_after_a_restart() -> None:
+    """The course leaves out pauses and continues after a restart of the headset."""
     frames, half = round(20.0 * RATE_HZ), round(10.0 * RATE_HZ)
     angles_rad = _growing(frames)
     pause = np.full(round(7.0 * RATE_HZ), 1.5)
@@ -104,7 +104,7 @@ def test_pauses_are_no_time_and_a_restarted_headset_goes_on() -> None:
 
 @pytest.fixture
 def session_id(lab: Lab, request: pytest.FixtureRequest) -> str:
-    """A session whose phases are over; they have errors and courses, and no movement yet."""
+    """Return a session whose phases have ended, with errors and courses but without movement."""
     with lab.database.writing() as db:
         return build_session(db, SessionSpec(stable_id(request.node.name)[:12])).id
 
@@ -128,7 +128,7 @@ def _stored(lab: Lab, phase: Phase) -> dict[str, JointErrorCourseRow]:
 def test_the_mean_of_a_stored_course_is_the_mean_of_the_stored_errors(
     lab: Lab, session_id: str, avatar: str
 ) -> None:
-    """To 1e-12, against what was asked for now and a moment ago; the samples are the same."""
+    """The mean of a stored course equals the mean of the stored joint errors to 1e-12."""
     phase = _phases(lab, session_id)[0]
     with lab.database.writing() as db:
         if avatar == "physics":
@@ -154,7 +154,7 @@ def test_the_mean_of_a_stored_course_is_the_mean_of_the_stored_errors(
         assert len(of_joints) == (JOINTS if avatar == "delayed_copy" else JOINTS - 2)
         assert sum(course.samples) == sum(n for _, n in of_joints)
         whole = np.average(means, weights=course.samples)
-        # Every joint has as many samples: the mean over joints, as in the figures, is no other.
+        # Every joint has the same number of samples, so the mean over joints is the same.
         assert whole == pytest.approx(np.mean([mean for mean, _ in of_joints]), abs=1e-12)
 
 
@@ -189,7 +189,7 @@ def _quality(phase: Phase) -> PhaseQuality:
 def test_phases_of_an_older_version_get_their_courses_at_the_start(
     lab: Lab, session_id: str
 ) -> None:
-    """Where their movement is there; where it is not, and in other tables, nothing changes."""
+    """At its start the summariser adds missing courses to phases whose movement is stored."""
     bare, moved, later = _phases(lab, session_id)[:3]
     _summarised_before_there_were_courses(lab, (bare, moved, later))
     with lab.database.writing() as db:
@@ -205,7 +205,7 @@ def test_phases_of_an_older_version_get_their_courses_at_the_start(
         courses = _stored(lab, phase)
         assert set(courses) == {"present", "command"}
         assert [sum(row.samples) for row in courses.values()] == [720 * JOINTS] * 2
-    # It would have come before the others.
+    # It would have been computed before the others.
     assert _stored(lab, bare) == {}
     with lab.database.reading() as db:
         kept_quality = select(PhaseQuality.stream).where(

@@ -1,4 +1,4 @@
-"""Joint errors of a phase, from its stored frames into its rows."""
+"""Tests of a phase's joint errors, from stored frames to stored rows."""
 
 import subprocess
 import sys
@@ -30,14 +30,14 @@ Rows = dict[tuple[str, str, str], JointErrorRow]
 
 @pytest.fixture
 def session_id(lab: Lab, request: pytest.FixtureRequest) -> str:
-    """A session of a delayed copy whose phases are over, and were never summarised."""
+    """Return a session with a delayed copy whose phases have ended without summaries."""
     with lab.database.writing() as db:
         return build_session(db, SessionSpec(stable_id(request.node.name)[:12])).id
 
 
 @pytest.fixture
 def physics_id(lab: Lab, session_id: str) -> str:
-    """The same with the product's own physics avatar."""
+    """Return the session with the shipped physics avatar instead of a delayed copy."""
     with lab.database.writing() as db:
         as_physics(db, db.get_one(StudySession, session_id))
     return session_id
@@ -56,7 +56,7 @@ def _phase(lab: Lab, session_id: str) -> Phase:
 
 
 def _summarised(lab: Lab, phase: Phase) -> tuple[Rows, PhaseLatency]:
-    """Computed, stored, and read back."""
+    """Compute and store a phase's summary; return its rows as read back."""
     with lab.database.reading() as db:
         rows = summary_rows(db, phase.session_id, phase.phase_id)
     with lab.database.writing() as db:
@@ -73,7 +73,7 @@ def _summarised(lab: Lab, phase: Phase) -> tuple[Rows, PhaseLatency]:
 
 
 def _target() -> tuple[FloatArray, FloatArray]:
-    """Times and rotations of a body that swings far, in the precision of the wire."""
+    """Return times and rotations of a body that swings far, in single precision."""
     times_s = np.arange(0.0, HISTORY_S + DURATION_S, 1.0 / RATE_HZ)
     rotations = made_movement(np.random.default_rng(3))(times_s)
     return times_s, rotations.astype(np.float32).astype(np.float64)
@@ -85,10 +85,8 @@ def _store(lab: Lab, phase: Phase, times_s: FloatArray, streams: Sequence[FloatA
             store_stream(db, phase, stream, 1, times_s, rotations, BEFORE)
 
 
-def test_a_physics_avatar_is_measured_by_what_its_hinges_are_asked_for(
-    lab: Lab, physics_id: str
-) -> None:
-    """One that reaches every clamped target late has no error where no limit is in its way."""
+def test_a_physics_avatars_error_is_against_its_commanded_angles(lab: Lab, physics_id: str) -> None:
+    """A physics avatar that reaches each clamped angle late has no error at free joints."""
     phase = _phase(lab, physics_id)
     times_s, target = _target()
     angles = TargetAngles(default_configuration().in_force).batch(target)
@@ -108,7 +106,7 @@ def test_a_physics_avatar_is_measured_by_what_its_hinges_are_asked_for(
         clipped = angles.clipped[:, AXIS_NAMES.index(f"{joint}{axis.upper()}")]
         assert rows["present", joint, axis].clipped_share == clipped[counted].mean()
         assert rows["command", joint, axis].clipped_share == clipped[nearest].mean()
-    # The locked third axis of an elbow is asked for something as well.
+    # The locked third axis of an elbow is commanded as well.
     free = [
         row
         for (reference, joint, axis), row in rows.items()
@@ -126,8 +124,8 @@ def test_a_physics_avatar_is_measured_by_what_its_hinges_are_asked_for(
 
 
 @pytest.mark.one_engine
-def test_a_delayed_copy_has_no_limits_and_no_shares(lab: Lab, session_id: str) -> None:
-    """Its rows are those of the raw rotations, to the bit."""
+def test_a_delayed_copys_errors_are_those_of_its_rotations(lab: Lab, session_id: str) -> None:
+    """The joint errors of a delayed copy are those of its rotations, without clipped shares."""
     phase = _phase(lab, session_id)
     with lab.database.writing() as db:
         store_movement(db, phase, LATENCY_S)
@@ -148,7 +146,7 @@ def test_a_delayed_copy_has_no_limits_and_no_shares(lab: Lab, session_id: str) -
 
 @pytest.mark.one_engine
 def test_a_server_without_physics_loads_no_compiler() -> None:
-    """Nor the simulation: they take a second and a hundred megabytes."""
+    """A server that needs no physics loads neither MuJoCo nor the numba compiler."""
     lines = (
         "import sys, app.main, app.features.record.telemetry.summaries; "
         "print([name for name in ('numba', 'llvmlite', 'mujoco') if name in sys.modules])"

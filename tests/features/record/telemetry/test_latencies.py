@@ -1,4 +1,4 @@
-"""The achieved latency of a phase, from its stored frames into its row and its view."""
+"""Tests of a phase's achieved latency, from stored frames to its row and the cockpit."""
 
 import time
 from dataclasses import replace
@@ -24,13 +24,13 @@ NUMBERS = ("achieved_latency_ms", "achieved_low_ms", "achieved_high_ms")
 
 @pytest.fixture
 def session_id(lab: Lab, request: pytest.FixtureRequest) -> str:
-    """A session whose phases are over, and were never summarised."""
+    """Return a session whose phases have ended without summaries."""
     with lab.database.writing() as db:
         return build_session(db, SessionSpec(stable_id(request.node.name)[:12])).id
 
 
 def phases(lab: Lab, session_id: str) -> dict[float, Phase]:
-    """One phase for each latency that was ordered."""
+    """Return one task phase per latency set."""
     with lab.database.reading() as db:
         found = db.scalars(
             select(Phase).where(Phase.session_id == session_id, Phase.kind == "task")
@@ -39,7 +39,7 @@ def phases(lab: Lab, session_id: str) -> dict[float, Phase]:
 
 
 def summarise(lab: Lab, *expected: Phase) -> dict[int, PhaseLatency]:
-    """Start as after a crash, wait for the rows of these phases, and give them back."""
+    """Run the summariser until these phases have latency rows; return all rows by phase."""
     summariser = Summariser(lab.context)
     summariser.start()
     wanted = {phase.phase_id for phase in expected}
@@ -55,7 +55,7 @@ def summarise(lab: Lab, *expected: Phase) -> dict[int, PhaseLatency]:
 
 
 def view_of(lab: Lab, phase: Phase) -> Json:
-    """The phase in the cockpit's session view."""
+    """Return the phase as the cockpit shows it."""
     (own,) = (
         one for one in lab.view(phase.session_id)["phases"] if one["phase_id"] == phase.phase_id
     )
@@ -64,20 +64,22 @@ def view_of(lab: Lab, phase: Phase) -> Json:
 
 @pytest.mark.one_engine
 @pytest.mark.parametrize("latency_ms", [0.0, 125.0, 350.0])
-def test_the_stored_frames_tell_the_latency(lab: Lab, session_id: str, latency_ms: float) -> None:
-    """What the avatar's buffer delayed is found again in what was stored of it."""
+def test_the_latency_is_measured_from_stored_frames(
+    lab: Lab, session_id: str, latency_ms: float
+) -> None:
+    """The achieved latency is measured from the stored frames within 0.1 ms."""
     phase = phases(lab, session_id)[latency_ms]
     with lab.database.writing() as db:
         store_movement(db, phase, latency_ms / 1000.0)
     with lab.database.reading() as db:
         achieved = phase_latency(db, session_id, phase.phase_id)
     assert achieved.latency_s == pytest.approx(latency_ms / 1000.0, abs=0.1 * MS)
-    # Frames before the phase are history, and are not counted.
+    # Frames before the phase are history and are not counted.
     assert achieved.samples == 720
 
 
 def test_catching_up_stores_a_row_for_every_phase_that_ended(lab: Lab, session_id: str) -> None:
-    """With the joint errors, and also where there is nothing to measure; once is enough."""
+    """The summariser stores one latency row for each ended phase, with a reason if it has none."""
     by_latency = phases(lab, session_id)
     good, late, empty = (by_latency[latency_ms] for latency_ms in (125.0, 350.0, 0.0))
     with lab.database.writing() as db:
@@ -101,7 +103,7 @@ def test_catching_up_stores_a_row_for_every_phase_that_ended(lab: Lab, session_i
 
 @pytest.mark.one_engine
 def test_runs_of_the_client_are_measured_together(lab: Lab, session_id: str) -> None:
-    """Four seconds before and four after a restart of the headset are eight of movement."""
+    """The movement of a phase before and after a headset's restart is measured together."""
     phase = phases(lab, session_id)[125.0]
     with lab.database.writing() as db:
         for epoch, clock_s in ((1, 3000.0), (2, 0.5)):
@@ -113,8 +115,8 @@ def test_runs_of_the_client_are_measured_together(lab: Lab, session_id: str) -> 
 
 
 @pytest.mark.one_engine
-def test_a_body_that_stands_has_no_latency_but_a_reason(lab: Lab, session_id: str) -> None:
-    """The row says how little movement there was."""
+def test_too_little_movement_gives_a_reason_instead_of_a_latency(lab: Lab, session_id: str) -> None:
+    """A phase with too little movement has a reason instead of a latency."""
     phase = phases(lab, session_id)[125.0]
     movement = made_movement(np.random.default_rng(0))
 
@@ -130,8 +132,8 @@ def test_a_body_that_stands_has_no_latency_but_a_reason(lab: Lab, session_id: st
 
 
 @pytest.mark.one_engine
-def test_the_cockpit_shows_the_achieved_beside_the_ordered(lab: Lab, session_id: str) -> None:
-    """In ms with the interval; whether it is off; and why there is none."""
+def test_the_cockpit_shows_achieved_and_set_latency(lab: Lab, session_id: str) -> None:
+    """The cockpit shows achieved and set latency with interval, tolerance and reason."""
     by_latency = phases(lab, session_id)
     fine, off, still = (by_latency[latency_ms] for latency_ms in (125.0, 350.0, 0.0))
     assert view_of(lab, fine)["movement_s"] is None
@@ -148,8 +150,8 @@ def test_the_cockpit_shows_the_achieved_beside_the_ordered(lab: Lab, session_id:
 
 
 @pytest.mark.one_engine
-def test_a_blinded_operator_is_told_only_whether_it_is_off(fresh_lab: Lab) -> None:
-    """In or out of tolerance, and nothing that would tell the condition."""
+def test_a_blinded_operator_sees_only_whether_the_latency_is_off(fresh_lab: Lab) -> None:
+    """A blinded operator sees only whether the latency is within tolerance."""
     yaml = ok(fresh_lab.operator.get(f"/api/studies/{STUDY}"))["yaml"]
     blinded = yaml.replace("operator: false", "operator: true")
     ok(fresh_lab.operator.post(f"/api/studies/{STUDY}/versions", json={"yaml": blinded}))
@@ -169,18 +171,18 @@ def test_a_blinded_operator_is_told_only_whether_it_is_off(fresh_lab: Lab) -> No
 
 
 @pytest.mark.one_engine
-def test_news_are_told_when_a_latency_is_there(
+def test_a_new_latency_is_published(
     lab: Lab, session_id: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The cockpit is told to look again."""
+    """The session is published as changed when a latency has been measured."""
     heard: list[tuple[str, str]] = []
     monkeypatch.setattr(lab.context.hub, "publish", lambda *news: heard.append(news))
     summarise(lab, *phases(lab, session_id).values())
     assert (session_id, "session") in heard
 
 
-def test_a_phase_that_was_voided_is_left_alone(lab: Lab) -> None:
-    """Only what was carried through is measured."""
+def test_a_void_phase_is_not_measured(lab: Lab) -> None:
+    """The latency of a void phase is not measured."""
     with lab.database.writing() as db:
         spec = SessionSpec("P-voided", redone=("block1.hand",))
         session = build_session(db, spec)

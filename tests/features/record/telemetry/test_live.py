@@ -1,4 +1,4 @@
-"""The figures that the cockpit shows while a phase runs."""
+"""Tests of the figures that the cockpit shows while a phase runs."""
 
 import math
 
@@ -18,7 +18,7 @@ from tests.features.lab import Lab
 def live_errors_deg(
     live: LiveTelemetry, target: FloatArray, actual: FloatArray
 ) -> dict[str, float]:
-    """What is told of one frame of both streams."""
+    """Return the live joint errors of one frame of both streams."""
     for stream, rotations in ((StreamName.TARGET, target), (StreamName.ACTUAL, actual)):
         values = np.zeros((1, VALUES_PER_FRAME), np.float32)
         values[0, 3:] = rotations.reshape(-1)
@@ -40,7 +40,7 @@ def live_errors_deg(
 
 
 def shrug() -> FloatArray:
-    """A left shoulder raised by 20 degrees."""
+    """Return a pose with the left shoulder raised by 20 degrees."""
     pose = identity(JOINT_COUNT)
     raised = np.array((0.0, 0.0, -math.radians(20.0)))
     pose[JOINT_INDEX["LeftShoulder"]] = from_rotation_vector(raised)
@@ -48,14 +48,14 @@ def shrug() -> FloatArray:
 
 
 def test_live_errors_are_of_the_raw_rotations_of_a_delayed_copy() -> None:
-    """An avatar that does not raise its shoulder is wrong there, and nowhere else."""
+    """A delayed copy's live error is that of its rotations, here at one shoulder only."""
     told = live_errors_deg(LiveTelemetry(), shrug(), identity(JOINT_COUNT))
     assert told.pop("LeftShoulder") == pytest.approx(20.0, abs=0.01)
     assert max(told.values()) < 0.1
 
 
-def test_live_errors_of_a_physics_avatar_are_of_what_its_hinges_are_asked_for() -> None:
-    """Its upper arm is asked for the shrug, as in what is stored; a shoulder tells nothing."""
+def test_a_physics_avatars_live_errors_are_against_its_commanded_angles() -> None:
+    """A physics avatar's live error is against its commanded angles, as in the stored rows."""
     pose = shrug()
     live = LiveTelemetry(hinges=HingeReference(ANATOMIC))
     wanted = TargetAngles(ANATOMIC).follow(pose).unclamped_rad
@@ -72,7 +72,7 @@ def test_live_errors_of_a_physics_avatar_are_of_what_its_hinges_are_asked_for() 
 
 
 def test_a_connection_gets_the_hinges_of_its_session(lab: Lab) -> None:
-    """Of the configuration that the session names; a delayed copy has none."""
+    """A headset connection uses the hinges of its session's avatar; a delayed copy has none."""
     with lab.database.writing() as db:
         copy = build_session(db, SessionSpec("P-live-copy")).id
         physics = build_session(db, SessionSpec("P-live-physics"))

@@ -1,4 +1,4 @@
-"""The quality of a phase's streams, from its stored frames."""
+"""Tests of the quality of a phase's streams, computed from its stored frames."""
 
 import numpy as np
 import pytest
@@ -22,13 +22,13 @@ Values = NDArray[np.float32]
 
 @pytest.fixture
 def session_id(lab: Lab, request: pytest.FixtureRequest) -> str:
-    """A session without frames."""
+    """Return a session without frames."""
     with lab.database.writing() as db:
         return build_session(db, SessionSpec(stable_id(request.node.name)[:12])).id
 
 
 def values_of(recording: Recording) -> Values:
-    """Frames as on the wire."""
+    """Return the frames of a recording in the layout of the wire."""
     flat = recording.rotations.reshape(len(recording), -1)
     return np.concatenate((recording.positions_m, flat), axis=1)
 
@@ -42,26 +42,26 @@ def store(
     epoch: int = 1,
     phase_id: int = PHASE,
 ) -> None:
-    """Frames of both streams; those of a seq are told at seq / 90 s."""
+    """Store frames of both streams; the frame of a seq has the time seq / 90 s."""
     for stream, of in values.items():
         picked = np.arange(len(of)) if seqs is None else seqs
         store_chunks(db, session_id, stream, picked.tolist(), of, epoch=epoch, phase_id=phase_id)
 
 
 def both(values: Values) -> dict[StreamName, Values]:
-    """The same in both streams."""
+    """Return the same values for both streams."""
     return dict.fromkeys(StreamName, values)
 
 
 def quality(lab: Lab, session_id: str) -> dict[str, PhaseQuality]:
-    """The rows by stream."""
+    """Return the quality rows of the phase by stream."""
     with lab.database.reading() as db:
         return {row.stream: row for row in phase_quality(db, session_id, PHASE)}
 
 
 @pytest.mark.one_engine
-def test_sound_frames_have_no_fault(lab: Lab, session_id: str) -> None:
-    """One row a stream, with how many there were."""
+def test_valid_frames_have_no_fault(lab: Lab, session_id: str) -> None:
+    """Valid frames have no faults; each stream has a row with their number."""
     with lab.database.writing() as db:
         store(db, session_id, both(values_of(generated())))
     for row in quality(lab, session_id).values():
@@ -75,7 +75,7 @@ def test_sound_frames_have_no_fault(lab: Lab, session_id: str) -> None:
 
 @pytest.mark.one_engine
 def test_each_stream_has_its_own_faults(lab: Lab, session_id: str) -> None:
-    """A head that froze in the target, a value that is none in the actual body."""
+    """Faults are counted in the stream in which they occur."""
     frozen, broken = generated().copy(), generated().copy()
     frozen.rotations[900:1350, HEAD] = frozen.rotations[900, HEAD]
     broken.rotations[100, HEAD] = np.nan
@@ -93,7 +93,7 @@ def test_each_stream_has_its_own_faults(lab: Lab, session_id: str) -> None:
 
 @pytest.mark.one_engine
 def test_a_gap_in_the_frames_is_counted(lab: Lab, session_id: str) -> None:
-    """Seqs go on, time does not: the headset drew nothing for two seconds."""
+    """Two seconds without frames are counted as one gap."""
     values = values_of(generated())
     kept = np.r_[0:900, 1080:1800]
     with lab.database.writing() as db:
@@ -105,8 +105,8 @@ def test_a_gap_in_the_frames_is_counted(lab: Lab, session_id: str) -> None:
 
 
 @pytest.mark.one_engine
-def test_frames_of_other_phases_are_known_and_not_counted(lab: Lab, session_id: str) -> None:
-    """A head that froze before the phase began is frozen in it; other faults are not its own."""
+def test_frames_before_the_phase_are_context_only(lab: Lab, session_id: str) -> None:
+    """Frames before the phase show that a joint was frozen already; their faults do not count."""
     before, own = generated().part(slice(0, 900)).copy(), generated().part(slice(900, 1800)).copy()
     before.rotations[100, HEAD] = np.nan
     own.rotations[:360, HEAD] = before.rotations[-91:, HEAD] = own.rotations[0, HEAD]
@@ -121,7 +121,7 @@ def test_frames_of_other_phases_are_known_and_not_counted(lab: Lab, session_id: 
 
 
 def test_frames_that_are_not_folded_yet_count_too(lab: Lab, session_id: str) -> None:
-    """Chunks and batches are one stream."""
+    """Frames that are not folded into chunks yet are counted."""
     values = values_of(generated())
     with lab.database.writing() as db:
         store(db, session_id, both(values[:900]))
@@ -132,7 +132,7 @@ def test_frames_that_are_not_folded_yet_count_too(lab: Lab, session_id: str) -> 
 
 @pytest.mark.one_engine
 def test_runs_of_the_client_add_up(lab: Lab, session_id: str) -> None:
-    """Two runs with clocks of their own; what lies between them is not known."""
+    """The frames of two runs of the client add up; the time between them is no gap."""
     values = values_of(generated())
     with lab.database.writing() as db:
         store(db, session_id, both(values[:900]), epoch=1)
@@ -143,14 +143,14 @@ def test_runs_of_the_client_add_up(lab: Lab, session_id: str) -> None:
 
 @pytest.mark.one_engine
 def test_a_phase_without_frames_has_rows_too(lab: Lab, session_id: str) -> None:
-    """They say that there is nothing."""
+    """A phase without frames has quality rows with a count of zero."""
     rows = quality(lab, session_id)
     assert set(rows) == {"target", "actual"}
     assert {(row.frames, row.frame_rate_hz) for row in rows.values()} == {(0, None)}
 
 
 def test_the_rows_can_be_stored(lab: Lab, session_id: str) -> None:
-    """Every value is one that the database takes."""
+    """The quality rows can be stored in the database."""
     with lab.database.writing() as db:
         store(db, session_id, both(values_of(generated())))
         db.add_all(phase_quality(db, session_id, PHASE))

@@ -1,4 +1,4 @@
-"""Many rows in few statements, on both databases."""
+"""Tests of inserting many rows in few statements, on both databases."""
 
 from typing import Any
 
@@ -12,7 +12,7 @@ from tests.features.lab import Lab
 
 
 def rows(lab: Lab, session_id: str, count: int, next_seq: int) -> list[dict[str, Any]]:
-    """Positions of as many runs."""
+    """Return stream positions of as many epochs."""
     now = lab.context.clock.utc_now()
     numbers = dict.fromkeys(("produced", "frames_stored", "frames_flagged", "phase_id"), 3)
     return [
@@ -31,8 +31,8 @@ def rows(lab: Lab, session_id: str, count: int, next_seq: int) -> list[dict[str,
 
 
 @pytest.mark.parametrize("count", [1, 2, 63, 64, 65, 200])
-def test_every_row_is_there_as_it_was_given(lab: Lab, count: int) -> None:
-    """Whatever their number, and in whichever order their columns come."""
+def test_every_row_is_stored_as_given(lab: Lab, count: int) -> None:
+    """Any number of rows is stored as given, in whatever order their columns come."""
     session_id = str(lab.join()["id"])
     given = rows(lab, session_id, count, 7)
     with lab.database.writing() as db:
@@ -43,8 +43,8 @@ def test_every_row_is_there_as_it_was_given(lab: Lab, count: int) -> None:
     assert [dict(row) for row in stored] == given
 
 
-def test_only_what_moves_is_taken_of_rows_that_are_there(lab: Lab) -> None:
-    """New rows join, known ones move, and their other columns stay."""
+def test_existing_rows_are_updated_only_in_the_moving_columns(lab: Lab) -> None:
+    """New rows are inserted; of existing ones only the columns in `moving` are updated."""
     session_id = str(lab.join()["id"])
     first, again = rows(lab, session_id, 3, 7), rows(lab, session_id, 5, 9)
     with lab.database.writing() as db:
@@ -56,15 +56,15 @@ def test_only_what_moves_is_taken_of_rows_that_are_there(lab: Lab) -> None:
     assert found == [(9, 3)] * 3 + [(9, 8)] * 2
 
 
-def test_a_row_that_is_there_is_an_error_otherwise(lab: Lab) -> None:
-    """Nothing is replaced in silence."""
+def test_inserting_an_existing_row_is_an_error(lab: Lab) -> None:
+    """Inserting a row that exists is an error unless `moving` is given."""
     given = rows(lab, str(lab.join()["id"]), 2, 7)
     with pytest.raises(IntegrityError), lab.database.writing() as db:
         insert_rows(db, TABLE, [*given, given[0]])
 
 
-def test_few_statements_suffice(lab: Lab) -> None:
-    """A hundred rows go to SQLite in 64 + 32 + 4, and to PostgreSQL as columns."""
+def test_a_hundred_rows_need_few_statements(lab: Lab) -> None:
+    """A hundred rows take three statements on SQLite (64 + 32 + 4) and one on PostgreSQL."""
     sent: list[int] = []
     given = rows(lab, str(lab.join()["id"]), 100, 7)
 

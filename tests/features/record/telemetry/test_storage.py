@@ -1,4 +1,4 @@
-"""Batches, chunks and reading them back, without a network."""
+"""Tests of storing batches, folding them into chunks and reading them back, without a network."""
 
 import threading
 from dataclasses import replace
@@ -26,17 +26,17 @@ from app.wire import VALUES_PER_FRAME, StreamName, decode_batch, flag_frames
 from tests.features.lab import Lab
 from tests.wire.samples import bits, every_odd_float, message, standing
 
-# Batches are stamped ahead of the clock, so that the application's own folder leaves them alone.
+# Batches are stamped ahead of the clock, so that the application's own folder ignores them.
 AHEAD_S = 600.0
 LATER = timedelta(seconds=AHEAD_S + 60)
 
 
 @given(raw=arrays(np.uint32, st.tuples(st.integers(1, 30), st.just(VALUES_PER_FRAME))))
 @settings(max_examples=50)
-def test_a_chunk_comes_out_as_it_went_in(
+def test_a_chunk_is_decoded_to_the_same_bits(
     raw: np.ndarray[tuple[int, int], np.dtype[np.uint32]],
 ) -> None:
-    """Any bits survive compression: NaN payloads, denormals and signed zeros."""
+    """A chunk is decoded to the same bits, including NaN payloads, denormals and signed zeros."""
     count = len(raw)
     times_s = np.linspace(5.0, 6.0, count)
     flags = np.arange(count, dtype=np.uint8)
@@ -51,7 +51,7 @@ def test_a_chunk_comes_out_as_it_went_in(
 
 
 def test_an_unknown_encoding_is_refused() -> None:
-    """A chunk of a later version is not guessed at."""
+    """A chunk in an unknown encoding is refused."""
     with pytest.raises(ValueError, match="unknown encoding 'later/2'"):
         decode_frames(b"", encoding="later/2", seq_first=0, frame_count=1, values_per_frame=91)
 
@@ -66,7 +66,7 @@ def store(
     phase_id: int = 0,
     times_s: NDArray[np.float64] | None = None,
 ) -> Outcome:
-    """Store one batch as if it came `ahead_s` from now."""
+    """Store one batch as if it arrived `ahead_s` from now."""
     sent = message(values, seq_first=first, phase_id=phase_id, times_s=times_s)
     batch = decode_batch(sent)
     outcome = Outcome()
@@ -80,7 +80,7 @@ def store(
 
 
 def fold(lab: Lab) -> int:
-    """Fold everything that is due a minute after the batches came."""
+    """Fold everything that is due at `LATER` and return how many batches were folded."""
     clock = Clock(utc_now=lambda: lab.context.clock.utc_now() + LATER)
     folder = Folder(replace(lab.context, clock=clock))
     folded = 0
@@ -90,21 +90,21 @@ def fold(lab: Lab) -> int:
 
 
 def read(database: Database, session_id: str, phase_id: int | None = None) -> Frames:
-    """The target stream as a reader gets it."""
+    """Return the target stream as a reader gets it."""
     with database.reading() as db:
         pieces = iter_frames(db, session_id, StreamName.TARGET, 1, phase_id)
         return concatenate([frames for _, frames in pieces])
 
 
 def batches(lab: Lab, session_id: str) -> int:
-    """How many batches of a session are not folded yet."""
+    """Return how many batches of a session are not folded yet."""
     with lab.database.reading() as db:
         query = select(func.count()).select_from(TelemetryBatch)
         return db.scalar(query.where(TelemetryBatch.session_id == session_id)) or 0
 
 
 def numbered(first: int, count: int) -> NDArray[np.float32]:
-    """Frames that tell their own seq."""
+    """Return frames whose hip height is their own seq."""
     values = standing(count)
     values[:, 1] = np.arange(first, first + count)
     return values
@@ -112,12 +112,12 @@ def numbered(first: int, count: int) -> NDArray[np.float32]:
 
 @pytest.fixture
 def session_id(lab: Lab) -> str:
-    """A session with nothing in it."""
+    """Return a session without data."""
     return str(lab.join()["id"])
 
 
 def test_folding_changes_nothing_that_is_read(lab: Lab, session_id: str) -> None:
-    """The frames are the same before and after, bit by bit, and no batch is left."""
+    """A reader gets the same frames, bit by bit, before and after folding."""
     for first in range(0, 300, 10):
         store(lab, session_id, first, numbered(first, 10))
     store(lab, session_id, 300, every_odd_float())
@@ -129,15 +129,15 @@ def test_folding_changes_nothing_that_is_read(lab: Lab, session_id: str) -> None
     assert batches(lab, session_id) == 0
 
 
-def test_young_batches_are_left_alone(lab: Lab, session_id: str) -> None:
-    """Only what is older than a second is folded."""
+def test_recent_batches_are_not_folded(lab: Lab, session_id: str) -> None:
+    """Batches that are not due yet are not folded."""
     store(lab, session_id, 0, numbered(0, 10), ahead_s=6000)
     fold(lab)
     assert batches(lab, session_id) == 1
 
 
 def test_a_chunk_never_spans_two_phases(lab: Lab, session_id: str) -> None:
-    """A reader of one phase gets that phase and no frame of another."""
+    """A chunk never contains frames of two phases."""
     for first, phase_id in ((0, 0), (10, 1), (20, 1), (30, 2)):
         store(lab, session_id, first, numbered(first, 10), phase_id=phase_id)
     fold(lab)
@@ -147,8 +147,8 @@ def test_a_chunk_never_spans_two_phases(lab: Lab, session_id: str) -> None:
     assert (epoch, len(frames)) == (1, 10)
 
 
-def test_readers_meet_every_frame_once_while_folding(lab: Lab, session_id: str) -> None:
-    """A reader that overlaps with the folder misses nothing and sees nothing twice."""
+def test_readers_get_every_frame_once_while_folding(lab: Lab, session_id: str) -> None:
+    """A reader gets every frame exactly once while batches are folded."""
     done = threading.Event()
 
     def keep_folding() -> None:
@@ -167,8 +167,8 @@ def test_readers_meet_every_frame_once_while_folding(lab: Lab, session_id: str) 
         folder.join()
 
 
-def test_a_wall_clock_that_was_set_back_hides_nothing(lab: Lab, session_id: str) -> None:
-    """Batches stamped with a later time than those behind them are folded and read in order."""
+def test_folding_survives_a_wall_clock_set_back(lab: Lab, session_id: str) -> None:
+    """Batches are folded and read in order although the wall clock was set back between them."""
     for second, ahead_s in enumerate((6000.0, 6000.0, AHEAD_S, AHEAD_S)):
         times_s = 2.0 * second + np.linspace(0.0, 0.1, 10)
         store(lab, session_id, 10 * second, numbered(0, 10), ahead_s=ahead_s, times_s=times_s)
@@ -178,7 +178,7 @@ def test_a_wall_clock_that_was_set_back_hides_nothing(lab: Lab, session_id: str)
 
 
 def test_a_chunk_waits_until_it_is_whole(lab: Lab, session_id: str) -> None:
-    """While a stream goes on, only whole seconds are folded; its rest follows when it is quiet."""
+    """While a stream continues only whole seconds are folded; the rest follows when it stops."""
     now = lab.context.clock.utc_now()
     folder = Folder(replace(lab.context, clock=Clock(utc_now=lambda: now + LATER)))
     for batch in range(16):
@@ -194,14 +194,14 @@ def test_a_chunk_waits_until_it_is_whole(lab: Lab, session_id: str) -> None:
 
 
 class ErasingEncoder(Encoder):
-    """Makes chunks here; after the first time a session is erased before they are written."""
+    """An encoder during whose first call a session's batches are deleted."""
 
     def __init__(self, lab: Lab, erased_id: str) -> None:
         super().__init__("")
         self.lab, self.erased_id = lab, erased_id
 
     def due_chunks(self, now: datetime) -> Chunks:
-        """What is due."""
+        """Return the due chunks, and then delete the batches of the erased session."""
         with self.lab.database.reading() as db:
             chunks = due_chunks(db, now)
         with self.lab.database.writing() as db:
@@ -210,7 +210,7 @@ class ErasingEncoder(Encoder):
 
 
 def test_a_session_that_is_erased_meanwhile_is_not_folded(lab: Lab, session_id: str) -> None:
-    """No chunk of it comes back; the others are folded in the same turn, and nothing has failed."""
+    """A session that is erased while its chunks are made is not folded; others are."""
     fold(lab)
     erased_id = str(lab.join()["id"])
     for one in (session_id, erased_id):
@@ -222,8 +222,8 @@ def test_a_session_that_is_erased_meanwhile_is_not_folded(lab: Lab, session_id: 
     assert read(lab.database, erased_id).seq.tolist() == []
 
 
-def test_a_chunk_is_found_by_its_sound_times(lab: Lab, session_id: str) -> None:
-    """A broken last time does not take the whole chunk out of a search by time."""
+def test_a_chunk_with_invalid_times_is_found_by_its_valid_ones(lab: Lab, session_id: str) -> None:
+    """A chunk whose first and last times are invalid is still found by time."""
     times_s = np.linspace(100.0, 100.5, 10)
     times_s[[0, -1]] = np.nan
     store(lab, session_id, 0, numbered(0, 10), times_s=times_s)
@@ -235,8 +235,8 @@ def test_a_chunk_is_found_by_its_sound_times(lab: Lab, session_id: str) -> None:
     assert len(found) == 1
 
 
-def test_a_cut_batch_counts_only_what_is_new(lab: Lab, session_id: str) -> None:
-    """Bad frames that were stored before are not counted or told again."""
+def test_notices_are_only_about_new_frames(lab: Lab, session_id: str) -> None:
+    """Bad frames that were stored before are not reported again when resent."""
     bad = standing(10)
     bad[:5, 3] = 2.0
     assert len(store(lab, session_id, 0, bad).notices) == 1

@@ -1,1 +1,1 @@
-"""A scripted participant in the server."""
+"""Tests of the scripted participant in the server."""

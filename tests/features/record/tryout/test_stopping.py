@@ -1,4 +1,4 @@
-"""A rehearsal that is stopped ends its session, whatever still arrives of it."""
+"""Tests that a stopped rehearsal ends its session, whatever orders still arrive."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -14,27 +14,27 @@ Json = dict[str, Any]
 
 @dataclass(frozen=True)
 class Overtaken(Operator):
-    """Whenever it has looked, an order that was on its way arrives, as long as there are any."""
+    """An operator after each of whose views another pending command arrives."""
 
     lab: Lab
     on_the_way: list[str]
     tries: list[str]
 
     async def view(self) -> Json:
-        """What it saw, which is no longer so."""
+        """Return the view, and then send a pending command that makes it outdated."""
         seen = await super().view()
         if self.on_the_way:
             await super().command(seen, self.on_the_way.pop(0), reason="on its way")
         return seen
 
     async def stop(self, kind: str, **fields: Any) -> Json:
-        """As it is, and counted."""
+        """Stop the session and count the attempt."""
         self.tries.append(kind)
         return await super().stop(kind, **fields)
 
 
 def test_a_stopped_rehearsal_aborts_a_session_that_moves_on(lab: Lab) -> None:
-    """An order arrives between look and abort: the session is aborted at the first try, once."""
+    """A stopped rehearsal aborts its session once, although a command arrives in between."""
     session_id = lab.command(lab.join(kind="simulated"), "start")["id"]
     late: list[str] = ["skip"]
     tries: list[str] = []

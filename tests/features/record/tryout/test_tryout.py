@@ -1,4 +1,4 @@
-"""The scripted participant: refused where it must be, failing in words, never two at once."""
+"""Tests of the scripted participant: refusals, readable failures, and one at a time."""
 
 import time
 
@@ -26,8 +26,8 @@ def _until_over(desk: TryoutRunner, caller: Caller) -> Json:
 
 
 @pytest.mark.one_engine
-def test_it_fails_in_words_and_leaves_nothing_behind(fresh_lab: Lab) -> None:
-    """With nobody at the address: why, what to do; its login is revoked, a new one may begin."""
+def test_a_failed_tryout_reports_why_and_revokes_its_login(fresh_lab: Lab) -> None:
+    """A scripted participant without a reachable server fails with a reason and is logged out."""
     lab = fresh_lab
     assert ok(lab.operator.get("/api/tryout")) is None
     error(lab.operator.delete("/api/tryout"), 404, "not_found")

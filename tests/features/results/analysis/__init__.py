@@ -1,1 +1,1 @@
-"""Tables, codebook and figures."""
+"""Tests of tables, codebook and figures."""

@@ -1,4 +1,4 @@
-"""Databases with the shipped study, on both engines."""
+"""Fixtures with the shipped study's database, on both engines."""
 
 from collections.abc import Iterator
 from contextlib import ExitStack
@@ -13,7 +13,7 @@ from tests.support.sqlite import fresh_sqlite
 
 @pytest.fixture
 def database(database_url: str) -> Iterator[Database]:
-    """A migrated database that knows the shipped studies."""
+    """Yield a migrated database with the shipped studies."""
     database = open_database(database_url)
     with database.writing() as db:
         build_study(db)
@@ -25,7 +25,7 @@ def database(database_url: str) -> Iterator[Database]:
 def lasting_database(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[Database]:
-    """The same for all tests of a module, of which one fixture fills it and the rest only read."""
+    """Yield a database for a whole module: one fixture fills it, and the tests only read."""
     with ExitStack() as stack:
         if request.param == "sqlite":
             url = fresh_sqlite(tmp_path_factory.mktemp("lasting") / "reembody.sqlite")
@@ -40,7 +40,7 @@ def lasting_database(
 
 @pytest.fixture(scope="module")
 def three_kinds(lasting_database: Database) -> Database:
-    """A session of a person, a simulated one and a test."""
+    """Return a database with a session of a person, a simulated one and a test."""
     with lasting_database.writing() as db:
         build_session(db, SessionSpec("P-0001"))
         build_session(db, SessionSpec("SIM-0001", kind="simulated"))

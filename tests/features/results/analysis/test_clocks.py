@@ -1,4 +1,4 @@
-"""Times of the record in UTC, on both engines."""
+"""Tests of the conversion of recorded times to UTC, on both engines."""
 
 from dataclasses import replace
 from datetime import timedelta
@@ -33,7 +33,7 @@ WIFI = replace(SYMMETRIC[0], duration_s=700.0)
 
 
 def _session(database: Database, kind: str = "people") -> str:
-    """A session without clock readings."""
+    """Return a session without clock probes."""
     with database.writing() as db:
         session = build_session(db, SessionSpec("P-0001", kind=kind))
         db.query(ClockProbe).delete()
@@ -48,10 +48,10 @@ def _stored(database: Database, session_id: str, scenario: Scenario, epoch: int 
 
 
 def _errors_s(database: Database, session_id: str, simulated: Simulated, epoch: int = 1) -> float:
-    """95th percentile of how far events are off in UTC, s; each must be within its bound.
+    """Return the 95th percentile of the events' error in UTC (s); each must be within its bound.
 
-    The wall clock is read with the probes, up to 80 ms late: the least of the first readings
-    is taken off, as it is the same for all.
+    The wall clock is read with the probes, up to 80 ms late; the median lateness is subtracted
+    because it is the same for all events.
     """
     with database.reading() as db:
         clock = run_clocks(db, session_id)[epoch]
@@ -77,16 +77,16 @@ def _errors_s(database: Database, session_id: str, simulated: Simulated, epoch: 
     ],
     ids=["plain", "client steps", "headset asleep", "server steps", "server starts again"],
 )
-def test_events_are_where_they_were(database: Database, scenario: Scenario) -> None:
-    """Through the database, within 5 ms and but for the constant with which UTC was read."""
+def test_event_times_in_utc_are_correct_within_5_ms(database: Database, scenario: Scenario) -> None:
+    """Event times converted to UTC from stored probes are correct within 5 ms."""
     session_id = _session(database)
     simulated = _stored(database, session_id, scenario)
     assert _errors_s(database, session_id, simulated) < 0.005
 
 
 @pytest.mark.one_engine
-def test_a_wall_clock_set_in_mid_session_bends_no_time(database: Database) -> None:
-    """UTC stays that of the first probes; the mapping's rows tell by how much the clock was set."""
+def test_a_wall_clock_change_does_not_change_utc(database: Database) -> None:
+    """Changing the wall clock during a session does not change UTC; the mapping shows the step."""
     session_id = _session(database)
     simulated = _stored(database, session_id, WIFI)
     with database.reading() as db:
@@ -126,13 +126,13 @@ def _later(probes: ClockProbes, client_s: float, server_s: float, utc_s: float) 
     ],
     ids=["goes on", "wall clock set", "server started again", "later than it was up"],
 )
-def test_utc_is_kept_from_run_to_run(
+def test_utc_is_consistent_across_runs_of_the_client(
     database: Database, server_s: float, utc_s: float, passed_s: float
 ) -> None:
-    """A second run of the client has a new clock and the same UTC.
+    """UTC is consistent across two runs of the client with different clocks.
 
-    That is fixed anew where the server's monotonic clock went back, or is so little ahead that it
-    must have begun after the first run.
+    It is set anew if the server's monotonic clock went back, or is so little ahead that the server
+    must have restarted after the first run.
     """
     session_id = _session(database)
     probes = _stored(database, session_id, WIFI).probes
@@ -148,7 +148,7 @@ def test_utc_is_kept_from_run_to_run(
 
 @pytest.mark.one_engine
 def test_a_run_after_a_restart_within_a_run_keeps_utc(database: Database) -> None:
-    """What undid the jump of the server's clock counts for the next run as well."""
+    """A run of the client that follows a server restart within the previous run keeps UTC."""
     session_id = _session(database)
     restarting = replace(WIFI, server_step_s=-SERVER_STARTS_S)
     probes = _stored(database, session_id, restarting).probes
@@ -164,7 +164,7 @@ def test_a_run_after_a_restart_within_a_run_keeps_utc(database: Database) -> Non
 
 
 def test_a_clock_that_was_set_back_is_read_in_the_order_of_storing(database: Database) -> None:
-    """Its own times no longer tell the order; times that it showed twice have a wide bound."""
+    """Times of a client clock that was set back are read in stored order, with a wide bound."""
     session_id = _session(database)
     simulated = _stored(database, session_id, replace(WIFI, client_step_s=-30.0))
     with database.reading() as db:
@@ -176,7 +176,7 @@ def test_a_clock_that_was_set_back_is_read_in_the_order_of_storing(database: Dat
 
 
 def test_contacts_and_completions_have_utc(database: Database) -> None:
-    """The run's clock is 0 at NOW, and UTC is read 10 ms after the answer: so much later."""
+    """Contacts and completed tasks have their UTC and its uncertainty."""
     with database.writing() as db:
         build_session(db, SessionSpec("P-0001"))
     with database.reading() as db:
@@ -194,7 +194,7 @@ def test_contacts_and_completions_have_utc(database: Database) -> None:
 
 
 def test_without_probes_there_is_no_utc(database: Database) -> None:
-    """Cells stay empty; a run without probes borrows nothing from another."""
+    """A run of the client without clock probes has no UTC, even if another run has."""
     session_id = _session(database)
     with database.reading() as db:
         contacts = contacts_table(db, STUDY, "people")
@@ -212,8 +212,8 @@ def test_without_probes_there_is_no_utc(database: Database) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_faster_simulation_is_mapped_in_its_own_seconds(database: Database) -> None:
-    """At ten seconds of the client's clock a second, a minute of it is six seconds of UTC."""
+def test_an_accelerated_clock_is_mapped_by_its_time_scale(database: Database) -> None:
+    """At a time scale of ten a minute of the client's clock is six seconds of UTC."""
     session_id = _session(database, "simulated")
     probes = simulate(replace(WIFI, drift_ppm=0.0), np.random.default_rng(1)).probes
     with database.writing() as db:
@@ -232,8 +232,8 @@ def test_a_faster_simulation_is_mapped_in_its_own_seconds(database: Database) ->
     assert stored["round_trip_ms"].min() == pytest.approx(4.0, abs=0.5)
 
 
-def test_the_tables_tell_readings_and_segments(database: Database) -> None:
-    """A lost probe has no answer; between a segment's ends UTC runs in proportion."""
+def test_the_clock_tables_have_probes_and_segments(database: Database) -> None:
+    """The clock tables have every probe, answered or not, and the segments of the mapping."""
     with database.writing() as db:
         session_id = build_session(db, SessionSpec("P-0001")).id
     with database.reading() as db:

@@ -1,4 +1,4 @@
-"""Every exported column is described once."""
+"""Tests that every exported column is described exactly once."""
 
 from collections import Counter
 from pathlib import Path
@@ -10,21 +10,21 @@ PAGE = Path(__file__).resolve().parents[4] / "docs" / "data-dictionary.md"
 
 
 def test_a_column_has_exactly_one_entry() -> None:
-    """No table has two columns of one name."""
+    """Every column of every table has exactly one entry in the codebook."""
     counts = Counter((column.table, column.name) for column in CODEBOOK)
     assert set(counts.values()) == {1}
     assert {table for table, _ in counts} == set(TABLES)
 
 
-def test_every_entry_says_what_it_means() -> None:
-    """A meaning is a sentence; a boolean and a time say how they are written."""
+def test_every_entry_has_a_meaning_and_a_type() -> None:
+    """Every entry of the codebook has a meaning, as a sentence, and a known type."""
     for column in CODEBOOK:
         assert column.meaning.endswith(".")
         assert column.type in ("text", "integer", "number", "boolean", "time")
 
 
-def test_units_stand_in_the_names() -> None:
-    """What is in degrees, metres, seconds or milliseconds says so in its name, and the reverse."""
+def test_column_names_end_with_their_unit() -> None:
+    """A column in degrees, metres, seconds or milliseconds has the unit as its suffix."""
     for column in CODEBOOK:
         for suffix, unit in (("_deg", "deg"), ("_m", "m"), ("_s", "s"), ("_ms", "ms")):
             if column.type == "number" and column.name.endswith(suffix):
@@ -35,14 +35,14 @@ def test_units_stand_in_the_names() -> None:
 
 
 def test_every_table_of_data_says_whether_it_was_simulated() -> None:
-    """`simulated` and `avatar` stand in each; the codebook and the equipment are of no session."""
+    """Every table of session data has the columns `simulated` and `avatar`."""
     for table in set(TABLES) - {"codebook", "calibrations"}:
         names = {column.name for column in CODEBOOK if column.table == table}
         assert {"simulated", "avatar"} <= names
 
 
-def test_both_streams_have_a_root_and_four_parts_for_each_joint() -> None:
-    """3 + 4 x 22 columns for the target and for the actual body."""
+def test_both_streams_have_columns_for_root_and_quaternions() -> None:
+    """Each stream has 3 + 4 x 22 columns in the table of samples."""
     names = [column.name for column in CODEBOOK if column.table == "samples"]
     for stream in ("target", "actual"):
         assert f"{stream}_root_x_m" in names
@@ -51,12 +51,12 @@ def test_both_streams_have_a_root_and_four_parts_for_each_joint() -> None:
 
 
 def test_the_page_is_the_codebook() -> None:
-    """docs/data-dictionary.md is what `python -m app.features.results.analysis.codebook` writes."""
+    """docs/data-dictionary.md is up to date with the codebook."""
     assert PAGE.read_text(encoding="utf-8") == data_dictionary()
 
 
 def test_the_codebook_describes_itself() -> None:
-    """Its table has a row for each of its own columns."""
+    """The codebook has an entry for each of its own columns."""
     frame = codebook_frame()
     own = frame[frame["table"] == "codebook"]["column"].tolist()
     assert own == list(frame.columns)

@@ -1,4 +1,4 @@
-"""The dashboard of a study."""
+"""Tests of the dashboard of a study."""
 
 import io
 import json
@@ -75,14 +75,14 @@ def _axes(figure: dict[str, Any]) -> list[dict[str, Any]]:
 
 @pytest.fixture(scope="module")
 def two_people(lasting_database: Database) -> DashboardFigures:
-    """What is drawn of two whole sessions, for tests that only look at it."""
+    """Return the dashboard of two complete sessions, for tests that only read it."""
     _build(lasting_database, SessionSpec("P-0001"), SessionSpec("P-0002"))
     return _dashboard(lasting_database)
 
 
 @pytest.mark.one_engine
-def test_every_figure_is_valid_and_travels_as_plain_json(two_people: DashboardFigures) -> None:
-    """plotly's own validation takes each; no packed arrays, no NaN."""
+def test_every_figure_is_valid_plain_json(two_people: DashboardFigures) -> None:
+    """Every figure passes plotly's validation and is JSON without packed arrays or NaN."""
     view = two_people
     assert [figure.key for figure in view.figures] == KEYS
     text = json.dumps(view.model_dump(mode="json"), allow_nan=False)
@@ -94,7 +94,7 @@ def test_every_figure_is_valid_and_travels_as_plain_json(two_people: DashboardFi
 
 @pytest.mark.one_engine
 def test_every_figure_says_what_it_shows(two_people: DashboardFigures) -> None:
-    """Title, caption, units on the axes, hover texts, a clear background, and how many people."""
+    """Every figure has a title, a caption with n, units on its axes and hover texts."""
     for entry in two_people.figures:
         if entry.figure is None:
             assert entry.key in NEEDS_MOVEMENT
@@ -112,8 +112,8 @@ def test_every_figure_says_what_it_shows(two_people: DashboardFigures) -> None:
 
 
 @pytest.mark.one_engine
-def test_simulated_data_are_marked_and_alone(database: Database) -> None:
-    """Every title begins with Simulated; people's sessions are not in it, nor the reverse."""
+def test_simulated_data_are_marked_and_separate(database: Database) -> None:
+    """Figures of simulated sessions are marked as such and contain no other sessions."""
     _build(
         database,
         SessionSpec("P-0001"),
@@ -131,8 +131,8 @@ def test_simulated_data_are_marked_and_alone(database: Database) -> None:
 
 
 @pytest.mark.one_engine
-def test_nobody_gives_a_sentence_instead_of_a_plot(database: Database) -> None:
-    """Without participants every entry says in words what is missing."""
+def test_figures_without_data_have_a_sentence(database: Database) -> None:
+    """Without participants every figure is a sentence that says what is missing."""
     _build(database)
     for entry in _dashboard(database).figures:
         assert entry.figure is None
@@ -142,7 +142,7 @@ def test_nobody_gives_a_sentence_instead_of_a_plot(database: Database) -> None:
 
 @pytest.mark.one_engine
 def test_one_participant_is_drawn_without_an_interval(database: Database) -> None:
-    """The first participant is shown, and the caption says that an interval is missing."""
+    """A single participant is drawn without an interval, and the caption says so."""
     _build(database, SessionSpec("P-1"))
     figures = {entry.key: entry for entry in _dashboard(database).figures}
     agency = figures["embodiment_agency"]
@@ -152,7 +152,7 @@ def test_one_participant_is_drawn_without_an_interval(database: Database) -> Non
 
 @pytest.mark.one_engine
 def test_only_valid_data_are_drawn(database: Database) -> None:
-    """A withdrawn session and a first attempt change no measure."""
+    """A withdrawn session changes no figure of measures."""
     _build(database, SessionSpec("P-0001"), SessionSpec("P-0002"))
     before = _figures(_dashboard(database))
     _build(database, SessionSpec("P-0003", status="withdrawn", completions=lambda _: 50))
@@ -162,15 +162,15 @@ def test_only_valid_data_are_drawn(database: Database) -> None:
 
 
 def test_the_counts_are_those_of_the_study(database: Database) -> None:
-    """Sessions, completed ones, and the avatars there were."""
+    """The dashboard states the study's sessions, completed sessions and avatars."""
     _build(database, SessionSpec("P-1"), SessionSpec("P-2", status="active"))
     view = _dashboard(database)
     assert (view.n_sessions, view.n_completed, view.avatar) == (2, 1, ["delayed_copy"])
 
 
 @pytest.mark.one_engine
-def test_a_blinded_dashboard_tells_nothing_about_open_sessions(database: Database) -> None:
-    """Their measures are left out, and orders are not told apart."""
+def test_a_blinded_dashboard_leaves_out_open_sessions(database: Database) -> None:
+    """In a blinded study the dashboard shows no measure and no order of open sessions."""
     with database.writing() as db:
         study = study_by_key(db, STUDY)
         yaml = versions_of(db, study)[-1].source_yaml
@@ -186,7 +186,7 @@ def test_a_blinded_dashboard_tells_nothing_about_open_sessions(database: Databas
     assert not any("P-0003" in json.dumps(entry.figure) for entry in view.figures)
     assert all(figures[key].n == 2 for key in COUNTING if key not in NEEDS_MOVEMENT)
     assert all("blinded" in entry.caption for entry in view.figures)
-    # Nor can an open session's order be found out by choosing one order after the other.
+    # Nor can an open session's order be found by filtering for one order after the other.
     with database.reading() as db:
         material = read_material(db, STUDY, "people")
     for order in view.choices.orders:
@@ -196,8 +196,8 @@ def test_a_blinded_dashboard_tells_nothing_about_open_sessions(database: Databas
 
 
 @pytest.mark.one_engine
-def test_a_filter_leaves_only_what_was_chosen_and_says_so(database: Database) -> None:
-    """By participant, limb and day; every caption tells it, and what is left is all there is."""
+def test_a_filter_limits_the_figures_and_is_stated(database: Database) -> None:
+    """A filter by participant, limb or day limits every figure and is stated in its caption."""
     _build(database, SessionSpec("P-0001"), SessionSpec("P-0002"))
     chosen = FigureFilter(participant=("P-0002",), limb="foot")
     view = _dashboard(database, chosen=chosen)
@@ -214,8 +214,8 @@ def test_a_filter_leaves_only_what_was_chosen_and_says_so(database: Database) ->
 
 
 @pytest.mark.one_engine
-def test_rows_that_do_not_count_are_drawn_only_when_asked_for(database: Database) -> None:
-    """A withdrawn session is in the figures of all rows, and the captions say so."""
+def test_invalid_rows_are_drawn_only_on_request(database: Database) -> None:
+    """Invalid rows are drawn only on request, and the captions say so."""
     _build(database, SessionSpec("P-0001"), SessionSpec("P-0002", status="withdrawn"))
     figures = {
         rows: {one.key: one for one in _dashboard(database, chosen=chosen).figures}
@@ -227,7 +227,7 @@ def test_rows_that_do_not_count_are_drawn_only_when_asked_for(database: Database
 
 @pytest.mark.one_engine
 def test_the_rows_of_a_figure_are_those_drawn(database: Database) -> None:
-    """Means and intervals of the file are those of the trace; simulated data say so twice."""
+    """A figure's rows as CSV have the means and intervals that are drawn."""
     _build(database, *(SessionSpec(f"SIM-{at}", kind="simulated") for at in range(3)))
     with database.reading() as db:
         material = read_material(db, STUDY, "simulated")
@@ -248,6 +248,6 @@ def test_the_rows_of_a_figure_are_those_drawn(database: Database) -> None:
 
 @pytest.mark.one_engine
 def test_an_unknown_study_has_no_dashboard(database: Database) -> None:
-    """The error names the studies there are."""
+    """The dashboard of an unknown study is not found."""
     with database.reading() as db, pytest.raises(NotFound):
         build_dashboard(db, "nothing", "people")

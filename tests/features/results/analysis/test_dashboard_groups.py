@@ -1,4 +1,4 @@
-"""Groups of a dashboard's figures, the tables kept for them, and joint error over a session."""
+"""Tests of groups of figures, the cached tables, and joint error over a session."""
 
 from typing import get_args
 
@@ -19,10 +19,10 @@ def _build(database: Database, *specs: SessionSpec) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_group_has_the_figures_that_all_have_and_reads_no_other_table(
+def test_a_group_has_its_figures_and_reads_only_its_tables(
     database: Database,
 ) -> None:
-    """The groups together are the whole page; progress is drawn from sessions and limbs alone."""
+    """A group has the same figures as the whole dashboard and reads only the tables it needs."""
     _build(database, SessionSpec("P-0001"), SessionSpec("P-0002"))
     with database.reading() as db:
         material = MaterialStore().get(db, STUDY, "people", "first")
@@ -36,8 +36,8 @@ def test_a_group_has_the_figures_that_all_have_and_reads_no_other_table(
 
 
 @pytest.mark.one_engine
-def test_kept_tables_are_read_anew_in_another_state_and_by_database(database: Database) -> None:
-    """The same state reads nothing twice; another one, and another study's kind, begins anew."""
+def test_cached_tables_are_reread_when_the_data_change(database: Database) -> None:
+    """Cached tables are reread only when the state of the data or the kind changes."""
     _build(database, SessionSpec("P-0001"))
     store = MaterialStore()
     with database.reading() as db:
@@ -53,10 +53,10 @@ def test_kept_tables_are_read_anew_in_another_state_and_by_database(database: Da
 
 
 @pytest.mark.one_engine
-def test_joint_error_over_a_session_is_the_mean_over_those_who_had_the_latency_then(
+def test_joint_error_by_block_is_the_mean_of_its_participants(
     database: Database,
 ) -> None:
-    """Of every limb, latency and block: mean and n are those of the table of joint errors."""
+    """Joint error by limb, latency and block is the mean over the participants in that cell."""
     _build(database, *(SessionSpec(f"P-{at}") for at in range(4)))
     with database.reading() as db:
         material = read_material(db, STUDY, "people")
@@ -67,6 +67,6 @@ def test_joint_error_over_a_session_is_the_mean_over_those_who_had_the_latency_t
     found = drawing.data.set_index(["limb", "latency_ms", "block"])
     assert found["mean_deg"].to_dict() == pytest.approx(cells["mean"].to_dict())
     assert found["n"].to_dict() == cells["count"].to_dict()
-    # Four participants, six orders: somebody is alone in a cell, and has no interval.
+    # With four participants and six orders some cells have one participant and no interval.
     assert (found["ci95_low_deg"].isna() == (found["n"] == 1)).all()
     assert set(found["n"]) == {1, 2}

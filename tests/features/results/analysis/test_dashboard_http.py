@@ -1,4 +1,4 @@
-"""The dashboard over HTTP."""
+"""Tests of the dashboard over HTTP."""
 
 import time
 from collections.abc import Iterator
@@ -17,14 +17,14 @@ from tests.support.sqlite import fresh_sqlite
 
 @pytest.fixture(scope="module")
 def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
-    """A signed-in client of an application with two simulated sessions, for tests that read."""
+    """Yield a signed-in client of an application with two simulated sessions, for a module."""
     with _signed_in(tmp_path_factory.mktemp("dashboard")) as client:
         yield client
 
 
 @pytest.fixture
 def own_client(tmp_path: Path) -> Iterator[TestClient]:
-    """The same, for one test alone."""
+    """Yield a signed-in client of an application with two simulated sessions, for one test."""
     with _signed_in(tmp_path) as client:
         yield client
 
@@ -45,8 +45,8 @@ def _signed_in(folder: Path) -> Iterator[TestClient]:
         yield client
 
 
-def test_a_dashboard_has_its_shape(client: TestClient) -> None:
-    """Kind, counts, avatars, and figures with words for people and a figure for plotly.js."""
+def test_a_dashboard_has_the_documented_fields(client: TestClient) -> None:
+    """A dashboard has exactly the documented fields, each figure with a plot or a sentence."""
     view = client.get(f"/api/studies/{STUDY}/dashboard", params={"kind": "simulated"}).json()
     about = {"kind", "simulated", "n_sessions", "n_completed", "n_not_valid", "avatar"}
     assert set(view) == about | {"drawn_at", "current", "figures", "filter", "choices"}
@@ -58,8 +58,11 @@ def test_a_dashboard_has_its_shape(client: TestClient) -> None:
         assert entry["figure"] is None or set(entry["figure"]) == {"data", "layout"}
 
 
-def test_filter_rows_and_statistics_go_by_one_process(client: TestClient) -> None:
-    """The filter is in the address; rows are a copy on record; tests are kept like drawings."""
+def test_filtered_figures_rows_and_statistics_over_http(client: TestClient) -> None:
+    """Filtered figures, their rows as CSV and the statistics can be requested over HTTP.
+
+    Rows are recorded as a copy, and repeated requests get the cached drawing.
+    """
     path = f"/api/studies/{STUDY}/dashboard"
     asked = {"kind": "simulated", "participant": ["SIM-0002"], "limb": "hand"}
     view = client.get(path, params=asked).json()
@@ -87,8 +90,8 @@ def test_filter_rows_and_statistics_go_by_one_process(client: TestClient) -> Non
     assert client.get(tested, params={"kind": "simulated"}).json()["drawn_at"] == found["drawn_at"]
 
 
-def test_one_group_of_figures_can_be_asked_for(client: TestClient) -> None:
-    """With the same words about the whole; an unknown group is refused."""
+def test_one_group_of_figures_can_be_requested(client: TestClient) -> None:
+    """One group of figures can be requested; an unknown group is refused."""
     path = f"/api/studies/{STUDY}/dashboard"
     asked = {"kind": "simulated", "group": "tasks"}
     view = client.get(path, params=asked).json()
@@ -98,23 +101,23 @@ def test_one_group_of_figures_can_be_asked_for(client: TestClient) -> None:
     assert client.get(path, params={**asked, "group": "colours"}).status_code == 422
 
 
-def test_people_are_the_usual_kind_and_all_is_no_kind_of_a_dashboard(client: TestClient) -> None:
-    """Kinds are never drawn together."""
+def test_a_dashboard_shows_people_unless_another_kind_is_requested(client: TestClient) -> None:
+    """A dashboard shows sessions of people by default and refuses all kinds together."""
     path = f"/api/studies/{STUDY}/dashboard"
     assert client.get(path).json()["n_sessions"] == 0
     assert client.get(path, params={"kind": "all"}).status_code == 422
 
 
-def test_nobody_sees_it_without_signing_in(client: TestClient) -> None:
-    """401 for strangers, 404 for an unknown study."""
+def test_a_dashboard_needs_a_login(client: TestClient) -> None:
+    """A dashboard needs a login, and is not found for an unknown study."""
     assert client.get("/api/studies/nothing/dashboard").status_code == 404
     stranger = TestClient(client.app)
     stranger.portal = client.portal
     assert stranger.get(f"/api/studies/{STUDY}/dashboard").status_code == 401
 
 
-def test_a_page_gets_what_was_drawn_last_while_newer_data_are_drawn(own_client: TestClient) -> None:
-    """The old figures come at once and say so; soon the new ones are there."""
+def test_the_previous_figures_are_sent_while_new_ones_are_drawn(own_client: TestClient) -> None:
+    """While new data are drawn, requests get the previous figures, marked as not current."""
     path, people = f"/api/studies/{STUDY}/dashboard", {"kind": "people"}
     assert own_client.get(path, params=people).json()["current"] is True
     with own_client.app.state.context.database.writing() as db:  # type: ignore[attr-defined]  # ours

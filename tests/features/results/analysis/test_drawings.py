@@ -1,4 +1,4 @@
-"""What the server keeps of the process that draws."""
+"""Tests of how the server caches results of the drawing process."""
 
 import threading
 import time
@@ -16,11 +16,11 @@ from tests.features.builders import NOW, STUDY
 LATE_S = 0.2
 
 
-class LateToTell(Future[bytes]):
-    """Whoever waits for it goes on long before those that asked to be called are."""
+class LateCallbacks(Future[bytes]):
+    """A future whose callbacks run long after its waiters continue."""
 
     def add_done_callback(self, fn: Callable[[Future[bytes]], object]) -> None:
-        """Call it late."""
+        """Register a callback that is called late."""
 
         def late(done: Future[bytes]) -> None:
             time.sleep(LATE_S)
@@ -29,20 +29,20 @@ class LateToTell(Future[bytes]):
         super().add_done_callback(late)
 
 
-class Pencil(Worker):
-    """Draws in a thread."""
+class ThreadedWorker(Worker):
+    """A worker that draws in a thread."""
 
     def submit(self, *_task: Any, **_options: Any) -> Any:
-        """Something is drawn at once."""
-        drawing = LateToTell()
+        """Return a future that is done after 10 ms."""
+        drawing = LateCallbacks()
         threading.Timer(0.01, drawing.set_result, [b"{}"]).start()
         return drawing
 
 
 @pytest.mark.one_engine
-def test_who_waited_gets_what_was_drawn(database: Database) -> None:
-    """However late it is kept after the process was done with it."""
-    drawings = Drawings(str(database.engine.url), lambda: NOW, _worker=Pencil())
+def test_a_waiting_request_gets_its_drawing(database: Database) -> None:
+    """A request that waits for a drawing gets it, even if it is cached only later."""
+    drawings = Drawings(str(database.engine.url), lambda: NOW, _worker=ThreadedWorker())
     with database.reading() as db:
         drawn, current = drawings.dashboard(db, STUDY, "people")
     assert (drawn.body, current) == (b"{}", True)

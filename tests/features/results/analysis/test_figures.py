@@ -1,4 +1,4 @@
-"""Figures from tables, without a database."""
+"""Tests of drawing figures from tables, without a database."""
 
 from typing import Any
 
@@ -69,22 +69,22 @@ def _traces(drawing: Drawing, name: str) -> list[dict[str, Any]]:
     return [trace for trace in figure["data"] if trace.get("name") == name]
 
 
-def test_the_interval_is_students() -> None:
-    """1 to 5: mean 3, s = sqrt(2.5), t(.975, 4) = 2.7764, so half the width is 1.9633."""
+def test_the_interval_uses_students_t() -> None:
+    """The interval of 1 to 5 uses Student's t: mean 3, s = sqrt(2.5), t = 2.7764, so ± 1.9633."""
     interval = mean_interval([1.0, 2.0, 3.0, 4.0, 5.0])
     assert (interval.mean, interval.n) == (3.0, 5)
     assert interval.half_width == pytest.approx(1.9633, abs=1e-4)
 
 
 def test_one_value_has_a_mean_and_no_interval() -> None:
-    """Nothing is known about the spread."""
+    """One value has a mean but no interval; no values are an error."""
     assert mean_interval([2.0]).half_width is None
     with pytest.raises(ValueError, match="at least one"):
         mean_interval([])
 
 
 def test_means_are_over_participants() -> None:
-    """A participant with many phases counts as much as one with few."""
+    """Means are over participants: one with many phases counts as much as one with few."""
     twice = _phases({"P-1": {0.0: 4}, "P-2": {0.0: 1}})
     frame = pd.concat([twice, _phases({"P-1": {0.0: 4}})])
     (mean,) = _traces(completions_drawing(frame), "mean, hand")
@@ -92,15 +92,15 @@ def test_means_are_over_participants() -> None:
 
 
 def test_every_participant_has_a_line() -> None:
-    """Lines are told apart by gaps and named in the hover text."""
+    """Every participant has a line, separated by gaps and named in the hover text."""
     drawing = completions_drawing(_phases({"P-1": {0.0: 5, 125.0: 3}, "P-2": {0.0: 4, 125.0: 1}}))
     (people,) = _traces(drawing, "participants")
     assert people["text"] == ["P-1", "P-1", None, "P-2", "P-2", None]
     assert people["y"] == [5.0, 3.0, None, 4.0, 1.0, None]
 
 
-def test_limbs_have_panels_shapes_and_dashes_of_their_own() -> None:
-    """Colour is never the only difference."""
+def test_limbs_differ_in_panel_symbol_and_dash() -> None:
+    """Hand and foot differ in panel, symbol and dash, not only in colour."""
     counts = {"P-1": {0.0: 5}, "P-2": {0.0: 4}}
     drawing = completions_drawing(pd.concat([_phases(counts), _phases(counts, limb="foot")]))
     (hand,), (foot,) = _traces(drawing, "mean, hand"), _traces(drawing, "mean, foot")
@@ -110,7 +110,7 @@ def test_limbs_have_panels_shapes_and_dashes_of_their_own() -> None:
 
 
 def test_scores_that_are_missing_do_not_count() -> None:
-    """A questionnaire with a gap leaves its participant out of that component."""
+    """A participant with a missing score is left out of that score's figure."""
     scores = pd.DataFrame(
         {
             "participant_code": ["P-1", "P-2", "P-3"],
@@ -130,13 +130,13 @@ def test_scores_that_are_missing_do_not_count() -> None:
 
 
 def test_every_joint_is_in_one_part_of_the_body() -> None:
-    """Six parts hold the 21 joints, each once."""
+    """Each of the 21 joints is in exactly one of six body parts."""
     assert len(BODY_PARTS) == 6
     assert sorted(JOINTS_BY_PART) == sorted(ERROR_JOINTS)
 
 
-def test_joint_errors_are_those_of_the_whole_angle_against_the_present_pose() -> None:
-    """Axes, the delayed command and free movement do not enter."""
+def test_joint_error_figures_use_the_angle_to_the_present_pose() -> None:
+    """Joint error figures use the whole angle to the present target pose, in tasks only."""
     rows = [
         *_errors(10.0, "P-1", 125.0),
         *_errors(20.0, "P-2", 125.0),
@@ -157,8 +157,8 @@ def test_joint_errors_are_those_of_the_whole_angle_against_the_present_pose() ->
     assert heat["customdata"] == [[""] * 21]
 
 
-def test_the_map_of_joint_errors_tells_what_limits_took() -> None:
-    """Beside each joint's error, and the worst joint in words; of physics avatars only."""
+def test_the_joint_error_map_states_clipped_shares() -> None:
+    """The joint error map of a physics avatar states how often each joint was clipped."""
     rows = [
         {**row, "clipped_share": share if row["joint"] == "Head" else 0.0}
         for code, share in (("P-1", 0.1), ("P-2", 0.32))
@@ -178,8 +178,8 @@ def test_the_map_of_joint_errors_tells_what_limits_took() -> None:
     assert "limit" not in plain.caption
 
 
-def test_red_time_is_a_union_and_parts_stand_beside_it() -> None:
-    """Two parts from 1 to 3 s and 2 to 4 s: the side 3 s, the parts 2 s each."""
+def test_contact_time_of_a_side_is_the_union_over_parts() -> None:
+    """The contact time of a side is the union over body parts, which are shown separately."""
     phases = _phases({"P-1": {0.0: 1}, "P-2": {0.0: 1}})
     contacts = [
         _contact(code, 0.0, part, begin_s, begin_s + 2.0)
@@ -192,15 +192,15 @@ def test_red_time_is_a_union_and_parts_stand_beside_it() -> None:
 
 
 def test_a_phase_without_a_contact_counts_as_zero() -> None:
-    """3 s for one of two participants are 1.5 s on average."""
+    """A phase without contacts counts as zero seconds in the mean."""
     phases = _phases({"P-1": {0.0: 1}, "P-2": {0.0: 1}})
     contacts = pd.DataFrame([_contact("P-1", 0.0, "LeftHand", 1.0, 4.0)])
     sides, _ = _traces(contacts_drawing(phases, contacts), "0 ms")
     assert sides["y"] == [1.5]
 
 
-def test_no_contact_at_all_is_said() -> None:
-    """Nobody touched a side: a sentence, not an empty plot."""
+def test_no_contacts_at_all_give_a_sentence() -> None:
+    """Without any contact the figure is a sentence."""
     phases = _phases({"P-1": {0.0: 1}, "P-2": {0.0: 1}})
     none = pd.DataFrame([_contact("P-1", 0.0, "LeftHand", 1.0, 4.0)]).iloc[:0]
     drawing = contacts_drawing(phases, none)
@@ -208,8 +208,8 @@ def test_no_contact_at_all_is_said() -> None:
     assert drawing.empty == "No side of a box was touched in any valid phase."
 
 
-def test_progress_shows_every_order_also_one_nobody_had() -> None:
-    """Completed, open and withdrawn sessions of each order; those that do not count stand apart."""
+def test_progress_shows_every_order() -> None:
+    """Progress shows the sessions of every order by status, also an order without sessions."""
     sessions = pd.DataFrame(
         {
             "participant_code": ["P-1", "P-2", "P-3", "P-4"],
@@ -229,8 +229,8 @@ def test_progress_shows_every_order_also_one_nobody_had() -> None:
     assert (opened["y"], withdrawn["y"]) == ([nobody, nobody, 1], [1, nobody, nobody])
 
 
-def test_the_confounding_of_limb_and_time_is_said_where_it_is_there() -> None:
-    """Hand always first: confounded. Alternating: not."""
+def test_a_confounding_of_limb_and_time_is_stated() -> None:
+    """A note states that limb and time are confounded, only if one limb always came first."""
     counts = {"P-1": {0.0: 1}}
     hand, foot = _phases(counts), _phases(counts, limb="foot").assign(position=2)
     assert "hand phase always came first" in limb_note(pd.concat([hand, foot]))

@@ -1,4 +1,4 @@
-"""Joint error within a phase, drawn."""
+"""Tests of the figure of joint error within a phase."""
 
 import io
 from typing import Any
@@ -22,7 +22,7 @@ MEANS = ("0 ms", "125 ms")
 
 
 def _courses(growth_deg: float, code: str, latency: float, **changes: Any) -> list[dict[str, Any]]:
-    """A phase whose error grows by so much from bin to bin."""
+    """Return rows of a phase whose error grows by so much per bin."""
     row = {
         "participant_code": code,
         "phase_kind": "task",
@@ -50,7 +50,7 @@ def _traces(drawing: Drawing, name: str) -> list[dict[str, Any]]:
 
 
 def test_a_line_is_the_mean_over_participants_at_the_middle_of_each_bin() -> None:
-    """One grows by 1, one by 3 degrees a bin: 2 on average, whoever has more phases."""
+    """A line is the mean over participants, at the middle of each bin."""
     rows = [*_courses(1.0, "P-1", 125.0), *_courses(3.0, "P-2", 125.0)]
     rows += _courses(3.0, "P-2", 125.0)
     drawing = joint_error_course_drawing(pd.DataFrame(rows))
@@ -64,8 +64,8 @@ def test_a_line_is_the_mean_over_participants_at_the_middle_of_each_bin() -> Non
     assert second["ci95_high_deg"] - second["mean_deg"] == pytest.approx(12.7062, abs=1e-4)
 
 
-def test_a_band_spans_the_steps_and_stays_open_where_nothing_is_known() -> None:
-    """A gap parts it in two; a step with one participant has no interval and no band."""
+def test_a_band_is_interrupted_where_no_interval_is_known() -> None:
+    """The band of an interval is interrupted by gaps and by bins with one participant."""
     both = [*_courses(1.0, "P-1", 125.0), *_courses(1.0, "P-2", 125.0)]
     rows = [row for row in both if row["begin_active_s"] != 20.0]
     rows = [row for row in rows if row["participant_code"] == "P-1" or row["begin_active_s"] < 50.0]
@@ -77,8 +77,8 @@ def test_a_band_spans_the_steps_and_stays_open_where_nothing_is_known() -> None:
     assert len(gaps) == 2
 
 
-def test_latencies_and_limbs_are_told_apart_without_colour() -> None:
-    """By dashes and shapes, in a panel a limb, with the units on the axes."""
+def test_latencies_and_limbs_differ_without_colour() -> None:
+    """Latencies differ in dash and symbol, limbs in panel; the axes have units."""
     rows = [
         row
         for code in ("P-1", "P-2")
@@ -100,13 +100,13 @@ def test_latencies_and_limbs_are_told_apart_without_colour() -> None:
     assert layout["xaxis"]["title"]["text"] == "active time (s)"
     assert layout["yaxis"]["title"]["text"] == "mean joint error (deg)"
     assert (layout["xaxis"]["range"], layout["yaxis"]["rangemode"]) == ([0.0, 60.0], "tozero")
-    # No band lies over a line.
+    # No band is drawn over a line.
     first = next(at for at, one in enumerate(figure["data"]) if one["name"] == "0 ms")
     assert [one["name"].startswith("95 %") for one in figure["data"][:first]] == [True] * first
 
 
 def test_only_tasks_against_the_present_pose_are_drawn() -> None:
-    """Free movement, the delayed command and bins without a value do not enter."""
+    """Only tasks against the present target pose are drawn."""
     rows = [
         *_courses(0.0, "P-1", 125.0),
         *_courses(9.0, "P-2", 125.0, reference="command"),
@@ -122,8 +122,8 @@ def test_only_tasks_against_the_present_pose_are_drawn() -> None:
     assert (nothing.figure, nothing.empty) == (None, "No participant has joint errors yet.")
 
 
-def test_hinges_are_spoken_of_where_an_avatar_has_some() -> None:
-    """What a physics avatar is compared with is said, and only there."""
+def test_the_caption_mentions_limits_for_physics_avatars_only() -> None:
+    """The caption mentions joint limits for physics avatars only."""
     physics = joint_error_course_drawing(pd.DataFrame(_courses(1.0, "P-1", 0.0, avatar="physics")))
     plain = joint_error_course_drawing(pd.DataFrame(_courses(1.0, "P-1", 0.0)))
     assert "before their limits" in physics.caption
@@ -131,7 +131,7 @@ def test_hinges_are_spoken_of_where_an_avatar_has_some() -> None:
 
 
 def _drawing(database: Database, chosen: FigureFilter = NO_FILTER) -> tuple[Drawing, str]:
-    """The figure of the simulated sessions, and its rows as a file."""
+    """Return the figure of the simulated sessions, and its rows as CSV."""
     with database.reading() as db:
         material = read_material(db, STUDY, "simulated")
         found = drawings_of(material, chosen, "movement")
@@ -143,7 +143,7 @@ def _drawing(database: Database, chosen: FigureFilter = NO_FILTER) -> tuple[Draw
 def test_the_figure_of_a_study_is_filtered_and_its_rows_are_those_drawn(
     database: Database,
 ) -> None:
-    """Simulated sessions alone, by limb too; limb, latency, step, mean, interval and n."""
+    """The figure can be filtered, and its rows as CSV are those that are drawn."""
     with database.writing() as db:
         for at in range(3):
             build_session(db, SessionSpec(f"SIM-{at}", kind="simulated"))
@@ -165,8 +165,8 @@ def test_the_figure_of_a_study_is_filtered_and_its_rows_are_those_drawn(
 
 
 @pytest.mark.one_engine
-def test_figures_are_drawn_anew_when_a_phase_gets_its_course(database: Database) -> None:
-    """As those of an older version do after an update."""
+def test_a_new_course_changes_the_state_of_the_data(database: Database) -> None:
+    """Adding or removing a phase's course changes the state of the data, so figures are redrawn."""
     with database.writing() as db:
         session_id = build_session(db, SessionSpec("P-1")).id
     with database.writing() as db:

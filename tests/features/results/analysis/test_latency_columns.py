@@ -1,4 +1,4 @@
-"""The achieved latency in the table of phases."""
+"""Tests of the achieved latency in the table of phases."""
 
 import pandas as pd
 import pytest
@@ -14,7 +14,7 @@ from tests.features.latency_builders import measured
 
 @pytest.fixture
 def table(database: Database) -> pd.DataFrame:
-    """Free movement that was not measured; of the six tasks one is off, one had no movement."""
+    """Return phases whose latencies are unmeasured, without movement, off and within tolerance."""
     with database.writing() as db:
         session = build_session(db, SessionSpec("P-0001"))
         tasks = db.scalars(
@@ -30,8 +30,8 @@ def table(database: Database) -> pd.DataFrame:
         return phases_table(db, STUDY, "people").set_index("phase_id")
 
 
-def test_the_achieved_latency_stands_in_milliseconds(table: pd.DataFrame) -> None:
-    """With its interval, beside the ordered one."""
+def test_the_achieved_latency_is_in_milliseconds(table: pd.DataFrame) -> None:
+    """The table of phases has the achieved latency and its interval in milliseconds."""
     fine = table.iloc[-1]
     assert fine["achieved_latency_ms"] == pytest.approx(fine["latency_ms"])
     assert fine["achieved_latency_low_ms"] == pytest.approx(fine["latency_ms"] - 0.4)
@@ -39,8 +39,8 @@ def test_the_achieved_latency_stands_in_milliseconds(table: pd.DataFrame) -> Non
     assert (fine["movement_s"], fine["latency_samples"]) == (58.0, 5400)
 
 
-def test_what_is_unknown_is_missing_and_not_false(table: pd.DataFrame) -> None:
-    """Whether a latency is off is told only where there is one; without, there is a reason."""
+def test_an_unknown_latency_is_missing_and_not_false(table: pd.DataFrame) -> None:
+    """Without an achieved latency `latency_off` is missing, not false, and a reason is given."""
     roam, still, off = (table.iloc[row] for row in range(3))
     assert [bool(table.iloc[row]["latency_off"]) for row in (2, 3)] == [True, False]
     assert off["achieved_latency_ms"] == pytest.approx(off["latency_ms"] + 20.0)
@@ -54,7 +54,7 @@ def test_what_is_unknown_is_missing_and_not_false(table: pd.DataFrame) -> None:
 
 @pytest.mark.one_engine
 def test_a_missing_boolean_is_an_empty_cell(table: pd.DataFrame) -> None:
-    """true, false or nothing, as everywhere in an export."""
+    """A missing boolean is an empty cell of the CSV."""
     header, *rows = b"".join(csv_pieces("phases", table.reset_index())).decode().splitlines()
     at = header.split(",").index("latency_off")
     assert [row.split(",")[at] for row in rows[:4]] == ["", "", "true", "false"]

@@ -1,4 +1,4 @@
-"""Data quality as tables."""
+"""Tests of the tables of data quality, alarms and doubts."""
 
 from datetime import timedelta
 
@@ -31,18 +31,18 @@ OWN = ("quality", "alarms")
 
 
 def build(database: Database, *specs: SessionSpec, backwards: int = 0) -> None:
-    """Sessions whose phases were judged, with one alarm each."""
+    """Store sessions with quality rows for their phases and one alarm each."""
     with database.writing() as db:
         for spec in specs:
             session = build_session(db, spec)
-            judge(db, session, backwards)
+            add_quality(db, session, backwards)
             gap = Condition("gap", "a gap of 0.5 s", "target", 0.5, "s", 12.25)
             store_change(db, session.id, Change("raised", gap, NOW))
             store_change(db, session.id, Change("cleared", gap, NOW + timedelta(seconds=4)))
 
 
-def judge(db: Session, session: StudySession, backwards: int) -> None:
-    """Rows of both streams for every phase; the actual body's head froze."""
+def add_quality(db: Session, session: StudySession, backwards: int) -> None:
+    """Add quality rows of both streams for every phase; the actual head was frozen."""
     for phase in db.scalars(select(Phase).where(Phase.session_id == session.id)):
         for stream, joints in (("actual", ["Head", "LeftHand"]), ("target", [])):
             db.add(
@@ -68,7 +68,7 @@ def judge(db: Session, session: StudySession, backwards: int) -> None:
 
 
 def table(database: Database, name: str, kind: str = "people") -> pd.DataFrame:
-    """A table as it is exported."""
+    """Return a table as it is exported."""
     with database.reading() as db:
         return TABLES[name](db, STUDY, kind)  # type: ignore[arg-type]  # the fact
 
@@ -78,7 +78,7 @@ def table(database: Database, name: str, kind: str = "people") -> pd.DataFrame:
 def test_a_table_has_the_columns_of_the_codebook_also_when_empty(
     database: Database, name: str
 ) -> None:
-    """Names and order come from the codebook, with rows and without."""
+    """A table has the codebook's columns in order, with and without rows."""
     expected = [column.name for column in columns_of(name)]
     assert list(table(database, name).columns) == expected
     build(database, SessionSpec("P-0001"))
@@ -88,7 +88,7 @@ def test_a_table_has_the_columns_of_the_codebook_also_when_empty(
 
 @pytest.mark.parametrize("name", OWN)
 def test_kinds_never_mix(database: Database, name: str) -> None:
-    """A kind gives its own rows only."""
+    """A table of one kind of session has rows of that kind only."""
     build(database, SessionSpec("P-0001"), SessionSpec("SIM-0001", kind="simulated"))
     for kind in ("people", "simulated"):
         rows = table(database, name, kind)
@@ -99,7 +99,7 @@ def test_kinds_never_mix(database: Database, name: str) -> None:
 
 
 def test_every_phase_has_a_row_for_each_stream(database: Database) -> None:
-    """Target first; joints stand as words, none as nothing."""
+    """Every phase has a quality row for each stream, target first."""
     build(database, SessionSpec("P-0001"), backwards=5)
     rows = table(database, "quality")
     assert rows["stream"].tolist() == ["target", "actual"] * (len(rows) // 2)
@@ -110,15 +110,15 @@ def test_every_phase_has_a_row_for_each_stream(database: Database) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_redone_phase_stays_and_does_not_count(database: Database) -> None:
-    """As in every table of phases."""
+def test_a_repeated_phases_first_attempt_is_not_valid(database: Database) -> None:
+    """The quality rows of a repeated phase's first attempt are kept and not valid."""
     build(database, SessionSpec("P-0001", redone=("block2.hand",)))
     rows = table(database, "quality")
     assert rows[~rows["valid"]]["attempt"].tolist() == [1, 1]
 
 
-def test_what_cannot_be_true_does_not_count_and_is_told(database: Database) -> None:
-    """A phase whose frames run backwards is in no summary, and doubts.csv says why."""
+def test_a_doubted_phase_is_not_valid(database: Database) -> None:
+    """A phase whose frames run backwards is not valid, and the table of doubts has the reason."""
     build(database, SessionSpec("P-0001"), backwards=5)
     doubts, phases = table(database, "doubts"), table(database, "phases")
     assert set(doubts["doubt"]) == {"time_backwards"}
@@ -129,7 +129,7 @@ def test_what_cannot_be_true_does_not_count_and_is_told(database: Database) -> N
 
 
 def test_an_alarm_is_two_rows(database: Database) -> None:
-    """Raised, then cleared."""
+    """A cleared alarm has two rows: raised and cleared."""
     build(database, SessionSpec("P-0001"))
     rows = table(database, "alarms")
     assert rows["state"].tolist() == ["raised", "cleared"]

@@ -1,4 +1,4 @@
-"""The study's questions, answered from sessions whose answers are known beforehand."""
+"""Tests of the study's questions, answered from sessions with known answers."""
 
 import pytest
 
@@ -16,11 +16,11 @@ from tests.protocol.helpers import STUDY as FILE
 from tests.protocol.test_preregistration import SECTION
 
 FALLING = {0.0: 7, 125.0: 5, 350.0: 2}
-"""What everybody answers to every item, by latency."""
+"""What every participant answers to every item, by latency."""
 
 
 def _likert(step: Step, item: str) -> int:
-    # Agency is q6 + q7 + q8 - q9: turned round, q9 falls with the others.
+    # Agency is q6 + q7 + q8 - q9: q9 is reversed so that it falls with the others.
     value = FALLING[step.latency_ms or 0.0]
     return 8 - value if item == "q9" else value
 
@@ -44,8 +44,8 @@ def _result(found: StatisticsResults, measure: str, key: str) -> ResultView:
 
 
 @pytest.mark.one_engine
-def test_everybody_alike_gives_the_smallest_p_there_is(database: Database) -> None:
-    """Six people of one mind: Friedman's exact p is 6^-5, W is 1, both latencies differ."""
+def test_identical_participants_give_the_smallest_possible_p(database: Database) -> None:
+    """Six identical participants give Friedman's smallest exact p, 6^-5, and W = 1."""
     found = _found(database, 6, status="withdrawn")
     friedman = _result(found, "karas2020_agency", "friedman_hand")
     assert "χ²(2, N = 6) = 12.00, p < .001 (exact), Kendall’s W = 1.00" in friedman.apa
@@ -67,8 +67,8 @@ def test_everybody_alike_gives_the_smallest_p_there_is(database: Database) -> No
 
 
 @pytest.mark.one_engine
-def test_a_glance_tells_where_a_measure_goes_and_not_where_it_should(database: Database) -> None:
-    """Agency was predicted to fall; here it rises: that is told, and p is nearly 1."""
+def test_the_overview_shows_the_observed_direction(database: Database) -> None:
+    """The overview shows a measure's observed direction, even if the opposite was predicted."""
     rising = {0.0: 2, 125.0: 5, 350.0: 7}
     with database.writing() as db:
         for at in range(6):
@@ -90,8 +90,8 @@ def test_a_glance_tells_where_a_measure_goes_and_not_where_it_should(database: D
 
 
 @pytest.mark.one_engine
-def test_what_does_not_change_goes_neither_way(database: Database) -> None:
-    """Completed tasks are the same everywhere: no direction is told, and p is 1."""
+def test_a_constant_measure_has_no_direction(database: Database) -> None:
+    """A measure that does not change has no direction and p = 1."""
     found = _found(database, 4)
     told = _result(found, "completions", "trend_hand")
     assert "By ranks the measure neither rises nor falls with latency." in told.sentence
@@ -100,8 +100,8 @@ def test_what_does_not_change_goes_neither_way(database: Database) -> None:
 
 
 @pytest.mark.one_engine
-def test_nothing_is_significant_and_alpha_is_told(database: Database) -> None:
-    """The word does not occur; what was not declared is said to be so."""
+def test_results_state_alpha_and_never_say_significant(database: Database) -> None:
+    """Results state alpha, never say "significant", and say if tests were not declared."""
     found = _found(database, 3)
     text = found.model_dump_json()
     assert "significant" not in text
@@ -110,8 +110,8 @@ def test_nothing_is_significant_and_alpha_is_told(database: Database) -> None:
 
 
 @pytest.mark.one_engine
-def test_alpha_is_the_one_that_was_declared(database: Database) -> None:
-    """What is here beside the declared test is said to be exploratory."""
+def test_alpha_is_the_declared_one(database: Database) -> None:
+    """A declared alpha is used, and all other tests are called exploratory."""
     declared = SECTION.replace("alpha: 0.05", "alpha: 0.01")
     with database.writing() as db:
         add_version(db, study_by_key(db, STUDY), FILE + declared, NOW)
@@ -122,14 +122,14 @@ def test_alpha_is_the_one_that_was_declared(database: Database) -> None:
 
 
 @pytest.mark.one_engine
-def test_one_person_is_no_sample(database: Database) -> None:
-    """No measure, no error: two are needed for anything."""
+def test_one_participant_gives_no_measures(database: Database) -> None:
+    """With one participant there are no measures and no error."""
     assert _found(database, 1).measures == []
 
 
 @pytest.mark.one_engine
 def test_a_rescaled_score_is_not_tested_twice(database: Database) -> None:
-    """soe_rescaled is soe_thesis times 1.5: every rank test of both is the same."""
+    """`soe_rescaled`, which is 1.5 times `soe_thesis`, is not tested separately."""
     keys = [one.key for one in _found(database, 3).measures]
     assert "karas2020_soe_thesis" in keys
     assert "karas2020_soe_rescaled" not in keys
@@ -147,12 +147,12 @@ def test_a_rescaled_score_is_not_tested_twice(database: Database) -> None:
         ("UpperChest", "trunk and head"),
     ],
 )
-def test_body_parts_are_grouped_by_what_they_are(part: str, group: str) -> None:
-    """Fingers, hand and arm; toes, foot and leg; the rest."""
+def test_body_parts_are_grouped_by_kind(part: str, group: str) -> None:
+    """A body part belongs to the group of its kind, such as finger, hand or arm."""
     assert group_of(part) == group
 
 
-def test_numbers_are_printed_as_papers_print_them() -> None:
-    """No zero before the point where 1 is the limit; small p as a bound."""
+def test_numbers_are_printed_in_apa_style() -> None:
+    """Numbers are printed in APA style: no leading zero below 1, and a bound for a small p."""
     assert (p_words(0.0004), p_words(0.0125), p_words(1.0)) == ("p < .001", "p = .013", "p = 1.000")
     assert (bounded(-0.5, 2), bounded(1.0, 2), bounded(0.0, 2)) == ("−.50", "1.00", ".00")

@@ -1,4 +1,4 @@
-"""The record as tables."""
+"""Tests of the record as tables."""
 
 import math
 from collections.abc import Callable
@@ -46,13 +46,13 @@ def _read(database: Database, table: str, kind: Kind = "people") -> pd.DataFrame
 @pytest.mark.one_engine
 @pytest.mark.parametrize("table", TABLES)
 def test_an_empty_table_has_the_columns_of_the_codebook(database: Database, table: str) -> None:
-    """Names and order come from the codebook."""
+    """A table without rows has the codebook's columns in order."""
     assert list(_read(database, table).columns) == [one.name for one in columns_of(table)]
 
 
 @pytest.mark.parametrize("table", TABLES)
 def test_a_table_has_the_columns_of_the_codebook(three_kinds: Database, table: str) -> None:
-    """With rows as without."""
+    """A table with rows has the codebook's columns in order."""
     filled = _read(three_kinds, table)
     assert list(filled.columns) == [one.name for one in columns_of(table)]
     assert len(filled) > 0
@@ -60,7 +60,7 @@ def test_a_table_has_the_columns_of_the_codebook(three_kinds: Database, table: s
 
 @pytest.mark.parametrize("table", TABLES)
 def test_kinds_never_mix(three_kinds: Database, table: str) -> None:
-    """A kind gives its own rows only; all of them together only where all is asked for."""
+    """A table of one kind of session has rows of that kind only; `all` has all of them."""
     kinds: tuple[Kind, ...] = ("people", "simulated", "test")
     sizes = []
     for kind in kinds:
@@ -76,8 +76,8 @@ def test_kinds_never_mix(three_kinds: Database, table: str) -> None:
 @pytest.mark.parametrize(
     "table", ["phases", "contacts", "completions", "joint_errors", "joint_error_course"]
 )
-def test_a_redone_phase_stays_and_does_not_count(database: Database, table: str) -> None:
-    """Both attempts are there; only the second is valid."""
+def test_a_repeated_phases_first_attempt_is_not_valid(database: Database, table: str) -> None:
+    """Both attempts of a repeated phase are in the tables; only the second is valid."""
     _build(database, SessionSpec("P-0001", redone=("block1.hand",)))
     rows = _read(database, table)
     of_step = rows[(rows["block"] == 1) & (rows["limb"] == "hand")]
@@ -85,8 +85,8 @@ def test_a_redone_phase_stays_and_does_not_count(database: Database, table: str)
 
 
 @pytest.mark.one_engine
-def test_a_superseded_form_stays_and_does_not_count(database: Database) -> None:
-    """Answers and scores of the first attempt are there and not valid."""
+def test_only_the_last_attempt_of_a_repeated_form_is_valid(database: Database) -> None:
+    """Answers and scores of a repeated form's first attempt are kept and not valid."""
     _build(database, SessionSpec("P-0001", redone=("block2.foot.karas2020",)))
     for table in ("answers", "scores"):
         rows = _read(database, table)
@@ -96,8 +96,8 @@ def test_a_superseded_form_stays_and_does_not_count(database: Database) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_form_about_a_skipped_phase_does_not_count(database: Database) -> None:
-    """Whoever skipped a phase cannot say what it was like."""
+def test_a_form_about_a_skipped_phase_is_not_valid(database: Database) -> None:
+    """The scores of a form about a skipped phase are not valid."""
     _build(database, SessionSpec("P-0001", skipped=("block3.foot",)))
     rows = _read(database, "scores")
     invalid = rows[~rows["valid"]]
@@ -105,8 +105,10 @@ def test_a_form_about_a_skipped_phase_does_not_count(database: Database) -> None
 
 
 @pytest.mark.parametrize("status", ["aborted", "withdrawn"])
-def test_nothing_of_a_session_that_was_broken_off_counts(database: Database, status: str) -> None:
-    """Its rows stay in every table, all of them with valid false."""
+def test_no_row_of_an_aborted_or_withdrawn_session_is_valid(
+    database: Database, status: str
+) -> None:
+    """All rows of an aborted or withdrawn session are kept and not valid."""
     _build(database, SessionSpec("P-0001", status=status))
     for table in TABLES:
         rows = _read(database, table)
@@ -116,8 +118,8 @@ def test_nothing_of_a_session_that_was_broken_off_counts(database: Database, sta
 
 
 @pytest.mark.one_engine
-def test_the_place_in_the_design_comes_with_every_phase(database: Database) -> None:
-    """Three blocks of hand then foot, with the latencies of the session's order."""
+def test_phases_have_their_block_position_and_limb(database: Database) -> None:
+    """Every phase has its block, position, limb and latency of the session's order."""
     _build(database, SessionSpec("P-0001"))
     order = _read(database, "sessions")["order"].item()
     phases = _read(database, "phases").dropna(subset=["block"])
@@ -129,7 +131,7 @@ def test_the_place_in_the_design_comes_with_every_phase(database: Database) -> N
 
 @pytest.mark.one_engine
 def test_red_time_is_the_union_over_body_parts(database: Database) -> None:
-    """Two parts at one side from 1 to 3 s and from 2 to 4 s: red for 3 s, once; not 4 s."""
+    """A side touched by two parts from 1 to 3 s and 2 to 4 s is red once, for 3 s."""
     _build(database, SessionSpec("P-0001"))
     phase = _read(database, "phases").dropna(subset=["block"]).iloc[0]
     assert (phase["side_red_s"], phase["side_contacts"]) == (3.0, 1)
@@ -140,7 +142,7 @@ def test_red_time_is_the_union_over_body_parts(database: Database) -> None:
 
 @pytest.mark.one_engine
 def test_joint_errors_are_in_degrees(database: Database) -> None:
-    """pi / 2 rad in the database is 90 degrees in the table."""
+    """A joint error of pi / 2 rad in the database is 90 degrees in the table."""
     _build(database, SessionSpec("P-0001", joint_error_rad=lambda _, __: math.pi / 2))
     rows = _read(database, "joint_errors")
     present = rows[rows["reference"] == "present"]
@@ -148,7 +150,7 @@ def test_joint_errors_are_in_degrees(database: Database) -> None:
 
 
 def test_a_course_has_a_row_for_every_bin_in_order_of_time(database: Database) -> None:
-    """In degrees, from 0 s on in steps of 5 s, both references; a bin without samples is empty."""
+    """A course has a row for every 5 s bin in order of time; one without samples is empty."""
     _build(database, SessionSpec("P-0001"))
     own = JointErrorCourseRow.phase_id == 2
     with database.writing() as db:
@@ -165,8 +167,8 @@ def test_a_course_has_a_row_for_every_bin_in_order_of_time(database: Database) -
 
 
 @pytest.mark.one_engine
-def test_what_limits_took_stands_beside_the_errors(database: Database) -> None:
-    """As it is stored; empty where nothing is."""
+def test_joint_errors_have_their_clipped_share(database: Database) -> None:
+    """Joint errors have their stored clipped share, and an empty cell without one."""
     _build(database, SessionSpec("P-0001"))
     assert _read(database, "joint_errors")["clipped_share"].isna().all()
     head = (JointErrorRow.joint == "Head") & (JointErrorRow.axis == "x")
@@ -179,7 +181,7 @@ def test_what_limits_took_stands_beside_the_errors(database: Database) -> None:
 
 
 def test_answers_stand_as_given_and_scores_follow_from_them(database: Database) -> None:
-    """Table 7.2 of Karas 2020 (hand, 0 ms): these raw answers score 8, 7, 4 and 1.04."""
+    """The raw answers of Karas 2020, table 7.2 (hand, 0 ms), score 8, 7, 4 and 1.04."""
     raw = [2, 1, 1, 5, 1, 7, 7, 2, 1, 6, 1, 3, 4, 4]
     known = {f"q{number}": answer for number, answer in enumerate(raw, start=1)}
     _build(database, SessionSpec("P-0001", likert=lambda _, item: known.get(item, 3)))
@@ -196,7 +198,7 @@ def test_answers_stand_as_given_and_scores_follow_from_them(database: Database) 
 
 @pytest.mark.one_engine
 def test_heights_are_those_stated_and_matched(database: Database) -> None:
-    """Both heights of the procedure stand in the table of sessions."""
+    """The table of sessions has the stated and the matched height."""
     _build(database, SessionSpec("P-0001"))
     row = _read(database, "sessions").iloc[0]
     assert (row["height_stated_m"], row["height_matched_m"]) == (1.75, 1.73)
@@ -204,7 +206,7 @@ def test_heights_are_those_stated_and_matched(database: Database) -> None:
 
 @pytest.mark.one_engine
 def test_an_unknown_study_and_an_unknown_kind_are_refused(database: Database) -> None:
-    """The error names what there is."""
+    """An unknown study and an unknown kind are refused with the valid ones."""
     with database.reading() as db:
         with pytest.raises(NotFound) as unknown:
             tables.phases_table(db, "nothing", "people")

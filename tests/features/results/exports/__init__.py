@@ -1,1 +1,1 @@
-"""Tidy CSV with a codebook."""
+"""Tests of exports as tidy CSV with a codebook."""

@@ -1,4 +1,4 @@
-"""A database with the shipped study, on both engines."""
+"""Fixtures with the shipped study's database, on both engines."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -15,7 +15,7 @@ from tests.support.sqlite import fresh_sqlite
 
 @contextmanager
 def with_studies(url: str) -> Iterator[Database]:
-    """A migrated database that knows the shipped studies."""
+    """Yield a migrated database with the shipped studies."""
     database = open_database(url)
     try:
         with database.writing() as db:
@@ -26,7 +26,7 @@ def with_studies(url: str) -> Iterator[Database]:
 
 
 def fill(database: Database) -> None:
-    """Two people and one simulated session, one person with movement."""
+    """Store sessions of two people, one of them with movement, and a simulated one."""
     with database.writing() as db:
         first = build_session(db, SessionSpec("P-0001", open_answer='=HYPERLINK("http://x","y")'))
         build_session(db, SessionSpec("P-0002", status="withdrawn"))
@@ -37,7 +37,7 @@ def fill(database: Database) -> None:
 
 @pytest.fixture
 def database(database_url: str) -> Iterator[Database]:
-    """A migrated database that knows the shipped studies, for this test alone."""
+    """Yield a migrated database with the shipped studies, for one test alone."""
     with with_studies(database_url) as database:
         yield database
 
@@ -46,7 +46,7 @@ def database(database_url: str) -> Iterator[Database]:
 def filled(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[Database]:
-    """A filled database for a whole module: exporting only reads."""
+    """Yield a filled database for a whole module, as exporting only reads."""
     if request.param == "postgresql":
         with fresh_postgres() as url, with_studies(url) as database:
             fill(database)

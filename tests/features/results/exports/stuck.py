@@ -1,4 +1,4 @@
-"""Stands in for a long export; nothing is imported that its process would take long to load."""
+"""A stand-in for a long export, which imports nothing that its process would load slowly."""
 
 import os
 import time
@@ -8,7 +8,7 @@ LONG_S = 120.0
 
 
 def never_done(order: Any) -> None:
-    """Begin a file, say which process does, and never end."""
+    """Begin a file, write the process id next to it, and sleep for two minutes."""
     order.to.with_suffix(".part").write_bytes(b"half")
     order.to.with_suffix(".pid").write_text(str(os.getpid()))
     time.sleep(LONG_S)

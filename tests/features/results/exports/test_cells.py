@@ -1,4 +1,4 @@
-"""Cells of a CSV file."""
+"""Tests of the cells of a CSV file."""
 
 import csv
 import io
@@ -13,7 +13,7 @@ from tests.faults.figures import note
 
 
 def _answers(**columns: object) -> pd.DataFrame:
-    """One row of the table of answers; what is not given is missing."""
+    """Return one row of the table of answers; columns that are not given are missing."""
     row: dict[str, object] = {column.name: None for column in columns_of("answers")}
     row |= {"simulated": False, "valid": True, **columns}
     return finished(pd.DataFrame([row], dtype=object), "answers")
@@ -45,13 +45,13 @@ def _read(text: str) -> dict[str, str]:
         "\uff1d1",
     ],
 )
-def test_no_text_is_run(text: str) -> None:
-    """Whatever a spreadsheet would run as a formula gets an apostrophe in front."""
+def test_text_that_looks_like_a_formula_is_escaped(text: str) -> None:
+    """Text that a spreadsheet would run as a formula gets a leading apostrophe."""
     assert safe_text(text) == f"'{text}"
 
 
-def test_no_cell_of_a_table_of_formulas_is_live() -> None:
-    """Every sign that begins a formula, behind everything that spreadsheets skip (fault 35)."""
+def test_no_cell_can_be_run_as_a_formula() -> None:
+    """No combination of a formula sign and characters that spreadsheets skip stays executable."""
     signs = ("=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20")
     skipped = (
         "",
@@ -79,30 +79,30 @@ def test_no_cell_of_a_table_of_formulas_is_live() -> None:
 
 
 @pytest.mark.parametrize("text", ["", "yes", "it's -5", "a=b", "5-4", "x@y", "'quoted'", "#1"])
-def test_ordinary_text_stays_as_it_is(text: str) -> None:
-    """A sign elsewhere than at the start runs nothing."""
+def test_ordinary_text_is_unchanged(text: str) -> None:
+    """Text with a formula sign elsewhere than at its start is unchanged."""
     assert safe_text(text) == text
 
 
-def test_a_formula_in_an_answer_is_neutralised() -> None:
-    """The open prompt of a form comes out as text."""
+def test_a_formula_in_an_answer_is_escaped() -> None:
+    """A formula typed as an answer is exported as text with a leading apostrophe."""
     row = _read(_written(value_text='=HYPERLINK("http://x","y")'))
     assert row["value_text"] == '\'=HYPERLINK("http://x","y")'
 
 
 def test_a_negative_number_stays_a_number() -> None:
-    """-5 as an answer in numbers has no apostrophe."""
+    """A negative number in a numeric column gets no apostrophe."""
     row = _read(_written(value_number=-5))
     assert float(row["value_number"]) == -5.0
 
 
 def test_numbers_are_written_in_full() -> None:
-    """A double comes back to the last bit."""
+    """A number is written with enough digits to be read back exactly."""
     assert float(_read(_written(value_number=0.1 + 0.2))["value_number"]) == 0.1 + 0.2
 
 
-def test_missing_is_empty_and_truth_is_a_word() -> None:
-    """No nan, None or NA; true and false in small letters."""
+def test_missing_values_are_empty_and_booleans_are_words() -> None:
+    """A missing value is an empty cell, and booleans are `true` and `false`."""
     row = _read(_written())
     assert (row["value_number"], row["value_text"], row["block"], row["submitted_at_utc"]) == (
         ("",) * 4
@@ -111,7 +111,7 @@ def test_missing_is_empty_and_truth_is_a_word() -> None:
 
 
 def test_lines_end_with_lf_and_texts_are_quoted() -> None:
-    """Quotation marks, commas and line breaks in a text survive (RFC 4180)."""
+    """Lines end with LF, and texts with quotes, commas or line breaks are quoted (RFC 4180)."""
     text = 'one "two", three\nfour; fünf'
     written = _written(value_text=text)
     assert "\r" not in written
@@ -120,6 +120,6 @@ def test_lines_end_with_lf_and_texts_are_quoted() -> None:
 
 
 def test_times_are_utc() -> None:
-    """ISO 8601 with a Z."""
+    """Times are written in UTC in ISO 8601 with a Z."""
     row = _read(_written(submitted_at_utc=pd.Timestamp("2026-03-02T10:30:00.25+01:00")))
     assert row["submitted_at_utc"] == "2026-03-02T09:30:00.250000Z"

@@ -1,4 +1,4 @@
-"""A whole export: as a folder, as an archive, and of which sessions."""
+"""Tests of a whole export: as a folder, as an archive, and by kind of session."""
 
 import hashlib
 import io
@@ -18,7 +18,7 @@ from tests.features.results.exports.whole import FILES, TABLES, export, rows_of,
 
 @dataclass(frozen=True)
 class Made:
-    """An export that was made once for the tests that look at it."""
+    """An export that was made once for several tests, with the progress that it reported."""
 
     done: Exported
     told: list[str]
@@ -27,25 +27,25 @@ class Made:
 
 @pytest.fixture(scope="module")
 def people(filled: Database, tmp_path_factory: pytest.TempPathFactory) -> Made:
-    """The export of people's sessions."""
+    """Return the export of people's sessions."""
     return made(filled, "people", tmp_path_factory)
 
 
 @pytest.fixture(scope="module")
 def simulated(filled: Database, tmp_path_factory: pytest.TempPathFactory) -> Made:
-    """The export of simulated sessions."""
+    """Return the export of simulated sessions."""
     return made(filled, "simulated", tmp_path_factory)
 
 
 def made(filled: Database, kind: str, tmp_path_factory: pytest.TempPathFactory) -> Made:
-    """Export a kind, noting the progress that was told."""
+    """Export the sessions of a kind, recording the reported progress."""
     told: list[str] = []
     out = tmp_path_factory.mktemp("exported") / "out"
     return Made(export(filled, out, kind=kind, progress=told.append), told, tree_of(out))
 
 
 def test_an_export_has_every_file(people: Made) -> None:
-    """The tables, the codebook, the README, and frames and a receipt for each session."""
+    """An export has all tables, codebook and README, and samples and a receipt for each session."""
     done, tree = people.done, people.tree
     samples = {name for name in tree if name.startswith("samples/")}
     receipts = {name for name in tree if name.startswith("receipts/")}
@@ -55,7 +55,7 @@ def test_an_export_has_every_file(people: Made) -> None:
 
 
 def test_every_column_of_every_file_is_in_the_codebook(people: Made) -> None:
-    """Headers and entries are the same, in the same order."""
+    """The header of every CSV file is that table's columns in the codebook, in order."""
     for name, data in people.tree.items():
         if name.endswith(".csv"):
             table = "samples" if name.startswith("samples/") else name.removesuffix(".csv")
@@ -65,7 +65,7 @@ def test_every_column_of_every_file_is_in_the_codebook(people: Made) -> None:
 
 
 def test_kinds_stay_apart_in_files(people: Made, simulated: Made) -> None:
-    """People's export holds no simulated row, and the reverse."""
+    """An export of one kind of session has no row of another kind."""
     for made, kind, other in (
         (people, "people", "simulated"),
         (simulated, "simulated", "people"),
@@ -76,8 +76,8 @@ def test_kinds_stay_apart_in_files(people: Made, simulated: Made) -> None:
             assert other not in {row["kind"] for row in rows}
 
 
-def test_the_readme_says_where_it_comes_from(simulated: Made) -> None:
-    """Kind, time, study, content hash, counts, and a hash of each file that holds."""
+def test_the_readme_states_the_origin_of_the_export(simulated: Made) -> None:
+    """The README states study, version, kind, time, counts and the hash of every file."""
     tree = simulated.tree
     readme = tree["README.txt"].decode()
     for words in (STUDY, "2026-03-02T09:30:00Z", "simulated", "1 completed", "from a simulation"):
@@ -88,8 +88,8 @@ def test_the_readme_says_where_it_comes_from(simulated: Made) -> None:
             assert f"{hashlib.sha256(data).hexdigest()}" in readme
 
 
-def test_the_archive_holds_the_same_files(filled: Database, people: Made) -> None:
-    """Folder and ZIP agree byte for byte."""
+def test_the_archive_has_the_same_files_as_the_folder(filled: Database, people: Made) -> None:
+    """The exported ZIP archive has the same files as the folder, byte for byte."""
     data = b"".join(study_archive(filled, STUDY, "people", now=NOW))
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
         assert archive.testzip() is None
@@ -99,13 +99,13 @@ def test_the_archive_holds_the_same_files(filled: Database, people: Made) -> Non
 def test_two_exports_of_the_same_data_are_the_same(
     filled: Database, people: Made, tmp_path: Path
 ) -> None:
-    """Nothing depends on when or where, but the time in the README that is given."""
+    """Two exports of the same data at the same given time are identical."""
     export(filled, tmp_path / "two")
     assert people.tree == tree_of(tmp_path / "two")
 
 
 def test_a_formula_in_the_open_prompt_is_inert(people: Made) -> None:
-    """No cell of any file begins with what a spreadsheet runs, but numbers."""
+    """No cell of an export but a negative number begins with a formula sign."""
     cells = [
         cell
         for name in FILES - {"README.txt"}
@@ -119,7 +119,7 @@ def test_a_formula_in_the_open_prompt_is_inert(people: Made) -> None:
 
 @pytest.mark.one_engine
 def test_an_earlier_export_is_replaced(filled: Database, tmp_path: Path) -> None:
-    """Its files are gone, also those that the new one does not have."""
+    """An export replaces an earlier one completely."""
     export(filled, tmp_path / "out")
     export(filled, tmp_path / "out", kind="simulated")
     assert len(list((tmp_path / "out" / "samples").iterdir())) == 1
@@ -127,8 +127,8 @@ def test_an_earlier_export_is_replaced(filled: Database, tmp_path: Path) -> None
 
 
 @pytest.mark.one_engine
-def test_progress_tells_each_file(people: Made) -> None:
-    """Every path once, as it is begun, the README last."""
+def test_progress_reports_each_file(people: Made) -> None:
+    """Progress reports each file once, the README last."""
     assert set(people.told) == set(people.tree)
     assert people.told[-1] == "README.txt"
 
@@ -140,8 +140,8 @@ def _kind_of(db: Session, *specs: SessionSpec) -> str:
 
 
 @pytest.mark.one_engine
-def test_without_a_kind_people_come_first(database: Database) -> None:
-    """A study without people gives what it has; people are never joined by others."""
+def test_the_default_kind_is_people_if_there_are_any(database: Database) -> None:
+    """The default kind is people if the study has any, else simulated, else test."""
     with database.writing() as db:
         assert usual_kind(db, STUDY) == "people"
         assert _kind_of(db, SessionSpec("T", kind="test")) == "test"

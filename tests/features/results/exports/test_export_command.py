@@ -1,4 +1,4 @@
-"""Exporting from the command line."""
+"""Tests of exporting from the command line."""
 
 from pathlib import Path
 
@@ -13,7 +13,7 @@ from tests.features.builders import STUDY, SessionSpec, build_session, build_stu
 
 @pytest.fixture
 def installation(database_url: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The environment of a machine whose database has one simulated session."""
+    """Configure a database with one simulated session through the environment."""
     monkeypatch.setenv("REEMBODY_DATABASE_URL", database_url)
     database = open_database(database_url)
     with database.writing() as db:
@@ -23,8 +23,8 @@ def installation(database_url: str, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("installation")
-def test_the_command_writes_a_folder_and_says_what(tmp_path: Path) -> None:
-    """Without a kind it takes what there is, and names it."""
+def test_the_command_writes_a_folder_and_reports_its_content(tmp_path: Path) -> None:
+    """The export command uses the default kind and reports kind, counts, folder and audit head."""
     said = export_to_folder(STUDY, tmp_path / "out", Activity(""))
     files = sum(path.is_file() for path in (tmp_path / "out").rglob("*"))
     counts, head = said.splitlines()
@@ -35,8 +35,8 @@ def test_the_command_writes_a_folder_and_says_what(tmp_path: Path) -> None:
 
 @pytest.mark.one_engine
 @pytest.mark.usefixtures("installation")
-def test_the_command_refuses_what_it_does_not_know(tmp_path: Path) -> None:
-    """An unknown kind and an unknown study are told apart, and nothing is written."""
+def test_the_command_refuses_an_unknown_kind_or_study(tmp_path: Path) -> None:
+    """The export command refuses an unknown kind or study and writes nothing."""
     with pytest.raises(ValueError, match="valid are people, simulated, test, all"):
         export_to_folder(STUDY, tmp_path / "out", Activity(""), kind="robots")
     with pytest.raises(NotFound):

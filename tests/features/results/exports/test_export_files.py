@@ -1,4 +1,4 @@
-"""Exports as files: made beside the server, fetched in parts, cancelled, forgotten."""
+"""Tests of exports as files: made in a process, downloaded in parts, cancelled, expired."""
 
 import hashlib
 import io
@@ -30,7 +30,7 @@ WITHIN_S = 240.0
 
 @pytest.fixture
 def site(database_url: str, tmp_path: Path) -> Iterator[Lab]:
-    """An application with a folder of its own and two people's sessions, one with movement."""
+    """Yield an application with two people's sessions, one with movement, on each engine."""
     with running_lab(database_url, data_dir=tmp_path) as lab:
         _fill(lab)
         yield lab
@@ -38,7 +38,7 @@ def site(database_url: str, tmp_path: Path) -> Iterator[Lab]:
 
 @pytest.fixture
 def small_site(tmp_path: Path) -> Iterator[Lab]:
-    """The same on SQLite only: what is tested does not depend on the engine."""
+    """Yield an application with two people's sessions, on SQLite only."""
     with running_lab(fresh_sqlite(tmp_path / "reembody.sqlite"), data_dir=tmp_path) as lab:
         _fill(lab)
         yield lab
@@ -78,8 +78,8 @@ def _copies(lab: Lab) -> list[CopyMade]:
         return list(db.scalars(select(CopyMade).where(CopyMade.kind == "export")))
 
 
-def test_a_file_is_made_and_fetched_whole_or_in_parts(site: Lab) -> None:
-    """The same members as the streamed archive; its hash is told, and every part fits."""
+def test_an_export_file_is_downloaded_whole_or_in_parts(site: Lab) -> None:
+    """An export file has the members of the streamed archive and can be downloaded in parts."""
     client = site.operator
     ordered = _order(client)
     done = _until(client, ordered["id"], "ready", "failed")
@@ -90,7 +90,7 @@ def test_a_file_is_made_and_fetched_whole_or_in_parts(site: Lab) -> None:
     assert whole.headers["content-length"] == str(done["bytes"])
     assert done["file_name"] in whole.headers["content-disposition"]
     assert hashlib.sha256(whole.content).hexdigest() == done["sha256"]
-    # The browser goes on where it broke off, if the file is still the same one.
+    # A browser resumes an interrupted download if the file is unchanged.
     half = len(whole.content) // 2
     headers = {"range": f"bytes={half}-", "if-range": whole.headers["etag"]}
     rest = client.get(f"/api/exports/{done['id']}/file", headers=headers)
@@ -105,12 +105,12 @@ def test_a_file_is_made_and_fetched_whole_or_in_parts(site: Lab) -> None:
         assert made.namelist() == known.namelist()
         for name in set(made.namelist()) - {"README.txt"}:
             assert made.read(name) == known.read(name), name
-    # On record once, however often it is fetched.
+    # It is recorded once, however often it is downloaded.
     assert [(copy.sessions, copy.bytes) for copy in _copies(site)] == [(2, done["bytes"])]
 
 
-def test_one_session_alone_for_whoever_asked(small_site: Lab) -> None:
-    """Its file is named after the participant, holds nobody else, and is no colleague's."""
+def test_an_export_of_one_session_is_visible_to_its_owner_only(small_site: Lab) -> None:
+    """An export of one session contains nobody else and is visible only to its owner."""
     client = small_site.operator
     sessions = ok(client.get(f"/api/studies/{STUDY}/sessions"))
     one = next(row for row in sessions if row["participant_code"] == "P-0002")
@@ -122,13 +122,13 @@ def test_one_session_alone_for_whoever_asked(small_site: Lab) -> None:
         assert b"P-0002" in archive.read("sessions.csv")
     body = {"kind": "simulated", "session_id": one["id"]}
     error(client.post(f"/api/studies/{STUDY}/exports", json=body), 404, "not_found")
-    # A colleague of the same study gets the words for what does not exist.
+    # A colleague of the same study gets the error for what does not exist.
     colleague = sign_in(small_site, "admin")
     assert ok(colleague.get("/api/exports")) == []
     for method, path in (("GET", ""), ("GET", "/file"), ("DELETE", "")):
         answer = colleague.request(method, f"/api/exports/{done['id']}{path}")
         error(answer, 404, "not_found")
-    # It goes two hours after somebody last asked for it.
+    # It is deleted two hours after its last download.
     job = small_site.context.part(ExportQueue).find(_account(client), done["id"])
     assert job.fetched_at is not None
     job.fetched_at -= KEEP_FOR
@@ -136,15 +136,15 @@ def test_one_session_alone_for_whoever_asked(small_site: Lab) -> None:
     assert _folder(small_site) == []
 
 
-def test_what_is_cancelled_ends_at_once_and_leaves_nothing(
+def test_a_cancelled_export_ends_immediately(
     small_site: Lab, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The process is gone with its half-written file; what waited behind it is made."""
+    """A cancelled export's process and file are removed, and the next one in the queue is made."""
     client = small_site.operator
     with monkeypatch.context() as patched:
         patched.setattr("app.features.results.exports.export_queue.make_archive", never_done)
         stuck = _order(client)
-        # Asked for again while it is under way, it is the same one.
+        # Requested again while it is being made, it is the same export.
         assert _order(client)["id"] == stuck["id"]
         pid_file = small_site.context.part(ExportQueue).folder / f"{stuck['id']}.pid"
         give_up_s = time.monotonic() + WITHIN_S
@@ -163,8 +163,8 @@ def test_what_is_cancelled_ends_at_once_and_leaves_nothing(
     assert _until(client, waiting["id"], "ready", "failed")["state"] == "ready"
 
 
-def test_a_file_goes_with_an_erasure(small_site: Lab) -> None:
-    """At once when somebody in the study is erased: the file may hold them."""
+def test_an_erasure_deletes_export_files(small_site: Lab) -> None:
+    """Erasing a participant of the study deletes its export files."""
     client = small_site.operator
     done = _until(client, _order(client)["id"], "ready")
     people = ok(client.get(f"/api/studies/{STUDY}/participants"))
@@ -174,8 +174,8 @@ def test_a_file_goes_with_an_erasure(small_site: Lab) -> None:
     assert _folder(small_site) == []
 
 
-def test_a_disk_that_is_nearly_full_is_left_alone(small_site: Lab) -> None:
-    """The export fails in words, and nothing of it stays; running sessions keep their room."""
+def test_an_export_fails_if_the_disk_is_nearly_full(small_site: Lab) -> None:
+    """An export fails with a remedy if it would leave running sessions too little disk space."""
     small_site.context.part(ExportQueue).keep_free_bytes = 2**60
     client = small_site.operator
     failed = _until(client, _order(client)["id"], "ready", "failed")

@@ -1,4 +1,4 @@
-"""Exports and the codebook over HTTP."""
+"""Tests of exports and the codebook over HTTP."""
 
 import io
 import re
@@ -14,7 +14,7 @@ from tests.features.lab import Lab
 
 @pytest.fixture(scope="module")
 def client(lab: Lab) -> TestClient:
-    """The operator of an application with two people and one simulated session."""
+    """Return the operator of an application with two people's sessions and a simulated one."""
     with lab.database.writing() as db:
         build_session(db, SessionSpec("P-0001"))
         build_session(db, SessionSpec("P-0002"))
@@ -23,7 +23,7 @@ def client(lab: Lab) -> TestClient:
 
 
 def test_the_export_is_a_zip_of_csv(client: TestClient) -> None:
-    """With a file name made by us, and people's sessions unless another kind is asked for."""
+    """An export is a ZIP of CSV files of people's sessions, with a generated file name."""
     answer = client.get(f"/api/studies/{STUDY}/export")
     assert answer.status_code == 200
     assert answer.headers["content-type"] == "application/zip"
@@ -37,8 +37,8 @@ def test_the_export_is_a_zip_of_csv(client: TestClient) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_kind_can_be_asked_for(client: TestClient) -> None:
-    """Simulated sessions come alone."""
+def test_a_kind_can_be_requested(client: TestClient) -> None:
+    """An export of simulated sessions has no others."""
     answer = client.get(f"/api/studies/{STUDY}/export", params={"kind": "simulated"})
     with zipfile.ZipFile(io.BytesIO(answer.content)) as archive:
         assert b"P-0001" not in archive.read("sessions.csv")
@@ -55,8 +55,8 @@ def test_a_kind_can_be_asked_for(client: TestClient) -> None:
         (f"/api/studies/{STUDY}/export?kind=../../etc", 422),
     ],
 )
-def test_names_that_are_not_ours_are_refused(client: TestClient, path: str, status: int) -> None:
-    """Nothing in an address becomes part of a path."""
+def test_unknown_studies_and_kinds_are_refused(client: TestClient, path: str, status: int) -> None:
+    """An unknown study or kind in an export's address is refused, as is a path in it."""
     answer = client.get(path)
     assert answer.status_code == status
     assert answer.json()["error"]["message"]
@@ -64,14 +64,14 @@ def test_names_that_are_not_ours_are_refused(client: TestClient, path: str, stat
 
 @pytest.mark.one_engine
 @pytest.mark.parametrize("what", ["export", "codebook"])
-def test_nobody_gets_them_without_signing_in(lab: Lab, what: str) -> None:
-    """Both ask who is there."""
+def test_export_and_codebook_need_a_login(lab: Lab, what: str) -> None:
+    """The export and the codebook need a login."""
     assert lab.stranger().get(f"/api/studies/{STUDY}/{what}").status_code == 401
 
 
 @pytest.mark.one_engine
 def test_the_codebook_describes_every_column(client: TestClient) -> None:
-    """One entry a column; an unknown study has none."""
+    """The codebook over HTTP has every column; that of an unknown study is not found."""
     answer = client.get(f"/api/studies/{STUDY}/codebook")
     assert [(row["table"], row["column"]) for row in answer.json()] == [
         (column.table, column.name) for column in CODEBOOK

@@ -1,4 +1,4 @@
-"""What an export does not touch: other people's files, an earlier export, what lies outside."""
+"""Tests that an export does not touch foreign files, an earlier export or paths outside."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -18,10 +18,10 @@ pytestmark = pytest.mark.one_engine
 
 
 @pytest.mark.parametrize("what", ["other folder", "file", "own file in an export", "link"])
-def test_what_is_not_ours_is_refused_and_left_alone(
+def test_an_export_refuses_a_path_with_foreign_files(
     filled: Database, tmp_path: Path, what: str
 ) -> None:
-    """Nothing is written, nothing removed, and the error says why."""
+    """An export to a foreign file, folder or link is refused and leaves it unchanged."""
     out, elsewhere = tmp_path / "out", tmp_path / "elsewhere"
     if what == "file":
         out.write_text("mine")
@@ -41,10 +41,10 @@ def test_what_is_not_ours_is_refused_and_left_alone(
     assert sorted(path for path in tmp_path.rglob("*")) == before
 
 
-def test_a_failed_export_leaves_what_was_there(
+def test_a_failed_export_keeps_the_earlier_one(
     filled: Database, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The earlier export stands untouched, and no half of the new one is left."""
+    """A failed export leaves an earlier one unchanged and no partial files."""
     export(filled, tmp_path / "out")
     before = tree_of(tmp_path / "out")
 
@@ -63,7 +63,7 @@ def test_a_failed_export_leaves_what_was_there(
 
 @pytest.mark.parametrize("code", ["../../etc/passwd", "/etc/passwd", "a\\..\\b", "-rf", "", "é\0"])
 def test_a_hostile_code_cannot_leave_the_folder(code: str) -> None:
-    """File names are made of letters, digits, - and _ only."""
+    """The file name made from a hostile participant code stays in the folder `samples`."""
     folder, _, name = samples_path(code, "f" * 32).partition("/")
     assert folder == "samples"
     assert set(name) <= set("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.")
@@ -72,14 +72,14 @@ def test_a_hostile_code_cannot_leave_the_folder(code: str) -> None:
 
 
 def test_a_hostile_study_key_cannot_break_the_header() -> None:
-    """No quotation mark, line break or slash comes into the name of the archive."""
+    """The archive's name made from a hostile study key has no quote, line break or slash."""
     assert archive_name('x"\r\nset-cookie: a=b/..', "people", NOW.date()) == (
         "reembody_x___set-cookie__a_b____people_2026-03-02.zip"
     )
 
 
 def test_a_hostile_code_in_the_database_stays_inside(database: Database, tmp_path: Path) -> None:
-    """Even if such a code got into the database, its file is written into samples/."""
+    """A hostile participant code in the database cannot make an export write outside its folder."""
     with database.writing() as db:
         build_session(db, SessionSpec("../../../escape", kind="test"))
     export(database, tmp_path / "out", kind="test")
@@ -92,7 +92,7 @@ def test_a_hostile_code_in_the_database_stays_inside(database: Database, tmp_pat
 
 
 def test_an_unknown_study_leaves_no_folder(database: Database, tmp_path: Path) -> None:
-    """The error names the studies there are."""
+    """Exporting an unknown study creates no folder."""
     with database.reading() as db, pytest.raises(NotFound):
         export_study(db, "../x", "people", tmp_path / "out", now=NOW)
     assert not (tmp_path / "out").exists()

@@ -1,4 +1,4 @@
-"""The frames of a session as one wide file."""
+"""Tests of a session's frames as one wide CSV file."""
 
 import csv
 import io
@@ -33,13 +33,15 @@ def _values(rows: list[dict[str, str]], stream: str) -> np.ndarray:
 
 @pytest.fixture
 def session(database: Database) -> StudySession:
-    """A session without movement."""
+    """Return a session without movement."""
     with database.writing() as db:
         return build_session(db, SessionSpec("P-0001"))
 
 
-def test_what_was_sent_comes_out_bit_for_bit(database: Database, session: StudySession) -> None:
-    """Every value of both streams reads back as the single that was stored."""
+def test_exported_values_equal_the_stored_ones_exactly(
+    database: Database, session: StudySession
+) -> None:
+    """Every exported value of both streams reads back as the stored single-precision number."""
     target, actual = moving_values(250, 1), moving_values(250, 2)
     with database.writing() as db:
         store_chunks(db, session.id, TARGET, range(250), target)
@@ -57,7 +59,7 @@ def test_what_was_sent_comes_out_bit_for_bit(database: Database, session: StudyS
 
 
 def test_frames_are_joined_on_epoch_and_seq(database: Database, session: StudySession) -> None:
-    """A frame that only one stream has leaves the other's cells empty; epochs never join."""
+    """Frames are joined by epoch and seq; a frame in one stream leaves the other's cells empty."""
     with database.writing() as db:
         store_chunks(db, session.id, TARGET, [0, 1, 2, 7, 8], moving_values(5, 1), epoch=1)
         store_chunks(db, session.id, ACTUAL, [1, 2, 3, 8], moving_values(4, 2), epoch=1)
@@ -86,8 +88,10 @@ def test_frames_are_joined_on_epoch_and_seq(database: Database, session: StudySe
     assert [row["phase_id"] for row in rows] == ["1"] * 6 + ["4"] * 2
 
 
-def test_batches_that_wait_for_folding_are_there(database: Database, session: StudySession) -> None:
-    """Chunks and batches read as one run of frames."""
+def test_batches_that_are_not_folded_are_exported(
+    database: Database, session: StudySession
+) -> None:
+    """Batches that are not folded yet are exported together with chunks."""
     values = moving_values(100, 1)
     with database.writing() as db:
         store_chunks(db, session.id, TARGET, range(90), values[:90])
@@ -97,10 +101,10 @@ def test_batches_that_wait_for_folding_are_there(database: Database, session: St
     assert np.array_equal(_values(rows, "target"), values)
 
 
-def test_bad_samples_stand_as_they_came_and_are_flagged(
+def test_bad_samples_are_exported_unchanged_and_flagged(
     database: Database, session: StudySession
 ) -> None:
-    """NaN, infinity and a rotation of length 2 are in the file, in flagged rows."""
+    """NaN, infinity and non-unit rotations are exported unchanged in flagged rows."""
     values = moving_values(5, 1)
     values[1, 0] = np.nan
     values[2, 1] = -np.inf
@@ -118,13 +122,15 @@ def test_bad_samples_stand_as_they_came_and_are_flagged(
 def test_a_session_without_movement_has_a_file_with_a_header(
     database: Database, session: StudySession
 ) -> None:
-    """No frames, no rows, no error."""
+    """A session without movement has a file with only a header."""
     with database.reading() as db:
         assert _rows(db, session) == []
 
 
-def test_only_a_second_of_each_stream_is_held(database: Database, session: StudySession) -> None:
-    """A stream that is far ahead is not read into memory: its rows go out one by one."""
+def test_at_most_a_second_of_each_stream_is_in_memory(
+    database: Database, session: StudySession
+) -> None:
+    """A stream that is far ahead of the other is exported without reading it into memory."""
     with database.writing() as db:
         store_chunks(db, session.id, TARGET, range(900), moving_values(900, 1))
         store_chunks(db, session.id, ACTUAL, range(890, 900), moving_values(10, 2))

@@ -1,4 +1,4 @@
-"""Single-precision numbers printed short."""
+"""Tests of printing single-precision numbers with as few digits as possible."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ def _any_singles(count: int) -> NDArray[np.float32]:
 
 
 def test_the_text_reads_back_as_the_same_single() -> None:
-    """For every kind of number, from denormal to huge, to the last bit and sign."""
+    """The text of any finite single reads back as the same bits."""
     values = _any_singles(50_000)
     values = values[np.isfinite(values)]
     texts = [repr(double) for double in shortest_doubles(values).tolist()]
@@ -23,20 +23,20 @@ def test_the_text_reads_back_as_the_same_single() -> None:
 
 @pytest.mark.parametrize("scale", [1.0, 1e-4, 3e4])
 def test_the_text_is_the_shortest(scale: float) -> None:
-    """As short as numpy's own shortest text of a single (Dragon4)."""
+    """The text of a single is as short as numpy's shortest (Dragon4)."""
     values = np.random.default_rng(1).normal(scale=scale, size=5000).astype(np.float32)
     ours = shortest_doubles(values).tolist()
     assert ours == [float(str(value)) for value in values]
 
 
-def test_known_numbers() -> None:
+def test_known_numbers_have_their_shortest_text() -> None:
     """0.1 in single precision is written 0.1, not 0.10000000149011612."""
     values = np.array([0.1, 0.0, -0.0, 1.0, 16777216.0, 1e-45, -0.70710677], np.float32)
     texts = [repr(double) for double in shortest_doubles(values).tolist()]
     assert texts == ["0.1", "0.0", "-0.0", "1.0", "16777216.0", "1e-45", "-0.70710677"]
 
 
-def test_what_is_no_number_stays_so() -> None:
-    """NaN and the infinities pass through."""
+def test_nan_and_infinities_are_unchanged() -> None:
+    """NaN and the infinities are unchanged."""
     values = np.array([np.nan, np.inf, -np.inf], np.float32)
     assert [repr(double) for double in shortest_doubles(values).tolist()] == ["nan", "inf", "-inf"]

@@ -1,4 +1,4 @@
-"""A session that does not count: ledger, dashboard, statistics and export say the same."""
+"""Tests that ledger, dashboard, statistics and export agree on a session that is not valid."""
 
 from pathlib import Path
 
@@ -21,7 +21,7 @@ WHY = "block 2, hand task: skipped"
 
 
 def lacking(database: Database, code: str) -> StudySession:
-    """A completed session that lacks a task."""
+    """Store a completed session that lacks a task."""
     with database.writing() as db:
         session = build_session(db, SessionSpec(code, skipped=("block2.hand",)))
         session.shortfalls = [SKIPPED.model_dump()]
@@ -30,8 +30,10 @@ def lacking(database: Database, code: str) -> StudySession:
 
 
 @pytest.mark.one_engine
-def test_all_say_that_it_does_not_count_and_why(database: Database, tmp_path: Path) -> None:
-    """One of three completed sessions: left out of each, named with its reason."""
+def test_a_session_that_is_not_valid_is_left_out_everywhere(
+    database: Database, tmp_path: Path
+) -> None:
+    """A session that is not valid is left out of every result and named with its reason."""
     with database.writing() as db:
         for code in ("P-0001", "P-0002"):
             build_session(db, SessionSpec(code))
@@ -66,13 +68,13 @@ def test_all_say_that_it_does_not_count_and_why(database: Database, tmp_path: Pa
 
 
 def valid(row: dict[str, str]) -> bool:
-    """Whether a row may be analysed."""
+    """Return whether a row is marked as valid."""
     return row["valid"] == "true"
 
 
 @pytest.mark.one_engine
-def test_a_page_without_figures_says_that_there_are_data(database: Database) -> None:
-    """Nothing that counts is not the same as nothing."""
+def test_a_figure_without_valid_data_says_that_there_are_data(database: Database) -> None:
+    """A figure without valid data states that there are sessions which are not valid."""
     lacking(database, "P-0001")
     with database.reading() as db:
         view = build_dashboard(db, STUDY, "people")
@@ -81,14 +83,14 @@ def test_a_page_without_figures_says_that_there_are_data(database: Database) -> 
 
 
 @pytest.mark.one_engine
-def test_an_export_of_a_study_without_rules_is_what_it_was(
+def test_an_export_of_a_study_without_validity_rules_is_unchanged(
     database: Database, tmp_path: Path
 ) -> None:
-    """Columns, their meanings and the README say nothing of rules that the study does not have."""
+    """An export of a study without validity rules has no columns or text about them."""
     with database.writing() as db:
         add_version(db, study_by_key(db, STUDY), BEFORE_RULES, NOW)
         build_session(db, SessionSpec("P-0001", skipped=("block2.hand",)))
-        # A newer version with rules that nobody has followed yet changes nothing.
+        # A newer version with rules but without sessions changes nothing.
         add_version(db, study_by_key(db, STUDY), BEFORE_RULES + RULES, NOW)
     export(database, tmp_path / "out", kind="people")
     tree = tree_of(tmp_path / "out")

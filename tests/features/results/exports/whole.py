@@ -1,4 +1,4 @@
-"""A whole export as tests look at it: its files by name, and their rows."""
+"""A whole export as tests read it: its files by name, and their rows."""
 
 import csv
 import io
@@ -28,13 +28,13 @@ FILES = {*(f"{name}.csv" for name in (*TABLES, *MORE)), "README.txt"}
 
 
 def export(database: Database, to: Path, **options: Any) -> Exported:
-    """An export of the study into a folder."""
+    """Export the study into a folder."""
     with database.reading() as db:
         return export_study(db, STUDY, options.pop("kind", "people"), to, now=NOW, **options)
 
 
 def tree_of(folder: Path) -> dict[str, bytes]:
-    """Every file of a folder, by its path in it."""
+    """Return the content of every file in a folder by its relative path."""
     return {
         str(path.relative_to(folder)): path.read_bytes()
         for path in folder.rglob("*")
@@ -43,5 +43,5 @@ def tree_of(folder: Path) -> dict[str, bytes]:
 
 
 def rows_of(data: bytes) -> list[dict[str, str]]:
-    """The rows of a table."""
+    """Return the rows of a CSV file."""
     return list(csv.DictReader(io.StringIO(data.decode(), newline="")))

@@ -1,4 +1,4 @@
-"""Answers collected elsewhere: real and survey files, every cell that does not fit, undoing."""
+"""Tests of imported answers: published and survey files, cells that do not fit, and undoing."""
 
 import io
 import json
@@ -17,40 +17,40 @@ URL = f"/api/studies/{STUDY}/imports"
 
 
 def look(lab: Lab, text: str, **fields: Any) -> Json:
-    """What the server makes of a file."""
+    """Return what the server recognises in a file."""
     view: Json = ok(lab.operator.post(f"{URL}/look", json={"text": text, **fields}))
     return view
 
 
 def check(lab: Lab, text: str, mapping: Json) -> Json:
-    """What an import would do."""
+    """Return what an import would do, without storing anything."""
     body = {"text": text, "mapping": mapping}
     view: Json = ok(lab.operator.post(f"{URL}/check", json=body))
     return view
 
 
-def take_in(lab: Lab, text: str, mapping: Json) -> Any:
-    """Ask for the import itself."""
+def import_answers(lab: Lab, text: str, mapping: Json) -> Any:
+    """Request the import of a file."""
     body = {"text": text, "mapping": mapping, "file_name": "answers.csv"}
     return lab.operator.post(URL, json=body)
 
 
 def tidy(rows: list[str]) -> str:
-    """A small tidy file of one-item forms that no other test has."""
+    """Return a small tidy file of one-item forms with a unique content."""
     return "\n".join(["pid,condition,fms", *rows]) + f"\n{uuid.uuid4().hex[:8]},other,3\n"
 
 
 def stored_forms(lab: Lab, import_id: str) -> int:
-    """How many forms of an import there are."""
+    """Return how many forms of an import are stored."""
     with lab.database.reading() as db:
         query = select(func.count()).where(ImportedForm.import_id == import_id)
         return db.scalar(query) or 0
 
 
-def test_published_scores_come_back(lab: Lab, shared_data: Path) -> None:
-    """The TLX table in VR: the means its authors print, and Friedman's test of them."""
+def test_published_scores_are_reproduced(lab: Lab, shared_data: Path) -> None:
+    """An imported table of TLX answers gives the published means and Friedman's test."""
     text = (shared_data / "questionnaires" / "tlxscores.csv").read_text(encoding="utf-8")
-    text += f"{uuid.uuid4().hex[:6]},Office,1,,,,,,,\n"  # an abandoned row; and no file twice
+    text += f"{uuid.uuid4().hex[:6]},Office,1,,,,,,,\n"  # abandoned row; makes the file unique
     seen = look(lab, text)
     assert (seen["instrument"], seen["separator"], seen["rows"]) == ("raw_tlx", ",", 65)
     mapping = seen["proposal"]
@@ -63,7 +63,7 @@ def test_published_scores_come_back(lab: Lab, shared_data: Path) -> None:
     dry = check(lab, text, mapping)
     told = (dry["n_problems"], dry["forms"], dry["participants"], dry["skipped_rows"])
     assert told == (0, 64, 16, 1)
-    made = ok(take_in(lab, text, mapping))
+    made = ok(import_answers(lab, text, mapping))
     assert (made["forms"], made["participants"]) == (64, 16)
     (result,) = [
         one
@@ -78,7 +78,7 @@ def test_published_scores_come_back(lab: Lab, shared_data: Path) -> None:
 
 @pytest.mark.one_engine
 def test_a_wide_survey_file_is_understood(lab: Lab) -> None:
-    """Three header rows, semicolons, words for numbers, a set of columns for each condition."""
+    """A survey file with three header rows, semicolons and columns per condition is imported."""
     names = [f"fms_{ms}" for ms in (0, 125)]
     head = ";".join(["ResponseId", "RecordedDate", *names])
     labels = ";".join(["Response ID", "Recorded Date", *["How sick?"] * len(names)])
@@ -98,14 +98,14 @@ def test_a_wide_survey_file_is_understood(lab: Lab) -> None:
     assert [one["in_study"] for one in dry["conditions"]] == [True, True]
     assert [next(iter(one["answers"].values())) for one in dry["first_forms"]] == [0.0, 7.0]
     assert dry["first_forms"][0]["answered_on"] == "2026-03-01"
-    made = ok(take_in(lab, text, mapping))
+    made = ok(import_answers(lab, text, mapping))
     table = lab.operator.get(f"{URL}/{made['id']}/table").text.splitlines()
     assert [line.split(",")[7] for line in table] == ["answered_on", "2026-03-01", "2026-03-01"]
 
 
 @pytest.mark.one_engine
-def test_every_cell_that_does_not_fit_is_told_and_nothing_is_stored(lab: Lab) -> None:
-    """A file is taken in as a whole or not at all."""
+def test_every_invalid_cell_is_reported_and_nothing_is_imported(lab: Lab) -> None:
+    """Every invalid cell of a file is reported, and such a file is not imported at all."""
     text = tidy(["a@b.org,x,3", "P1,x,3", "P1,x,4", "P2,x,21", ",x,2", "P3,x,"])
     mapping = look(lab, text, instrument="fms")["proposal"]
     dry = check(lab, text, mapping)
@@ -114,18 +114,18 @@ def test_every_cell_that_does_not_fit_is_told_and_nothing_is_stored(lab: Lab) ->
     assert all(one["remedy"] for one in dry["problems"])
     with lab.database.reading() as db:
         before = db.scalar(select(func.count()).select_from(ImportedForm))
-    refused = error(take_in(lab, text, mapping), 422, "invalid_input")
+    refused = error(import_answers(lab, text, mapping), 422, "invalid_input")
     assert len(refused["details"]) == 4
     with lab.database.reading() as db:
         assert db.scalar(select(func.count()).select_from(ImportedForm)) == before
 
 
 def test_the_same_file_is_refused_until_it_is_undone(lab: Lab) -> None:
-    """By its content; undoing takes the forms, keeps who and why, and frees the file."""
+    """A file is refused a second time until its import is undone with a reason."""
     text = tidy(["P1,x,3", "P1,y,4"])
     mapping = look(lab, text, instrument="fms")["proposal"]
-    first = ok(take_in(lab, text, mapping))
-    again = error(take_in(lab, text, mapping), 409, "conflict")
+    first = ok(import_answers(lab, text, mapping))
+    again = error(import_answers(lab, text, mapping), 409, "conflict")
     assert again["details"][0]["import_id"] == first["id"]
     assert look(lab, text, instrument="fms")["same_file"]["id"] == first["id"]
     undone = ok(lab.operator.post(f"{URL}/{first['id']}/undo", json={"reason": "wrong scale"}))
@@ -133,7 +133,7 @@ def test_the_same_file_is_refused_until_it_is_undone(lab: Lab) -> None:
     assert stored_forms(lab, first["id"]) == 0
     error(lab.operator.post(f"{URL}/{first['id']}/undo", json={"reason": "again"}), 409, "conflict")
     assert look(lab, text, instrument="fms")["remembered"]
-    assert ok(take_in(lab, text, mapping))["forms"] == 3
+    assert ok(import_answers(lab, text, mapping))["forms"] == 3
     with lab.database.reading() as db:
         actions = db.scalars(
             select(AuditEntry.action).where(AuditEntry.subject == f"import:{first['id']}")
@@ -145,14 +145,14 @@ def test_the_same_file_is_refused_until_it_is_undone(lab: Lab) -> None:
 
 @pytest.mark.one_engine
 def test_imported_answers_are_never_sessions(lab: Lab) -> None:
-    """No session, no slot of the ledger, no row of an export's tables; marked in their own file."""
+    """Imported answers make no session and take no slot; their own table marks them as imported."""
     with lab.database.reading() as db:
         before = [
             db.scalar(select(func.count()).select_from(one)) for one in (StudySession, SlotAttempt)
         ]
     text = tidy(["=P9,x,3"])
     mapping = look(lab, text, instrument="fms")["proposal"]
-    made = ok(take_in(lab, text, mapping))
+    made = ok(import_answers(lab, text, mapping))
     with lab.database.reading() as db:
         after = [
             db.scalar(select(func.count()).select_from(one)) for one in (StudySession, SlotAttempt)
@@ -164,11 +164,11 @@ def test_imported_answers_are_never_sessions(lab: Lab) -> None:
     assert ",'=P9," in table[1]
 
 
-def test_one_participant_can_be_forgotten(lab: Lab) -> None:
-    """On request, from all files of the study, and without the code in the trail."""
+def test_one_participants_imported_answers_can_be_erased(lab: Lab) -> None:
+    """A participant's imported answers can be erased, without their code in the audit trail."""
     code = f"gone{uuid.uuid4().hex[:6]}"
     text = tidy([f"{code},x,3", f"{code},y,3"])
-    made = ok(take_in(lab, text, look(lab, text, instrument="fms")["proposal"]))
+    made = ok(import_answers(lab, text, look(lab, text, instrument="fms")["proposal"]))
     body = {"participant_code": code, "confirm": "somebody"}
     error(lab.operator.post(f"{URL}/erase", json=body), 422, "invalid_input")
     assert ok(lab.operator.post(f"{URL}/erase", json=body | {"confirm": code})) == {"forms": 2}
@@ -178,12 +178,12 @@ def test_one_participant_can_be_forgotten(lab: Lab) -> None:
     assert code not in trail
 
 
-def test_a_participant_of_the_study_gets_and_loses_what_files_say(lab: Lab) -> None:
-    """The same code is the same person: their copy has it, and their erasure takes it."""
+def test_imported_answers_belong_to_the_participant_of_the_same_code(lab: Lab) -> None:
+    """A participant's own copy and erasure include answers imported under the same code."""
     code = f"both{uuid.uuid4().hex[:6]}"
     lab.join(participant_code=code)
     text = tidy([f"{code},x,3"])
-    made = ok(take_in(lab, text, look(lab, text, instrument="fms")["proposal"]))
+    made = ok(import_answers(lab, text, look(lab, text, instrument="fms")["proposal"]))
     people = ok(lab.operator.get(f"/api/studies/{STUDY}/participants"))
     person = next(one["id"] for one in people if one["code"] == code)
     of = f"/api/studies/{STUDY}/participants/{person}"
@@ -204,8 +204,8 @@ def test_a_participant_of_the_study_gets_and_loses_what_files_say(lab: Lab) -> N
 
 
 @pytest.mark.one_engine
-def test_words_of_the_scale_are_known_and_none_is_an_answer(lab: Lab) -> None:
-    """The sickness questionnaire calls its lowest step "None": that is no missing answer."""
+def test_labels_of_the_scale_are_recognised(lab: Lab) -> None:
+    """Labels of the scale are recognised as answers, even the label "None"."""
     text = f"pid,n1,n2,n3\n{uuid.uuid4().hex[:6]},None,severe,NA\n"
     items = list(ok(lab.operator.get("/api/instruments/ssq"))["preview"]["instrument"]["items"])
     keys = [one["key"] for one in items[:3]]
@@ -218,8 +218,8 @@ def test_words_of_the_scale_are_known_and_none_is_an_answer(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_items_turned_in_the_file_are_noticed_and_turned_back(lab: Lab) -> None:
-    """An item that a formula turns must go against the others; if not, that is said."""
+def test_items_reversed_in_the_file_are_detected(lab: Lab) -> None:
+    """Items that a file already has reversed are detected and can be reversed back."""
     names = ["pid", *(f"sp{n}" for n in range(1, 6))]
     rows = [[f"T{n}-{uuid.uuid4().hex[:4]}", *[str(n % 7)] * 5] for n in range(10)]
     text = "\n".join(",".join(row) for row in [names, *rows]) + "\n"

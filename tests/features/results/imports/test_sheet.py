@@ -1,4 +1,4 @@
-"""Files that are no table, or not quite: told in the words of whoever chose them."""
+"""Tests of files that are not valid tables, which are described in plain words."""
 
 import pytest
 
@@ -17,7 +17,7 @@ from app.features.results.imports.sheet import read_sheet
     ],
 )
 def test_another_kind_of_file_is_named(text: str, named: str) -> None:
-    """A picture is called a picture, and not a line with a comma that was expected."""
+    """A picture, PDF, workbook or binary file is refused by its kind, with a hint to use CSV."""
     with pytest.raises(InvalidInput) as refused:
         read_sheet(text)
     assert named in refused.value.message
@@ -25,7 +25,7 @@ def test_another_kind_of_file_is_named(text: str, named: str) -> None:
 
 
 def test_a_wrong_quote_is_named_with_its_line() -> None:
-    """The line, what is wrong there and what to do, in words."""
+    """A misplaced quote is reported with its line."""
     with pytest.raises(InvalidInput) as refused:
         read_sheet('code,q1\nP-1,"4"x\n')
     assert refused.value.message.startswith("line 2 cannot be read: a quote is")

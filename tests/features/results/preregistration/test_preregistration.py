@@ -1,4 +1,4 @@
-"""What was declared, what was done, and every way in which the two differ."""
+"""Tests of the preregistration page: what was declared, what was done, and all deviations."""
 
 from collections.abc import Iterator
 from datetime import timedelta
@@ -20,7 +20,7 @@ LATER = NOW + timedelta(days=30)
 
 @pytest.fixture
 def database(database_url: str) -> Iterator[Database]:
-    """A database with the shipped studies."""
+    """Yield a database with the shipped studies."""
     database = open_database(database_url)
     with database.writing() as db:
         build_study(db)
@@ -29,32 +29,32 @@ def database(database_url: str) -> Iterator[Database]:
 
 
 def declare(database: Database, section: str, days: int = -1) -> None:
-    """Make a version of the study that declares this."""
+    """Store a version of the study with this preregistration."""
     with database.writing() as db:
         add_version(db, study_by_key(db, STUDY), FILE + section, NOW + timedelta(days=days))
 
 
 def visit(database: Database, code: str, status: str = "completed") -> None:
-    """A session of the newest version."""
+    """Store a session of the newest version."""
     with database.writing() as db:
         session: StudySession = build_session(db, SessionSpec(code=code, status=status))
         freeze(newest_version(db, study_by_key(db, STUDY)), session.created_at)
 
 
 def view_of(database: Database) -> PreregistrationView:
-    """The page now."""
+    """Return the current preregistration page."""
     with database.reading() as db:
         return preregistration_of(db, STUDY, "people", LATER)
 
 
 def codes_of(view: PreregistrationView) -> list[str]:
-    """Which deviations and notes there are."""
+    """Return the codes of all deviations and notes."""
     return [one.code for one in view.deviations]
 
 
 @pytest.mark.one_engine
-def test_a_study_that_declared_nothing_says_so(database: Database) -> None:
-    """Nothing is made up for it."""
+def test_a_study_without_preregistration_says_so(database: Database) -> None:
+    """The page of a study without a preregistration says so and shows no result."""
     visit(database, "P1")
     view = view_of(database)
     assert (view.declaration, view.result, view.deviations) == (None, None, [])
@@ -62,8 +62,8 @@ def test_a_study_that_declared_nothing_says_so(database: Database) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_declaration_is_shown_before_anybody_came(database: Database) -> None:
-    """No session: nothing to test, nobody left out, and the plan not reached."""
+def test_a_declaration_is_shown_before_the_first_session(database: Database) -> None:
+    """A preregistration is shown before the first session, without a result."""
     declare(database, SECTION)
     view = view_of(database)
     assert view.declaration is not None
@@ -73,8 +73,8 @@ def test_a_declaration_is_shown_before_anybody_came(database: Database) -> None:
     assert "0 of 12 declared participants" in as_markdown(view)
 
 
-def test_what_was_declared_is_done_and_every_difference_is_told(database: Database) -> None:
-    """Exclusions by rule, n below the plan, a rule without data; the hash of the version."""
+def test_the_declared_test_is_run_and_deviations_are_listed(database: Database) -> None:
+    """The declared exclusions and test are applied, and every deviation is listed."""
     declare(database, SECTION)
     for n in range(1, 5):
         visit(database, f"P{n}")
@@ -101,8 +101,8 @@ def test_what_was_declared_is_done_and_every_difference_is_told(database: Databa
 
 
 @pytest.mark.one_engine
-def test_changes_after_the_first_session_are_told(database: Database) -> None:
-    """A declaration that comes late, or changes; sessions left out without a rule."""
+def test_changes_after_the_first_session_are_listed(database: Database) -> None:
+    """A late or changed declaration and exclusions without a rule are listed as deviations."""
     visit(database, "P1")
     visit(database, "P2", "aborted")
     declare(database, SECTION.replace("    - {rule: complete_session}\n", ""), days=1)
@@ -112,8 +112,8 @@ def test_changes_after_the_first_session_are_told(database: Database) -> None:
 
 
 @pytest.mark.one_engine
-def test_what_a_registry_gets_names_no_participant(database: Database) -> None:
-    """Codes are pseudonyms of people: a file that is published has none."""
+def test_the_registrys_copy_names_no_participant(database: Database) -> None:
+    """The copy for a registry contains no participant codes."""
     declare(database, SECTION)
     for code, status in (("canary-1", "withdrawn"), ("canary-2", "completed")):
         visit(database, code, status)

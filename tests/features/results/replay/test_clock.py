@@ -1,4 +1,4 @@
-"""The times of a phase: laws of its clock, whatever paused it or cut it off."""
+"""Tests of the time axis of a phase, whatever paused or interrupted it."""
 
 from datetime import UTC, datetime, timedelta
 
@@ -9,18 +9,18 @@ from app.features.results.replay.clock import ClockReport, PhaseClock, Run, Wall
 NOON = datetime(2026, 3, 2, 12, 0, tzinfo=UTC)
 
 
-def told(*said: tuple[int, str, float, float]) -> list[ClockReport]:
-    """Reports as (run, what, client's time, active time)."""
+def reports_of(*said: tuple[int, str, float, float]) -> list[ClockReport]:
+    """Return reports given as (run, what, client's time, active time)."""
     return [ClockReport(*one, cause="operator") for one in said]
 
 
 def clock(*said: tuple[int, str, float, float], offsets_s: dict[int, float]) -> PhaseClock:
-    """The clock of a phase of one minute."""
-    return PhaseClock(offsets_s, (), stretches(told(*said), offsets_s, 60.0), 1.0)
+    """Return the clock of a phase of one minute with these reports."""
+    return PhaseClock(offsets_s, (), stretches(reports_of(*said), offsets_s, 60.0), 1.0)
 
 
-def test_a_pause_stops_the_active_time_and_not_the_phases() -> None:
-    """A pause of 5 s after 10 s: what is counted at 12 s happened at 17 s."""
+def test_a_pause_stops_active_time_but_not_the_phases_time() -> None:
+    """A pause stops the active time but not the time of the phase."""
     paused = clock(
         *((1, "started", 100.0, 0.0), (1, "paused", 110.0, 10.0), (1, "resumed", 115.0, 10.0)),
         *((1, "time_up", 165.0, 60.0), (1, "ended", 168.0, 60.0)),
@@ -34,8 +34,8 @@ def test_a_pause_stops_the_active_time_and_not_the_phases() -> None:
     assert paused.duration_s == pytest.approx(65.0)
 
 
-def test_a_run_that_ends_without_a_word_stops_where_the_next_one_goes_on() -> None:
-    """A headset that dies at 20 s of active time is followed by one with a clock of its own."""
+def test_a_run_that_ends_abruptly_stops_where_the_next_continues() -> None:
+    """A run that ends without a report stops at the active time at which the next continues."""
     lost = clock(
         (1, "started", 100.0, 0.0),
         (2, "resumed", 7.0, 20.0),
@@ -45,8 +45,8 @@ def test_a_run_that_ends_without_a_word_stops_where_the_next_one_goes_on() -> No
     assert [(one.begin_s, one.end_s) for one in lost.active] == [(0.0, 20.0), (50.0, 90.0)]
 
 
-def test_the_way_back_is_no_active_time() -> None:
-    """Both of its ends are told; a pause in it changes nothing."""
+def test_a_walk_back_is_not_active_time() -> None:
+    """A walk back is not active time, even with a pause in it."""
     walked = clock(
         *((1, "started", 0.0, 0.0), (1, "walk_back_started", 8.0, 8.0), (1, "paused", 9.0, 8.0)),
         *((1, "walk_back_ended", 14.0, 8.0), (1, "time_up", 66.0, 60.0)),
@@ -55,16 +55,16 @@ def test_the_way_back_is_no_active_time() -> None:
     assert [(one.begin_s, one.end_s) for one in walked.active] == [(0.0, 8.0), (14.0, 66.0)]
 
 
-def test_the_hour_of_a_faster_clock_is_counted_in_its_seconds() -> None:
-    """At 20 seconds of the headset a second of the server, half a second later is ten."""
+def test_utc_is_converted_with_the_time_scale() -> None:
+    """At a time scale of 20 half a second of UTC is ten seconds of the phase."""
     run = Run(1, 0.0, 60.0, NOON, 1.0)
     fast = PhaseClock({1: 0.0}, (run,), (), 20.0)
     assert fast.of_utc(NOON + timedelta(seconds=0.5)) == pytest.approx(10.0)
     assert PhaseClock({}, (), (), 1.0).of_utc(NOON) is None
 
 
-def test_nothing_began_after_the_server_had_heard_of_it() -> None:
-    """An uneven clock is placed 220 ms too late and calls it 2 ms: the 222 ms are told."""
+def test_no_event_is_placed_after_the_server_heard_of_it() -> None:
+    """No event is placed later than the server heard of it; its uncertainty grows by the shift."""
     heard = NOON - timedelta(milliseconds=220)
     assert Wall(NOON, 2.0).no_later_than(heard) == Wall(heard, 222.0)
     within = Wall(NOON, 2.0)
@@ -72,7 +72,7 @@ def test_nothing_began_after_the_server_had_heard_of_it() -> None:
     assert Wall(None).no_later_than(heard) == Wall(None)
 
 
-def test_a_wall_clock_that_was_set_moves_nothing() -> None:
-    """A server's clock that was put back an hour says nothing of the headset's."""
+def test_a_wall_clock_set_back_moves_no_event() -> None:
+    """A server's wall clock that was set back by an hour moves no event."""
     placed = Wall(NOON, 2.0)
     assert placed.no_later_than(NOON - timedelta(hours=1)) is placed

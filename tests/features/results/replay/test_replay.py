@@ -1,4 +1,4 @@
-"""Replays over HTTP and behind it: places, gaps, who sees what, and what is refused."""
+"""Tests of replays over HTTP: positions, gaps, permissions and refusals."""
 
 import json
 import struct
@@ -30,7 +30,7 @@ NEAREST_S = 0.5 / RATE_HZ + 1e-9
 
 @dataclass(frozen=True)
 class Decoded:
-    """The bytes of a movement, read as docs and module say; without the product's code."""
+    """A movement decoded as documented, without the product's code."""
 
     header: Json
     bodies: dict[str, NDArray[np.float32]]
@@ -38,7 +38,7 @@ class Decoded:
 
 
 def decode(body: bytes) -> Decoded:
-    """Read them."""
+    """Decode the bytes of a movement."""
     (length,) = struct.unpack_from("<I", body)
     header = json.loads(body[4 : 4 + length])
     numbers = np.frombuffer(body, "<f4", offset=4 + length)
@@ -56,7 +56,7 @@ def decode(body: bytes) -> Decoded:
 
 @pytest.fixture
 def phase(lab: Lab, request: pytest.FixtureRequest) -> Phase:
-    """The first hand phase of a session that is over, with six seconds of movement."""
+    """Return the first hand phase of an ended session, with six seconds of movement."""
     with lab.database.writing() as db:
         session = build_session(db, SessionSpec(stable_id(request.node.name)[:12]))
         found = db.scalars(
@@ -73,19 +73,17 @@ def phase(lab: Lab, request: pytest.FixtureRequest) -> Phase:
 
 
 def path(phase: Phase, what: str = "replay") -> str:
-    """The address of a phase's replay, or of its movement."""
+    """Return the address of a phase's replay or movement."""
     return f"/api/sessions/{phase.session_id}/phases/{phase.phase_id}/{what}"
 
 
 def placed(lab: Lab, phase: Phase, *, full: bool = True) -> Decoded:
-    """The movement as it is placed for a page."""
+    """Return the movement of a phase as it is sent to a page."""
     return decode(placed_movement(lab.database, phase.session_id, phase.phase_id, full=full))
 
 
-def test_places_are_those_of_the_stored_frame_nearest_to_each_moment(
-    lab: Lab, phase: Phase
-) -> None:
-    """Forward kinematics of the frames themselves, on the body of the matched height."""
+def test_positions_are_those_of_the_nearest_stored_frame(lab: Lab, phase: Phase) -> None:
+    """Positions at each moment are those of the nearest stored frame, at the matched height."""
     shown = placed(lab, phase)
     assert shown.header["rate_hz"] == 30.0
     assert shown.header["gaps"] == []
@@ -104,8 +102,8 @@ def test_places_are_those_of_the_stored_frame_nearest_to_each_moment(
 
 
 @pytest.mark.one_engine
-def test_errors_are_the_angles_of_the_same_frames(lab: Lab, phase: Phase) -> None:
-    """Ten times a second, for every joint but the hips, against what was asked for then."""
+def test_replayed_errors_are_the_joint_errors_of_the_frames(lab: Lab, phase: Phase) -> None:
+    """The joint errors of a replay are those of the same frames, for every joint but the hips."""
     shown = placed(lab, phase)
     with lab.database.reading() as db:
         ((_, target),) = phase_frames(db, phase.session_id, StreamName.TARGET, phase.phase_id)
@@ -118,8 +116,8 @@ def test_errors_are_the_angles_of_the_same_frames(lab: Lab, phase: Phase) -> Non
 
 
 @pytest.mark.one_engine
-def test_what_was_not_recorded_is_a_gap(lab: Lab, phase: Phase) -> None:
-    """Two seconds without frames are neither filled nor closed up."""
+def test_unrecorded_time_is_a_gap(lab: Lab, phase: Phase) -> None:
+    """Two seconds without frames are a gap in the replay, neither filled nor removed."""
     seqs = [*range(180), *range(360, 540)]
     with lab.database.writing() as db:
         for table in (TelemetryChunk, TelemetryStream):
@@ -141,8 +139,8 @@ def test_what_was_not_recorded_is_a_gap(lab: Lab, phase: Phase) -> None:
 
 
 @pytest.mark.one_engine
-def test_contacts_completions_and_forms_lie_on_the_phases_time(lab: Lab, phase: Phase) -> None:
-    """With the task's scene, and the questionnaire that follows."""
+def test_contacts_completions_and_forms_are_on_the_phases_time(lab: Lab, phase: Phase) -> None:
+    """A replay has contacts, completed tasks and forms on the phase's time, and its surfaces."""
     shown = ok(lab.operator.get(path(phase)))
     assert shown["view"] == "full"
     assert shown["duration_s"] == pytest.approx(DURATION_S, abs=0.02)
@@ -163,8 +161,8 @@ def test_contacts_completions_and_forms_lie_on_the_phases_time(lab: Lab, phase: 
     assert {step["block"] for step in following} == {steps[phase.step_index]["block"]}
 
 
-def test_the_movement_is_sent_once_and_asked_for_by_its_tag(lab: Lab, phase: Phase) -> None:
-    """A page that has the bytes gets none, until more is stored."""
+def test_unchanged_movement_is_not_sent_again(lab: Lab, phase: Phase) -> None:
+    """A page that already has the movement gets 304 until more is stored."""
     first = lab.operator.get(path(phase, "movement"))
     assert first.content == placed_movement(
         lab.database, phase.session_id, phase.phase_id, full=True
@@ -180,7 +178,7 @@ def test_the_movement_is_sent_once_and_asked_for_by_its_tag(lab: Lab, phase: Pha
 
 @pytest.mark.one_engine
 def test_a_phase_is_replayed_once_it_is_over(lab: Lab, phase: Phase) -> None:
-    """Before that, and where there is none, it is said what to do."""
+    """A running phase has no replay; the error for an unknown phase lists the existing ones."""
     with lab.database.writing() as db:
         db.merge(phase).status = "running"
     for what in ("replay", "movement"):
@@ -190,8 +188,8 @@ def test_a_phase_is_replayed_once_it_is_over(lab: Lab, phase: Phase) -> None:
 
 
 @pytest.mark.one_engine
-def test_who_is_blind_sees_the_participant_alone(fresh_lab: Lab) -> None:
-    """Neither the avatar nor what happened to it: their distance in time is the latency."""
+def test_a_blinded_replay_shows_the_participant_only(fresh_lab: Lab) -> None:
+    """A blinded replay shows only the participant, as the avatar reveals the latency."""
     yaml = ok(fresh_lab.operator.get(f"/api/studies/{STUDY}"))["yaml"]
     blinded = yaml.replace("operator: false", "operator: true")
     ok(fresh_lab.operator.post(f"/api/studies/{STUDY}/versions", json={"yaml": blinded}))
