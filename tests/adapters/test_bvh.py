@@ -33,7 +33,7 @@ Frame Time: 0.01
 
 
 def test_joints_are_placed_where_the_toolbox_author_placed_them(shared_data: Path) -> None:
-    """World positions of walk01 agree with the table its author computed (bvh-toolbox)."""
+    """World positions of walk01 agree with the table that its author computed (bvh-toolbox)."""
     folder = shared_data / "motion" / "bvh_toolbox"
     clip = read_bvh(folder / "walk01.bvh", metres_per_unit=1.0)
     positions, _ = clip.world()
@@ -46,7 +46,7 @@ def test_joints_are_placed_where_the_toolbox_author_placed_them(shared_data: Pat
 
 @pytest.mark.parametrize("name", ["02_01", "05_06", "06_01", "12_02"])
 def test_cmu_captures_are_read(shared_data: Path, name: str) -> None:
-    """The CMU walks have 31 joints at 120 frames a second and a human's leg length."""
+    """The CMU walks have 31 joints at 120 frames a second and human leg lengths."""
     path = shared_data / "motion" / "cmu_bvh" / f"{name}.bvh"
     clip = read_bvh(path, metres_per_unit=0.056444)
     assert len(clip.names) == 31
@@ -66,7 +66,7 @@ def test_vicon_capture_has_its_own_order_at_the_root(shared_data: Path) -> None:
 
 
 def test_small_text_is_read_as_written() -> None:
-    """Names with spaces, units, position channels and rotation orders come out as meant."""
+    """Names with spaces, units, position channels and rotation orders are read correctly."""
     clip = parse_bvh("\ufeff" + _SMALL.replace("\n", "\r\n"), metres_per_unit=0.01)
     assert clip.names == ("Hips", "Upper Arm")
     assert clip.parents == (-1, 0)
@@ -81,7 +81,7 @@ def test_small_text_is_read_as_written() -> None:
 
 
 def test_writing_and_reading_back_gives_the_same_poses(shared_data: Path) -> None:
-    """A clip survives a round trip through text."""
+    """A clip is the same after writing it as text and reading it back."""
     path = shared_data / "motion" / "bvh_toolbox" / "walk01.bvh"
     clip = read_bvh(path, metres_per_unit=0.01)
     again = parse_bvh(format_bvh(clip, metres_per_unit=0.01), metres_per_unit=0.01)
@@ -115,8 +115,10 @@ def test_writing_and_reading_back_gives_the_same_poses(shared_data: Path) -> Non
         ("10 20 30", "10 x 30", 20, "got 'x'"),
     ],
 )
-def test_a_broken_text_is_refused_with_its_line(old: str, new: str, line: int, reason: str) -> None:
-    """Each broken rule names its line and what is valid."""
+def test_an_invalid_text_is_rejected_with_its_line(
+    old: str, new: str, line: int, reason: str
+) -> None:
+    """Each invalid line is rejected with its number and what is valid."""
     assert old in _SMALL
     with pytest.raises(BvhError, match=reason) as caught:
         parse_bvh(_SMALL.replace(old, new, 1), metres_per_unit=0.01)
@@ -124,8 +126,8 @@ def test_a_broken_text_is_refused_with_its_line(old: str, new: str, line: int, r
 
 
 @pytest.mark.parametrize("cut", [0, 10, 60, 150, 250, 300])
-def test_a_cut_off_text_is_refused(cut: int) -> None:
-    """A text that ends early is an error, never an endless wait or a partial clip."""
+def test_a_truncated_text_is_rejected(cut: int) -> None:
+    """A text that ends early raises an error instead of giving a partial clip."""
     with pytest.raises(BvhError):
         parse_bvh(_SMALL[:cut], metres_per_unit=0.01)
 
@@ -134,13 +136,13 @@ def test_a_cut_off_text_is_refused(cut: int) -> None:
     "limits",
     [BvhLimits(characters=100), BvhLimits(joints=1), BvhLimits(depth=1), BvhLimits(values=17)],
 )
-def test_texts_beyond_a_limit_are_refused(limits: BvhLimits) -> None:
-    """Size, joint count, depth and value count are limited."""
+def test_texts_beyond_a_limit_are_rejected(limits: BvhLimits) -> None:
+    """Texts with too many bytes, joints, levels or values are rejected."""
     with pytest.raises(BvhError):
         parse_bvh(_SMALL, metres_per_unit=0.01, limits=limits)
 
 
 def test_units_must_be_a_length() -> None:
-    """A unit of zero length would flatten the body and is refused."""
+    """A unit of zero length is rejected."""
     with pytest.raises(BvhError, match="metres_per_unit"):
         parse_bvh(_SMALL, metres_per_unit=0.0)

@@ -32,7 +32,7 @@ from app.science.walking.records import LENGTH, PAPER_GRID, PAPER_PARAMETERS, ST
 from app.science.walking.scene import straight_scene
 from app.science.walking.synthetic import POPULATIONS, Sample, synthetic_walks
 from tests.benchmarks.walking_cells import FOLLOWER, Studied, made
-from tests.science.walking.submodels import holding, without_dependency
+from tests.science.walking.submodels import with_fixed_parameter, without_dependency
 
 NEIGHBOURS = (10, 20, 50, 100, 200, 500)
 DISTANCES_M, LONG_PEOPLE, LONG_TIMES = (10.0, 25.0, 50.0), 16, 4
@@ -123,7 +123,10 @@ def _submodels(studied: Studied, rng: np.random.Generator) -> Iterator[Submodel]
     static = zip(fit.database.grid.parameters, fit.static.vector, strict=True)
     cut = [("nothing", fit.database)]
     cut += [(name, without_dependency(fit.database, name)) for name in fit.database.names]
-    cut += [(one.name, holding(fit.database, one.name, float(value))) for one, value in static]
+    cut += [
+        (one.name, with_fixed_parameter(fit.database, one.name, float(value)))
+        for one, value in static
+    ]
     for name, database in cut:
         space = space_of(database, fit.reading, np.random.default_rng(1))
         result = evaluate([ProbabilisticModel(space)], FOLLOWER, walks, rng)

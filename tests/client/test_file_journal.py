@@ -1,4 +1,4 @@
-"""The journal in files: what was added is found again after any end of its process."""
+"""The journal in files: added messages survive any end of the process."""
 
 import resource
 import signal
@@ -23,14 +23,14 @@ MESSAGES = st.one_of(st.binary(max_size=40), st.text(max_size=40))
     segment_bytes=st.integers(20, 400),
 )
 @settings(max_examples=60, deadline=None)
-def test_it_holds_what_a_journal_in_memory_holds(
+def test_it_contains_what_a_journal_in_memory_contains(
     tmp_path_factory: pytest.TempPathFactory,
     messages: list[bytes | str],
     acked: int,
     memory_bytes: int,
     segment_bytes: int,
 ) -> None:
-    """However little memory it may use, also after it was opened again."""
+    """It contains the same as a journal in memory, at any memory limit and after reopening."""
     folder = tmp_path_factory.mktemp("journal")
     model = Journal()
     filed = FileJournal(folder=folder, memory_bytes=memory_bytes, segment_bytes=segment_bytes)
@@ -48,8 +48,8 @@ def test_it_holds_what_a_journal_in_memory_holds(
         assert again.waiting_bytes == 0
 
 
-def test_segments_go_when_they_are_acknowledged(tmp_path: Path) -> None:
-    """Only those that still hold something stay on the client's disk."""
+def test_acknowledged_segments_are_deleted(tmp_path: Path) -> None:
+    """A segment file is deleted once all of its messages are acknowledged."""
     journal = FileJournal(folder=tmp_path, segment_bytes=1000)
     for at in range(100):
         journal.add(Entry("target", 1, at + 1, b"x" * 100))
@@ -64,7 +64,7 @@ def test_segments_go_when_they_are_acknowledged(tmp_path: Path) -> None:
 
 
 def test_a_torn_record_is_left_out(tmp_path: Path) -> None:
-    """What the end of the process cut off had not been handed over."""
+    """A record that was cut off by the end of the process is left out."""
     journal = FileJournal(folder=tmp_path)
     for at in range(3):
         journal.add(Entry("target", 1, at + 1, b"x" * 100))
@@ -74,8 +74,8 @@ def test_a_torn_record_is_left_out(tmp_path: Path) -> None:
     assert [one.seq_end for one in FileJournal(folder=tmp_path)] == [1, 2]
 
 
-def test_a_new_process_writes_behind_the_old_segments(tmp_path: Path) -> None:
-    """Order is kept over any number of openings."""
+def test_a_new_process_appends_to_the_old_segments(tmp_path: Path) -> None:
+    """Messages stay in order over any number of reopenings."""
     for at in range(4):
         journal = FileJournal(folder=tmp_path)
         journal.add(Entry("target", at + 1, 1, b"%d" % at))
@@ -83,8 +83,8 @@ def test_a_new_process_writes_behind_the_old_segments(tmp_path: Path) -> None:
     assert [one.message for one in FileJournal(folder=tmp_path)] == [b"0", b"1", b"2", b"3"]
 
 
-def test_a_full_disk_tears_nothing(tmp_path: Path) -> None:
-    """A message that does not fit is refused whole; earlier and later ones are found."""
+def test_a_full_disk_leaves_no_partial_record(tmp_path: Path) -> None:
+    """A message that does not fit on the disk is rejected whole; the others are kept."""
     journal = FileJournal(folder=tmp_path)
     journal.add(Entry("target", 1, 1, b"x" * 100))
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
@@ -102,7 +102,7 @@ def test_a_full_disk_tears_nothing(tmp_path: Path) -> None:
 
 
 def test_a_killed_process_leaves_everything_it_added(tmp_path: Path) -> None:
-    """SIGKILL takes nothing of what `add` had returned for."""
+    """After SIGKILL every message is there for which `add` had returned."""
     work = (
         "import sys; from pathlib import Path\n"
         "from app.client.file_journal import FileJournal\n"

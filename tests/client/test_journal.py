@@ -1,4 +1,4 @@
-"""The client's journal: nothing leaves it before it is on the server's disk."""
+"""The client's journal keeps every message until it is on the server's disk."""
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -7,12 +7,12 @@ from app.client.journal import Entry, Journal
 
 
 def entry(stream: str, seq_end: int, epoch: int = 1, size: int = 10) -> Entry:
-    """A message that carries ten seqs."""
+    """Return a message that contains ten sequence numbers."""
     return Entry(stream, epoch, seq_end, b"x" * size)
 
 
 def filled(*entries: Entry) -> Journal:
-    """A journal with these messages."""
+    """Return a journal with these messages."""
     journal = Journal()
     for one in entries:
         journal.add(one)
@@ -20,14 +20,14 @@ def filled(*entries: Entry) -> Journal:
 
 
 def test_messages_wait_in_order() -> None:
-    """What is sent again is sent in the order it was made."""
+    """Messages are resent in the order in which they were added."""
     entries = [entry("target", 10), entry("actual", 10), entry("reports", 1)]
     journal = filled(*entries)
     assert (list(journal), len(journal), journal.waiting_bytes) == (entries, 3, 30)
 
 
-def test_an_acknowledgement_lets_go_of_what_is_stored() -> None:
-    """All of `seq < next_seq` leaves, nothing else."""
+def test_an_acknowledgement_removes_stored_messages() -> None:
+    """An acknowledgement removes exactly the messages with `seq < next_seq`."""
     journal = filled(*(entry("target", end) for end in (10, 20, 30)))
     journal.acknowledge([("target", 1, 20)])
     assert [one.seq_end for one in journal] == [30]
@@ -35,29 +35,29 @@ def test_an_acknowledgement_lets_go_of_what_is_stored() -> None:
 
 
 def test_a_message_stored_in_part_stays() -> None:
-    """Only a message whose every seq is stored may go."""
+    """A message is kept until all of its sequence numbers are acknowledged."""
     journal = filled(entry("target", 20))
     journal.acknowledge([("target", 1, 19)])
     assert len(journal) == 1
 
 
-def test_another_stream_or_run_is_not_meant() -> None:
-    """An acknowledgement counts for its own stream and epoch."""
+def test_an_acknowledgement_applies_to_its_stream_and_epoch() -> None:
+    """An acknowledgement removes messages of its own stream and epoch only."""
     journal = filled(entry("target", 10))
     journal.acknowledge([("actual", 1, 99), ("target", 2, 99)])
     assert len(journal) == 1
 
 
-def test_an_older_acknowledgement_takes_nothing_back() -> None:
-    """Acknowledgements may come late and twice."""
+def test_an_older_acknowledgement_has_no_effect() -> None:
+    """Late and duplicate acknowledgements have no effect."""
     journal = filled(entry("target", 10), entry("target", 20))
     for next_seq in (10, 5, 10):
         journal.acknowledge([("target", 1, next_seq)])
     assert [one.seq_end for one in journal] == [20]
 
 
-def test_a_full_journal_says_so() -> None:
-    """The producer has to wait from the limit on, and may go on after an acknowledgement."""
+def test_a_full_journal_reports_that_it_is_full() -> None:
+    """A journal at its limit is full until an acknowledgement makes room."""
     journal = Journal(limit_bytes=20)
     journal.add(entry("target", 10))
     assert not journal.is_full
@@ -71,10 +71,10 @@ def test_a_full_journal_says_so() -> None:
     sizes=st.lists(st.tuples(st.sampled_from("ab"), st.integers(1, 5)), max_size=30),
     acks=st.lists(st.tuples(st.sampled_from("ab"), st.integers(0, 160)), max_size=20),
 )
-def test_nothing_unacknowledged_ever_leaves(
+def test_unacknowledged_messages_are_never_removed(
     sizes: list[tuple[str, int]], acks: list[tuple[str, int]]
 ) -> None:
-    """Whatever is acknowledged in whatever order, the rest is still there, counted right."""
+    """In any order of acknowledgements the unacknowledged messages stay and are counted."""
     journal, ends = Journal(), {"a": 0, "b": 0}
     entries = []
     for stream, count in sizes:

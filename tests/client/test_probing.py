@@ -1,4 +1,4 @@
-"""Asking for the clock: what was read is told as it was read, and what never came is null."""
+"""Clock probes of the client: readings are reported unchanged, and missing ones as null."""
 
 import asyncio
 from dataclasses import dataclass, field
@@ -10,57 +10,57 @@ from app.wire.messages import CLIENT_MESSAGE, Probe, ProbeAnswer, Probed
 
 @dataclass
 class Wire:
-    """What the client said."""
+    """A connection that records what the client sends."""
 
-    said: list[Any] = field(default_factory=list)
+    sent: list[Any] = field(default_factory=list)
 
     async def send(self, text: str) -> None:
-        """Take a message."""
-        self.said.append(CLIENT_MESSAGE.validate_json(text))
+        """Record a message."""
+        self.sent.append(CLIENT_MESSAGE.validate_json(text))
 
-    def told(self) -> list[Probed]:
-        """The readings among it."""
-        return [one for one in self.said if isinstance(one, Probed)]
+    def readings(self) -> list[Probed]:
+        """Return the clock readings among the messages."""
+        return [one for one in self.sent if isinstance(one, Probed)]
 
 
-async def _ask(wire: Wire, prober: Prober, asked: int) -> None:
-    """Run until so many probes are out."""
+async def _run_probes(wire: Wire, prober: Prober, requested: int) -> None:
+    """Run the prober until this many probes were sent."""
     running = asyncio.create_task(prober.run())
-    while sum(isinstance(one, Probe) for one in wire.said) < asked:  # noqa: ASYNC110 - a look
+    while sum(isinstance(one, Probe) for one in wire.sent) < requested:  # noqa: ASYNC110 - a look
         await asyncio.sleep(0.001)
     running.cancel()
     await asyncio.gather(running, return_exceptions=True)
 
 
-def test_an_answer_is_told_with_all_four_times() -> None:
-    """Nothing is computed: the record holds what the clocks said."""
+def test_a_reply_is_reported_with_all_four_times() -> None:
+    """A reply is reported with all four clock readings, unchanged."""
 
     async def run() -> list[Probed]:
         wire = Wire()
         prober = Prober(cast("Any", wire), lambda: 5.0, every_s=60.0)
-        await _ask(wire, prober, 1)
+        await _run_probes(wire, prober, 1)
         answer = ProbeAnswer(client_sent_s=5.0, server_received_ns=7, server_sent_ns=8)
         await prober.take(answer, 5.25)
-        return wire.told()
+        return wire.readings()
 
     assert asyncio.run(run()) == [
         Probed(client_sent_s=5.0, server_received_ns=7, server_sent_ns=8, client_received_s=5.25)
     ]
 
 
-def test_an_answer_that_does_not_come_is_null() -> None:
-    """A time-out gives null, and an answer that comes after it changes nothing."""
+def test_a_missing_reply_is_reported_as_null() -> None:
+    """A probe that times out is reported with null, and its late reply is ignored."""
 
     async def run() -> list[Probed]:
         wire, ticks = Wire(), iter(range(1000))
         prober = Prober(cast("Any", wire), lambda: float(next(ticks)), every_s=0.02, timeout_s=0.01)
-        await _ask(wire, prober, 3)
+        await _run_probes(wire, prober, 3)
         late = ProbeAnswer(client_sent_s=0.0, server_received_ns=7, server_sent_ns=8)
         await prober.take(late, 100.0)
-        return wire.told()
+        return wire.readings()
 
-    told = asyncio.run(run())
-    assert [one.client_sent_s for one in told] == [0.0, 1.0]
+    readings = asyncio.run(run())
+    assert [one.client_sent_s for one in readings] == [0.0, 1.0]
     assert {
-        (one.server_received_ns, one.server_sent_ns, one.client_received_s) for one in told
+        (one.server_received_ns, one.server_sent_ns, one.client_received_s) for one in readings
     } == {(None, None, None)}

@@ -1,4 +1,4 @@
-"""The Python client against the real server: what it told it had made, and what it left behind."""
+"""The Python client against the real server: what it produced and what was stored."""
 
 import asyncio
 import time
@@ -23,26 +23,26 @@ FRAMES = 9
 
 
 def client(site: Site, token: str, journal: Journal) -> TelemetryClient:
-    """A client of the site's server."""
+    """Return a client of the site's server."""
     url = f"{site.server.url.replace('http', 'ws', 1)}/api/vr/stream"
     return TelemetryClient(url, token, "test", time.monotonic, journal=journal)
 
 
 async def send(headset: TelemetryClient, batches: int, first: int = 0) -> None:
-    """Journal so many batches of the target."""
+    """Add this many batches of the target stream to the journal."""
     for at in range(first, first + batches):
         text = message(standing(FRAMES), seq_first=at * FRAMES, epoch=headset.epoch)
         await headset.send_batch(StreamName.TARGET, (at + 1) * FRAMES, text)
 
 
 def receipt(server: LiveServer, session_id: str) -> SessionReceipt:
-    """What the record proves."""
+    """Return the receipt of a session."""
     with record_of(server) as db:
         return receipt_of(db, session_id)
 
 
-def test_a_clean_end_tells_how_much_was_made(live_server: LiveServer) -> None:
-    """The server then knows that it has everything."""
+def test_a_clean_end_reports_how_much_was_produced(live_server: LiveServer) -> None:
+    """After a clean end the server knows the number of frames, and the receipt is complete."""
     with open_site(live_server) as site:
         session_id = site.join()
         token = site.token(session_id)
@@ -58,10 +58,10 @@ def test_a_clean_end_tells_how_much_was_made(live_server: LiveServer) -> None:
     assert receipt(live_server, session_id).complete
 
 
-def test_a_headset_that_dies_with_its_journal_leaves_a_known_hole(
+def test_frames_of_a_lost_journal_are_counted_as_missing(
     live_server: LiveServer,
 ) -> None:
-    """What it had made and not sent is counted as missing, to the frame."""
+    """Frames that a headset reported but never sent are counted as missing in the receipt."""
     with open_site(live_server) as site:
         session_id = site.join()
         token = site.token(session_id)
@@ -70,7 +70,7 @@ def test_a_headset_that_dies_with_its_journal_leaves_a_known_hole(
             async with client(site, token, Journal()) as headset:
                 await send(headset, 10)
                 await headset.drained()
-                # The next frames never leave the headset, but it has told of them.
+                # The next frames never leave the headset, but it has reported them.
                 for at in range(10, 15):
                     headset.journal.produced_up_to(StreamName.TARGET, 1, (at + 1) * FRAMES)
 
@@ -86,7 +86,7 @@ def test_a_headset_that_dies_with_its_journal_leaves_a_known_hole(
 def test_a_journal_in_files_is_delivered_by_the_next_process(
     live_server: LiveServer, tmp_path: Path
 ) -> None:
-    """Under the epoch in which it was made, before and beside what the new run makes."""
+    """A journal in files is delivered by the next process under its original epoch."""
     with open_site(live_server) as site:
         session_id = site.join()
         token = site.token(session_id)
@@ -123,7 +123,7 @@ def test_a_journal_in_files_is_delivered_by_the_next_process(
 
 
 def _produced(server: LiveServer, session_id: str) -> dict[tuple[str, int], int]:
-    """What the client told that it had made, once that is stored."""
+    """Return the number of frames that the client reported, once it is stored."""
     give_up_s = time.monotonic() + 10.0
     while True:
         with record_of(server) as db:

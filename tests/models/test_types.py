@@ -1,4 +1,4 @@
-"""What a column gives back is what was stored, or an error that says that it is not."""
+"""Column types return what was stored, or raise an error if it is damaged."""
 
 from datetime import UTC, datetime, timedelta, timezone
 
@@ -14,7 +14,7 @@ NOON = datetime(2026, 11, 22, 12, 0, 0, 123456, UTC)
 
 @pytest.fixture
 def database(sqlite_url: str) -> Database:
-    """One account, made at noon in another zone."""
+    """Return a database with one account, created at noon in another time zone."""
     database = open_database(sqlite_url)
     there = NOON.astimezone(timezone(timedelta(hours=9)))
     with database.writing() as db:
@@ -23,19 +23,19 @@ def database(sqlite_url: str) -> Database:
 
 
 def created_at(database: Database) -> datetime:
-    """As it is read."""
+    """Return the account's time as it is read."""
     with database.reading() as db:
         return db.query(Account).one().created_at
 
 
 def test_a_time_comes_back_in_utc_to_the_microsecond(database: Database) -> None:
-    """SQLite keeps no zone."""
+    """A time is returned in UTC to the microsecond, though SQLite stores no time zone."""
     assert created_at(database) == NOON
     assert created_at(database).tzinfo is UTC
 
 
-def test_a_row_that_leads_nowhere_is_a_damaged_value(database: Database) -> None:
-    """Of rows that are never deleted; the others may just have been."""
+def test_a_reference_to_a_missing_row_is_a_damaged_value(database: Database) -> None:
+    """A reference to a missing row of a table that never deletes rows raises DamagedValue."""
     with (
         database.reading() as db,
         pytest.raises(DamagedValue, match="'gone' names no row of Account"),
@@ -44,8 +44,8 @@ def test_a_row_that_leads_nowhere_is_a_damaged_value(database: Database) -> None
 
 
 @pytest.mark.parametrize("damaged", ["2026-11-22 12:00:0\x7f", "2026-99-22 12:00:00", 7])
-def test_what_is_no_time_is_a_damaged_value(database: Database, damaged: str | int) -> None:
-    """One bit of a text is enough; whoever reads it hears that the database is damaged."""
+def test_an_invalid_time_is_a_damaged_value(database: Database, damaged: str | int) -> None:
+    """A stored value that is not a time raises DamagedValue."""
     with database.writing() as db:
         db.execute(text("UPDATE accounts SET created_at = :damaged"), {"damaged": damaged})
     with pytest.raises(DamagedValue, match="where a time should be"):

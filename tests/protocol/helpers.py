@@ -1,4 +1,4 @@
-"""The shipped study as text, and ways to change it."""
+"""The shipped study as text, and functions that change it."""
 
 from functools import cache
 from pathlib import Path
@@ -21,7 +21,7 @@ SHIPPED = (CONFIGS / "reembodiment-latency.yaml").read_text(encoding="utf-8")
 
 
 def as_delayed_copy(text: str) -> str:
-    """A study with a delayed copy for a body, which needs no headset that simulates."""
+    """Return a study with a delayed-copy avatar, which needs no headset that simulates."""
     moved = "avatar: physics\navatar_configuration: {key: standard, version: 1}\n"
     assert moved in text
     return text.replace(moved, "avatar: delayed_copy\n", 1)
@@ -33,7 +33,7 @@ STUDY = as_delayed_copy(SHIPPED)
 
 @cache
 def instruments() -> dict[str, Instrument]:
-    """The shipped instruments by their key."""
+    """Return the shipped instruments by their keys."""
     files = sorted((CONFIGS / "instruments").glob("*.yaml"))
     loaded = [load_instrument(file.read_text(encoding="utf-8")).instrument for file in files]
     return {instrument.key: instrument for instrument in loaded}
@@ -44,7 +44,7 @@ BEFORE_RULES = Path(__file__).with_name("study_before_rules.yaml").read_text(enc
 
 
 def edited(*changes: tuple[str, str]) -> str:
-    """The shipped study with words replaced; each must be there."""
+    """Return the shipped study with words replaced, each of which must occur."""
     text = STUDY
     for old, new in changes:
         assert old in text, f"{old!r} is not in the study"
@@ -53,17 +53,17 @@ def edited(*changes: tuple[str, str]) -> str:
 
 
 def loaded(text: str = STUDY) -> LoadedStudy:
-    """A study read with the shipped instruments."""
+    """Return a study loaded with the shipped instruments."""
     return load_study(text, instruments=instruments())
 
 
 def study(*changes: tuple[str, str]) -> StudyProtocol:
-    """The shipped study, with words replaced."""
+    """Return the protocol of the shipped study with words replaced."""
     return loaded(edited(*changes)).protocol
 
 
 def levels(n: int) -> str:
-    """The conditions section of a study with n levels."""
+    """Return the conditions section of a study with n levels."""
     lines = [
         f"  - {{key: c{level}, latency_ms: {level}, label: {{en: a, de: a}}}}" for level in range(n)
     ]
@@ -71,13 +71,13 @@ def levels(n: int) -> str:
 
 
 def with_levels(n: int) -> str:
-    """The shipped study with n conditions."""
+    """Return the shipped study with n conditions."""
     start, end = STUDY.index("conditions:\n"), STUDY.index("# All 3!")
     return STUDY[:start] + levels(n) + STUDY[end:]
 
 
 def problems(text: str) -> tuple[ConfigProblem, ...]:
-    """What is wrong with a study file; something must be."""
+    """Return the problems of an invalid study file; there must be some."""
     with pytest.raises(ConfigError) as caught:
         loaded(text)
     return caught.value.problems

@@ -32,7 +32,7 @@ SAFETY = """safety:
 
 
 def with_options(*changes: tuple[str, str]) -> str:
-    """The study's text; FMS is asked at the end of each block. `changes`: words replaced then."""
+    """Return the study's text with FMS after each block, then with words replaced."""
     text = edited(
         ("key: reembodiment-latency", f"key: {KEY}"),
         ("\n    - {step: consent, text: consent}\n", CONSENT),

@@ -1,4 +1,4 @@
-"""The avatar in a study file: moved by physics as a configuration says, or a delayed copy."""
+"""The avatar of a study: moved by physics with a configuration, or a delayed copy."""
 
 import json
 
@@ -11,14 +11,14 @@ AVATARS = {"standard": 2, "soft": 1}
 
 
 def physics(configuration: str = "{key: standard, version: 1}") -> str:
-    """The shipped study with a physics avatar."""
+    """Return the shipped study with a physics avatar."""
     return edited(
         ("avatar: delayed_copy", f"avatar: physics\navatar_configuration: {configuration}")
     )
 
 
 def test_a_study_names_the_version_of_its_avatar() -> None:
-    """It is part of the content, and no part of the design: the ledger stays."""
+    """The avatar's version is part of a study's content but not of its design."""
     study = loaded(physics())
     assert study.protocol.avatar == "physics"
     assert json.loads(study.canonical_json)["avatar_configuration"] == {
@@ -31,7 +31,7 @@ def test_a_study_names_the_version_of_its_avatar() -> None:
 
 
 def test_a_physics_avatar_needs_a_configuration() -> None:
-    """And is told which there are, where somebody knows."""
+    """A physics avatar without a configuration is rejected with the existing configurations."""
     text = edited(("avatar: delayed_copy", "avatar: physics"))
     (problem,) = problems(text)
     assert problem.path == "avatar_configuration"
@@ -42,8 +42,8 @@ def test_a_physics_avatar_needs_a_configuration() -> None:
     assert "{key: standard, version: 1}" in caught.value.problems[0].remedy
 
 
-def test_a_delayed_copy_has_none() -> None:
-    """What would not be used is not accepted."""
+def test_a_delayed_copy_has_no_configuration() -> None:
+    """A configuration of a delayed copy is rejected, since it would not be used."""
     (problem,) = problems(physics().replace("avatar: physics", "avatar: delayed_copy"))
     assert (problem.path, "left out" in str(problem.valid)) == ("avatar_configuration", True)
     assert problem.line > 0
@@ -59,8 +59,8 @@ def test_a_delayed_copy_has_none() -> None:
         ("standard", "avatar_configuration", "Expected a mapping"),
     ],
 )
-def test_an_avatar_that_is_not_there_is_told(configuration: str, path: str, said: str) -> None:
-    """With its place in the file."""
+def test_an_unknown_configuration_is_rejected(configuration: str, path: str, said: str) -> None:
+    """An unknown configuration is rejected with its place in the file."""
     with pytest.raises(ConfigError) as caught:
         load_study(physics(configuration), instruments=instruments(), avatars=AVATARS)
     (problem,) = caught.value.problems
@@ -69,6 +69,6 @@ def test_an_avatar_that_is_not_there_is_told(configuration: str, path: str, said
     assert problem.line > 0
 
 
-def test_without_a_lab_only_the_file_is_checked() -> None:
-    """A file can be read where no avatars are known."""
+def test_without_known_avatars_only_the_file_is_checked() -> None:
+    """Where no avatars are known, a file with any configuration can be loaded."""
     assert loaded(physics("{key: hard, version: 7}")).protocol.avatar_configuration is not None

@@ -1,4 +1,4 @@
-"""The file of an avatar's configuration: lossless, one hash a content, problems with places."""
+"""The file of an avatar's configuration: lossless, hashed by content, with located problems."""
 
 import json
 import math
@@ -19,7 +19,7 @@ TEXT = avatar_text(BODY)
 @settings(max_examples=40, deadline=None)
 @given(configurations())
 def test_a_file_gives_back_what_was_saved(configuration: Configuration) -> None:
-    """To the bit, by the file and by the canonical form."""
+    """A configuration is restored exactly from its file and from its canonical form."""
     content = loaded(configuration)
     read = load_avatar(avatar_text(configuration))
     assert read == content
@@ -27,7 +27,7 @@ def test_a_file_gives_back_what_was_saved(configuration: Configuration) -> None:
 
 
 def test_how_it_is_written_makes_no_difference_to_the_hash() -> None:
-    """Order, white space, tabs, and 72 for 72.0."""
+    """The order of keys, white space, and 72 for 72.0 do not change the hash."""
     tree = json.loads(TEXT)
     turned = {key: tree[key] for key in reversed(tree)}
     turned["axes"] = {name: tree["axes"][name] for name in reversed(tree["axes"])}
@@ -45,7 +45,7 @@ def test_how_it_is_written_makes_no_difference_to_the_hash() -> None:
 
 
 def test_every_setting_is_in_the_hash() -> None:
-    """Whatever changes the avatar changes its name."""
+    """Any change of a setting changes the hash."""
     some = AxisSettings(1.0, 1.0, 1.0, -0.1, 0.1)
     changed = [
         with_axis(BODY, "NeckX", some),
@@ -65,7 +65,7 @@ def test_every_setting_is_in_the_hash() -> None:
 
 
 def test_the_hash_of_a_content_stays() -> None:
-    """It names what participants met, so a release must not change it."""
+    """A content has the same hash in every release, since data refer to it."""
     one = Configuration({"LeftToesX": AxisSettings(10.0, 1.0, 5.0, -0.5, 0.5)})
     assert loaded(one).canonical_json == (
         '{"axes":{"LeftToesX":{"high_deg":28.647889757,"kd_nm_s_per_rad":1.0,'
@@ -76,8 +76,8 @@ def test_the_hash_of_a_content_stays() -> None:
     )
 
 
-def test_a_file_tells_its_units_and_its_format() -> None:
-    """People read it: an axis a line, degrees, units in every key."""
+def test_a_file_states_its_units_and_its_format() -> None:
+    """A file has one axis a line, degrees, and units in every key."""
     line = next(line for line in TEXT.splitlines() if "LeftUpperLegX" in line)
     assert line.strip() == (
         '"LeftUpperLegX": {"kp_nm_per_rad": 300.0, "kd_nm_s_per_rad": 20.0, '
@@ -105,10 +105,8 @@ def test_a_file_tells_its_units_and_its_format() -> None:
         (('"version": 1,', '"version": 1'), "", "This is not JSON", ""),
     ],
 )
-def test_a_slip_is_told_with_its_place(
-    change: tuple[str, str], path: str, said: str, valid: str
-) -> None:
-    """Path, line and column, what is valid."""
+def test_a_problem_has_its_place(change: tuple[str, str], path: str, said: str, valid: str) -> None:
+    """A problem has its path, line and column and what is valid."""
     with pytest.raises(ConfigError) as caught:
         load_avatar(TEXT.replace(*change, 1))
     problem = caught.value.problems[0]
@@ -120,8 +118,8 @@ def test_a_slip_is_told_with_its_place(
     assert valid in str(problem.valid)
 
 
-def test_an_unknown_key_is_refused_with_the_known_ones() -> None:
-    """Also within an axis; a slip of the pen gets its correction."""
+def test_an_unknown_key_is_rejected_with_the_valid_ones() -> None:
+    """An unknown key is rejected with the valid ones, and a misspelt one with its correction."""
     text = TEXT.replace('"gravity"', '"gravitiy"', 1).replace("kp_nm_per_rad", "kp", 1)
     with pytest.raises(ConfigError) as caught:
         load_avatar(text)
@@ -131,8 +129,8 @@ def test_an_unknown_key_is_refused_with_the_known_ones() -> None:
     assert {"gravity", "axes.SpineX.kp_nm_per_rad"} <= set(told)
 
 
-def test_a_key_that_stands_twice_is_refused() -> None:
-    """JSON would silently take the last."""
+def test_a_duplicate_key_is_rejected() -> None:
+    """A duplicate key, of which JSON would silently take the last, is rejected."""
     doubled = TEXT.replace('"gravity": true', '"gravity": true, "gravity": false')
     with pytest.raises(ConfigError, match="gravity"):
         load_avatar(doubled)

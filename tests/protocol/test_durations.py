@@ -1,4 +1,4 @@
-"""The dry run of a visit: what the study sets is exact, what is estimated says so."""
+"""The dry run of a visit: times of the study are exact, others are marked as estimates."""
 
 from itertools import pairwise
 
@@ -10,7 +10,10 @@ from tests.protocol.helpers import instruments, study
 
 
 def test_the_shipped_study_sets_nine_minutes() -> None:
-    """Free movement 120 s and six tasks of 5 + 60 + 5 s (Karas 2020, chapter 7.1)."""
+    """The shipped study sets nine minutes: free movement of 120 s and six tasks of 5 + 60 + 5 s.
+
+    Karas 2020, chapter 7.1.
+    """
     protocol = study()
     plan = compile_plan(protocol, sequences(protocol)[0])
     steps = timeline(protocol, plan, instruments(), language="en")
@@ -19,7 +22,7 @@ def test_the_shipped_study_sets_nine_minutes() -> None:
 
 
 def test_steps_follow_one_another() -> None:
-    """Each begins when the one before ends, and the total is the end of the last."""
+    """Each step begins when the previous one ends, and the total is the end of the last."""
     protocol = study()
     plan = compile_plan(protocol, sequences(protocol)[3])
     steps = timeline(protocol, plan, instruments(), language="de")
@@ -28,13 +31,13 @@ def test_steps_follow_one_another() -> None:
     assert total_s(steps) == pytest.approx(steps[-1].start_s + steps[-1].length_s)
 
 
-def test_a_form_takes_its_items() -> None:
-    """The simulator sickness questionnaire has 16 rated items."""
+def test_a_forms_duration_depends_on_its_items() -> None:
+    """The duration of a form depends on its items; the sickness questionnaire has 16."""
     assert form_s(instruments()["ssq"]) == OPENING_S + 16 * ITEM_S["likert"]
 
 
-def test_an_unknown_instrument_and_language_do_not_stop_it() -> None:
-    """An estimate is rough, never an error."""
+def test_an_unknown_instrument_gets_a_rough_estimate() -> None:
+    """A form of an unknown instrument or language gets an estimate instead of an error."""
     protocol = study()
     plan = compile_plan(protocol, sequences(protocol)[0])
     assert total_s(timeline(protocol, plan, {}, language="fr")) > 120 + 6 * 70

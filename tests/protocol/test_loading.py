@@ -1,4 +1,4 @@
-"""From a file to a value: one hash for one content, and every problem at once."""
+"""Loading a study file: one hash for one content, and all problems together."""
 
 import dataclasses
 import json
@@ -31,14 +31,14 @@ KARAS = (CONFIGS / "instruments" / "karas2020.yaml").read_text(encoding="utf-8")
 
 
 def reordered(value: object) -> object:
-    """The same content with every mapping's keys the other way round."""
+    """Return the same content with every mapping's keys reversed."""
     if isinstance(value, dict):
         return {key: reordered(value[key]) for key in reversed(value)}
     return [reordered(one) for one in value] if isinstance(value, list) else value
 
 
 def test_the_hash_names_the_content_and_not_its_formatting() -> None:
-    """Comments, key order, quoting, flow style, 60 for 60.0 and a BOM make no difference."""
+    """Comments, key order, quoting, flow style, 60 for 60.0 and a BOM do not change the hash."""
     content_hash = loaded().content_hash
     tree = reordered(yaml.safe_load(STUDY))
     again = yaml.safe_dump(tree, sort_keys=False, allow_unicode=True, default_style='"', width=60)
@@ -54,7 +54,7 @@ def test_the_hash_names_the_content_and_not_its_formatting() -> None:
 
 
 def test_every_change_of_content_changes_the_hash() -> None:
-    """Numbers, orders and single letters of a text count."""
+    """Changes of numbers, orders and single letters of a text change the hash."""
     changes = [
         ("latency_ms: 350", "latency_ms: 351"),
         ("replicates: 2", "replicates: 3"),
@@ -66,7 +66,7 @@ def test_every_change_of_content_changes_the_hash() -> None:
 
 
 def test_only_what_decides_balance_changes_the_design_hash() -> None:
-    """Labels and texts do not; conditions and orders do."""
+    """Conditions and orders change the design hash; labels and texts do not."""
     design = study().design_hash
     assert study(("125 ms added", "slow")).design_hash == design
     assert study(("duration_s: 60", "duration_s: 90")).design_hash == design
@@ -74,8 +74,8 @@ def test_only_what_decides_balance_changes_the_design_hash() -> None:
     assert study(("seed: 20200415", "seed: 1")).design_hash != design
 
 
-def test_what_is_stored_comes_back() -> None:
-    """The canonical JSON re-creates the value and has itself as canonical JSON."""
+def test_the_canonical_json_gives_the_same_study() -> None:
+    """The canonical JSON gives an equal study with the same canonical JSON."""
     again = parse_study_json(loaded().canonical_json)
     assert again == loaded().protocol
     instrument = load_instrument(KARAS)
@@ -84,7 +84,7 @@ def test_what_is_stored_comes_back() -> None:
 
 
 def test_a_study_cannot_be_changed() -> None:
-    """Protocols and instruments are frozen values."""
+    """Protocols and instruments are immutable."""
     with pytest.raises(ValidationError):
         study().key = "other"  # type: ignore[misc]  # frozen, that is the point
     with pytest.raises(dataclasses.FrozenInstanceError):
@@ -92,7 +92,7 @@ def test_a_study_cannot_be_changed() -> None:
 
 
 def test_six_levels_make_720_rows_and_seven_are_too_many() -> None:
-    """All orders of seven conditions would be 5040 rows."""
+    """All orders of six conditions are allowed; the 5040 of seven are too many."""
     assert len(loaded(with_levels(6)).protocol.conditions) == 6
     (problem,) = problems(with_levels(7))
     assert problem.path == "orders.design"
@@ -101,7 +101,7 @@ def test_six_levels_make_720_rows_and_seven_are_too_many() -> None:
 
 
 def test_an_instrument_must_speak_the_languages_of_the_study() -> None:
-    """A participant must never meet a question without wording."""
+    """An instrument that lacks a language of the study is rejected at each use."""
     english = load_instrument(KARAS.replace("languages: [en, de]", "languages: [en]")).instrument
     with pytest.raises(ConfigError) as caught:
         load_study(STUDY, instruments={**instruments(), "karas2020": english})
@@ -113,21 +113,21 @@ def test_an_instrument_must_speak_the_languages_of_the_study() -> None:
 
 
 def test_a_study_in_another_language_brings_its_own_titles() -> None:
-    """Built-in titles are English and German."""
+    """A study in a third language must have titles of its own, as built-in ones are en and de."""
     found = problems(edited(("languages: [en, de]", "languages: [fr]")))
     assert "procedure.block.phases[0].questionnaire_title" in [one.path for one in found]
 
 
 @pytest.mark.parametrize("text", ["- a\n- b\n", "hello\n", "3\n"])
-def test_a_file_that_is_no_mapping_is_refused(text: str) -> None:
-    """Both kinds of files begin with settings."""
+def test_a_file_that_is_no_mapping_is_rejected(text: str) -> None:
+    """A study or instrument file that is not a mapping is rejected."""
     for load in (loaded, load_instrument):
         with pytest.raises(ConfigError, match="not a mapping"):
             load(text)
 
 
 def test_an_instrument_names_formula_and_unknown_key_at_once() -> None:
-    """A formula's problem is not hidden by a key that does not exist."""
+    """An unknown key does not hide the problem of a formula."""
     text = KARAS.replace("q6 + q7 + q8 - q9", "q6 + q77").replace("shuffle:", "shufle:")
     with pytest.raises(ConfigError) as caught:
         load_instrument(text)
@@ -139,16 +139,16 @@ def test_an_instrument_names_formula_and_unknown_key_at_once() -> None:
     assert text.splitlines()[second.line - 1].strip() == "formula: q6 + q77"
 
 
-def test_a_stored_text_that_is_none_is_refused() -> None:
-    """A damaged row of the database gives a clear error too."""
+def test_a_damaged_stored_study_is_rejected() -> None:
+    """A damaged study in the database raises a clear error."""
     with pytest.raises(ConfigError):
         parse_study_json('{"key": 1}')
     with pytest.raises(ConfigError):
         parse_instrument_json("not json")
 
 
-def test_problems_become_json() -> None:
-    """The console shows them as a list."""
+def test_problems_are_serialised_as_json() -> None:
+    """Problems can be serialised as JSON for the console."""
     (problem,) = problems(edited(("replicates: 2", "replicates: 0")))
     assert json.loads(json.dumps(problem.as_json()))["path"] == "orders.replicates"
     assert isinstance(loaded().protocol, StudyProtocol)

@@ -1,4 +1,4 @@
-"""Practice, stop rules and signed consents in a study file."""
+"""Practice, stop rules and signed consent in a study file."""
 
 import json
 
@@ -15,7 +15,7 @@ SHIPPED = "b62b8ecfa6a59a5feb957632fbfa65517f9d9542630c98bad2c496b2d90255a8"
 
 
 def test_the_hash_of_a_study_without_options_stays() -> None:
-    """What is not used is not part of the content: an older study is what it was."""
+    """Options that a study does not use do not change its hash."""
     study = loaded(BEFORE_RULES)
     assert study.content_hash == SHIPPED
     for word in ("safety", "signature", "statements", "practice", "optional"):
@@ -23,15 +23,15 @@ def test_the_hash_of_a_study_without_options_stays() -> None:
     assert "safety" not in json.loads(study.canonical_json)
 
 
-def test_a_signature_of_none_is_no_change() -> None:
-    """Writing the default down gives the same content."""
+def test_a_written_default_does_not_change_the_hash() -> None:
+    """Writing the default signature `none` does not change the hash."""
     plain = "{step: consent, text: consent}"
     said = "{step: consent, text: consent, signature: none, statements: []}"
     assert loaded(BEFORE_RULES.replace(plain, said)).content_hash == SHIPPED
 
 
-def test_a_practice_stands_outside_the_blocks() -> None:
-    """It has boxes, times and a latency like a task, and neither block nor condition."""
+def test_a_practice_is_outside_the_blocks() -> None:
+    """A practice has boxes, times and a latency, but neither block nor condition."""
     plan = compile_plan(PROTOCOL, ORDER)
     step = next(step for step in plan if step.kind == "practice")
     assert (step.key, step.limb, step.latency_ms) == ("practice.hand", "hand", 0)
@@ -43,7 +43,7 @@ def test_a_practice_stands_outside_the_blocks() -> None:
 
 
 def test_the_design_is_that_of_the_study_without_options() -> None:
-    """Practice, signature and stop rules do not move the ledger."""
+    """Practice, signature and stop rules do not change the design hash."""
     assert PROTOCOL.design_hash == loaded().protocol.design_hash
 
 
@@ -69,16 +69,18 @@ def test_the_design_is_that_of_the_study_without_options() -> None:
         ),
     ],
 )
-def test_what_cannot_work_is_refused_at_its_place(old: str, new: str, path: str, said: str) -> None:
-    """Rules nobody or everybody meets, scores that are not there, practice without a body."""
+def test_impossible_options_are_rejected_at_their_place(
+    old: str, new: str, path: str, said: str
+) -> None:
+    """Stop rules that always or never apply, unknown scores and early practice are rejected."""
     found = [one for one in problems(with_options((old, new))) if one.path.startswith(path)]
     assert found
     assert said in found[0].message
     assert found[0].remedy
 
 
-def test_a_rule_on_what_is_asked_too_late_is_refused() -> None:
-    """After the last block there is nothing left to stop."""
+def test_a_stop_rule_on_a_form_after_the_blocks_is_rejected() -> None:
+    """A stop rule on a form that is only asked after the blocks is rejected."""
     late = with_options(
         ("    after: [{step: form, instrument: fms}]\n", ""),
         ("    - {step: debrief", "    - {step: form, instrument: fms}\n    - {step: debrief"),
@@ -87,8 +89,8 @@ def test_a_rule_on_what_is_asked_too_late_is_refused() -> None:
     assert "only after the blocks" in found[0].message
 
 
-def test_a_rule_may_look_at_the_rise() -> None:
-    """Its starting point is a form before the blocks, by the plan's key."""
+def test_a_stop_rule_may_use_the_change_of_a_score() -> None:
+    """A stop rule may use the change since a form before the blocks, named by its key."""
     text = with_options(
         ("    - {step: height", "    - {step: form, instrument: fms}\n    - {step: height"),
         (RULE, "score: sickness_score, stop_at: 8, change_from: form.fms"),

@@ -1,4 +1,4 @@
-"""Counterbalancing: the balance laws, and that a ledger can grow without changing."""
+"""Counterbalancing: its laws of balance, and ledgers that grow without changing."""
 
 from collections import Counter
 from itertools import pairwise
@@ -13,7 +13,7 @@ LARGE = loaded(with_levels(4)).protocol
 
 
 def williams_study(n: int) -> StudyProtocol:
-    """The shipped study with n conditions in a Williams design."""
+    """Return the shipped study with n conditions in a Williams design."""
     return loaded(with_levels(n).replace("design: all_permutations", "design: williams")).protocol
 
 
@@ -26,19 +26,19 @@ BALANCED = {
 
 @pytest.mark.parametrize("protocol", BALANCED.values(), ids=BALANCED.keys())
 class TestBalance:
-    """What a block of the ledger promises, whatever its index."""
+    """The balance of every block of the ledger."""
 
-    def test_a_block_holds_every_order_once(self, protocol: StudyProtocol) -> None:
-        """As many rows as the design has orders, all different."""
+    def test_a_block_contains_every_order_once(self, protocol: StudyProtocol) -> None:
+        """A block has every order of the design exactly once."""
         for index in range(5):
             rows = [row.sequence for row in ledger_block(protocol, index)]
             assert sorted(rows) == sorted(sequences(protocol))
             assert len(set(rows)) == len(rows)
 
-    def test_each_condition_stands_equally_often_at_each_position(
+    def test_each_condition_occurs_equally_often_at_each_position(
         self, protocol: StudyProtocol
     ) -> None:
-        """No level profits from coming late."""
+        """Each condition occurs equally often at each position."""
         rows = [row.sequence for row in ledger_block(protocol, 0)]
         counts = Counter((at, key) for row in rows for at, key in enumerate(row))
         assert len(counts) == len(protocol.conditions) ** 2
@@ -47,7 +47,7 @@ class TestBalance:
     def test_each_ordered_pair_of_neighbours_occurs_equally_often(
         self, protocol: StudyProtocol
     ) -> None:
-        """First-order carry-over is balanced."""
+        """Each ordered pair of neighbours occurs equally often, which balances carry-over."""
         rows = [row.sequence for row in ledger_block(protocol, 0)]
         counts = Counter(pair for row in rows for pair in pairwise(row))
         n = len(protocol.conditions)
@@ -56,7 +56,7 @@ class TestBalance:
 
 
 def test_orders_are_listed_by_the_place_of_their_conditions() -> None:
-    """Lexicographic in the file's own order, whatever the keys are called."""
+    """Orders are sorted by the position of the conditions in the file, not by their keys."""
     assert sequences(STUDY)[:2] == (
         ("latency_0", "latency_125", "latency_350"),
         ("latency_0", "latency_350", "latency_125"),
@@ -64,7 +64,7 @@ def test_orders_are_listed_by_the_place_of_their_conditions() -> None:
 
 
 def test_blocks_depend_on_nothing_but_seed_and_index() -> None:
-    """Adding a block never changes those that exist."""
+    """A block depends only on seed and index, so more blocks do not change earlier ones."""
     more = study(("replicates: 2", "replicates: 9"))
     for index in range(3):
         assert ledger_block(STUDY, index) == ledger_block(more, index)
@@ -73,13 +73,13 @@ def test_blocks_depend_on_nothing_but_seed_and_index() -> None:
 
 
 def test_blocks_are_mixed_differently() -> None:
-    """Nobody can tell the next order from the last block."""
+    """Blocks are shuffled differently, so that the next order cannot be predicted."""
     mixed = {tuple(row.sequence for row in ledger_block(STUDY, index)) for index in range(8)}
     assert len(mixed) == 8
 
 
 def test_a_ledger_is_the_same_in_every_release() -> None:
-    """The first rows for the shipped seed, as drawn when it was written."""
+    """The first rows for the shipped seed are the same in every release."""
     rows = ledger_block(STUDY, 0)
     assert rows[0] == (("latency_0", "latency_350", "latency_125"), 1)
     assert rows[5] == (("latency_0", "latency_125", "latency_350"), 1)
@@ -87,25 +87,25 @@ def test_a_ledger_is_the_same_in_every_release() -> None:
 
 
 def test_blocks_count_from_zero() -> None:
-    """There is no block before the first."""
+    """A negative block index is rejected."""
     with pytest.raises(ValueError, match="count from 0"):
         ledger_block(STUDY, -1)
 
 
 @pytest.mark.parametrize(("n", "rows"), [(2, 2), (3, 6), (4, 4), (5, 10), (8, 8), (9, 18)])
 def test_a_williams_design_needs_few_rows(n: int, rows: int) -> None:
-    """n rows for an even number of conditions, 2n for an odd one."""
+    """A Williams design has n rows for an even number of conditions and 2n for an odd one."""
     assert len(ledger_block(williams_study(n), 0)) == rows
 
 
 def test_for_three_conditions_williams_is_all_permutations() -> None:
-    """The same six orders."""
+    """For three conditions the Williams design has all six permutations."""
     keys = [row.sequence for row in ledger_block(williams_study(3), 0)]
     assert sorted(keys) == sorted(sequences(loaded(with_levels(3)).protocol))
 
 
 def explicit(*orders: str) -> str:
-    """The shipped study with two conditions and listed orders."""
+    """Return the shipped study with two conditions and listed orders."""
     listed = "".join(f"    - [{order}]\n" for order in orders)
     return with_levels(2).replace(
         "design: all_permutations\n", f"design: explicit\n  sequences:\n{listed}"
@@ -113,7 +113,7 @@ def explicit(*orders: str) -> str:
 
 
 def test_listed_orders_are_used_as_they_are() -> None:
-    """Each once in a block, in whatever order the seed mixes them."""
+    """Each listed order occurs once in a block, shuffled by the seed."""
     protocol = loaded(explicit("c1, c0")).protocol
     assert [row.sequence for row in ledger_block(protocol, 1)] == [("c1", "c0")]
 
@@ -132,15 +132,15 @@ def test_listed_orders_are_used_as_they_are() -> None:
         ),
     ],
 )
-def test_a_list_that_cannot_be_used_is_refused_at_its_place(
+def test_an_invalid_list_of_orders_is_rejected_at_its_place(
     text: str, path: str, said: str
 ) -> None:
-    """Missing, repeated or superfluous orders name their path."""
+    """Missing, repeated and superfluous orders are rejected with their path."""
     found = [one for one in problems(text) if one.path == path]
     assert found
     assert said in found[0].message
 
 
 def test_the_hash_of_a_study_without_a_list_stays() -> None:
-    """What other designs do not have is not part of their content."""
+    """Studies without listed orders have no such key in their content, so the hash stays."""
     assert "sequences" not in loaded().canonical_json

@@ -9,15 +9,15 @@ HAND_ONLY = (CONFIGS / "templates" / "two-latencies-hand.yaml").read_text(encodi
 
 
 def test_a_study_of_the_hand_needs_no_boxes_for_the_foot() -> None:
-    """The smallest template has none, and nothing of them is in its content."""
+    """A study of the hand has no boxes for the foot, neither in its file nor in its content."""
     study = loaded(HAND_ONLY)
     assert list(study.protocol.tasks.layouts()) == [Limb.HAND]
     assert "foot" not in yaml.safe_load(HAND_ONLY)["tasks"]
     assert '"foot"' not in study.canonical_json
 
 
-def test_boxes_that_a_phase_needs_are_asked_for() -> None:
-    """Their place in the file, and what to do."""
+def test_missing_boxes_of_a_phase_are_reported() -> None:
+    """Missing boxes of a limb that the procedure uses are reported with place and remedy."""
     tree = yaml.safe_load(SHIPPED)
     del tree["tasks"]["foot"]
     [problem] = problems(yaml.safe_dump(tree, allow_unicode=True))

@@ -1,4 +1,4 @@
-"""The steps of a session, for the shipped study and its variants."""
+"""The steps of a session of the shipped study and its variants."""
 
 import pytest
 
@@ -11,7 +11,7 @@ ORDER = ("latency_350", "latency_0", "latency_125")
 
 
 def test_each_block_is_hand_questionnaire_foot_questionnaire() -> None:
-    """Karas 2020, 7.1.3: six tasks and six questionnaires, in this order at each latency."""
+    """Each block is hand task, questionnaire, foot task, questionnaire (Karas 2020, 7.1.3)."""
     steps = [step for step in compile_plan(STUDY, ORDER) if step.block is not None]
     assert [(step.kind, step.limb) for step in steps] == [
         ("task", Limb.HAND),
@@ -24,7 +24,10 @@ def test_each_block_is_hand_questionnaire_foot_questionnaire() -> None:
 
 
 def test_the_session_around_the_blocks() -> None:
-    """Consent, demographics, instructions, height, T-pose, two free minutes; debrief at the end."""
+    """Before the blocks come consent, demographics, instructions, height, T-pose and free movement.
+
+    The debriefing comes last.
+    """
     steps = compile_plan(STUDY, ORDER)
     assert [step.key for step in steps if step.block is None] == [
         "consent",
@@ -40,7 +43,7 @@ def test_the_session_around_the_blocks() -> None:
 
 
 def test_tasks_carry_their_times_and_questionnaires_their_instrument() -> None:
-    """60 s of active time; preparation and freeze of 5 s are ours."""
+    """Tasks have 60 s of active time with 5 s around it; questionnaires have their instrument."""
     steps = {step.key: step for step in compile_plan(STUDY, ORDER)}
     task = steps["block2.hand"]
     assert (task.preparation_s, task.duration_s, task.freeze_s) == (5, 60, 5)
@@ -51,7 +54,7 @@ def test_tasks_carry_their_times_and_questionnaires_their_instrument() -> None:
 
 
 def test_indices_count_and_keys_are_unique() -> None:
-    """A step is found by either."""
+    """Steps are numbered consecutively and have unique keys."""
     twice = study(("- {step: height, text: height}", "- {step: consent, text: consent}"))
     for protocol in (STUDY, twice):
         steps = compile_plan(protocol, ORDER)
@@ -66,7 +69,7 @@ def test_indices_count_and_keys_are_unique() -> None:
 def test_alternating_limbs_turn_round_in_every_other_block(
     *, flip: bool, first_limbs: list[str]
 ) -> None:
-    """The caller decides with the flip which blocks are turned round."""
+    """With alternating limbs the first limb changes in every other block, by the given flip."""
     protocol = study(("limb_order: fixed", "limb_order: alternate"))
     tasks = [s for s in compile_plan(protocol, ORDER, block_limb_flip=flip) if s.kind == "task"]
     assert [step.limb for step in tasks[::2]] == first_limbs
@@ -74,7 +77,7 @@ def test_alternating_limbs_turn_round_in_every_other_block(
 
 
 def test_fixed_limbs_never_turn_round() -> None:
-    """Then the flip has no effect."""
+    """With fixed limbs the flip has no effect."""
     assert compile_plan(STUDY, ORDER, block_limb_flip=True) == compile_plan(STUDY, ORDER)
 
 
@@ -89,7 +92,7 @@ def test_a_step_can_have_its_own_title() -> None:
     "order", [(), ORDER[:2], (*ORDER, "latency_0"), ("latency_0", "latency_0", "latency_125")]
 )
 def test_an_order_names_each_condition_once(order: tuple[str, ...]) -> None:
-    """Anything else is no order of this study."""
+    """An order that does not name each condition once is rejected."""
     with pytest.raises(PlanError, match="exactly once"):
         compile_plan(STUDY, order)
 
@@ -101,7 +104,7 @@ SICKNESS = (
 
 
 def test_a_block_can_end_with_forms_of_its_own() -> None:
-    """A sickness scale after every block knows its condition and belongs to no limb."""
+    """A form at the end of a block has the block's condition and no limb."""
     protocol = study(SICKNESS)
     steps = [step for step in compile_plan(protocol, ORDER) if step.instrument == "fms"]
     assert [step.key for step in steps] == ["block1.fms", "block2.fms", "block3.fms"]
@@ -111,13 +114,13 @@ def test_a_block_can_end_with_forms_of_its_own() -> None:
     assert protocol.instrument_keys == ("demographics", "karas2020", "fms")
 
 
-def test_the_hash_of_a_study_without_them_stays() -> None:
-    """Empty lists are not part of the content."""
+def test_the_hash_of_a_study_without_forms_after_blocks_stays() -> None:
+    """An empty list of forms after blocks is not part of the content."""
     assert '"after":[]' not in loaded().canonical_json
 
 
 def test_an_unknown_instrument_at_the_end_of_a_block_names_its_path() -> None:
-    """As anywhere else."""
+    """An unknown instrument at the end of a block is rejected with its path."""
     old, new = SICKNESS
     (problem,) = problems(edited((old, new.replace("fms", "fmz"))))
     assert problem.path == "procedure.block.after[0].instrument"

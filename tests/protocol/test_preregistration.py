@@ -1,4 +1,4 @@
-"""A preregistration in a study file: part of the content, checked against the rest of it."""
+"""The preregistration in a study file: part of the content and checked against the rest."""
 
 import json
 
@@ -20,14 +20,14 @@ preregistration:
 """
 
 
-def test_a_study_without_it_keeps_its_hash() -> None:
-    """Versions that were stored before have the same content."""
+def test_a_study_without_preregistration_keeps_its_hash() -> None:
+    """A study without preregistration has the hash that it had before the key existed."""
     assert loaded(BEFORE_RULES).content_hash == SHIPPED
     assert "preregistration" not in json.loads(loaded(BEFORE_RULES).canonical_json)
 
 
 def test_declaring_changes_the_content_and_not_the_balance() -> None:
-    """The hash names what was declared; slots of the ledger stay."""
+    """A preregistration changes the content hash but not the design hash."""
     declared = loaded(STUDY + SECTION)
     assert declared.content_hash != loaded().content_hash
     assert declared.protocol.design_hash == loaded().protocol.design_hash
@@ -54,8 +54,10 @@ def test_declaring_changes_the_content_and_not_the_balance() -> None:
         ("minimum_frame_rate_hz, limit: 60", "complete_session", "exclusions[1].rule"),
     ],
 )  # fmt: skip
-def test_what_cannot_be_tested_is_told_with_its_place(old: str, new: str, path: str) -> None:
-    """Each with its path and what to do about it."""
+def test_an_impossible_preregistration_is_rejected_at_its_place(
+    old: str, new: str, path: str
+) -> None:
+    """Tests that the study cannot provide data for are rejected with path and remedy."""
     assert old in SECTION
     (problem,) = problems(STUDY + SECTION.replace(old, new))
     assert (problem.path, bool(problem.remedy)) == (f"preregistration.{path}", True)

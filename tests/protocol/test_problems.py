@@ -1,4 +1,4 @@
-"""What is said about a wrong study file: everything, each at its place, with what to do."""
+"""The problems of an invalid study file: all of them, each with its place and remedy."""
 
 import pytest
 
@@ -99,7 +99,7 @@ from tests.protocol.helpers import edited, problems
 def test_each_problem_has_its_place_and_its_remedy(
     change: tuple[str, str], path: str, said: str, remedy: str
 ) -> None:
-    """One slip gives one problem: where, what, and what to do; the line is that of the slip."""
+    """Each mistake gives one problem with its line, its path and a remedy."""
     text = edited(change)
     (problem,) = problems(text)
     assert problem.path == path
@@ -110,7 +110,7 @@ def test_each_problem_has_its_place_and_its_remedy(
 
 
 def test_a_problem_points_at_its_line_and_value() -> None:
-    """The line of a negative latency is the line on which it stands."""
+    """The problem of a negative latency points at the line of its value."""
     text = edited(("latency_ms: 350", "latency_ms: -350"))
     (problem,) = problems(text)
     assert text.splitlines()[problem.line - 1][problem.column - 1 :] == "-350"
@@ -119,13 +119,13 @@ def test_a_problem_points_at_its_line_and_value() -> None:
 
 
 def test_an_unknown_key_lists_the_valid_ones() -> None:
-    """So that nobody has to look them up."""
+    """The problem of an unknown key lists the valid keys."""
     (problem,) = problems(edited(("when_full: grow", "full: grow\n  when_full: grow")))
     assert problem.valid == ["design", "replicates", "seed", "sequences", "when_full"]
 
 
-def test_all_problems_come_at_once_in_the_order_of_the_file() -> None:
-    """Wrong values do not hide wrong references, and broken sections do not hide each other."""
+def test_all_problems_are_reported_in_the_order_of_the_file() -> None:
+    """Problems of values, references and sections are reported together, in the file's order."""
     text = edited(
         ("latency_ms: 125", "latency_ms: -1"),
         ("replicates: 2", "replicate: 2"),

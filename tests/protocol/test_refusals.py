@@ -1,7 +1,7 @@
-"""The language of study and instrument files against broken files: whatever is wrong, it is said.
+"""Broken study and instrument files are rejected with useful problems.
 
-A valid file is broken at a random place. Then it is either still valid or refused with ConfigError,
-each problem with its place and a remedy; nothing else is ever raised.
+A valid file is broken at a random place. Then it is either still valid or rejected with
+ConfigError, each problem with its place and a remedy; nothing else is ever raised.
 """
 
 import json
@@ -31,7 +31,7 @@ breakages = st.sampled_from(["delete", "replace", "unknown", "alias", "nest", "c
 
 
 def broken_tree(tree: Plain, path: Path, kind: str, odd: Plain) -> Plain:
-    """The tree with the place deleted, replaced or joined by an unknown key."""
+    """Return the tree with one place deleted, replaced or joined by an unknown key."""
     tree = json.loads(json.dumps(tree))
     node: Any = tree
     for part in path[:-1]:
@@ -47,7 +47,7 @@ def broken_tree(tree: Plain, path: Path, kind: str, odd: Plain) -> Plain:
 
 @st.composite
 def broken_files(draw: st.DrawFn, files: tuple[str, ...]) -> str:
-    """A shipped file with one to three things wrong, or with its text damaged."""
+    """Draw a shipped file with one to three mistakes, or with damaged text."""
     text = draw(st.sampled_from(files))
     kind = draw(breakages)
     if kind in ("alias", "cut"):
@@ -65,7 +65,7 @@ def broken_files(draw: st.DrawFn, files: tuple[str, ...]) -> str:
 
 
 def check(problems: tuple[ConfigProblem, ...]) -> None:
-    """Every refusal is of use to a person: a place, a message, a way out."""
+    """Assert that every problem has a place, a message and a remedy."""
     assert problems
     for problem in problems:
         assert problem.message
@@ -79,8 +79,8 @@ def check(problems: tuple[ConfigProblem, ...]) -> None:
     suppress_health_check=[HealthCheck.too_slow],
 )
 @given(broken_files(STUDIES))
-def test_a_broken_study_is_refused_with_place_and_remedy(text: str) -> None:
-    """Nothing but ConfigError, and each problem with a place and a remedy."""
+def test_a_broken_study_is_rejected_with_place_and_remedy(text: str) -> None:
+    """A broken study is still valid or raises ConfigError with places and remedies."""
     try:
         loaded(text)
     except ConfigError as error:
@@ -93,8 +93,8 @@ def test_a_broken_study_is_refused_with_place_and_remedy(text: str) -> None:
     suppress_health_check=[HealthCheck.too_slow],
 )
 @given(broken_files(INSTRUMENTS))
-def test_a_broken_instrument_is_refused_with_place_and_remedy(text: str) -> None:
-    """The same for instruments."""
+def test_a_broken_instrument_is_rejected_with_place_and_remedy(text: str) -> None:
+    """A broken instrument is still valid or raises ConfigError with places and remedies."""
     try:
         load_instrument(text)
     except ConfigError as error:
@@ -103,8 +103,8 @@ def test_a_broken_instrument_is_refused_with_place_and_remedy(text: str) -> None
 
 @settings(max_examples=usually(50, at_length=150), deadline=None)
 @given(st.text(max_size=300))
-def test_any_text_at_all_is_read_or_refused(text: str) -> None:
-    """What is no study at all is refused in the same way."""
+def test_any_text_at_all_is_read_or_rejected(text: str) -> None:
+    """Any text is read as a study or raises ConfigError with places and remedies."""
     try:
         loaded(text)
     except ConfigError as error:

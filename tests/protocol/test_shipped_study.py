@@ -1,4 +1,4 @@
-"""The latency study as it comes with the product, against the thesis and against itself."""
+"""The shipped latency study against the thesis and its own texts."""
 
 import pytest
 
@@ -9,7 +9,7 @@ STUDY = loaded(SHIPPED).protocol
 
 
 def test_conditions_and_orders_are_those_of_the_thesis() -> None:
-    """Karas 2020, 7.1.3: 0, 125 and 350 ms; all 3! orders, each twice: 12 participants."""
+    """Conditions are 0, 125 and 350 ms, in all 3! orders twice (Karas 2020, 7.1.3)."""
     assert [one.latency_ms for one in STUDY.conditions] == [0, 125, 350]
     assert (STUDY.orders.design, STUDY.orders.replicates) == ("all_permutations", 2)
     assert STUDY.latency.undelayed_parts == ("Hips",)
@@ -18,7 +18,10 @@ def test_conditions_and_orders_are_those_of_the_thesis() -> None:
 
 
 def test_hand_boxes_stand_in_a_row_with_four_walls_each() -> None:
-    """Four boxes with a panel and four sides, one target, the order turning round."""
+    """The hand task has four boxes with a panel and four sides, and one target.
+
+    The order of the boxes is reversed after each completed task.
+    """
     layout = STUDY.tasks.layout("hand")
     assert layout.n_boxes == 4
     assert layout.reverse_after_task
@@ -30,7 +33,7 @@ def test_hand_boxes_stand_in_a_row_with_four_walls_each() -> None:
 
 
 def test_foot_boxes_are_a_tenth_longer_than_their_base_length() -> None:
-    """Karas 2020, 7.2: lengthened by about 10 %; either foot counts and the order stays."""
+    """Foot boxes are longer by about 10 % (Karas 2020, 7.2); either foot counts."""
     foot = STUDY.tasks.foot
     assert foot is not None
     assert foot.length_m == pytest.approx(0.396, abs=1e-12)
@@ -43,13 +46,13 @@ def test_foot_boxes_are_a_tenth_longer_than_their_base_length() -> None:
 
 
 def test_a_single_foot_can_be_made_to_count() -> None:
-    """Which foot counts is configuration."""
+    """The study can be configured to count one foot only."""
     left = study(("counting_foot: either", "counting_foot: left"))
     assert left.tasks.layout("foot").counting_foot == "left"
 
 
 def test_participants_are_not_told_the_condition() -> None:
-    """Nothing that a participant reads before the debrief speaks of a latency."""
+    """No text before the debriefing mentions latency to the participant."""
     for key, text in STUDY.texts.items():
         for words in text.values():
             told = [
@@ -59,7 +62,7 @@ def test_participants_are_not_told_the_condition() -> None:
 
 
 def test_the_instructions_say_what_matters() -> None:
-    """Solid boxes, leaning, the resting hand, sickness, the freeze, and an invitation to ask."""
+    """The instructions mention solid boxes, leaning, the resting hand, sickness and the freeze."""
     english = STUDY.texts["instructions"]["en"]
     for word in ("solid", "lean", "step to the side", "rest", "sick", "freezes", "mirror", "white"):
         assert word in english
@@ -67,8 +70,8 @@ def test_the_instructions_say_what_matters() -> None:
     assert STUDY.texts["instructions"]["de"].rstrip().endswith("Bitte fragen Sie jetzt.")
 
 
-def test_a_second_palette_speaks_in_shapes() -> None:
-    """People who confuse red and green get other colours and a shape for every state."""
+def test_a_second_palette_uses_shapes() -> None:
+    """For people who confuse red and green there are other colours, and a shape for every state."""
     standard, safe = STUDY.appearance.palettes
     assert STUDY.appearance.default == standard.key
     assert safe.colours.panel_done != standard.colours.panel_done
@@ -78,7 +81,7 @@ def test_a_second_palette_speaks_in_shapes() -> None:
 
 
 def test_every_instrument_can_be_scored_and_asked() -> None:
-    """Shipped files are consistent and speak both languages."""
+    """Every shipped instrument is consistent and has both languages."""
     for instrument in instruments().values():
         assert instrument.languages == STUDY.languages
         assert instrument.provenance.licence

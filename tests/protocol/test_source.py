@@ -1,4 +1,4 @@
-"""Reading YAML without surprises: what words mean, where they stand, and what is refused."""
+"""Reading YAML strictly: plain types, positions of values, and rejected constructs."""
 
 import contextlib
 
@@ -35,7 +35,7 @@ from app.protocol.source import MAX_BYTES, MAX_DEPTH, MAX_NODES, Mark, read_sour
     ],
 )
 def test_only_true_false_and_decimal_numbers_are_special(word: str, value: object) -> None:
-    """A country called no and a time of day stay what was written."""
+    """Only true, false, null and decimal numbers are special: `no` and `12:30` stay text."""
     tree = read_source(f"a: {word}\n").tree
     assert tree == {"a": value}
     assert isinstance(tree, dict)
@@ -43,12 +43,12 @@ def test_only_true_false_and_decimal_numbers_are_special(word: str, value: objec
 
 
 def test_keys_are_always_text() -> None:
-    """A language called no is a language."""
+    """Keys are always text, such as `no` for Norwegian."""
     assert read_source("{no: 1, 5: 2, true: 3}").tree == {"no": 1, "5": 2, "true": 3}
 
 
-def test_everything_remembers_where_it_stood() -> None:
-    """Values and keys have a line and a column from 1; what is missing stands at its parent."""
+def test_values_and_keys_have_their_position() -> None:
+    """Values and keys have a line and a column from 1; missing ones have their parent's."""
     source = read_source("a:\n  - x: 1\n    y: 2\n")
     assert source.place(("a", 0, "y")) == Mark(3, 8)
     assert source.place(("a", 0, "y"), of_key=True) == Mark(3, 5)
@@ -56,7 +56,7 @@ def test_everything_remembers_where_it_stood() -> None:
 
 
 def bomb(levels: int) -> str:
-    """The billion-laughs file: each level repeats the one before nine times."""
+    """Return the billion-laughs file: each level repeats the one before nine times."""
     lines = ["a0: &a0 [x, x, x]"]
     lines += [f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 9)}]" for n in range(1, levels)]
     return "\n".join(lines)
@@ -85,10 +85,10 @@ def bomb(levels: int) -> str:
         ("? [a, b]\n: 1\n", 1, 3, "key is not text"),
     ],
 )
-def test_what_is_refused_is_refused_at_its_place(
+def test_dangerous_yaml_is_rejected_at_its_place(
     text: str, line: int, column: int, said: str
 ) -> None:
-    """Bombs, tags, depth, size and broken YAML stop the reading before anything is expanded."""
+    """YAML bombs, tags, too much depth or size and syntax errors are rejected unexpanded."""
     with pytest.raises(ConfigError) as caught:
         read_source(text)
     (problem,) = caught.value.problems
@@ -112,27 +112,27 @@ def test_what_is_refused_is_refused_at_its_place(
     ],
 )
 def test_small_problems_are_collected(text: str, place: tuple[int, int], said: str) -> None:
-    """Problems that leave the rest readable do not hide those that follow."""
+    """Problems that leave the rest readable are collected with those that follow."""
     source = read_source(text)
     (problem,) = source.problems
     assert (problem.line, problem.column) == place
     assert said in problem.message
 
 
-def test_the_first_of_two_values_counts() -> None:
-    """A doubled key never changes what was there."""
+def test_of_duplicate_keys_the_first_counts() -> None:
+    """A duplicate key does not change the first value."""
     source = read_source("a: {x: 1}\na: {y: 2}\n")
     assert source.tree == {"a": {"x": 1}}
     assert source.place(("a",)) == Mark(1, 4)
 
 
 def test_quoted_words_are_text() -> None:
-    """Somebody called Nan only has to be quoted."""
+    """Quoted words such as "nan" are text."""
     assert read_source("a: 'nan'\n").tree == {"a": "nan"}
 
 
 @given(st.text("ab:-[]{},&*!<#|>'\"\n 1.~%@?", max_size=60))
 def test_any_text_is_a_tree_or_a_config_error(text: str) -> None:
-    """No other exception ever leaves the reader."""
+    """Any text is read or raises ConfigError, never another exception."""
     with contextlib.suppress(ConfigError):
         assert read_source(text).place(()).line >= 1

@@ -1,4 +1,4 @@
-"""The kinds of steps are said once, and everything that lists them follows."""
+"""The table of step kinds, and the places that must agree with it."""
 
 import re
 from pathlib import Path
@@ -19,18 +19,18 @@ generated files."""
 
 
 def test_every_kind_has_its_row() -> None:
-    """The table has the kinds of the type, in its order."""
+    """The table has a row for every kind of step, in the type's order."""
     assert tuple(STEP_KINDS) == get_args(StepKind)
 
 
 def test_every_kind_says_what_the_experimenter_does() -> None:
-    """A kind has guidance of its own, or its phases have."""
+    """Every kind has guidance for the experimenter, or its phases have."""
     for kind, spec in STEP_KINDS.items():
         assert spec.phases or spec.guidance is not None, kind
 
 
 def test_a_kind_is_a_phase_exactly_if_it_is_timed() -> None:
-    """Timed kinds have the words and the key of a phase; no other kind has, nor counts."""
+    """Exactly the timed kinds have phases and a phase key, and only they can count."""
     for kind, spec in STEP_KINDS.items():
         is_timed = spec.family == "timed"
         assert bool(spec.phases) == (spec.phase_key is not None) == is_timed, kind
@@ -38,7 +38,7 @@ def test_a_kind_is_a_phase_exactly_if_it_is_timed() -> None:
 
 
 def test_every_step_of_a_study_file_is_of_a_kind() -> None:
-    """Whatever `step:` can say in a procedure has its row in the table."""
+    """Every value of `step:` in a study file is a kind of the table."""
     definitions = Procedure.model_json_schema()["$defs"]
     words = {
         one["properties"]["step"]["const"]
@@ -46,11 +46,11 @@ def test_every_step_of_a_study_file_is_of_a_kind() -> None:
         if "step" in one.get("properties", {})
     }
     assert words < set(STEP_KINDS)
-    assert set(STEP_KINDS) - words == {"task", "questionnaire"}  # Of a block, without `step:`.
+    assert set(STEP_KINDS) - words == {"task", "questionnaire"}  # In a block, without `step:`.
 
 
 def test_the_documents_name_every_kind() -> None:
-    """The protocol lists the kinds for headsets, and the guide to study files their steps."""
+    """The documentation of protocol and study files lists every kind."""
     protocol = (REPOSITORY / "docs/protocol.md").read_text(encoding="utf-8")
     assert f"the current step: {', '.join(STEP_KINDS)} |" in protocol
     assert f"`kind` ({', '.join(TIMED_KINDS)})" in protocol
@@ -60,7 +60,7 @@ def test_the_documents_name_every_kind() -> None:
 
 
 def test_phases_are_called_by_their_kind_in_one_place() -> None:
-    """No code but the table and the shape of a study file has the word for a kind of phase."""
+    """Only the listed files contain a phase kind as a literal."""
     words = "|".join(set(TIMED_KINDS) - {"task"})  # `task` has other meanings, too.
     quoted = re.compile(rf"""["'`]([\w.]+\.)?({words})([._](hand|foot))?["'`]""")
     sources = [*REPOSITORY.glob("app/**/*.py"), *REPOSITORY.glob("frontend/src/**/*.ts*")]

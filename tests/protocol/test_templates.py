@@ -1,4 +1,4 @@
-"""The templates: each is a complete study that can be run as it is."""
+"""The study templates: each is a complete study that can be run unchanged."""
 
 from pathlib import Path
 
@@ -14,7 +14,7 @@ NAMES = [file.stem for file in FILES]
 
 @pytest.mark.parametrize("file", FILES, ids=NAMES)
 def test_a_template_is_a_complete_study(file: Path) -> None:
-    """It loads, every order compiles, every instrument is there in both languages."""
+    """A template loads, its orders compile, and its instruments have both languages."""
     protocol = loaded(file.read_text(encoding="utf-8")).protocol
     for order in sequences(protocol):
         assert compile_plan(protocol, order)[-1].kind == "debrief"
@@ -24,7 +24,7 @@ def test_a_template_is_a_complete_study(file: Path) -> None:
 
 
 def test_the_templates_are_three_different_designs() -> None:
-    """Conditions, orders and slots of the first ledger, by hand."""
+    """Conditions, orders and slots of the three templates are as computed by hand."""
     designs = {}
     for file in FILES:
         protocol = loaded(file.read_text(encoding="utf-8")).protocol
@@ -38,7 +38,7 @@ def test_the_templates_are_three_different_designs() -> None:
 
 
 def test_every_text_of_a_template_is_used() -> None:
-    """A template holds nothing that whoever copies it must wonder about."""
+    """A template has no unused texts."""
     for file in FILES:
         protocol = loaded(file.read_text(encoding="utf-8")).protocol
         plan = compile_plan(protocol, sequences(protocol)[0])

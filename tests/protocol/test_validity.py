@@ -1,4 +1,4 @@
-"""The rules that say when a completed session counts."""
+"""The rules that decide whether a completed session is valid."""
 
 import json
 from pathlib import Path
@@ -12,7 +12,7 @@ HAND = "{phase: hand, min_active_share: 0.9}"
 
 
 def test_the_shipped_study_asks_for_its_tasks_and_its_questionnaire() -> None:
-    """Both tasks with nine tenths of their minute, and every karas2020."""
+    """The shipped study requires nine tenths of both tasks' minute and every karas2020."""
     rules = study().valid_when
     assert rules is not None
     assert [(one.phase, one.least_s(60.0)) for one in rules.phases] == [("hand", 54), ("foot", 54)]
@@ -24,7 +24,7 @@ def test_the_shipped_study_asks_for_its_tasks_and_its_questionnaire() -> None:
     "file", sorted((CONFIGS / "templates").glob("*.yaml")), ids=lambda f: f.stem
 )
 def test_a_template_asks_for_every_task_and_every_form_of_a_block(file: Path) -> None:
-    """A new study begins with rules: all its tasks, and all questionnaires of its blocks."""
+    """A template's rules require all tasks and all questionnaires of its blocks."""
     protocol = loaded(file.read_text(encoding="utf-8")).protocol
     rules, block = protocol.valid_when, protocol.procedure.block
     assert rules is not None
@@ -33,8 +33,8 @@ def test_a_template_asks_for_every_task_and_every_form_of_a_block(file: Path) ->
     assert asked <= set(rules.forms)
 
 
-def test_an_older_study_is_what_it_was() -> None:
-    """Without the key nothing of it is in the content, and the setting nobody reads still loads."""
+def test_an_older_study_keeps_its_content() -> None:
+    """A study without the key has no rules in its content, and an obsolete setting still loads."""
     older = loaded(BEFORE_RULES)
     assert older.protocol.valid_when is None
     content = json.loads(older.canonical_json)
@@ -43,8 +43,8 @@ def test_an_older_study_is_what_it_was() -> None:
     assert "bypass_at_zero" not in json.loads(loaded().canonical_json)["latency"]
 
 
-def test_unknown_phases_and_forms_are_refused_with_those_there_are() -> None:
-    """The problem has the path, the value and the valid keys."""
+def test_unknown_phases_and_forms_are_rejected_with_the_valid_ones() -> None:
+    """An unknown phase or form is rejected with its path, the value and the valid keys."""
     [phase] = problems(edited((HAND, "{phase: hands}")))
     assert (phase.path, phase.value) == ("valid_when.phases[0].phase", "hands")
     assert phase.valid == ["free_roam", "hand", "foot"]
@@ -53,8 +53,8 @@ def test_unknown_phases_and_forms_are_refused_with_those_there_are() -> None:
     assert form.valid == ["demographics", "karas2020"]
 
 
-def test_rules_that_nobody_can_meet_are_refused() -> None:
-    """More active time than a phase has."""
+def test_unsatisfiable_rules_are_rejected() -> None:
+    """A rule that requires more active time than a phase has is rejected."""
     [problem] = problems(edited((HAND, "{phase: hand, min_active_s: 61}")))
     assert (problem.path, problem.value) == ("valid_when.phases[0].min_active_s", 61)
     assert problem.valid == "above 0, at most 60"
@@ -76,10 +76,8 @@ def test_rules_that_nobody_can_meet_are_refused() -> None:
         ),
     ],
 )
-def test_rules_that_say_nothing_or_say_it_twice_are_refused(
-    rules: dict[str, object], path: str
-) -> None:
-    """Nothing asked for, a key named twice, a latency of no phase."""
+def test_empty_and_duplicate_rules_are_rejected(rules: dict[str, object], path: str) -> None:
+    """Empty rules, duplicate keys and a latency of no phase are rejected."""
     tree = yaml.safe_load(STUDY)
     tree["valid_when"] = rules
     [problem] = problems(yaml.safe_dump(tree, allow_unicode=True))

@@ -1,4 +1,4 @@
-"""Lines of texts that hold for one kind of avatar."""
+"""Lines of a study's texts that apply to one kind of avatar only."""
 
 import re
 from pathlib import Path
@@ -22,8 +22,11 @@ PASSES = re.compile(r"can pass through|hindurchgehen")
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
-def test_what_the_boxes_do_is_told_as_it_is(file: Path) -> None:
-    """They hold a simulated body back and let a copy through, in both languages, stored or not."""
+def test_the_instructions_describe_the_boxes_for_the_avatar(file: Path) -> None:
+    """Instructions say that boxes stop a physics avatar and let a delayed copy pass.
+
+    In both languages, in the file and in its stored form.
+    """
     text = file.read_text(encoding="utf-8")
     for words, said, unsaid in (
         (text, HELD_BACK, PASSES),
@@ -39,7 +42,7 @@ def test_what_the_boxes_do_is_told_as_it_is(file: Path) -> None:
 
 
 def test_both_variants_are_in_the_content() -> None:
-    """So another avatar takes its own lines without an edit, and every line is hashed."""
+    """Lines for both avatars are in the content, so the avatar can change without an edit."""
     content = loaded(SHIPPED).canonical_json
     assert "[avatar: physics]" in content
     assert "[avatar: delayed_copy]" in content
@@ -54,10 +57,8 @@ def test_both_variants_are_in_the_content() -> None:
         ("[avatar: physics] Hold still.", "texts.freeze.en", "this text is empty"),
     ],
 )
-def test_a_mark_that_would_be_shown_or_leave_nothing_is_refused(
-    words: str, path: str, message: str
-) -> None:
-    """Of no avatar, in the middle of a line, with nothing for the study's own avatar."""
+def test_an_invalid_avatar_mark_is_rejected(words: str, path: str, message: str) -> None:
+    """A mark of no avatar, within a line, or that leaves no text is rejected."""
     text = edited(("en: Please hold still for a few seconds.", f'en: "{words}"'))
     [problem] = problems(text)
     assert problem.path == path
@@ -65,7 +66,7 @@ def test_a_mark_that_would_be_shown_or_leave_nothing_is_refused(
 
 
 def test_a_title_has_no_variants() -> None:
-    """Marks are read in texts; elsewhere they would be shown."""
+    """An avatar mark in a title is rejected, since marks are only read in texts."""
     title = "Acting through another body"
     [problem] = problems(edited((f"en: {title}", f'en: "[avatar: delayed_copy] {title}"')))
     assert problem.path == "title.en"
@@ -73,7 +74,7 @@ def test_a_title_has_no_variants() -> None:
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
 def test_a_consent_names_the_time_that_the_visit_is_computed_to_take(file: Path) -> None:
-    """The same figure as in overview and editor, to the nearest five minutes."""
+    """The consent states the computed duration of the visit, to the nearest five minutes."""
     protocol = loaded(file.read_text(encoding="utf-8")).protocol
     minutes = visit_time(protocol, instruments()).total
     for language, words in (("en", r"about (\d+) minutes"), ("de", r"etwa (\d+) Minuten")):

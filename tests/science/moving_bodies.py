@@ -1,4 +1,4 @@
-"""Recorded bodies whose latency is known, because they are made with it."""
+"""Synthetic recordings of two bodies whose latency is known."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -22,10 +22,10 @@ Movement = Callable[[FloatArray], FloatArray]
 
 @dataclass(frozen=True)
 class Flaws:
-    """What a real recording suffers from, in each stream independently.
+    """Flaws of a real recording, applied to each stream independently.
 
-    Standard deviations: `noise_deg` of each component of each rotation, `jitter_s` of when a frame
-    is taken, `stamp_s` of what its time stamp says beside that. `dropped` is a share of the frames.
+    Standard deviations: `noise_deg` of each component of each rotation, `jitter_s` of a frame's
+    capture time, `stamp_s` of its timestamp relative to that. `dropped` is a share of the frames.
     """
 
     noise_deg: float = 0.0
@@ -37,7 +37,7 @@ class Flaws:
 def made_movement(
     rng: np.random.Generator, *, highest_hz: float = 2.5, joints: int = 22, size_deg: float = 15.0
 ) -> Movement:
-    """Every joint swings about a pose of its own by eight sines a component, up to `highest_hz`."""
+    """Return a movement of every joint about a random pose by eight sines up to `highest_hz`."""
     shape = (joints, 3, 8)
     frequency_hz = rng.uniform(0.1, highest_hz, shape)
     phase = rng.uniform(0.0, 2.0 * np.pi, shape)
@@ -66,7 +66,7 @@ def record(
     duration_s: float = 60.0,
     rate_hz: float = RATE_HZ,
 ) -> StreamPair:
-    """Both bodies see the same movement, the actual one `latency_s` later."""
+    """Return the streams of one movement, the actual one `latency_s` later."""
     target_times_s, target = _stream(movement, 0.0, rng, flaws, -HISTORY_S, duration_s, rate_hz)
     actual_times_s, actual = _stream(movement, latency_s, rng, flaws, 0.0, duration_s, rate_hz)
     active = np.ones(len(actual_times_s), dtype=np.bool_)
@@ -74,7 +74,7 @@ def record(
 
 
 def delayed_copy(times_s: FloatArray, rotations: FloatArray, latency_s: float) -> StreamPair:
-    """The target, and the avatar that the headset's own buffer makes of it, as stored."""
+    """Return the target and the avatar that the headset's delay buffer makes of it, as stored."""
     stored = rotations.astype(np.float32).astype(np.float64)
     avatar = delayed_pose(times_s, rotations, times_s, latency_s)
     since = times_s >= times_s[0] + HISTORY_S
@@ -88,7 +88,7 @@ def delayed_copy(times_s: FloatArray, rotations: FloatArray, latency_s: float) -
 
 
 def looped_capture(file: Path, duration_s: float) -> tuple[FloatArray, FloatArray]:
-    """Times and rotations of a capture that repeats, at the headset's rate."""
+    """Return times and rotations of a capture that repeats, at the headset's rate."""
     movement = loop(resample(captured_movement(file, build_skeleton(1.75)), RATE_HZ))
     frames = np.arange(round(duration_s * RATE_HZ))
     return frames / RATE_HZ, movement.rotations[frames % movement.frame_count]

@@ -1,4 +1,4 @@
-"""The delayed-copy avatar."""
+"""The delay buffer of the delayed-copy avatar."""
 
 import numpy as np
 import pytest
@@ -33,7 +33,7 @@ def test_zero_delay_is_the_same_to_the_bit(rng: np.random.Generator) -> None:
 
 @pytest.mark.parametrize("delay_s", [0.004, 0.125, 0.35, 1.9])
 def test_streaming_equals_the_batch(rng: np.random.Generator, delay_s: float) -> None:
-    """Frame by frame and all at once give the same avatar."""
+    """Delaying frame by frame and as a batch gives the same avatar."""
     times, q = _movement(rng)
     buffer = DelayBuffer(delay_s)
     streamed = np.stack([buffer.push(t, row) for t, row in zip(times, q, strict=True)])
@@ -59,14 +59,14 @@ def test_the_avatar_is_where_the_participant_was() -> None:
 
 
 def test_a_delay_of_whole_frames_copies_samples_exactly(rng: np.random.Generator) -> None:
-    """Where a sample has the asked time, it is taken as it is."""
+    """A sample at exactly the requested time is copied without interpolation."""
     times = np.arange(50) / 64.0
     q = rot.normalise(rng.normal(size=(50, 22, 4)))
     np.testing.assert_array_equal(delayed_pose(times, q, times, 4 / 64.0)[10:, 1:], q[6:-4, 1:])
 
 
-def test_a_changed_delay_holds_from_the_next_frame(rng: np.random.Generator) -> None:
-    """After a change the buffer answers as if the new delay had always been in force."""
+def test_a_changed_delay_applies_from_the_next_frame(rng: np.random.Generator) -> None:
+    """After a change the buffer responds as if the new delay had always been set."""
     times, q = _movement(rng)
     buffer = DelayBuffer(0.125)
     for t, row in zip(times[:100], q[:100], strict=True):
@@ -78,14 +78,14 @@ def test_a_changed_delay_holds_from_the_next_frame(rng: np.random.Generator) -> 
 
 
 @pytest.mark.parametrize("delay_s", [-0.1, float("nan"), float("inf"), 2.1])
-def test_an_impossible_delay_is_refused(delay_s: float) -> None:
-    """Negative, non-finite and too long delays are refused."""
+def test_an_impossible_delay_is_rejected(delay_s: float) -> None:
+    """Negative, non-finite and too long delays are rejected."""
     with pytest.raises(DelayError, match="delay"):
         DelayBuffer(delay_s)
 
 
 def test_times_must_rise(rng: np.random.Generator) -> None:
-    """A sample out of order is refused by both forms."""
+    """A sample whose time does not increase is rejected, in a stream and in a batch."""
     _, q = _movement(rng, 2)
     with pytest.raises(DelayError, match="rise"):
         delayed_pose(np.array((1.0, 1.0)), q, np.array((1.0,)), 0.1)

@@ -1,4 +1,4 @@
-"""Outsiders use science through a package's face, its `__init__`, and import nothing deeper."""
+"""Code outside of a science package imports only what its `__init__` exports."""
 
 import ast
 from collections.abc import Iterator
@@ -26,7 +26,7 @@ HOMES = {_name(path): path for path in SCIENCE.rglob("*.py")}
 
 @cache
 def _offered(module: str) -> set[str] | None:
-    """What `__all__` lists, if the module has one."""
+    """Return what `__all__` lists, or None if the module has none."""
     for node in ast.parse(HOMES[module].read_text(encoding="utf-8")).body:
         if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__":
             return set(ast.literal_eval(node.value))
@@ -34,7 +34,7 @@ def _offered(module: str) -> set[str] | None:
 
 
 def _imports(path: Path) -> Iterator[tuple[str, str, int]]:
-    """Each name of science that a file imports, lazily too: its module, the name, the line."""
+    """Yield each name that a file imports from science: its module, the name, the line."""
     text = path.read_text(encoding="utf-8")
     for node in ast.walk(ast.parse(text)) if "app.science" in text else ():
         if isinstance(node, ast.Import):
@@ -47,9 +47,10 @@ def _imports(path: Path) -> Iterator[tuple[str, str, int]]:
 
 
 def _is_inside(importer: str, module: str) -> bool:
-    """Whether a module of science may look into another: from within its package, or at kernels.
+    """Return whether a module may import internals: of its own package, or of kernels.
 
-    Kernels call each other's kernels, which no face can offer, as loading one loads the compiler.
+    Kernels call each other's kernels, which no `__init__` can export, as importing one loads the
+    compiler.
     """
     package = module if module in PACKAGES else module.rpartition(".")[0]
     kernels = module.endswith("_kernels") and importer.startswith("app.science.")
@@ -61,7 +62,7 @@ def _is_offered(module: str, name: str) -> bool:
         return True
     if module in PACKAGES or module in MODULES_WITH_FACES:
         return name in (_offered(module) or ())
-    # A module that lies in no package but science's own is a face by itself.
+    # A module directly in app.science is public.
     return module.count(".") == 2 and module in HOMES
 
 
@@ -71,8 +72,8 @@ def _importers() -> Iterator[tuple[str, Path]]:
             yield _name(path), path
 
 
-def test_outsiders_import_faces_only() -> None:
-    """Every import of science from outside a package takes a name that its face lists."""
+def test_outsiders_import_exported_names_only() -> None:
+    """Every import of science from outside of a package takes a name that it exports."""
     deeper = [
         f"{importer}:{line} imports {name} from {module}"
         for importer, path in _importers()
@@ -83,8 +84,8 @@ def test_outsiders_import_faces_only() -> None:
 
 
 @pytest.mark.parametrize("package", sorted(PACKAGES))
-def test_faces_state_their_promise(package: str) -> None:
-    """Each package has a docstring, and what it imports is what it lists."""
+def test_packages_export_what_they_import(package: str) -> None:
+    """Each package has a docstring, and its `__all__` lists exactly what its `__init__` imports."""
     tree = ast.parse(HOMES[package].read_text(encoding="utf-8"))
     assert ast.get_docstring(tree)
     imported = {

@@ -34,13 +34,13 @@ def _tuple3(v: rot.FloatArray) -> Vector:
 
 
 def test_conjugate_undoes_a_rotation(rng: np.random.Generator) -> None:
-    """A rotation after its conjugate turns nothing."""
+    """A rotation times its conjugate is the identity."""
     q = _random(rng)
     np.testing.assert_allclose(rot.multiply(rot.conjugate(q), q), rot.identity(200), atol=1e-15)
 
 
 def test_product_is_associative(rng: np.random.Generator) -> None:
-    """It does not matter which of two products is formed first."""
+    """The product of rotations is associative."""
     a, b, c = (_random(rng) for _ in range(3))
     left = rot.multiply(rot.multiply(a, b), c)
     np.testing.assert_allclose(left, rot.multiply(a, rot.multiply(b, c)), atol=1e-14)
@@ -55,7 +55,7 @@ def test_rotating_by_a_product_is_rotating_twice(rng: np.random.Generator) -> No
 
 
 def test_rotation_keeps_lengths_and_agrees_with_scipy(rng: np.random.Generator) -> None:
-    """Vectors keep their length and go where SciPy sends them."""
+    """Rotated vectors keep their length and equal SciPy's."""
     q, v = _random(rng), rng.normal(size=(200, 3))
     turned = rot.rotate(q, v)
     np.testing.assert_allclose(np.linalg.norm(turned, axis=1), np.linalg.norm(v, axis=1))
@@ -64,7 +64,7 @@ def test_rotation_keeps_lengths_and_agrees_with_scipy(rng: np.random.Generator) 
 
 @pytest.mark.parametrize("scale", [1e-12, 1e-7, 1e-3, 1.0, 3.1])
 def test_rotation_vector_round_trip(rng: np.random.Generator, scale: float) -> None:
-    """A rotation vector below half a turn comes back, from tiny to large."""
+    """A rotation vector below half a turn survives conversion, from tiny to large."""
     direction = rng.normal(size=(50, 3))
     vector = scale * direction / np.linalg.norm(direction, axis=1, keepdims=True)
     back = rot.to_rotation_vector(rot.from_rotation_vector(vector))
@@ -72,14 +72,14 @@ def test_rotation_vector_round_trip(rng: np.random.Generator, scale: float) -> N
 
 
 def test_rotation_vector_is_the_same_for_both_signs(rng: np.random.Generator) -> None:
-    """q and -q are one rotation and give one rotation vector."""
+    """q and -q give the same rotation vector."""
     q = _random(rng)
     np.testing.assert_allclose(rot.to_rotation_vector(-q), rot.to_rotation_vector(q), atol=1e-14)
 
 
 @pytest.mark.parametrize("order", ["ZYX", "ZXY", "XYZ", "YXZ", "XZY", "YZX", "ZXZ"])
 def test_euler_is_the_product_of_its_axes(rng: np.random.Generator, order: str) -> None:
-    """An order names turns about moving axes, from left to right."""
+    """An Euler order names rotations about moving axes, from left to right."""
     angles = rng.uniform(-1.4, 1.4, size=(40, 3))
     axes = np.eye(3)[["XYZ".index(letter) for letter in order]]
     first, second, third = (rot.from_rotation_vector(angles[:, [i]] * axes[i]) for i in range(3))
@@ -101,14 +101,14 @@ def test_slerp_ends_and_constant_speed(rng: np.random.Generator) -> None:
 
 
 def test_slerp_takes_the_shorter_side() -> None:
-    """The sign of the goal does not send slerp the long way round."""
+    """Slerp takes the shorter way, whatever the sign of its goal."""
     a, b = rot.identity(), rot.from_rotation_vector(np.array((0.4, 0.0, 0.0)))
     half = rot.from_rotation_vector(np.array((0.2, 0.0, 0.0)))
     assert float(rot.geodesic_angle(rot.slerp(a, -b, 0.5), half)) < 1e-12
 
 
 def test_swing_brings_one_direction_onto_the_other(rng: np.random.Generator) -> None:
-    """The swing maps start to end, about an axis across both."""
+    """The swing maps start to end, about an axis perpendicular to both."""
     start, end = rng.normal(size=(500, 3)), rng.normal(size=(500, 3))
     q = rot.swing_between(start, end)
     unit = end / np.linalg.norm(end, axis=1, keepdims=True)
@@ -119,7 +119,7 @@ def test_swing_brings_one_direction_onto_the_other(rng: np.random.Generator) -> 
 
 @pytest.mark.parametrize("axis", [(1.0, 0.0, 0.0), (0.0, -2.0, 0.0), (0.3, 0.3, -0.9)])
 def test_swing_of_opposite_directions_is_half_a_turn(axis: tuple[float, float, float]) -> None:
-    """Opposite directions are joined by some half turn, not by NaN."""
+    """The swing between opposite directions is half a turn, without NaN."""
     start = np.array(axis)
     q = rot.swing_between(start, -start)
     np.testing.assert_allclose(rot.rotate(q, start), -start, atol=1e-12)
@@ -127,7 +127,7 @@ def test_swing_of_opposite_directions_is_half_a_turn(axis: tuple[float, float, f
 
 
 def test_geodesic_angle_is_invariant_and_exact_when_tiny(rng: np.random.Generator) -> None:
-    """The angle does not depend on a common turn, and 1e-9 rad is not lost."""
+    """The geodesic angle is invariant under a common rotation and exact at 1e-9 rad."""
     a, b, c = (_random(rng) for _ in range(3))
     np.testing.assert_allclose(
         rot.geodesic_angle(rot.multiply(c, a), rot.multiply(c, b)),
@@ -139,7 +139,7 @@ def test_geodesic_angle_is_invariant_and_exact_when_tiny(rng: np.random.Generato
 
 
 def test_scalar_functions_agree_with_the_arrays(rng: np.random.Generator) -> None:
-    """One quaternion as floats gives what the same row of an array gives."""
+    """The functions of one quaternion as floats agree with those of arrays."""
     a, b, v = _random(rng), _random(rng), rng.normal(size=(200, 3))
     for i in range(200):
         p, q, vector = _tuple4(a[i]), _tuple4(b[i]), _tuple3(v[i])
@@ -155,20 +155,20 @@ def test_scalar_functions_agree_with_the_arrays(rng: np.random.Generator) -> Non
 
 
 def test_unit_check_flags_scaled_and_non_finite() -> None:
-    """A scaled or non-finite quaternion is no unit quaternion."""
+    """A scaled or non-finite quaternion is not a unit quaternion."""
     q = np.array([[1, 0, 0, 0], [1.1, 0, 0, 0], [np.nan, 0, 0, 1], [np.inf, 0, 0, 0]])
     assert rot.is_unit(q).tolist() == [True, False, False, False]
 
 
 @pytest.mark.parametrize("order", ["", "ZZX", "zyx", "XYZX", "ABC"])
-def test_unknown_euler_order_is_refused(order: str) -> None:
-    """An order that is none says which are valid."""
+def test_unknown_euler_order_is_rejected(order: str) -> None:
+    """An unknown Euler order is rejected with the valid ones."""
     with pytest.raises(rot.RotationError, match="Euler order"):
         rot.from_euler(order, np.zeros((1, max(len(order), 1))))
 
 
-def test_values_without_direction_are_refused() -> None:
-    """Zero quaternions and zero directions raise instead of giving NaN."""
+def test_values_without_direction_are_rejected() -> None:
+    """Zero quaternions and zero directions raise an error instead of giving NaN."""
     with pytest.raises(rot.RotationError, match="cannot be normalised"):
         rot.normalise(np.zeros((2, 4)))
     with pytest.raises(rot.RotationError, match="non-finite length"):

@@ -22,14 +22,14 @@ def rng() -> np.random.Generator:
 
 
 def test_parents_come_before_children() -> None:
-    """One pass in joint order reaches every parent first."""
+    """Every joint's parent comes before it in the order of joints."""
     assert len(JOINT_NAMES) == 22
     assert all(parent < joint for joint, parent in enumerate(PARENTS))
 
 
 @pytest.mark.parametrize("stature_m", [1.5, 1.75, 2.0])
 def test_t_pose_stands_on_the_floor_and_reaches_the_stature(stature_m: float) -> None:
-    """In the T-pose the sole is at zero and the top of the head at the stature."""
+    """In the T-pose the soles are at zero and the top of the head at the stature."""
     skeleton = build_skeleton(stature_m)
     world = forward_kinematics(skeleton, skeleton.offsets_m[0], rot.identity(22))
     segments = body_part_segments(skeleton, world)
@@ -41,7 +41,7 @@ def test_t_pose_stands_on_the_floor_and_reaches_the_stature(stature_m: float) ->
 
 
 def test_t_pose_points_the_way_the_world_says() -> None:
-    """Left is -x, the feet point to -z, and the arms span about the stature."""
+    """In the T-pose left is -x, feet point to -z, and the arms span about the stature."""
     skeleton = build_skeleton(1.8)
     world = forward_kinematics(skeleton, np.zeros(3), rot.identity(22))
     tips = world.positions_m + skeleton.ends_m
@@ -63,7 +63,7 @@ def test_published_segment_lengths() -> None:
 
 
 def test_single_frame_equals_the_batch(rng: np.random.Generator) -> None:
-    """The fast path for one frame gives what the batch gives."""
+    """The fast path for a single frame gives the same as the batch."""
     skeleton = build_skeleton(1.7)
     roots, q = rng.normal(size=(5, 3)), rot.normalise(rng.normal(size=(5, 22, 4)))
     batch = forward_kinematics(skeleton, roots, q)
@@ -74,7 +74,7 @@ def test_single_frame_equals_the_batch(rng: np.random.Generator) -> None:
 
 
 def test_bone_lengths_never_change(rng: np.random.Generator) -> None:
-    """Whatever the rotations, a joint stays at its distance from its parent."""
+    """A joint keeps its distance from its parent, whatever the rotations."""
     skeleton = build_skeleton(1.7)
     world = forward_kinematics(
         skeleton, np.zeros((50, 3)), rot.normalise(rng.normal(size=(50, 22, 4)))
@@ -85,7 +85,7 @@ def test_bone_lengths_never_change(rng: np.random.Generator) -> None:
 
 
 def test_moving_the_root_moves_the_whole_body(rng: np.random.Generator) -> None:
-    """A rigid motion of the hips is the same rigid motion of every joint."""
+    """A rigid motion of the hips moves every joint by the same rigid motion."""
     skeleton = build_skeleton(1.7)
     q = rot.normalise(rng.normal(size=(22, 4)))
     turn, shift = rot.normalise(rng.normal(size=4)), rng.normal(size=3)
@@ -99,7 +99,7 @@ def test_moving_the_root_moves_the_whole_body(rng: np.random.Generator) -> None:
 
 
 def test_head_is_a_sphere_and_capsules_start_at_their_joints(rng: np.random.Generator) -> None:
-    """The head's axis has no length; every other capsule starts at its joint."""
+    """The head's capsule has no length; every other capsule starts at its joint."""
     skeleton = build_skeleton(1.7)
     world = forward_kinematics(skeleton, np.zeros(3), rot.normalise(rng.normal(size=(22, 4))))
     segments = body_part_segments(skeleton, world)
@@ -112,13 +112,13 @@ def test_head_is_a_sphere_and_capsules_start_at_their_joints(rng: np.random.Gene
 
 
 @pytest.mark.parametrize("stature_m", [175.0, 0.0, float("nan"), -1.7])
-def test_impossible_stature_is_refused(stature_m: float) -> None:
-    """A stature in centimetres, or none, is refused with what is valid."""
+def test_impossible_stature_is_rejected(stature_m: float) -> None:
+    """A stature in centimetres, or that is not a number, is rejected with what is valid."""
     with pytest.raises(SkeletonError, match="in metres"):
         build_skeleton(stature_m)
 
 
-def test_shapes_that_do_not_fit_are_refused() -> None:
-    """Rotations of another frame count than the root positions are refused."""
+def test_arrays_of_different_frame_counts_are_rejected() -> None:
+    """Rotations and root positions with different frame counts are rejected."""
     with pytest.raises(SkeletonError, match="do not fit"):
         forward_kinematics(build_skeleton(1.7), np.zeros((4, 3)), rot.identity(5, 22))

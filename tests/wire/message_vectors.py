@@ -1,4 +1,4 @@
-"""One JSON message of every kind, and messages that nobody may accept."""
+"""One JSON message of every kind, and messages that must be rejected."""
 
 from typing import Any
 
@@ -54,7 +54,7 @@ PRODUCED: Json = {
 
 
 def report(body: Json) -> Json:
-    """A report with this body."""
+    """Return a report with this body."""
     return {"type": "report", "epoch": 1, "seq": 0, "body": body}
 
 

@@ -1,4 +1,4 @@
-"""Batches of plausible and of broken frames."""
+"""Batches of plausible and of invalid frames."""
 
 from typing import Any
 
@@ -25,7 +25,7 @@ CONTACT_REPORT: dict[str, Any] = {
 
 
 def standing(count: int) -> NDArray[np.float32]:
-    """Frames (count, 91) of a body in rest pose, 1 m above the floor."""
+    """Return frames (count, 91) of a body in rest pose, 1 m above the floor."""
     values = np.zeros((count, VALUES_PER_FRAME), np.float32)
     values[:, 1] = 1.0
     values[:, 3::4] = 1.0
@@ -33,12 +33,12 @@ def standing(count: int) -> NDArray[np.float32]:
 
 
 def bits(values: NDArray[np.float32]) -> NDArray[np.uint32]:
-    """The raw bits, under which two NaNs can be told apart."""
+    """Return the raw bits, by which different NaNs can be distinguished."""
     return np.ascontiguousarray(values).view(np.uint32)
 
 
 def every_odd_float() -> NDArray[np.float32]:
-    """Frames that hold quiet and signalling NaNs with payloads, infinities, denormals, -0."""
+    """Return frames with quiet and signalling NaNs, infinities, denormals and -0."""
     odd = np.array(
         [
             *(0x7FC00000, 0x7FC12345, 0x7F800001, 0xFFC00001, 0xFFFFFFFF, 0x7F800000, 0xFF800000),
@@ -62,7 +62,7 @@ def message(
     active: bool = False,
     active_s: float = 0.0,
 ) -> bytes:
-    """A batch of these frames, 90 a second."""
+    """Return a batch of these frames at 90 a second."""
     count = len(values)
     if times_s is None:
         times_s = (seq_first + np.arange(count)) / RATE_HZ

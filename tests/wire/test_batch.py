@@ -1,4 +1,4 @@
-"""The binary batch: what goes in comes out bit by bit, and nothing else is taken for one."""
+"""The binary batch: frames survive bit by bit, and anything invalid is rejected."""
 
 import struct
 import zlib
@@ -24,7 +24,7 @@ FIELDS = ("magic", "length", "stream", "reserved", "epoch", "phase_id", "seq", "
 
 
 def changed(field: str, value: object) -> bytes:
-    """A good batch of three frames with one field of its header replaced."""
+    """Return a valid batch of three frames with one header field replaced."""
     good = message(standing(3))
     parts = dict(zip((*FIELDS, "active_s", "closed_at_s"), HEADER.unpack_from(good), strict=True))
     return HEADER.pack(*{**parts, field: value}.values()) + good[HEADER_BYTES:]
@@ -39,7 +39,7 @@ def changed(field: str, value: object) -> bytes:
     stream=st.sampled_from(StreamName),
 )
 @settings(max_examples=60)
-def test_a_batch_comes_out_as_it_went_in(
+def test_a_batch_survives_encoding_and_decoding(
     raw: np.ndarray[tuple[int, int], np.dtype[np.uint32]],
     epoch: int,
     phase_id: int,
@@ -47,7 +47,7 @@ def test_a_batch_comes_out_as_it_went_in(
     active_s: float,
     stream: StreamName,
 ) -> None:
-    """Any bits in any frame survive, and so does every field of the header."""
+    """Any bits of any frame and every header field survive encoding and decoding."""
     count = len(raw)
     batch = decode_batch(
         encode_batch(
@@ -72,7 +72,7 @@ def test_a_batch_comes_out_as_it_went_in(
 
 
 def test_the_layout_is_the_documented_one() -> None:
-    """Another implementation finds each field at its offset, in little-endian."""
+    """Each field of a batch is at its documented offset, in little-endian."""
     sent = message(standing(3), epoch=7, phase_id=2, seq_first=90, active_s=1.5)
     assert sent[:4] == b"RMB1"
     assert struct.unpack_from("<HBB", sent, 4) == (64, 1, 0)
@@ -86,7 +86,7 @@ def test_the_layout_is_the_documented_one() -> None:
 
 
 def test_the_arrays_are_views_on_the_message() -> None:
-    """Decoding copies nothing."""
+    """Decoded arrays are views on the message, without a copy."""
     sent = message(standing(50))
     batch = decode_batch(sent)
     assert not batch.values.flags.owndata
@@ -115,28 +115,28 @@ def test_the_arrays_are_views_on_the_message() -> None:
         ("closed_at_s", float("nan"), "closed_at_s nan"),
     ],
 )
-def test_a_wrong_header_is_refused_by_field(field: str, value: object, said: str) -> None:
-    """The error names the field with its value."""
+def test_an_invalid_header_is_rejected_by_field(field: str, value: object, said: str) -> None:
+    """An invalid header field is rejected with its name and value."""
     with pytest.raises(MalformedBatchError, match=said):
         decode_batch(changed(field, value))
 
 
 @pytest.mark.parametrize("length", [0, 1, 63, 64, 65, 1000])
-def test_a_cut_message_is_refused(length: int) -> None:
-    """A message that ends early is never half taken."""
+def test_a_truncated_message_is_rejected(length: int) -> None:
+    """A truncated batch is rejected as a whole."""
     with pytest.raises(MalformedBatchError, match=f"message of {length} bytes"):
         decode_batch(message(standing(3))[:length])
 
 
-def test_a_message_with_a_tail_is_refused() -> None:
-    """Bytes behind the last frame are no batch either."""
+def test_a_message_with_extra_bytes_is_rejected() -> None:
+    """A batch with bytes after the last frame is rejected."""
     with pytest.raises(MalformedBatchError):
         decode_batch(message(standing(3)) + b"\0")
 
 
 @given(at=st.integers(HEADER_BYTES, len(message(standing(3))) - 1), flip=st.integers(1, 255))
-def test_a_flipped_bit_in_the_body_is_noticed(at: int, flip: int) -> None:
-    """The checksum covers every byte behind the header."""
+def test_a_flipped_bit_in_the_body_is_detected(at: int, flip: int) -> None:
+    """The checksum detects a flipped bit anywhere after the header."""
     broken = bytearray(message(standing(3)))
     broken[at] ^= flip
     with pytest.raises(MalformedBatchError, match="checksum"):
@@ -146,14 +146,14 @@ def test_a_flipped_bit_in_the_body_is_noticed(at: int, flip: int) -> None:
 @given(noise=st.binary(max_size=200))
 @example(noise=b"RMB1")
 @settings(max_examples=300)
-def test_noise_is_refused(noise: bytes) -> None:
-    """Bytes of any kind give MalformedBatchError, never another error."""
+def test_random_bytes_are_rejected(noise: bytes) -> None:
+    """Arbitrary bytes raise MalformedBatchError, never another error."""
     with pytest.raises(MalformedBatchError):
         decode_batch(noise)
 
 
 def test_thousands_of_mutations_raise_nothing_else() -> None:
-    """A mutated batch is a batch or is refused; no mutation gets anything else out of it."""
+    """A mutated batch is decoded or raises MalformedBatchError, never another error."""
     rng = np.random.default_rng(20260321)
     good = message(every_odd_float(), phase_id=1)
     refused = 0
@@ -170,7 +170,7 @@ def test_thousands_of_mutations_raise_nothing_else() -> None:
             else:
                 del broken[int(rng.integers(len(broken) + 1)) :]
         if rng.random() < 0.5 and len(broken) > HEADER_BYTES:
-            # Half of them with a checksum that fits, so that the rest is reached too.
+            # Half of them get a valid checksum, so that the checks after it are reached too.
             struct.pack_into("<I", broken, 28, zlib.crc32(broken[HEADER_BYTES:]))
         try:
             decode_batch(bytes(broken))
@@ -180,6 +180,6 @@ def test_thousands_of_mutations_raise_nothing_else() -> None:
 
 
 def test_frames_of_another_shape_cannot_be_encoded() -> None:
-    """90 values a frame are refused before anything is sent."""
+    """Frames of 90 values are rejected before anything is sent."""
     with pytest.raises(MalformedBatchError, match=r"\(n, 91\)"):
         message(np.zeros((3, 90), np.float32))

@@ -1,4 +1,4 @@
-"""The JSON messages beside the batches."""
+"""The JSON messages, which are sent in addition to the batches."""
 
 import contextlib
 from typing import Any
@@ -20,12 +20,12 @@ JSON = st.recursive(
 
 
 def report(**body: Any) -> dict[str, Any]:
-    """A report with this body."""
+    """Return a report with this body."""
     return {"type": "report", "epoch": 1, "seq": 0, "body": body}
 
 
 def test_a_report_is_read_by_its_kind() -> None:
-    """The body's kind decides what it must hold."""
+    """The kind of a report's body decides which fields it must have."""
     message = CLIENT_MESSAGE.validate_python(report(**CONTACT))
     assert isinstance(message, Report)
     assert message.body.kind == "contact"
@@ -45,8 +45,8 @@ def test_a_report_is_read_by_its_kind() -> None:
         ("surprise", 1),
     ],
 )
-def test_a_value_that_no_table_could_hold_is_refused(field: str, value: object) -> None:
-    """Numbers, names and times outside of their range never reach the database."""
+def test_a_value_out_of_range_is_rejected(field: str, value: object) -> None:
+    """Numbers, names and times out of range are rejected before they reach the database."""
     with pytest.raises(ValidationError) as refused:
         CLIENT_MESSAGE.validate_python(report(**{**CONTACT, field: value}))
     assert field in str(refused.value)
@@ -54,8 +54,8 @@ def test_a_value_that_no_table_could_hold_is_refused(field: str, value: object) 
 
 @given(text=st.text(max_size=60))
 @settings(max_examples=200)
-def test_noise_is_refused(text: str) -> None:
-    """A text that is no message raises ValidationError and nothing else."""
+def test_arbitrary_text_is_rejected(text: str) -> None:
+    """A text that is no message raises ValidationError, never another error."""
     with pytest.raises(ValidationError):
         CLIENT_MESSAGE.validate_json(text.encode("utf-8", "surrogatepass"))
 
@@ -67,13 +67,13 @@ def test_noise_is_refused(text: str) -> None:
     ),
 )
 @settings(max_examples=200)
-def test_half_right_messages_are_refused_or_read(kind: str, rest: dict[str, Any]) -> None:
+def test_partly_valid_messages_are_rejected_or_read(kind: str, rest: dict[str, Any]) -> None:
     """Known fields with any values give a message or ValidationError."""
     with contextlib.suppress(ValidationError):
         assert CLIENT_MESSAGE.validate_python({"type": kind, **rest}).type == kind
 
 
-def test_a_server_message_survives_the_way() -> None:
-    """What the server sends is what a client reads."""
+def test_a_server_message_survives_serialisation() -> None:
+    """A client reads exactly what the server sent."""
     ack = Ack(positions=(StreamPosition(stream="target", epoch=1, next_seq=90),))
     assert SERVER_MESSAGE.validate_json(ack.model_dump_json()) == ack

@@ -1,4 +1,4 @@
-"""Judging frames: everything broken is flagged, everything sound is not."""
+"""Flags of frames: every invalid frame is flagged, and no valid one."""
 
 import numpy as np
 import pytest
@@ -13,14 +13,14 @@ HEAD_W = 3 + 4 * 5
 
 
 def test_a_sound_frame_has_no_flag() -> None:
-    """Unit rotations and finite places pass."""
+    """A frame with unit rotations and finite positions has no flag."""
     flags = flag_frames(TIMES_S, standing(3))
     assert not flags.bad.any()
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
-def test_a_value_that_is_no_number_is_flagged(value: float) -> None:
-    """Only the frame it is in, and as non-finite rather than as non-unit."""
+def test_a_non_finite_value_is_flagged(value: float) -> None:
+    """A non-finite value flags its own frame only, as non-finite and not as non-unit."""
     values = standing(3)
     values[1, HEAD_W] = value
     flags = flag_frames(TIMES_S, values)
@@ -28,15 +28,15 @@ def test_a_value_that_is_no_number_is_flagged(value: float) -> None:
     assert not flags.non_unit.any()
 
 
-def test_a_time_that_is_no_number_is_flagged() -> None:
-    """A frame without time is of no use either."""
+def test_a_non_finite_time_is_flagged() -> None:
+    """A frame with a non-finite time is flagged."""
     flags = flag_frames(np.array([0.0, np.nan, 0.2]), standing(3))
     assert flags.non_finite.tolist() == [False, True, False]
 
 
 @pytest.mark.parametrize("length", [0.0, 1e-40, 0.998, 1.002, 1e20, 3e38])
 def test_a_rotation_that_is_not_of_unit_length_is_flagged(length: float) -> None:
-    """Zero, denormal, shrunken and huge quaternions are no rotations."""
+    """Zero, denormal, shrunken and huge quaternions are flagged as non-unit."""
     values = standing(3)
     values[2, HEAD_W] = length
     flags = flag_frames(TIMES_S, values)
@@ -45,14 +45,14 @@ def test_a_rotation_that_is_not_of_unit_length_is_flagged(length: float) -> None
 
 @pytest.mark.parametrize("length", [0.9995, 1.0005])
 def test_rounding_is_no_fault(length: float) -> None:
-    """float32 products drift by less than a thousandth."""
+    """Quaternions off by less than a thousandth, as by float32 rounding, are not flagged."""
     values = standing(3)
     values[:, HEAD_W] = length
     assert not flag_frames(TIMES_S, values).bad.any()
 
 
-def test_judging_changes_nothing() -> None:
-    """Samples stay as they came, NaN payloads included, and no warning is raised."""
+def test_flagging_does_not_change_the_samples() -> None:
+    """Flagging changes no sample, keeps NaN payloads and raises no warning."""
     values = every_odd_float()
     before = bits(values).copy()
     flags = flag_frames(np.zeros(len(values)), values)
@@ -61,8 +61,8 @@ def test_judging_changes_nothing() -> None:
 
 
 @given(counts=st.lists(st.integers(1, 700), max_size=12))
-def test_many_batches_are_judged_like_each_alone(counts: list[int]) -> None:
-    """Every frame gets its own flags, wherever the batches are put together."""
+def test_several_batches_are_flagged_like_each_alone(counts: list[int]) -> None:
+    """Frames of several batches get the same flags as each batch alone."""
     batches = []
     for number, count in enumerate(counts):
         values = standing(count)

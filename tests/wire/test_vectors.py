@@ -1,4 +1,4 @@
-"""The vectors of the wire format say what this implementation does; others run the same files."""
+"""The vectors of the wire format agree with this implementation; others use the same files."""
 
 import json
 from typing import Any
@@ -24,19 +24,19 @@ FIELD_WORDS = {
 
 
 def entries(name: str, key: str) -> list[Any]:
-    """The entries of one list, as parameters that carry their names."""
+    """Return the entries of one list as parameters with their names."""
     return [pytest.param(entry, id=entry["name"]) for entry in VECTORS[name][key]]
 
 
 def test_the_files_are_what_the_script_makes() -> None:
-    """Nobody edited a file by hand, and no file is left over from an older format."""
+    """The vector files are exactly those that the script makes, without leftovers."""
     made = {name: as_text(vector) for name, vector in make_all().items()}
     assert {path.stem: path.read_text() for path in FOLDER.glob("*.json")} == made
 
 
 @pytest.mark.parametrize("vector", entries("batches", "batches"))
 def test_a_batch_is_encoded_and_decoded(vector: dict[str, Any]) -> None:
-    """Bit by bit in both directions."""
+    """Each batch of the vectors is encoded and decoded bit by bit."""
     message = bytes.fromhex(vector["message_hex"])
     times_s = np.frombuffer(bytes.fromhex(vector["times_hex"]), "<f8")
     values = np.frombuffer(bytes.fromhex(vector["values_hex"]), "<f4").reshape(-1, 91)
@@ -61,43 +61,43 @@ def test_a_batch_is_encoded_and_decoded(vector: dict[str, Any]) -> None:
 
 
 @pytest.mark.parametrize("vector", entries("refused_batches", "batches"))
-def test_what_is_no_batch_is_refused_by_field(vector: dict[str, Any]) -> None:
-    """The error names the field that the vector names."""
+def test_an_invalid_batch_is_rejected_by_field(vector: dict[str, Any]) -> None:
+    """Each invalid batch is rejected with the field that the vector names."""
     words = FIELD_WORDS.get(vector["field"], vector["field"])
     with pytest.raises(MalformedBatchError, match=words):
         decode_batch(bytes.fromhex(vector["message_hex"]))
 
 
 @pytest.mark.parametrize("vector", entries("messages_from_client", "messages"))
-def test_a_client_is_understood(vector: dict[str, Any]) -> None:
-    """Reading the text and writing it again changes nothing."""
+def test_client_messages_are_read(vector: dict[str, Any]) -> None:
+    """Reading a client's message and writing it again gives the same text."""
     message = CLIENT_MESSAGE.validate_json(vector["text"])
     assert message.model_dump(mode="json", exclude_unset=True) == vector["message"]
 
 
 @pytest.mark.parametrize("vector", entries("messages_from_server", "messages"))
-def test_the_server_is_understood(vector: dict[str, Any]) -> None:
-    """Reading the text and writing it again changes nothing."""
+def test_server_messages_are_read(vector: dict[str, Any]) -> None:
+    """Reading a server's message and writing it again gives the same text."""
     message = SERVER_MESSAGE.validate_json(vector["text"])
     assert message.model_dump(mode="json") == vector["message"]
 
 
 @pytest.mark.parametrize("vector", entries("refused_messages", "from_client"))
-def test_a_client_that_says_this_is_refused(vector: dict[str, Any]) -> None:
-    """Every limit of a client's message is kept."""
+def test_invalid_client_messages_are_rejected(vector: dict[str, Any]) -> None:
+    """Every invalid client message of the vectors is rejected."""
     with pytest.raises(ValidationError):
         CLIENT_MESSAGE.validate_python(vector["message"])
 
 
 @pytest.mark.parametrize("vector", entries("refused_messages", "from_server"))
-def test_a_server_that_says_this_is_refused(vector: dict[str, Any]) -> None:
-    """A client does not go on with half a message."""
+def test_invalid_server_messages_are_rejected(vector: dict[str, Any]) -> None:
+    """Every invalid server message of the vectors is rejected."""
     with pytest.raises(ValidationError):
         SERVER_MESSAGE.validate_python(vector["message"])
 
 
 def test_every_kind_of_message_has_a_vector() -> None:
-    """A message that is added to the protocol needs one."""
+    """The vectors contain every kind of message of the protocol."""
     for name, adapter in (
         ("messages_from_client", CLIENT_MESSAGE),
         ("messages_from_server", SERVER_MESSAGE),

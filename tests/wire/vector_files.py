@@ -1,7 +1,7 @@
-"""Makes the vectors of the wire format: `python -m tests.wire.vector_files` writes them.
+"""Make the vectors of the wire format: `python -m tests.wire.vector_files` writes them.
 
-`tests/vectors/wire/README.md` describes the files. They say what `app/wire` does today; whoever
-changes the format writes them again, and every other implementation is measured by them.
+`tests/vectors/wire/README.md` describes the files. They record what `app/wire` does today: a change
+of the format rewrites them, and every other implementation is tested against them.
 """
 
 import json
@@ -22,7 +22,7 @@ FIELDS = ("magic", "length", "stream", "reserved", "epoch", "phase_id", "seq", "
 
 
 def make_all() -> dict[str, Json]:
-    """Every vector file by its name."""
+    """Return every vector file by its name."""
     return {
         "batches": {
             "kind": "batches",
@@ -34,7 +34,7 @@ def make_all() -> dict[str, Json]:
             "fact": "These are no batches; an implementation names the field that is wrong.",
             "batches": [
                 {"name": name, "field": field, "message_hex": message.hex()}
-                for name, field, message in _refused()
+                for name, field, message in _invalid_batches()
             ],
         },
         "messages_from_client": {
@@ -57,7 +57,7 @@ def make_all() -> dict[str, Json]:
 
 
 def _batches() -> dict[str, Json]:
-    """Name -> arguments of `encode_batch`."""
+    """Return arguments of `encode_batch` by name."""
     moving = standing(6)
     moving[:, 0] = np.float32(0.1) * np.arange(6, dtype=np.float32)
     broken_s = np.array([1.0, np.nan, np.inf, -np.inf, -0.0, 5e-324, 2.0, 0.1, 1e300, -1.0, 3.5])
@@ -122,8 +122,8 @@ def _batch(name: str, **given: Any) -> Json:
     }
 
 
-def _refused() -> list[tuple[str, str, bytes]]:
-    """Name, the field at fault, and the bytes."""
+def _invalid_batches() -> list[tuple[str, str, bytes]]:
+    """Return name, faulty field and bytes of each invalid batch."""
     good = encode_batch(**_given(standing(2)))
     changes: list[tuple[str, str, Any]] = [
         ("another_magic", "magic", b"RMB2"),
@@ -162,7 +162,7 @@ def _message(name: str, told: Json) -> Json:
 
 
 def as_text(vector: Json) -> str:
-    """As it stands in the file: one line for each entry of its lists."""
+    """Return a vector as JSON with one line for each entry of its lists."""
     lines = []
     for key, value in vector.items():
         if isinstance(value, list):

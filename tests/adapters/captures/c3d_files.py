@@ -1,4 +1,4 @@
-"""C3D files written for tests, as each of the three families of computers would have."""
+"""C3D files written for tests, in the formats of each of the three processor types."""
 
 import struct
 from dataclasses import dataclass, field
@@ -12,7 +12,7 @@ BLOCK = 512
 
 @dataclass(frozen=True)
 class C3dFile:
-    """What to write; places (N, M, 3) in millimetres, NaN for a marker that was not seen."""
+    """A C3D file to write; positions (N, M, 3) in millimetres, NaN for an unseen marker."""
 
     places_mm: npt.NDArray[np.float64]
     labels: tuple[str, ...]
@@ -30,7 +30,7 @@ class C3dFile:
     frames_told: int | None = None
 
     def to_bytes(self) -> bytes:
-        """The whole file."""
+        """Return the whole file."""
         frames = len(self.places_mm)
         parameters = self._parameters(frames % 65536)
         data_block = 2 + len(parameters) // BLOCK
@@ -85,7 +85,7 @@ class C3dFile:
         return _record(group, name, -1, sizes, b"".join(t.encode().ljust(width) for t in texts))
 
     def _placed(self, record: bytes) -> bytes:
-        """Put in the offset to the next record, which is written the way of the processor."""
+        """Insert the offset to the next record in the processor's byte order."""
         name_end = 2 + abs(struct.unpack_from("b", record)[0])
         return record[:name_end] + self._word(len(record) - name_end) + record[name_end + 2 :]
 
@@ -99,7 +99,7 @@ class C3dFile:
 
 
 def vax_bytes(values: npt.NDArray[np.float64]) -> bytes:
-    """Numbers as a VAX wrote them: F format, the half with sign and exponent first."""
+    """Return numbers as a VAX writes them: F format, the half with sign and exponent first."""
     bits = (values.astype(np.float32) * np.float32(4.0)).view(np.uint32)
     halves = np.stack((bits >> 16, bits & 0xFFFF), axis=-1)
     return halves.astype("<u2").tobytes()

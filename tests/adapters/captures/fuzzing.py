@@ -1,7 +1,7 @@
-"""Broken capture files by the thousand: whatever comes, a capture or a `CaptureError` comes out.
+"""Thousands of damaged capture files: each gives a capture or a `CaptureError`.
 
-Each example takes a small, good file and damages it the way disks, editors, converters and
-attackers do; `assert_survives` reads all of them through the door.
+Each example takes a small valid file and damages it as disks, editors, converters and attackers do;
+`assert_survives` reads all of them with `read_capture`.
 """
 
 import re
@@ -41,12 +41,12 @@ _ODD_BYTES = (b"\x00", b"\xff", b'"', b"\n", b"\r", b",", b";", b"\t", b"{", b"}
 
 
 def assert_survives(seeds: Sequence[bytes], name: str, examples: int) -> None:
-    """Read `examples` damaged versions of the seeds.
+    """Read damaged versions of the seeds, which must give captures or errors.
 
     Args:
-        seeds: small good files of one format.
-        name: a file's name with the format's extension.
-        examples: how many.
+        seeds: small valid files of one format.
+        name: a file name with the format's extension.
+        examples: number of damaged versions.
     """
     assert_family_survives([({}, seed) for seed in seeds], name, examples)
 
@@ -54,9 +54,9 @@ def assert_survives(seeds: Sequence[bytes], name: str, examples: int) -> None:
 def assert_family_survives(
     seeds: Sequence[tuple[Mapping[str, bytes], bytes]], name: str, examples: int
 ) -> None:
-    """The same for formats that need companion files, which are damaged in one case of three."""
+    """Do the same for formats with companion files, which are damaged in one case of three."""
     for companions, seed in seeds:
-        # A seed that is refused as it is would test nothing behind the first check.
+        # A seed that is rejected undamaged would only test the first check.
         read_capture(seed, name=name, reading=Reading(companions=companions), limits=LIMITS)
 
     @settings(
@@ -74,15 +74,15 @@ def assert_family_survives(
             companions = {**companions, which: data.draw(damaged(companions[which]))}
         else:
             seed = data.draw(damaged(seed))
-        read_or_refuse(seed, name, companions)
+        read_or_reject(seed, name, companions)
 
     survive()
 
 
-def read_or_refuse(
+def read_or_reject(
     data: bytes, name: str, companions: Mapping[str, bytes] | None = None
 ) -> Capture | None:
-    """Read a file; None where it was refused as it should be. A warning is a failure."""
+    """Read a file and return None if it is properly rejected; a warning is a failure."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         try:
@@ -96,7 +96,7 @@ def read_or_refuse(
 
 @st.composite
 def damaged(draw: st.DrawFn, seed: bytes) -> bytes:
-    """One to three damages of a good file."""
+    """Damage a valid file one to three times."""
     data = seed
     for _ in range(draw(st.integers(1, 3))):
         damage = draw(st.sampled_from(_DAMAGES))
@@ -136,7 +136,7 @@ def _insert(draw: st.DrawFn, data: bytes) -> bytes:
 
 
 def _lines(draw: st.DrawFn, data: bytes) -> bytes:
-    """Drop, double, move or repeat lines."""
+    """Drop, duplicate, move or repeat lines."""
     lines = data.split(b"\n")
     first = draw(st.integers(0, len(lines) - 1))
     last = min(len(lines), first + draw(st.integers(1, 5)))
@@ -156,13 +156,13 @@ def _lines(draw: st.DrawFn, data: bytes) -> bytes:
 
 
 def _noise(draw: st.DrawFn, data: bytes) -> bytes:
-    """Keep the beginning, by which the format is told, and put noise behind it."""
+    """Keep the beginning, by which the format is detected, and append random bytes."""
     keep = draw(st.integers(0, min(len(data), 300)))
     return data[:keep] + draw(st.binary(max_size=200))
 
 
 def _word(draw: st.DrawFn, data: bytes) -> bytes:
-    """Put one word of the file in the place of another."""
+    """Replace one word of the file by another."""
     words = list(re.finditer(rb"[^\s,;]+", data))
     if len(words) < 2:
         return data

@@ -1,4 +1,4 @@
-"""Small good files of markers and of Acclaim's pair, for damaging."""
+"""Small valid marker files and ASF/AMC pairs, to be damaged."""
 
 from collections.abc import Mapping
 
@@ -70,7 +70,7 @@ shin 30
 
 
 def c3d_seeds() -> list[bytes]:
-    """Each processor and number type, with and without what makes files differ."""
+    """Return C3D files of each processor and number type, with and without optional parts."""
     rng = np.random.default_rng(8)
     places = rng.uniform(-900.0, 900.0, (5, 3, 3))
     places[2, 1] = np.nan
@@ -85,7 +85,7 @@ def c3d_seeds() -> list[bytes]:
 
 
 def marker_seeds() -> dict[str, tuple[str, list[tuple[Mapping[str, bytes], bytes]]]]:
-    """A file name and the seeds of each format, each with the files it needs beside it."""
+    """Return a file name and the seeds of each format, each with its companion files."""
     return {
         "c3d": ("a.c3d", [({}, seed) for seed in c3d_seeds()]),
         "trc": ("a.trc", [({}, TRC.encode())]),

@@ -1,4 +1,4 @@
-"""Motive's CSV in every dialect, written from a movement: no skeleton take may be passed on."""
+"""Motive's CSV in every dialect, written from a movement, as real takes may not be shared."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ _UNITS = {"Meters": 1.0, "Centimeters": 100.0, "Millimeters": 1000.0}
 
 @dataclass(frozen=True)
 class Dialect:
-    """What differs between the versions and settings of an export."""
+    """The differences between the versions and settings of Motive's export."""
 
     version: str = "1.23"
     rotation: str = "Quaternion"
@@ -36,7 +36,7 @@ class Dialect:
 
 
 def motive_text(motion: RigMotion, dialect: Dialect) -> str:
-    """Write a skeleton's movement as Motive of this dialect would."""
+    """Return a skeleton's movement as Motive writes it in this dialect."""
     columns = list(_columns(motion, dialect))
     first = _settings(motion, dialect) + "," * dialect.trailing_commas
     empty = "," * dialect.trailing_commas
@@ -79,7 +79,7 @@ def _settings(motion: RigMotion, dialect: Dialect) -> str:
 
 
 def _columns(motion: RigMotion, dialect: Dialect) -> Iterator[tuple[tuple[str, ...], list[str]]]:
-    """(type, name, id, parent, kind, axis) and the cells of each column."""
+    """Return (type, name, id, parent, kind, axis) and the cells of each column."""
     rig = motion.rig
     places, world = motion.world()
     turns = world

@@ -1,4 +1,4 @@
-"""Rigs and movements of chance, for writers and readers to agree about."""
+"""Random rigs and movements, with which writers are tested against readers."""
 
 import numpy as np
 
@@ -31,7 +31,7 @@ MOTIVE_BODY: tuple[tuple[str, int], ...] = (
 
 
 def motive_body(*, fingers: bool = False) -> tuple[tuple[str, ...], tuple[int, ...]]:
-    """Names and parents of Motive's skeleton of 21 bones, or of 51 with fingers."""
+    """Return names and parents of Motive's skeleton of 21 bones, or of 51 with fingers."""
     bones = list(MOTIVE_BODY)
     if fingers:
         for side, hand in (("L", 8), ("R", 12)):
@@ -41,7 +41,7 @@ def motive_body(*, fingers: bool = False) -> tuple[tuple[str, ...], tuple[int, .
     return tuple(name for name, _ in bones), tuple(parent for _, parent in bones)
 
 
-def some_rig(
+def random_rig(
     rng: np.random.Generator,
     names: tuple[str, ...],
     parents: tuple[int, ...],
@@ -49,7 +49,7 @@ def some_rig(
     rest: bool = False,
     ends: bool = False,
 ) -> Rig:
-    """A rig with bones of 5 to 40 cm; with rest rotations and free ends if asked for."""
+    """Return a rig with bones of 5 to 40 cm, optionally with rest rotations and free ends."""
     count = len(names)
     directions = rng.normal(size=(count, 3))
     offsets = directions / np.linalg.norm(directions, axis=1, keepdims=True)
@@ -61,10 +61,10 @@ def some_rig(
     return Rig(names, parents, offsets, turns, tips)
 
 
-def some_motion(
+def random_motion(
     rng: np.random.Generator, rig: Rig, *, frames: int = 40, rate_hz: float = 120.0
 ) -> RigMotion:
-    """Smooth turning of every joint about a random pose, and a root that walks."""
+    """Return smooth turning of every joint about a random pose, with a root that walks."""
     count, times = rig.joint_count, np.arange(frames) / rate_hz
     slow = np.sin(2.0 * np.pi * rng.uniform(0.3, 2.0, (count, 3)) * times[:, None, None])
     turns = from_rotation_vector(rng.uniform(-1.2, 1.2, (count, 3)) * (1.0 + slow))

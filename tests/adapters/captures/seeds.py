@@ -1,10 +1,10 @@
-"""Small good files of each format of tables, for damaging."""
+"""Small valid files of each table format, to be damaged."""
 
 import numpy as np
 
 from app.adapters.captures import to_bvh
 from tests.adapters.captures.motive_texts import Dialect, motive_text
-from tests.adapters.captures.moving_rigs import some_motion, some_rig
+from tests.adapters.captures.moving_rigs import random_motion, random_rig
 
 _MOVING_JOINT = """HIERARCHY
 ROOT Hips
@@ -56,8 +56,8 @@ HeadOrientationY,HeadOrientationZ,time
 
 def _motive() -> list[bytes]:
     rng = np.random.default_rng(31)
-    rig = some_rig(rng, ("Hip", "Ab", "LThigh"), (-1, 0, 0))
-    motion = some_motion(rng, rig, frames=4)
+    rig = random_rig(rng, ("Hip", "Ab", "LThigh"), (-1, 0, 0))
+    motion = random_motion(rng, rig, frames=4)
     dialects = (
         Dialect("1.21", labelled=False, line_end="\r\n"),
         Dialect("1.22", rotation="XYZ", labelled=False, told=False, mark=True),
@@ -69,12 +69,12 @@ def _motive() -> list[bytes]:
 
 def _bvh() -> list[bytes]:
     rng = np.random.default_rng(32)
-    rig = some_rig(rng, ("Hip", "Arm", "Leg"), (-1, 0, 0), ends=True)
-    return [to_bvh(some_motion(rng, rig, frames=4)).encode(), _MOVING_JOINT.encode()]
+    rig = random_rig(rng, ("Hip", "Arm", "Leg"), (-1, 0, 0), ends=True)
+    return [to_bvh(random_motion(rng, rig, frames=4)).encode(), _MOVING_JOINT.encode()]
 
 
 def table_seeds() -> dict[str, tuple[str, list[bytes]]]:
-    """A file name and the seeds of each format."""
+    """Return a file name and the seeds of each format."""
     return {
         "bvh": ("a.bvh", _bvh()),
         "motive-csv": ("a.csv", _motive()),

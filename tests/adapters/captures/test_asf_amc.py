@@ -1,4 +1,4 @@
-"""Acclaim's ASF and AMC."""
+"""Reading Acclaim's ASF and AMC files."""
 
 from pathlib import Path
 
@@ -39,7 +39,10 @@ def _cmu(shared_data: Path, clip: str) -> RigMotion:
 
 
 def test_a_bone_turns_about_its_own_axis() -> None:
-    """With the axis turned 90 degrees about z, rx turns the thigh about the world's y: C M C^-1."""
+    """A bone turns about its own axis: C M C^-1.
+
+    With the axis turned 90 degrees about z, rx turns the thigh about the world's y.
+    """
     motion = _motion(_read())
     positions, _ = motion.world()
     assert motion.rig.names == ("root", "thigh", "shin")
@@ -51,7 +54,7 @@ def test_a_bone_turns_about_its_own_axis() -> None:
 
 
 def test_fixed_axes_turn_in_the_order_of_their_letters() -> None:
-    """XYZ means first about x, then about the world's y, then about the world's z: Rz Ry Rx."""
+    """Axis order XYZ turns about x first, then the world's y, then the world's z: Rz Ry Rx."""
     amc = _AMC.replace("root 1 2 3 0 90 0", "root 0 0 0 90 90 0")
     _, world = _motion(_read(amc)).world()
     # First x by 90, then y by 90, carries z to -y and leaves it there.
@@ -61,7 +64,7 @@ def test_fixed_axes_turn_in_the_order_of_their_letters() -> None:
 
 
 def test_cmu_walk_agrees_with_its_markers_and_its_bvh(shared_data: Path) -> None:
-    """Root 3.362 m and waist markers 3.366 m; the knees are within 10 cm of the knee markers."""
+    """The CMU walk's root travels 3.362 m, its waist markers 3.366 m; knees agree within 10 cm."""
     motion = _cmu(shared_data, "02_01")
     root = motion.root_positions_m
     assert float(np.linalg.norm(root[-1] - root[0])) == pytest.approx(3.362, abs=5e-4)
@@ -78,8 +81,8 @@ def test_cmu_walk_agrees_with_its_markers_and_its_bvh(shared_data: Path) -> None
         assert float(apart.max()) < 0.1
 
 
-def test_the_kept_bvh_of_that_walk_is_scaled(shared_data: Path) -> None:
-    """02_01.bvh has the AMC's root times 1.06312, whoever made it."""
+def test_the_shared_bvh_of_that_walk_is_scaled(shared_data: Path) -> None:
+    """The root of 02_01.bvh moves 1.06312 times as far as that of the AMC."""
     from app.adapters.bvh import read_bvh
 
     root = _cmu(shared_data, "02_01").root_positions_m
@@ -87,8 +90,8 @@ def test_the_kept_bvh_of_that_walk_is_scaled(shared_data: Path) -> None:
     np.testing.assert_allclose(bvh.root_positions_m, 1.06312 * root, atol=1e-5)
 
 
-def test_the_skeleton_has_a_humans_lengths_and_units_are_told(shared_data: Path) -> None:
-    """Thigh 42.9 cm, shin 41.1 cm; a unit of 0.0564444 m follows from the file's 0.45."""
+def test_the_skeleton_has_human_lengths_and_reports_its_unit(shared_data: Path) -> None:
+    """Thigh is 42.9 cm and shin 41.1 cm; the file's length of 0.45 gives a unit of 0.0564444 m."""
     motion = _cmu(shared_data, "02_06")
     lengths = np.linalg.norm(motion.rig.offsets_m, axis=1)
     assert motion.frame_count == 2235
@@ -99,14 +102,14 @@ def test_the_skeleton_has_a_humans_lengths_and_units_are_told(shared_data: Path)
 
 
 def test_rows_left_out_are_carried_over() -> None:
-    """A bone without a row keeps its turn, and says that it was not observed."""
+    """A bone without a row keeps its rotation and is marked as not observed."""
     motion = _motion(_read(_AMC.replace("shin 30\n", "")))
     np.testing.assert_array_equal(motion.rotations[1, 2], motion.rotations[0, 2])
     assert motion.observed.tolist() == [[True, True, True], [True, True, False]]
 
 
 def test_radians_and_another_axis_up_are_understood() -> None:
-    """:RADIANS goes before the ASF's degrees; a chosen upward axis turns the whole world."""
+    """The AMC's :RADIANS overrides the ASF's degrees; a chosen up axis turns the world."""
     radians = _AMC.replace(":DEGREES", ":RADIANS").replace("0 90 0", f"0 {np.pi / 2} 0")
     radians = radians.replace("thigh 90 0", f"thigh {np.pi / 2} 0")
     np.testing.assert_allclose(
@@ -117,7 +120,7 @@ def test_radians_and_another_axis_up_are_understood() -> None:
 
 
 def test_the_missing_file_is_named() -> None:
-    """An AMC alone asks for its ASF by name; an ASF alone says which files go with it."""
+    """An AMC alone is rejected with the name of its ASF, and an ASF alone with its AMC files."""
     with pytest.raises(CaptureError, match=r"give\s+02\.asf with it"):
         read_asf_amc(_AMC.encode(), name="02_01.amc", reading=Reading(), limits=Limits())
     with pytest.raises(CaptureError, match=r"skeleton without movement.*02_01\.amc"):
@@ -138,10 +141,10 @@ def test_the_missing_file_is_named() -> None:
         ("\n1\n", "\n", 4, "before the first frame"),
     ],
 )
-def test_mistakes_in_the_movement_are_told_with_their_line(
+def test_errors_in_an_amc_are_reported_with_their_line(
     old: str, new: str, line: int, told: str
 ) -> None:
-    """Each mistake in an AMC is refused at its line."""
+    """Each error in an AMC is reported with its line."""
     with pytest.raises(CaptureError, match=told) as caught:
         _read(_AMC.replace(old, new, 1))
     assert caught.value.line == line
@@ -162,18 +165,18 @@ def test_mistakes_in_the_movement_are_told_with_their_line(
         ("length 0.45", "length 0", 6, "0.001 to 1000"),
     ],
 )
-def test_mistakes_in_the_skeleton_are_told_with_their_line(
+def test_errors_in_an_asf_are_reported_with_their_line(
     old: str, new: str, line: int, told: str
 ) -> None:
-    """Each mistake in an ASF is refused at its line, and the file is named."""
+    """Each error in an ASF is reported with its file and line."""
     assert old in _ASF
     with pytest.raises(CaptureError, match=f"small.asf: .*{told}") as caught:
         _read(asf=_ASF.replace(old, new, 1))
     assert caught.value.line == line
 
 
-def test_limits_hold() -> None:
-    """Too many bones or values are refused."""
+def test_limits_are_enforced() -> None:
+    """Too many bones or values in an ASF or AMC are rejected."""
     with pytest.raises(CaptureError, match="more than 1 bones"):
         _read(limits=Limits(tracks=1))
     with pytest.raises(CaptureError, match="2 frames of 12 values are too many"):

@@ -1,4 +1,4 @@
-"""BVH as a capture: units and axes found or chosen, rest rows and moving bones dealt with."""
+"""BVH as a capture: units and axes detected or chosen, rest rows and moving bones handled."""
 
 import csv
 from pathlib import Path
@@ -43,8 +43,8 @@ def _motion(capture: Capture) -> RigMotion:
     return capture.motion
 
 
-def _told_places(path: Path, rig: RigMotion) -> tuple[FloatArray, FloatArray]:
-    """The joints' places as their author computed them, and those of the ends."""
+def _published_positions(path: Path, rig: RigMotion) -> tuple[FloatArray, FloatArray]:
+    """Return the positions of joints and ends as their author computed them."""
     with path.open(newline="") as file:
         rows = list(csv.DictReader(file))
     ends = [f"{rig.rig.names[joint]}_End" for joint, _ in rig.rig.ends]
@@ -55,12 +55,12 @@ def _told_places(path: Path, rig: RigMotion) -> tuple[FloatArray, FloatArray]:
     return column(list(rig.rig.names)), column(ends)
 
 
-def test_places_equal_those_of_the_toolbox(shared_data: Path) -> None:
-    """Joints of walk01 are where the author of bvh-toolbox computed them, to 1e-5 of its unit."""
+def test_positions_equal_those_of_the_toolbox(shared_data: Path) -> None:
+    """Joint positions of walk01 equal those of bvh-toolbox's author to 1e-5 of its unit."""
     folder = shared_data / "motion" / "bvh_toolbox"
     data = (folder / "walk01.bvh").read_bytes()
     motion = _motion(read_capture(data, name="walk01.bvh", reading=Reading(metres_per_unit=1.0)))
-    joints, ends = _told_places(folder / "walk01_pos.csv", motion)
+    joints, ends = _published_positions(folder / "walk01_pos.csv", motion)
     places, turns = motion.world()
     np.testing.assert_allclose(places, joints, atol=1.0e-5)
     for end, (joint, offset) in enumerate(motion.rig.ends):
@@ -76,10 +76,10 @@ def test_places_equal_those_of_the_toolbox(shared_data: Path) -> None:
         ("vicon_tracker/ObjectInspection_0.bvh", "mm", 1.30),
     ],
 )
-def test_the_unit_is_the_one_that_makes_a_human(
+def test_the_unit_is_guessed_from_the_height_of_the_body(
     shared_data: Path, file: str, unit: str, height_m: float
 ) -> None:
-    """Without a word about units, a body of one or two metres decides, and the file is marked."""
+    """Without a stated unit, the one that gives a human height is used and marked as guessed."""
     path = shared_data / "motion" / file
     capture = read_capture(path.read_bytes(), name=path.name)
     assert (capture.conventions.length.value, capture.conventions.length.origin) == (
@@ -90,7 +90,7 @@ def test_the_unit_is_the_one_that_makes_a_human(
 
 
 def test_the_rest_row_of_the_converted_captures_is_left_out(shared_data: Path) -> None:
-    """05_06 begins with a T-pose; 02_01, converted by someone else, does not."""
+    """The T-pose at the start of 05_06 is left out; 02_01 has none."""
     folder = shared_data / "motion" / "cmu_bvh"
     with_row = read_capture((folder / "05_06.bvh").read_bytes(), name="05_06.bvh")
     assert _motion(with_row).frame_count == 885
@@ -99,8 +99,8 @@ def test_the_rest_row_of_the_converted_captures_is_left_out(shared_data: Path) -
     assert _motion(without).frame_count == 343
 
 
-def test_what_the_user_says_goes_before_what_we_guess() -> None:
-    """A chosen unit scales, a chosen axis turns, and both are marked as chosen."""
+def test_the_users_choice_overrides_the_guess() -> None:
+    """A unit or an axis that the user chose overrides the guess and is marked as chosen."""
     plain = _motion(_read(_TEXT)).world()[0]
     capture = _read(_TEXT, Reading(metres_per_unit=0.02, up="z"))
     assert capture.conventions.length.origin == capture.conventions.axes.origin == "chosen"
@@ -109,7 +109,7 @@ def test_what_the_user_says_goes_before_what_we_guess() -> None:
 
 
 def test_a_figure_on_its_back_raises_a_doubt() -> None:
-    """Nothing in a BVH says which axis is up; a body deeper than high is told, not turned."""
+    """A body that is deeper than high gets a note about the up axis and is not turned."""
     lying = _TEXT.replace("OFFSET 0 110 0", "OFFSET 0 0 110").replace(
         "OFFSET 0 10 0", "OFFSET 0 0 10"
     )
@@ -119,20 +119,20 @@ def test_a_figure_on_its_back_raises_a_doubt() -> None:
 
 
 def test_a_joint_with_positions_gets_their_median_as_its_bone() -> None:
-    """Rigs have bones of one length: the file's largest deviation is told."""
+    """A joint with position channels gets their median as its bone; the deviation is noted."""
     capture = _read(_TEXT)
     np.testing.assert_allclose(_motion(capture).rig.offsets_m[1], (0.0, 1.1, 0.0))
     assert any("Head leaves by up to 0.0200 m" in note for note in capture.notes)
 
 
 def test_ends_of_bones_are_kept() -> None:
-    """An End Site is the free end of its joint's bone, in metres."""
+    """An End Site becomes the free end of its joint's bone, in metres."""
     rig = _motion(_read(_TEXT)).rig
     assert rig.ends == ((1, (0.0, 0.1, 0.0)),)
 
 
 def test_a_body_of_no_human_size_is_read_with_a_warning() -> None:
-    """A toy of 8 units fits no unit; the nearest is taken and doubted aloud."""
+    """A body that has a human size in no unit is read in the nearest one, with a note."""
     capture = _read(_TEXT.replace("110", "0.7").replace("OFFSET 0 10", "OFFSET 0 0.1"))
     assert any("Say the unit" in note for note in capture.notes)
 
@@ -147,15 +147,15 @@ def test_a_body_of_no_human_size_is_read_with_a_warning() -> None:
         ("Zrotation Xrotation Yrotation\n  JOINT", "Wrotation\n  JOINT", "unknown channel"),
     ],
 )
-def test_what_no_capture_holds_is_refused(old: str, new: str, reason: str) -> None:
-    """Impossible sizes, rates and counts are errors, not warnings from the arithmetic."""
+def test_impossible_captures_are_rejected(old: str, new: str, reason: str) -> None:
+    """Impossible sizes, rates and counts raise errors instead of arithmetic warnings."""
     assert old in _TEXT
     with pytest.raises(CaptureError, match=reason):
         _read(_TEXT.replace(old, new, 1))
 
 
-def test_limits_hold_whatever_the_file_claims() -> None:
-    """Joints, depth and the numbers a movement takes in memory are counted before they are made."""
+def test_limits_are_enforced_before_memory_is_allocated() -> None:
+    """Numbers of joints, levels and values are checked before memory is allocated."""
     for limits, reason in (
         (Limits(tracks=1), "more than 1 joints"),
         (Limits(depth=1), "deeper than 1"),

@@ -1,4 +1,4 @@
-"""BVH that we write is read alike by programs we did not write."""
+"""BVH files that we write are read correctly by other programs."""
 
 import warnings
 from pathlib import Path
@@ -12,13 +12,13 @@ from app.adapters.captures import Reading, read_capture, to_bvh
 from app.adapters.captures.bvh_export import safe_names
 from app.science.rig import Rig, RigMotion
 from app.science.rotations import FloatArray, from_euler, geodesic_angle
-from tests.adapters.captures.moving_rigs import motive_body, some_motion, some_rig
+from tests.adapters.captures.moving_rigs import motive_body, random_motion, random_rig
 
 _METRES = Reading(metres_per_unit=0.01)
 
 
 def _by_pymotion(path: Path) -> dict[str, FloatArray]:
-    """Places in the file's unit of each joint, by upc-pymotion in double precision."""
+    """Return each joint's positions in the file's unit, by upc-pymotion in double precision."""
     file = BVH()
     file.load(str(path))
     turns, places, parents, offsets, _, _ = file.get_data()
@@ -27,9 +27,9 @@ def _by_pymotion(path: Path) -> dict[str, FloatArray]:
 
 
 def _by_bvhio(path: Path, frames: int) -> dict[str, FloatArray]:
-    """The same by bvhio, in single precision: a few micrometres."""
+    """Return each joint's positions by bvhio, in single precision: a few micrometres."""
     with warnings.catch_warnings():
-        # One of its own imports is deprecated, which is not ours to mend.
+        # One of its own imports is deprecated.
         warnings.simplefilter("ignore", PendingDeprecationWarning)
         import bvhio
     root = bvhio.readAsHierarchy(str(path))
@@ -42,11 +42,11 @@ def _by_bvhio(path: Path, frames: int) -> dict[str, FloatArray]:
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
-def test_other_readers_see_the_same_places(tmp_path: Path, seed: int) -> None:
-    """A rig with rest rotations comes out of two foreign readers where it was, to a micrometre."""
+def test_other_readers_see_the_same_positions(tmp_path: Path, seed: int) -> None:
+    """Two other readers give the same positions of a rig with rest rotations, to a micrometre."""
     rng = np.random.default_rng(seed)
-    rig = some_rig(rng, *motive_body(), rest=True, ends=True)
-    motion = some_motion(rng, rig, frames=12)
+    rig = random_rig(rng, *motive_body(), rest=True, ends=True)
+    motion = random_motion(rng, rig, frames=12)
     path = tmp_path / "out.bvh"
     path.write_text(to_bvh(motion))
     expected = dict(zip(rig.names, np.moveaxis(motion.world()[0], 1, 0), strict=True))
@@ -57,10 +57,10 @@ def test_other_readers_see_the_same_places(tmp_path: Path, seed: int) -> None:
 
 
 def test_reading_it_back_gives_the_same_body() -> None:
-    """Places, free ends and the turning of every bone survive; the rest pose is as it was."""
+    """Positions, free ends, rotations and the rest pose survive writing and reading."""
     rng = np.random.default_rng(4)
-    rig = some_rig(rng, *motive_body(), rest=True, ends=True)
-    motion = some_motion(rng, rig, frames=12)
+    rig = random_rig(rng, *motive_body(), rest=True, ends=True)
+    motion = random_motion(rng, rig, frames=12)
     again = read_capture(to_bvh(motion).encode(), name="again.bvh", reading=_METRES).motion
     assert isinstance(again, RigMotion)
     order = [again.rig.names.index(name) for name in rig.names]
@@ -78,7 +78,7 @@ def test_reading_it_back_gives_the_same_body() -> None:
 def test_a_capture_written_and_read_elsewhere_stays(
     shared_data: Path, tmp_path: Path, file: str
 ) -> None:
-    """A real walk goes through our reader and writer and a foreign reader unchanged."""
+    """A real walk is the same after our writer and another program's reader."""
     path = shared_data / "motion" / file
     motion = read_capture(path.read_bytes(), name=path.name).motion
     assert isinstance(motion, RigMotion)
@@ -89,8 +89,8 @@ def test_a_capture_written_and_read_elsewhere_stays(
         np.testing.assert_allclose(found[name] / 100.0, motion.world()[0][:, joint], atol=1e-6)
 
 
-def test_a_locked_gimbal_loses_no_place(tmp_path: Path) -> None:
-    """With x at a right angle, z and y turn about one axis; whatever the split, places agree."""
+def test_a_gimbal_lock_changes_no_position(tmp_path: Path) -> None:
+    """In a gimbal lock, with x at a right angle, all positions are still correct."""
     rig = Rig(
         ("Hip", "Arm", "Hand"),
         (-1, 0, 1),
@@ -108,6 +108,6 @@ def test_a_locked_gimbal_loses_no_place(tmp_path: Path) -> None:
         np.testing.assert_allclose(found[name] / 100.0, motion.world()[0][:, joint], atol=1e-6)
 
 
-def test_names_that_readers_trip_over_are_written_as_one_word() -> None:
-    """Blanks and braces go, and no two joints fall together."""
+def test_joint_names_are_written_as_unique_single_words() -> None:
+    """Blanks and braces in joint names are replaced, and names stay unique."""
     assert safe_names(("a b", "a_b", "x{y}", "{}")) == ("a_b", "a_b_2", "x_y", "joint")

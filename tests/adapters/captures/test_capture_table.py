@@ -1,4 +1,4 @@
-"""The table of formats and files in the documents is what the code does."""
+"""The documentation's table of formats and files agrees with the code."""
 
 from pathlib import Path
 
@@ -6,8 +6,8 @@ from app.adapters.captures import FORMATS
 from tests.support.capture_table import PAGE, files, rows
 
 
-def test_every_shared_file_fares_as_the_table_says(shared_data: Path) -> None:
-    """Each loads, or is refused, with the numbers and the reason that the document names."""
+def test_every_shared_file_reads_as_documented(shared_data: Path) -> None:
+    """Each shared file loads with the documented numbers or is rejected with the reason."""
     told = [
         line for line in PAGE.read_text(encoding="utf-8").splitlines() if line.startswith("| `")
     ]
@@ -16,7 +16,7 @@ def test_every_shared_file_fares_as_the_table_says(shared_data: Path) -> None:
 
 
 def test_every_format_is_described() -> None:
-    """A format that can be read is in the document."""
+    """Every format that can be read is in the documentation."""
     text = PAGE.read_text(encoding="utf-8")
     for known in FORMATS:
         assert f"| {known.title} | " in text

@@ -1,4 +1,4 @@
-"""Damaged C3D, TRC and ASF/AMC files: a capture or a reason, never a crash, a hang or a warning."""
+"""Damaged C3D, TRC and ASF/AMC files: a capture or an error, never a crash or a hang."""
 
 import pytest
 
@@ -10,15 +10,15 @@ _SEEDS = marker_seeds()
 
 
 @pytest.mark.parametrize("key", _SEEDS)
-def test_damaged_files_are_read_or_refused(key: str) -> None:
-    """Cut, flipped, doubled, with huge and empty numbers, and so are the files beside them."""
+def test_damaged_files_are_read_or_rejected(key: str) -> None:
+    """Damaged marker files and companion files are read or rejected with a `CaptureError`."""
     name, seeds = _SEEDS[key]
     assert_family_survives(seeds, name, _SHORT)
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("key", _SEEDS)
-def test_damaged_files_are_read_or_refused_at_length(key: str) -> None:
-    """The same, eighty times as often."""
+def test_many_damaged_files_are_read_or_rejected(key: str) -> None:
+    """Eighty times as many damaged marker files are read or rejected."""
     name, seeds = _SEEDS[key]
     assert_family_survives(seeds, name, 80 * _SHORT)

@@ -1,4 +1,4 @@
-"""Damaged tables and BVH: a capture or a reason, never a crash, a hang or a full memory."""
+"""Damaged tables and BVH: a capture or an error, never a crash, a hang or a full memory."""
 
 import tracemalloc
 
@@ -8,11 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.adapters.captures import CaptureError, Limits, read_capture, to_bvh
-from tests.adapters.captures.fuzzing import assert_survives, read_or_refuse
-from tests.adapters.captures.moving_rigs import motive_body, some_motion, some_rig
+from tests.adapters.captures.fuzzing import assert_survives, read_or_reject
+from tests.adapters.captures.moving_rigs import motive_body, random_motion, random_rig
 from tests.adapters.captures.seeds import table_seeds
 
-# With those of markers twenty-five hundred.
+# Together with the marker formats: 2,500.
 _SHORT = {
     "bvh": 500,
     "motive-csv": 500,
@@ -24,25 +24,25 @@ _SEEDS = table_seeds()
 
 
 @pytest.mark.parametrize("key", _SEEDS)
-def test_damaged_files_are_read_or_refused(key: str) -> None:
-    """Cut, flipped, doubled, with huge and empty numbers: hundreds of each format."""
+def test_damaged_files_are_read_or_rejected(key: str) -> None:
+    """Hundreds of damaged files of each format are read or rejected with a `CaptureError`."""
     name, seeds = _SEEDS[key]
     assert_survives(seeds, name, _SHORT[key])
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("key", _SEEDS)
-def test_damaged_files_are_read_or_refused_at_length(key: str) -> None:
-    """The same, eighty times as often."""
+def test_many_damaged_files_are_read_or_rejected(key: str) -> None:
+    """Eighty times as many damaged files are read or rejected."""
     name, seeds = _SEEDS[key]
     assert_survives(seeds, name, 80 * _SHORT[key])
 
 
 @settings(max_examples=400, deadline=None, derandomize=True, database=None)
 @given(data=st.binary(max_size=400), name=st.sampled_from([name for name, _ in _SEEDS.values()]))
-def test_noise_is_refused(data: bytes, name: str) -> None:
-    """Random bytes are no capture of anything."""
-    assert read_or_refuse(data, name) is None
+def test_random_bytes_are_rejected(data: bytes, name: str) -> None:
+    """Random bytes are rejected by every format."""
+    assert read_or_reject(data, name) is None
 
 
 _BOMBS = {
@@ -64,10 +64,10 @@ _BOMBS = {
 }
 
 
-def test_a_good_file_takes_a_few_times_its_numbers() -> None:
-    """Reading 5,000 poses of 21 joints peaks below five times what their movement holds."""
+def test_reading_takes_a_few_times_the_memory_of_the_movement() -> None:
+    """Reading 5,000 poses of 21 joints peaks below five times their memory."""
     rng = np.random.default_rng(33)
-    data = to_bvh(some_motion(rng, some_rig(rng, *motive_body()), frames=5_000)).encode()
+    data = to_bvh(random_motion(rng, random_rig(rng, *motive_body()), frames=5_000)).encode()
     tracemalloc.start()
     try:
         motion = read_capture(data, name="long.bvh").motion
@@ -81,7 +81,7 @@ def test_a_good_file_takes_a_few_times_its_numbers() -> None:
 
 @pytest.mark.parametrize("title", _BOMBS)
 def test_memory_stays_within_bounds_whatever_a_file_claims(title: str) -> None:
-    """Three megabytes of malice take less than a hundred megabytes, and are refused."""
+    """Malicious files of three megabytes are rejected with less than 100 MB of memory."""
     data = _BOMBS[title].encode()
     tracemalloc.start()
     try:

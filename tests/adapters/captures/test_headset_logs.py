@@ -1,4 +1,4 @@
-"""Logs of headsets: UXF's trackers from Unity, and the Quest's own."""
+"""Reading logs of headsets: UXF's trackers from Unity, and the Quest's own."""
 
 from pathlib import Path
 
@@ -22,7 +22,7 @@ def _uxf(text: str, name: str = "head_movement_T001.csv") -> BodyMotion:
 
 
 def _unity_turn(degrees: tuple[float, float, float], vector: FloatArray) -> FloatArray:
-    """Unity's documented order by matrices: about z, then x, then y, each left-handed."""
+    """Return Unity's documented rotation by matrices: z, then x, then y, left-handed."""
     x, y, z = np.radians(degrees)
     about_z = np.array(((np.cos(z), -np.sin(z), 0), (np.sin(z), np.cos(z), 0), (0, 0, 1)))
     about_x = np.array(((1, 0, 0), (0, np.cos(x), -np.sin(x)), (0, np.sin(x), np.cos(x))))
@@ -33,7 +33,7 @@ def _unity_turn(degrees: tuple[float, float, float], vector: FloatArray) -> Floa
 
 @pytest.mark.parametrize("degrees", [(30.0, 0.0, 0.0), (10.0, 200.0, 350.0), (89.0, 12.0, 77.0)])
 def test_unitys_angles_turn_as_unity_does(degrees: tuple[float, float, float]) -> None:
-    """A vector turned in Unity and then mirrored is the mirrored vector turned by us."""
+    """Turning a vector by Unity's angles and mirroring it equals our converted rotation."""
     motion = _uxf(_UXF + f"3.5,1,2,3,{degrees[0]},{degrees[1]},{degrees[2]}\n")
     assert motion.names == ("head",)
     np.testing.assert_allclose(motion.positions_m[0, 0], (1.0, 2.0, -3.0))
@@ -46,22 +46,22 @@ def test_unitys_angles_turn_as_unity_does(degrees: tuple[float, float, float]) -
 
 
 def test_looking_right_in_unity_is_looking_right_here() -> None:
-    """Unity's +90 degrees about y turn +z to +x; here -z, our forward, turns to +x."""
+    """Unity's +90 degrees about y, from +z to +x, turn our forward -z to +x."""
     motion = _uxf(_UXF + "0,0,1.6,0,0,90,0\n")
     ahead = rotate(motion.rotations[0, 0], np.array((0.0, 0.0, -1.0)))
     np.testing.assert_allclose(ahead, (1.0, 0.0, 0.0), atol=1e-12)
 
 
-def test_a_german_client_is_understood() -> None:
-    """Semicolons between columns, commas in numbers."""
+def test_a_german_log_is_read() -> None:
+    """Semicolons between columns and decimal commas are read."""
     text = "time;pos_x;pos_y;pos_z;rot_x;rot_y;rot_z\n1,5;0,25;1,5;-0,5;0;90;0\n1,6;0,3;1;0;0;0;0\n"
     motion = _uxf(text)
     np.testing.assert_allclose(motion.positions_m[0, 0], (0.25, 1.5, 0.5))
     np.testing.assert_allclose(motion.times_s, (0.0, 0.1))
 
 
-def test_all_zeros_is_not_tracked() -> None:
-    """A controller that is off lies in no corner of the room: it is not there."""
+def test_all_zeros_means_not_tracked() -> None:
+    """A controller whose values are all zero was not tracked."""
     capture = read_capture((_UXF + "1,0,0,0,0,0,0\n2,1,2,3,0,0,0\n").encode(), name="left.csv")
     motion = _bodies(capture)
     assert np.isnan(motion.positions_m[0]).all()
@@ -80,7 +80,7 @@ def test_quaternions_of_a_labs_own_tracker_are_read() -> None:
 
 
 def test_the_published_tracker_is_read(shared_data: Path) -> None:
-    """Head and two controllers at 90 Hz; the left one was never used; a standing person's head."""
+    """The published log has a head and two controllers at 90 Hz, the left one never tracked."""
     path = shared_data / "logs/uxf/kitchen_laser/10/S001/trackers/VR_move_T003.csv"
     capture = read_capture(path.read_bytes(), name=path.name)
     motion = _bodies(capture)
@@ -95,15 +95,15 @@ def test_the_published_tracker_is_read(shared_data: Path) -> None:
     assert any("grab_force" in note for note in capture.notes)
 
 
-def test_gaze_is_refused_with_its_columns(shared_data: Path) -> None:
-    """A gaze ray is no body: the message says which columns a body has."""
+def test_a_gaze_log_is_rejected(shared_data: Path) -> None:
+    """A log of gaze rays is rejected with the columns that a body needs."""
     path = shared_data / "logs/uxf/kitchen_laser/10/S001/trackers/Eye_gaze_T003.csv"
     with pytest.raises(CaptureError, match=r"dir_x.*A tracker of movement has pos_x"):
         read_capture(path.read_bytes(), name=path.name)
 
 
 def test_the_quest_log_is_read(shared_data: Path) -> None:
-    """Quaternions are w, x, y, z: read so, a head is upright; two minutes at 60 Hz."""
+    """The Quest's quaternions are w, x, y, z, by which heads are upright; two minutes at 60 Hz."""
     path = shared_data / "logs" / "quest_log" / "sample_movement_data.csv"
     capture = read_capture(path.read_bytes(), name=path.name)
     motion = _bodies(capture)
@@ -117,13 +117,13 @@ def test_the_quest_log_is_read(shared_data: Path) -> None:
 
 
 def test_a_quote_in_a_labs_own_column_is_a_character() -> None:
-    """UXF quotes nothing, so that a quote must not swallow the rows behind it."""
+    """A quote in UXF, which quotes nothing, does not swallow the following rows."""
     text = _UXF.replace("rot_z\n", "rot_z,said\n") + '1,0,1,0,0,0,0,"yes\n2,0,1,0,0,0,0,no\n'
     assert _uxf(text).frame_count == 2
 
 
-def test_times_must_go_forward() -> None:
-    """Repeated times are dropped and told; a clock that goes back is two recordings."""
+def test_times_must_increase() -> None:
+    """Repeated times are dropped with a note; a time that goes back is rejected."""
     capture = read_capture(
         (_UXF + "1,0,1,0,0,0,0\n1,0,1,0,0,0,0\n2,0,1,0,0,0,0\n").encode(), name="a.csv"
     )
@@ -146,8 +146,8 @@ def test_times_must_go_forward() -> None:
         ("HeadPosX,HeadOrientationW\n1,2\n", "a log needs the columns", 1),
     ],
 )
-def test_a_broken_log_is_refused_with_its_line(text: str, reason: str, line: int) -> None:
-    """Each broken rule names its line and what is there."""
+def test_an_invalid_log_is_rejected_with_its_line(text: str, reason: str, line: int) -> None:
+    """Each invalid line is rejected with its number and content."""
     with pytest.raises(CaptureError, match=reason) as caught:
         read_capture(text.encode(), name="a.csv")
     assert caught.value.line == line

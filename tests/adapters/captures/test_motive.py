@@ -1,4 +1,4 @@
-"""Motive's CSV, in every dialect that labs have: skeletons, rigid bodies, markers."""
+"""Reading Motive's CSV in every dialect: skeletons, rigid bodies and markers."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -10,7 +10,7 @@ from app.adapters.captures import Capture, CaptureError, Reading, read_capture
 from app.science.rig import BodyMotion, MarkerMotion, RigMotion
 from app.science.rotations import geodesic_angle
 from tests.adapters.captures.motive_texts import Dialect, motive_text
-from tests.adapters.captures.moving_rigs import motive_body, some_motion, some_rig
+from tests.adapters.captures.moving_rigs import motive_body, random_motion, random_rig
 
 _DIALECTS = {
     "1.21 without labels, CRLF": Dialect("1.21", labelled=False, line_end="\r\n"),
@@ -40,7 +40,7 @@ def _rig_motion(capture: Capture) -> RigMotion:
 
 
 def _same_movement(found: RigMotion, expected: RigMotion, frames: slice = slice(None)) -> None:
-    """Every bone of `expected` is where and as it was."""
+    """Assert that every bone of `expected` has the same positions and rotations."""
     order = [found.rig.index(name) for name in expected.rig.names]
     places, turns = found.world()
     true_places, true_turns = expected.world()
@@ -52,9 +52,9 @@ def _same_movement(found: RigMotion, expected: RigMotion, frames: slice = slice(
 @pytest.mark.parametrize("fingers", [False, True], ids=["21 bones", "51 bones"])
 @pytest.mark.parametrize("title", _DIALECTS)
 def test_a_skeleton_comes_back_from_every_dialect(title: str, *, fingers: bool) -> None:
-    """What was written moves the same after reading, to a micrometre and a microradian."""
+    """A movement written in any dialect is read back to a micrometre and a microradian."""
     rng = np.random.default_rng(21)
-    motion = some_motion(rng, some_rig(rng, *motive_body(fingers=fingers)))
+    motion = random_motion(rng, random_rig(rng, *motive_body(fingers=fingers)))
     capture = _read(motive_text(motion, _DIALECTS[title]))
     found = _rig_motion(capture)
     assert found.rate_hz == pytest.approx(120.0)
@@ -63,10 +63,10 @@ def test_a_skeleton_comes_back_from_every_dialect(title: str, *, fingers: bool) 
     _same_movement(found, motion)
 
 
-def test_the_conventions_say_what_the_file_told_and_what_was_guessed() -> None:
-    """A 1.22 take names neither unit nor rotations: both are marked as guessed."""
+def test_conventions_are_marked_as_stated_or_guessed() -> None:
+    """A 1.22 take states neither unit nor rotations, so both are marked as guessed."""
     rng = np.random.default_rng(22)
-    motion = some_motion(rng, some_rig(rng, *motive_body()))
+    motion = random_motion(rng, random_rig(rng, *motive_body()))
     silent = _read(motive_text(motion, _DIALECTS["1.22 with Euler angles and nothing told"]))
     assert (silent.conventions.rotations.value, silent.conventions.rotations.origin) == (
         "Euler XYZ, degrees",
@@ -78,9 +78,9 @@ def test_the_conventions_say_what_the_file_told_and_what_was_guessed() -> None:
 
 
 def test_a_gap_is_filled_and_marked() -> None:
-    """A bone that was not seen for some frames is carried over them, and not as observed."""
+    """A bone that was not seen for some frames is interpolated and marked as not observed."""
     rng = np.random.default_rng(23)
-    motion = some_motion(rng, some_rig(rng, *motive_body()))
+    motion = random_motion(rng, random_rig(rng, *motive_body()))
     lost = ((10, 7), (11, 7), (12, 7), (13, 7), (0, 3), (39, 3))
     found = _rig_motion(_read(motive_text(motion, Dialect(missing=lost))))
     hidden = ~found.observed
@@ -94,14 +94,14 @@ def test_a_gap_is_filled_and_marked() -> None:
     expected, _ = motion.world()
     order = [found.rig.index(name) for name in motion.rig.names]
     np.testing.assert_allclose(places[whole][:, order], expected[whole], atol=1e-6)
-    # A thirtieth of a second is short: what was filled in lies close to the truth.
+    # A thirtieth of a second is short, so the filled frames are close to the truth.
     assert float(np.abs(places[:, order] - expected).max()) < 0.02
 
 
 def test_a_bone_that_stretches_gets_one_length_and_a_note() -> None:
-    """The median is the bone; how far it is off is said."""
+    """A bone of varying length gets the median, with a note of the deviation."""
     rng = np.random.default_rng(24)
-    motion = some_motion(rng, some_rig(rng, *motive_body()))
+    motion = random_motion(rng, random_rig(rng, *motive_body()))
     text = motive_text(motion, Dialect(parents=True, version="1.25", space="Local"))
     lines = text.splitlines()
     names = lines[3].split(",")
@@ -114,10 +114,10 @@ def test_a_bone_that_stretches_gets_one_length_and_a_note() -> None:
     assert any("Head is off by up to 0.050 m" in note for note in capture.notes)
 
 
-def test_two_people_in_a_take_are_told_apart() -> None:
-    """The first skeleton is read, the other named."""
+def test_of_two_people_in_a_take_the_first_is_read() -> None:
+    """The first of two skeletons is read, and a note names the other."""
     rng = np.random.default_rng(25)
-    motion = some_motion(rng, some_rig(rng, *motive_body()))
+    motion = random_motion(rng, random_rig(rng, *motive_body()))
     one = motive_text(motion, Dialect(version="1.25", parents=True)).splitlines()
     other = motive_text(motion, Dialect(version="1.25", parents=True, asset="P02")).splitlines()
     both = [one[0], one[1]]
@@ -128,9 +128,9 @@ def test_two_people_in_a_take_are_told_apart() -> None:
 
 
 def test_missing_frame_numbers_leave_a_gap() -> None:
-    """A rig moves at a constant rate: frames that were not exported are filled in and marked."""
+    """Frames missing from the export are filled in and marked, since a rig has a constant rate."""
     rng = np.random.default_rng(26)
-    motion = some_motion(rng, some_rig(rng, *motive_body()))
+    motion = random_motion(rng, random_rig(rng, *motive_body()))
     lines = motive_text(motion, Dialect()).splitlines()
     first = next(n for n, line in enumerate(lines) if line.startswith("Frame")) + 1
     capture = _read("\n".join(lines[: first + 5] + lines[first + 8 :]))
@@ -142,10 +142,10 @@ def test_missing_frame_numbers_leave_a_gap() -> None:
 
 
 def test_bones_of_unknown_names_are_read_as_bodies() -> None:
-    """Before 1.25 a hierarchy is known by its names only; others stay where they are."""
+    """Before 1.25 bones of unknown names, which have no hierarchy, are read as rigid bodies."""
     rng = np.random.default_rng(27)
-    rig = some_rig(rng, ("Hip", "Tail", "Fin"), (-1, 0, 1))
-    motion = some_motion(rng, rig)
+    rig = random_rig(rng, ("Hip", "Tail", "Fin"), (-1, 0, 1))
+    motion = random_motion(rng, rig)
     capture = _read(motive_text(motion, Dialect()))
     assert isinstance(capture.motion, BodyMotion)
     np.testing.assert_allclose(capture.motion.positions_m, motion.world()[0], atol=1e-6)
@@ -156,7 +156,7 @@ def test_bones_of_unknown_names_are_read_as_bodies() -> None:
 
 
 def test_the_rigid_body_take_is_read(shared_data: Path) -> None:
-    """A Motive 1.21 take: one rigid body whose markers lie where they should in its frame."""
+    """A Motive 1.21 take has one rigid body, whose markers fit its frame."""
     path = shared_data / "motion" / "optitrack_csv" / "sample_optitrack_take.csv"
     capture = read_capture(path.read_bytes(), name=path.name)
     assert isinstance(capture.motion, BodyMotion)
@@ -170,7 +170,7 @@ def test_the_rigid_body_take_is_read(shared_data: Path) -> None:
 
 
 def test_markers_alone_are_read_as_markers(shared_data: Path) -> None:
-    """Without bodies the labelled markers count; unlabelled ones are left out."""
+    """Without bodies the labelled markers are read and the unlabelled ones left out."""
     path = shared_data / "motion" / "optitrack_csv" / "sample_optitrack_take.csv"
     rows = [line.split(",") for line in path.read_text().splitlines()]
     kept = [0, 1, *(n for n, kind in enumerate(rows[2]) if kind == "Marker")]
@@ -185,7 +185,7 @@ def test_markers_alone_are_read_as_markers(shared_data: Path) -> None:
 
 
 def test_markers_of_one_name_are_numbered() -> None:
-    """A marker lost and found again has two sets of columns under one label."""
+    """Markers with the same label, as after a loss, get numbers."""
     text = (
         "Format Version,1.23,Export Frame Rate,100,Length Units,Meters\n\n,Type"
         + ",Marker" * 9
@@ -203,9 +203,9 @@ def test_markers_of_one_name_are_numbered() -> None:
 
 
 def test_z_up_by_choice_turns_the_world() -> None:
-    """An export with z up, read as such, moves as the same export with y up."""
+    """An export with z up, read as such, gives the same movement as one with y up."""
     rng = np.random.default_rng(28)
-    motion = some_motion(rng, some_rig(rng, *motive_body()))
+    motion = random_motion(rng, random_rig(rng, *motive_body()))
     text = motive_text(motion, Dialect())
     plain = _rig_motion(_read(text))
     turned = _rig_motion(_read(text, Reading(up="z")))
@@ -225,22 +225,22 @@ _SMALL = Dialect("1.23")
         (("\n3,", "\n2,"), "frame 2 comes after frame 2", 11),
     ],
 )
-def test_a_broken_take_is_refused_with_its_line(
+def test_an_invalid_take_is_rejected_with_its_line(
     change: tuple[str, str], reason: str, line: int
 ) -> None:
-    """Each broken rule names its line and what is there."""
+    """Each invalid line is rejected with its number and content."""
     rng = np.random.default_rng(29)
-    text = motive_text(some_motion(rng, some_rig(rng, *motive_body())), _SMALL)
+    text = motive_text(random_motion(rng, random_rig(rng, *motive_body())), _SMALL)
     assert change[0] in text
     with pytest.raises(CaptureError, match=reason) as caught:
         _read(text.replace(*change, 1))
     assert caught.value.line == line
 
 
-def test_a_quaternion_of_no_length_one_is_refused() -> None:
-    """Rounding leaves 1e-6; a length of 3 is another column."""
+def test_a_quaternion_that_is_not_a_unit_is_rejected() -> None:
+    """A quaternion of length 3 is rejected with its line."""
     rng = np.random.default_rng(30)
-    motion = some_motion(rng, some_rig(rng, *motive_body()))
+    motion = random_motion(rng, random_rig(rng, *motive_body()))
     lines = motive_text(motion, replace(_SMALL)).splitlines()
     cells = lines[-1].split(",")
     cells[2:6] = ["3", "0", "0", "0"]

@@ -1,4 +1,4 @@
-"""One door for all formats: told apart by content, refused with what was seen."""
+"""`read_capture`: the format is detected by content, and unknown files are rejected."""
 
 import re
 
@@ -25,35 +25,35 @@ def _key_of(data: bytes, name: str) -> str | None:
 
 
 @pytest.mark.parametrize("key", _HEADS)
-def test_the_content_tells_the_format_whatever_the_name(key: str) -> None:
-    """Half of the formats end in .csv, and people rename files."""
+def test_the_format_is_detected_by_content_whatever_the_name(key: str) -> None:
+    """Every format is detected by its content in a file called recording.txt."""
     assert _key_of(_HEADS[key], "recording.txt") == key
     assert key in {known.key for known in FORMATS}
 
 
 def test_a_blank_before_the_first_word_makes_no_binary_file() -> None:
-    """A C3D's second byte is "P", and so may be a text's."""
+    """A text whose second byte is "P", as a C3D's is, is not taken for a C3D."""
     assert _key_of(b"\nPathFileType\t4\n", "walk.csv") == "trc"
 
 
-def test_every_format_can_be_told_by_its_content() -> None:
-    """No format depends on its file's name."""
+def test_every_format_has_a_detection_test() -> None:
+    """Every format is covered by the test of detection by content."""
     assert {known.key for known in FORMATS} == set(_HEADS)
 
 
 def test_every_format_names_a_function_that_reads() -> None:
-    """Readers are named in words, so that a server starts without them; each name is right."""
+    """The function that each format names as its reader exists."""
     assert all(callable(known.load_reader()) for known in FORMATS)
 
 
-def test_an_extension_of_several_formats_tells_none() -> None:
-    """Four formats end in .csv, and content decides between them; .trc is one format's own."""
+def test_an_ambiguous_extension_gives_no_format() -> None:
+    """The extension .csv, shared by four formats, gives none; .trc gives TRC."""
     assert _key_of(b"a,b\n1,2\n", "table.csv") is None
     assert _key_of(b"a,b\n1,2\n", "table.TRC") == "trc"
 
 
 def test_an_extension_helps_where_the_content_is_broken() -> None:
-    """A BVH without its first word is still read as BVH, so that the error names the line."""
+    """A BVH with a misspelt first word is recognised by its extension, for a better error."""
     with pytest.raises(CaptureError, match="expected 'HIERARCHY', got 'HIERARCH'") as caught:
         read_capture(b"\nHIERARCH\nROOT Hips\n", name="walk.BVH")
     assert caught.value.line == 2
@@ -73,30 +73,30 @@ def test_an_extension_helps_where_the_content_is_broken() -> None:
         ("länge,breite\n1,2\n".encode("latin-1"), "a text that begins with 'l"),
     ],
 )
-def test_unknown_content_is_refused_with_what_was_seen(data: bytes, seen: str) -> None:
-    """The message says what the file looks like and which formats are valid."""
+def test_unknown_content_is_rejected_with_what_was_seen(data: bytes, seen: str) -> None:
+    """The error about unknown content says what it looks like and lists the formats."""
     with pytest.raises(CaptureError, match=re.escape(seen)) as caught:
         read_capture(data, name="something.dat")
     for known in FORMATS:
         assert known.title in str(caught.value)
 
 
-def test_a_scale_that_nobody_means_is_refused() -> None:
-    """Zero, negative, endless or astronomic units are slips."""
+def test_an_impossible_scale_is_rejected() -> None:
+    """Zero, negative, infinite and astronomic units are rejected."""
     for scale in (0.0, -1.0, float("inf"), float("nan"), 1e9):
         with pytest.raises(CaptureError, match="m per unit"):
             read_capture(_HEADS["bvh"], name="a.bvh", reading=Reading(metres_per_unit=scale))
 
 
-def test_a_file_above_the_limit_is_not_looked_at() -> None:
-    """Size comes first."""
+def test_a_file_above_the_limit_is_rejected_unread() -> None:
+    """A file above the size limit is rejected before it is parsed."""
     with pytest.raises(CaptureError, match="up to 10 are read"):
         read_capture(b"x" * 11, name="a.bvh", limits=Limits(bytes=10))
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "latin-1"])
 def test_texts_of_other_encodings_are_read(encoding: str) -> None:
-    """Windows programs write marks, two bytes a letter, or the local code page."""
+    """Texts with a byte order mark, in UTF-16 or in the local code page are read."""
     text = (
         "HIERARCHY\nROOT Hüfte\n{\nOFFSET 0 1 0\nCHANNELS 3 Zrotation Xrotation Yrotation\n}\n"
         "MOTION\nFrames: 1\nFrame Time: 0.01\n0 0 0\n"
@@ -105,8 +105,8 @@ def test_texts_of_other_encodings_are_read(encoding: str) -> None:
     assert "Hüfte" in repr(capture.motion)
 
 
-def test_a_line_without_end_is_refused_before_it_is_split() -> None:
-    """Hundreds of megabytes on one line would become gigabytes of words."""
+def test_an_overlong_line_is_rejected_before_it_is_split() -> None:
+    """A line of more than 2,000,000 characters is rejected before it is split into words."""
     for head in (b"HIERARCHY\nROOT a\n", b"Format Version,1.23\n"):
         with pytest.raises(CaptureError, match="longer than 2000000 characters") as caught:
             read_capture(head + b"1," * 1_000_001, name="long")

@@ -1,4 +1,4 @@
-"""A movement as CSV: titles with units, a row a frame, what was not seen empty."""
+"""A movement as CSV: column titles with units, one row a frame, unseen values empty."""
 
 import csv
 import io
@@ -7,17 +7,17 @@ import numpy as np
 
 from app.adapters.captures import to_csv
 from app.science.rig import BodyMotion, MarkerMotion, RigMotion
-from tests.adapters.captures.moving_rigs import motive_body, some_motion, some_rig
+from tests.adapters.captures.moving_rigs import motive_body, random_motion, random_rig
 
 
 def _table(motion: RigMotion | MarkerMotion | BodyMotion) -> list[dict[str, str]]:
     return list(csv.DictReader(io.StringIO("".join(to_csv(motion)))))
 
 
-def test_a_skeleton_is_written_as_places_and_rotations_in_the_world() -> None:
-    """Every joint's place and rotation can be read from the row alone."""
+def test_a_skeleton_is_written_as_positions_and_rotations() -> None:
+    """Each row has every joint's world position and rotation."""
     rng = np.random.default_rng(5)
-    motion = some_motion(rng, some_rig(rng, *motive_body(), rest=True), frames=1100)
+    motion = random_motion(rng, random_rig(rng, *motive_body(), rest=True), frames=1100)
     motion.observed[7, 3] = False
     rows = _table(motion)
     assert len(rows) == 1100
@@ -32,16 +32,16 @@ def test_a_skeleton_is_written_as_places_and_rotations_in_the_world() -> None:
 
 
 def test_rows_come_in_pieces() -> None:
-    """An hour is never one text in memory: titles first, then some hundred frames at a time."""
+    """Rows are yielded some hundred frames at a time after the titles, to save memory."""
     rng = np.random.default_rng(6)
-    pieces = list(to_csv(some_motion(rng, some_rig(rng, *motive_body()), frames=1100)))
+    pieces = list(to_csv(random_motion(rng, random_rig(rng, *motive_body()), frames=1100)))
     assert len(pieces) == 4
     assert pieces[0].startswith("frame,time_s,Hip.x_m,")
     assert all(piece.endswith("\n") for piece in pieces)
 
 
-def test_what_was_not_seen_is_empty() -> None:
-    """Markers and bodies have gaps; an empty cell is no zero."""
+def test_unseen_values_are_empty() -> None:
+    """Gaps of markers and rigid bodies are empty cells, not zeros."""
     places = np.array([[[1.0, 2.0, 3.0]], [[np.nan, np.nan, np.nan]]])
     rows = _table(MarkerMotion(("LKNE",), 50.0, places))
     assert rows[0] == {

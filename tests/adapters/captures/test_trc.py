@@ -1,4 +1,4 @@
-"""TRC: markers in a table of text."""
+"""Reading TRC, a text table of markers."""
 
 from pathlib import Path
 
@@ -23,7 +23,7 @@ def _markers(capture: Capture) -> MarkerMotion:
 
 
 def test_a_small_table_is_read_as_written() -> None:
-    """Centimetres become metres, an empty cell is a marker that was not seen."""
+    """Centimetres become metres, and an empty cell is an unseen marker."""
     capture = _read(_SMALL)
     motion = _markers(capture)
     assert (motion.names, motion.rate_hz) == (("Head", "Foot"), 100.0)
@@ -39,15 +39,15 @@ def test_a_small_table_is_read_as_written() -> None:
 
 
 def test_line_ends_and_marks_of_other_systems_change_nothing() -> None:
-    """A file saved on Windows with a byte-order mark and without the blank line reads the same."""
+    """Windows line ends, a byte order mark and a missing blank line make no difference."""
     other = "\ufeff" + _SMALL.replace("Z2\n\n", "Z2\n").replace("\n", "\r\n")
     np.testing.assert_array_equal(
         _markers(_read(other)).positions_m, _markers(_read(_SMALL)).positions_m
     )
 
 
-def test_real_walk_holds_the_markers_its_rows_hold(shared_data: Path) -> None:
-    """walk.trc names 55 markers, tells of 28 and has values for 28, in millimetres, y up."""
+def test_the_real_walk_has_the_markers_of_its_rows(shared_data: Path) -> None:
+    """walk.trc, which names 55 markers, states 28 and has values for 28, in millimetres, y up."""
     data = (shared_data / "motion" / "trc" / "walk.trc").read_bytes()
     capture = read_trc(data, name="walk.trc", reading=Reading(), limits=Limits())
     motion = _markers(capture)
@@ -61,8 +61,8 @@ def test_real_walk_holds_the_markers_its_rows_hold(shared_data: Path) -> None:
     assert 0.9 < float(hips[:, 1].mean()) < 1.1
 
 
-def test_a_frame_left_out_is_a_frame_nobody_saw() -> None:
-    """Where the frame numbers leap, the rate stays constant and the frame between is unseen."""
+def test_a_missing_frame_number_is_an_unseen_frame() -> None:
+    """A skipped frame number becomes an unseen frame, so the rate stays constant."""
     text = _SMALL.replace("3\t0.02", "5\t0.04")
     motion = _markers(_read(text))
     assert motion.frame_count == 5
@@ -70,14 +70,14 @@ def test_a_frame_left_out_is_a_frame_nobody_saw() -> None:
 
 
 def test_a_wrong_count_of_frames_is_noted() -> None:
-    """Tools that cut rows leave NumFrames as it was: the rows decide."""
+    """A NumFrames that differs from the number of rows is noted, and the rows are read."""
     capture = _read(_SMALL.replace("\t3\t2\tcm", "\t300\t2\tcm"))
     assert capture.motion.frame_count == 3
     assert any("300 frames" in note for note in capture.notes)
 
 
-def test_a_body_that_stands_along_z_is_stood_up() -> None:
-    """The axis along which the markers reach furthest is guessed to be up, unless one is chosen."""
+def test_the_up_axis_is_guessed_from_the_markers() -> None:
+    """The axis of the markers' greatest extent is guessed to be up, unless one is chosen."""
     lying = _SMALL.replace("\t170\t0", "\t0\t170").replace("\t5\t0", "\t0\t5")
     capture = _read(lying)
     np.testing.assert_allclose(_markers(capture).positions_m[0, 0], (0.0, 1.7, 0.0), atol=1e-12)
@@ -100,21 +100,21 @@ def test_a_body_that_stands_along_z_is_stood_up() -> None:
         ("3\t0.02", "99999999999\t0.02", 9, "frames of"),
     ],
 )
-def test_mistakes_are_told_with_their_line(old: str, new: str, line: int, told: str) -> None:
-    """Each mistake is refused at the line where it stands."""
+def test_errors_are_reported_with_their_line(old: str, new: str, line: int, told: str) -> None:
+    """Each error in a TRC is reported with its line."""
     assert old in _SMALL
     with pytest.raises(CaptureError, match=told) as caught:
         _read(_SMALL.replace(old, new, 1))
     assert caught.value.line == line
 
 
-def test_a_header_alone_is_refused() -> None:
-    """A table without rows holds no movement."""
+def test_a_header_alone_is_rejected() -> None:
+    """A table without rows is rejected."""
     with pytest.raises(CaptureError, match="no row"):
         _read(_SMALL.split("1\t0.00")[0])
 
 
-def test_limits_hold() -> None:
-    """Too many markers are refused at their names."""
+def test_limits_are_enforced() -> None:
+    """Too many markers are rejected at the line of their names."""
     with pytest.raises(CaptureError, match="more than 1 markers"):
         _read(_SMALL, limits=Limits(tracks=1))

@@ -1,4 +1,4 @@
-"""Vicon Tracker's CSV: rotation vectors, z up, objects that vanish."""
+"""Reading Vicon Tracker's CSV: rotation vectors, z up, objects that disappear."""
 
 from itertools import permutations
 from pathlib import Path
@@ -29,13 +29,13 @@ def _bodies(capture: Capture) -> BodyMotion:
 
 
 def test_z_up_becomes_y_up_and_gaps_stay_gaps() -> None:
-    """Places and rotations turn together; frames keep their times; empty cells are not seen."""
+    """Positions and rotations become y up, frames keep their times, and gaps stay gaps."""
     capture = read_capture(("\ufeff" + _TEXT).encode(), name="take.csv")
     motion = _bodies(capture)
     assert motion.names == ("hip", "a:head")
     np.testing.assert_allclose(motion.times_s, (0.0, 0.01, 0.03))
     np.testing.assert_allclose(motion.positions_m[0, 0], (1.0, 3.0, -2.0), atol=1e-12)
-    # A turn about the file's z is one about our y.
+    # A rotation about the file's z is one about our y.
     expected = from_rotation_vector(np.array((0.0, 1.5, 0.0)))
     np.testing.assert_allclose(motion.rotations[0, 0], expected, atol=1e-12)
     assert np.isnan(motion.positions_m[1, 1]).all()
@@ -45,20 +45,20 @@ def test_z_up_becomes_y_up_and_gaps_stay_gaps() -> None:
 
 
 def test_y_up_by_choice_leaves_the_axes() -> None:
-    """What the user says goes first."""
+    """An up axis that the user chose overrides the format's, and y up changes no axes."""
     motion = _bodies(read_capture(_TEXT.encode(), name="take.csv", reading=Reading(up="y")))
     np.testing.assert_allclose(motion.positions_m[0, 0], (1.0, 2.0, 3.0))
 
 
 def _scatter(turns: FloatArray, places: FloatArray) -> float:
-    """How much a second body wanders in the frame of the first, relative to their distance."""
+    """Return how far a second body moves in the first one's frame, relative to their distance."""
     within = rotate(conjugate(turns), places)
     wander = np.linalg.norm(within - np.median(within, axis=0), axis=-1)
     return float(np.mean(wander) / np.mean(np.linalg.norm(places, axis=-1)))
 
 
 def test_the_angles_are_rotation_vectors(shared_data: Path) -> None:
-    """A hand stays at its place in the elbow's frame by this reading and by no Euler order."""
+    """Only as rotation vectors, and in no Euler order, do the angles keep a hand at its elbow."""
     path = shared_data / "motion" / "vicon_tracker" / "HumanRobotHandover_0.csv"
     motion = _bodies(read_capture(path.read_bytes(), name=path.name))
     elbow, hand = motion.names.index("left_elbow"), motion.names.index("left_hand")
@@ -78,7 +78,7 @@ def test_the_angles_are_rotation_vectors(shared_data: Path) -> None:
 
 @pytest.mark.parametrize("take", ["HumanRobotHandover_0", "ObjectInspection_0"])
 def test_the_hip_walks_as_in_the_authors_bvh(shared_data: Path, take: str) -> None:
-    """Their conversion drops frames; each of its root places is one of ours, to 5 mm."""
+    """Each root position of the authors' BVH, which drops frames, is one of ours to 5 mm."""
     folder = shared_data / "motion" / "vicon_tracker"
     csv, bvh = (
         read_capture((folder / f"{take}.{kind}").read_bytes(), name=f"{take}.{kind}").motion
@@ -106,10 +106,10 @@ def test_the_hip_walks_as_in_the_authors_bvh(shared_data: Path, take: str) -> No
         ("10,20,30\n\n", "10,20\n\n", "TZ of a:head is missing", 8),
     ],
 )
-def test_a_broken_table_is_refused_with_its_line(
+def test_an_invalid_table_is_rejected_with_its_line(
     old: str, new: str, reason: str, line: int
 ) -> None:
-    """Each broken rule names its line and what is valid."""
+    """Each invalid line is rejected with its number and what is valid."""
     assert old in _TEXT
     with pytest.raises(CaptureError, match=reason) as caught:
         read_capture(_TEXT.replace(old, new, 1).encode(), name="take.csv")

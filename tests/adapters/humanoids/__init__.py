@@ -1,1 +1,1 @@
-"""Files of humanoid models."""
+"""Tests of reading humanoid models from files."""

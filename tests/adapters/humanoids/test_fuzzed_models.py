@@ -1,4 +1,4 @@
-"""Damaged models: a humanoid or a reason, never a crash, a hang or a warning."""
+"""Damaged models: a humanoid or an error, never a crash, a hang or a warning."""
 
 import contextlib
 import json
@@ -28,7 +28,7 @@ _ODD: list[Any] = [
 
 
 def survives(data: bytes) -> None:
-    """Read it, or be told why not."""
+    """Read a file, or expect the proper error."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         with contextlib.suppress(HumanoidFileError, HumanoidError):
@@ -36,7 +36,7 @@ def survives(data: bytes) -> None:
 
 
 def places_in(tree: Any, path: tuple[str | int, ...] = ()) -> list[tuple[str | int, ...]]:
-    """Every place of a JSON."""
+    """Return the path of every value in a JSON document."""
     found = [path] if path else []
     if isinstance(tree, dict | list):
         for step, child in tree.items() if isinstance(tree, dict) else enumerate(tree):
@@ -49,7 +49,7 @@ _PLACES = [places_in(taken_apart(seed)[0]) for seed in _SEEDS]
 
 @st.composite
 def edited(draw: st.DrawFn) -> bytes:
-    """A model in whose JSON a few values are something else."""
+    """Draw a model in whose JSON a few values are replaced."""
     number = draw(st.integers(0, len(_SEEDS) - 1))
     document, binary = taken_apart(_SEEDS[number])
     for _ in range(draw(st.integers(1, 3))):
@@ -60,13 +60,13 @@ def edited(draw: st.DrawFn) -> bytes:
                 found = found[step]
             found[path[-1]] = draw(st.sampled_from(_ODD))
         except (KeyError, IndexError, TypeError):
-            continue  # an earlier edit took the place away
+            continue  # an earlier edit removed this path
     return glb(json.loads(json.dumps(document)), binary)
 
 
 @st.composite
 def damaged(draw: st.DrawFn) -> bytes:
-    """A model with bytes exchanged, or cut."""
+    """Draw a model with changed bytes or a missing end."""
     data = bytearray(draw(st.sampled_from(_SEEDS)))
     for _ in range(draw(st.integers(1, 20))):
         data[draw(st.integers(0, len(data) - 1))] = draw(st.integers(0, 255))
@@ -83,21 +83,21 @@ _BOUNDED = settings(
 
 @_BOUNDED
 @given(edited())
-def test_an_edited_json_is_read_or_refused(data: bytes) -> None:
-    """Any value in it may be any other."""
+def test_an_edited_json_is_read_or_rejected(data: bytes) -> None:
+    """A model in whose JSON any values are replaced is read or rejected."""
     survives(data)
 
 
 @_BOUNDED
 @given(damaged())
-def test_damaged_bytes_are_read_or_refused(data: bytes) -> None:
-    """Bytes may be anything, and the end may be missing."""
+def test_damaged_bytes_are_read_or_rejected(data: bytes) -> None:
+    """A model with changed bytes or a missing end is read or rejected."""
     survives(data)
 
 
 @pytest.mark.long
 @settings(_BOUNDED, max_examples=3_000)
 @given(st.one_of(edited(), damaged()))
-def test_damaged_models_are_read_or_refused_at_length(data: bytes) -> None:
-    """The same, ten times as often."""
+def test_many_damaged_models_are_read_or_rejected(data: bytes) -> None:
+    """Ten times as many damaged models are read or rejected."""
     survives(data)

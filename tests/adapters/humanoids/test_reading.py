@@ -1,4 +1,4 @@
-"""Humanoid models are read to what they are made of, however their files are laid out."""
+"""Humanoid models are read correctly, whatever the layout of their files."""
 
 import math
 from functools import partial
@@ -21,7 +21,7 @@ from tests.support.humanoid_model import (
 
 
 def numbered(part: str) -> str:
-    """A name that says nothing."""
+    """Return a name that does not identify the part."""
     return f"bone{PART_NAMES.index(part):03d}"
 
 
@@ -59,7 +59,7 @@ HELPERS = {
 
 
 def named_as(rig: str, part: str) -> str:
-    """The part as a program calls it; fingers keep their names."""
+    """Return the part's name in a program's rig; fingers keep their names."""
     if part in FINGER_PARTS:
         return part
     words = RIGS[rig].split("," if "," in RIGS[rig] else " ")
@@ -72,7 +72,7 @@ def named_as(rig: str, part: str) -> str:
 
 
 def unreal_name(part: str) -> str:
-    """`index_01_l` for `LeftIndexProximal`."""
+    """Return Unreal's name of a finger part: `index_01_l` for `LeftIndexProximal`."""
     if part not in FINGER_PARTS:
         return named_as("Unreal", part)
     side = "l" if part.startswith("Left") else "r"
@@ -83,7 +83,7 @@ def unreal_name(part: str) -> str:
 
 
 def makehuman_name(part: str) -> str:
-    """`finger2-1.L` for `LeftIndexProximal`."""
+    """Return MakeHuman's name of a finger part: `finger2-1.L` for `LeftIndexProximal`."""
     if part not in FINGER_PARTS:
         return named_as("MakeHuman", part)
     finger = next(row for row, name in enumerate(FINGERS, start=1) if name in part)
@@ -92,7 +92,7 @@ def makehuman_name(part: str) -> str:
 
 
 def biped_name(part: str) -> str:
-    """`Bip01 L Finger11` for `LeftIndexIntermediate`."""
+    """Return Biped's name of a finger part: `Bip01 L Finger11` for `LeftIndexIntermediate`."""
     if part not in FINGER_PARTS:
         return part
     finger = next(row for row, name in enumerate(FINGERS) if name in part)
@@ -129,20 +129,20 @@ MODELS = {
 
 @pytest.fixture(params=MODELS, scope="module")
 def case(request: pytest.FixtureRequest) -> tuple[Model, ReadHumanoid]:
-    """Each model with what was read of its file."""
+    """Return each model with what was read from its file."""
     model = MODELS[request.param]
     return model, read_humanoid(humanoid_file(model))
 
 
 def test_every_bone_becomes_its_part(case: tuple[Model, ReadHumanoid]) -> None:
-    """All parts that have a bone, and no others; VRM's map counts where there is one."""
+    """All parts with a bone are read and no others; VRM's map is used if there is one."""
     model, read = case
     assert set(read.humanoid.parts) == set(model.parts)
     assert read.bones_by == ("names" if model.vrm is None else "vrm")
 
 
 def test_joints_lie_where_they_were_put(case: tuple[Model, ReadHumanoid]) -> None:
-    """In the T-pose, facing -z, over the floor, in metres, the hips over the origin."""
+    """Joints are in the T-pose facing -z, in metres, feet on the floor, hips over the origin."""
     model, read = case
     where, hips = places(), places()["Hips"]
     for part in model.parts:
@@ -152,7 +152,7 @@ def test_joints_lie_where_they_were_put(case: tuple[Model, ReadHumanoid]) -> Non
 
 
 def test_skin_goes_with_its_bone(case: tuple[Model, ReadHumanoid]) -> None:
-    """Each part has just the vertices that were hung on it, in its own frame."""
+    """Each part has exactly the vertices that are bound to it, in its own frame."""
     model, read = case
     for part in model.parts:
         found = read.humanoid.parts[part].vertices_m
@@ -162,7 +162,7 @@ def test_skin_goes_with_its_bone(case: tuple[Model, ReadHumanoid]) -> None:
 
 
 def test_hair_belongs_to_the_head() -> None:
-    """What hangs on a bone that is no body part goes to the next part above; it adds no height."""
+    """Vertices of a bone that is no part go to the next part above, without adding height."""
     plain, hairy = (
         read_humanoid(humanoid_file(Model(hair=hair))).humanoid for hair in (False, True)
     )
@@ -172,7 +172,7 @@ def test_hair_belongs_to_the_head() -> None:
 
 
 def test_a_part_without_skin_has_no_piece() -> None:
-    """It is listed, and everything else has one."""
+    """A part without vertices has no convex piece and is listed; all others have one."""
     bare = ("LeftHand", "Neck")
     skin = tuple(part for part in PART_NAMES if part not in bare)
     figure = figure_of(read_humanoid(humanoid_file(Model(skin=skin))).humanoid)
@@ -181,14 +181,14 @@ def test_a_part_without_skin_has_no_piece() -> None:
 
 
 @pytest.mark.parametrize("model", [Model(up="z"), Model(units_per_metre=100.0)])
-def test_what_was_changed_is_noted(model: Model) -> None:
-    """A model that was turned upright or taken for another unit says so."""
+def test_changes_to_a_model_are_noted(model: Model) -> None:
+    """A model that was turned upright or converted from another unit has a note."""
     assert len(read_humanoid(humanoid_file(model)).humanoid.notes) == 1
     assert not read_humanoid(humanoid_file()).humanoid.notes
 
 
 def test_a_model_of_no_persons_size_has_its_proportions() -> None:
-    """A giant of 42 m is read with a person's stature, and a note."""
+    """A model of 42 m is read with a person's stature and a note."""
     humanoid = read_humanoid(humanoid_file(Model(units_per_metre=25.0))).humanoid
     assert humanoid.stature_m == pytest.approx(1.75)
     assert humanoid.notes

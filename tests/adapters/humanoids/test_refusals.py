@@ -1,4 +1,4 @@
-"""What is no humanoid, or no file, is refused with the place and what is missing."""
+"""Files that are no humanoid, or no valid file, are rejected with the place and the reason."""
 
 import json
 import math
@@ -15,8 +15,8 @@ from tests.support.humanoid_model import Model, without
 Edit = Callable[[dict[str, Any]], None]
 
 
-def refused(data: bytes, limits: Limits | None = None) -> HumanoidFileError:
-    """The error of a file."""
+def rejected(data: bytes, limits: Limits | None = None) -> HumanoidFileError:
+    """Return the error of reading a file."""
     with pytest.raises(HumanoidFileError) as caught:
         read_humanoid(data, limits)
     return caught.value
@@ -24,70 +24,70 @@ def refused(data: bytes, limits: Limits | None = None) -> HumanoidFileError:
 
 @pytest.mark.parametrize("part", REQUIRED_PARTS)
 def test_a_missing_part_is_named(part: str) -> None:
-    """By VRM's map, where names cannot stand in for each other."""
+    """A part that is missing from VRM's map is named in the error."""
     parts = tuple(one for one in PART_NAMES if one != part)
-    error = refused(humanoid_file(Model(parts=parts, vrm=1)))
+    error = rejected(humanoid_file(Model(parts=parts, vrm=1)))
     assert f"The model has no {part}, so" in str(error)
 
 
 def test_all_missing_parts_are_named() -> None:
-    """A torso lacks twelve, and keeps what it has."""
+    """A torso is rejected with all twelve missing parts."""
     torso = without("Arm", "Leg", "Hand", "Foot", "Toes")
-    error = refused(humanoid_file(Model(parts=torso, vrm=1)))
+    error = rejected(humanoid_file(Model(parts=torso, vrm=1)))
     assert all(part in str(error) for part in REQUIRED_PARTS if part[0] in "LR")
     assert "Spine," not in str(error).split("Its bones")[0]
 
 
 def test_a_dog_is_no_humanoid() -> None:
-    """It has no arms, and its bones are told."""
-    told = str(refused(dog_file()))
+    """A dog is rejected with its missing arms and the names of its bones."""
+    told = str(rejected(dog_file()))
     assert "no LeftUpperArm, LeftLowerArm, LeftHand" in told
     assert "front_paw.L" in told
 
 
 def test_a_box_is_no_humanoid() -> None:
-    """It has no bones at all."""
-    assert "The model has no Hips, Spine, Head" in str(refused(box_file()))
+    """A box without bones is rejected."""
+    assert "The model has no Hips, Spine, Head" in str(rejected(box_file()))
 
 
-def test_a_dog_with_a_humans_names_is_none() -> None:
-    """Its legs do not hang from where its head is above."""
-    told = str(refused(dog_file(humans_names=True)))
+def test_a_dog_with_a_humans_names_is_no_humanoid() -> None:
+    """A dog whose bones have a human's names is rejected, as its body is not upright."""
+    told = str(rejected(dog_file(humans_names=True)))
     assert "not a standing human body" in told
 
 
 def test_exchanged_sides_are_found() -> None:
-    """Feet that would point backwards."""
+    """A model with left and right swapped, whose feet would point back, is rejected."""
 
     def exchanged(part: str) -> str:
         return part.replace("Left", "#").replace("Right", "Left").replace("#", "Right")
 
-    assert "left and right are swapped" in str(refused(humanoid_file(Model(name=exchanged))))
+    assert "left and right are swapped" in str(rejected(humanoid_file(Model(name=exchanged))))
 
 
 def test_a_bone_out_of_order_is_named() -> None:
-    """A map whose hand is above its arm."""
+    """A map whose hand is above its arm in the hierarchy is rejected with that bone."""
 
     def crossed(document: dict[str, Any]) -> None:
         bones = document["extensions"]["VRMC_vrm"]["humanoid"]["humanBones"]
         bones["leftHand"], bones["leftUpperArm"] = bones["leftUpperArm"], bones["leftHand"]
 
-    told = str(refused(humanoid_file(Model(vrm=1, edit=crossed))))
+    told = str(rejected(humanoid_file(Model(vrm=1, edit=crossed))))
     assert "is LeftHand, but is not below" in told
 
 
 def test_a_bone_that_is_two_parts_is_named() -> None:
-    """One bone cannot be both hands."""
+    """A bone that is mapped to both hands is rejected by name."""
 
     def doubled(document: dict[str, Any]) -> None:
         bones = document["extensions"]["VRMC_vrm"]["humanoid"]["humanBones"]
         bones["rightHand"] = bones["leftHand"]
 
-    assert "is both" in str(refused(humanoid_file(Model(vrm=1, edit=doubled))))
+    assert "is both" in str(rejected(humanoid_file(Model(vrm=1, edit=doubled))))
 
 
-def test_lengths_that_are_no_persons_are_refused() -> None:
-    """A forearm of a third of a millimetre."""
+def test_impossible_lengths_are_rejected() -> None:
+    """A forearm of a third of a millimetre is rejected."""
 
     def shortened(document: dict[str, Any]) -> None:
         for node in document["nodes"]:
@@ -114,17 +114,17 @@ def test_lengths_that_are_no_persons_are_refused() -> None:
         (b'{"a":[' + b"1," * 2_000_001, "2000000 values"),
     ],
 )
-def test_what_is_no_file_of_a_model_is_told(data: bytes, told: str) -> None:
-    """By its first bytes, its header, or its JSON."""
-    assert told in str(refused(data))
+def test_files_that_are_no_model_are_rejected(data: bytes, told: str) -> None:
+    """Files with wrong first bytes, header or JSON are rejected with the reason."""
+    assert told in str(rejected(data))
 
 
-def test_a_file_that_was_cut_says_where() -> None:
-    """At every tenth of it, and a file beyond the limit is not looked at."""
+def test_a_truncated_file_is_rejected() -> None:
+    """A model cut at any tenth is rejected, and a file beyond the size limit is not parsed."""
     data = humanoid_file()
     for tenth in range(1, 10):
-        assert f"of {len(data)} bytes" in str(refused(data[: len(data) * tenth // 10]))
-    assert "up to 1000 are read" in str(refused(data, Limits(bytes=1000)))
+        assert f"of {len(data)} bytes" in str(rejected(data[: len(data) * tenth // 10]))
+    assert "up to 1000 are read" in str(rejected(data, Limits(bytes=1000)))
 
 
 def _set(*path: str | int, to: object) -> Edit:
@@ -170,28 +170,28 @@ def _set(*path: str | int, to: object) -> Edit:
         (_set("meshes", 0, "primitives", 0, "attributes", to="all"), "meshes.0.primitives.0"),
     ],
 )
-def test_what_does_not_fit_says_its_place(edit: Edit, place: str) -> None:
-    """Sizes and indices beyond what is there, loops, numbers that are none."""
-    error = refused(humanoid_file(Model(edit=edit)))
+def test_inconsistent_values_are_rejected_with_their_place(edit: Edit, place: str) -> None:
+    """Sizes and indices out of range, loops and invalid numbers are rejected with their place."""
+    error = rejected(humanoid_file(Model(edit=edit)))
     assert error.place.startswith(place), str(error)
 
 
-def test_numbers_that_are_none_are_refused() -> None:
-    """In the JSON, and in a buffer."""
+def test_numbers_that_are_not_finite_are_rejected() -> None:
+    """Numbers that are not finite are rejected, in the JSON and in a buffer."""
     document, binary = taken_apart(humanoid_file())
     document["nodes"][3]["matrix"][0] = math.nan
     text = json.dumps(document).replace("NaN", "1e999")
-    assert refused(text.encode()).place.startswith("nodes.3")
+    assert rejected(text.encode()).place.startswith("nodes.3")
     document, _ = taken_apart(humanoid_file())
-    assert refused(glb(document, b"\xff" * len(binary))).place.startswith("accessors")
+    assert rejected(glb(document, b"\xff" * len(binary))).place.startswith("accessors")
 
 
-def test_a_file_cannot_ask_for_more_than_it_may() -> None:
-    """Vertices and numbers have an end, however often the same ones are named."""
-    assert "more than 100 vertices" in str(refused(humanoid_file(), Limits(vertices=100)))
-    assert "more numbers" in str(refused(humanoid_file(), Limits(values=1000)))
+def test_limits_are_enforced() -> None:
+    """The numbers of vertices and values are limited, even if the same ones are repeated."""
+    assert "more than 100 vertices" in str(rejected(humanoid_file(), Limits(vertices=100)))
+    assert "more numbers" in str(rejected(humanoid_file(), Limits(values=1000)))
 
     def again(document: dict[str, Any]) -> None:
         document["meshes"][0]["primitives"] *= 5_000
 
-    assert "more" in str(refused(humanoid_file(Model(edit=again))))
+    assert "more" in str(rejected(humanoid_file(Model(edit=again))))

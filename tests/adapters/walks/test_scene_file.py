@@ -1,4 +1,4 @@
-"""Scene files: what they say, and how plainly they say what is wrong."""
+"""Scene files: what they can describe, and their error messages."""
 
 import json
 import re
@@ -32,7 +32,7 @@ paths:
 
 
 def test_a_scene_file_gives_its_scene() -> None:
-    """All four shapes, turned boxes, places and paths."""
+    """A scene file is read with all four shapes, turned boxes, places and paths."""
     scene = load_scene(SCENE)
     assert (scene.name, scene.title, scene.clearance_m) == ("my-lab", "My lab", 0.25)
     assert [obstacle.name for obstacle in scene.obstacles] == ["table", "pole", "screen", "corner"]
@@ -45,7 +45,7 @@ def test_a_scene_file_gives_its_scene() -> None:
 
 
 def test_json_is_read_too() -> None:
-    """JSON is YAML on one line."""
+    """A scene file may be JSON, since that is YAML."""
     tree = {"key": "a", "bounds_m": [0, 0, 1, 1], "places": {"p": [0.5, 0.5]}}
     assert load_scene(json.dumps(tree)).places == {"p": (0.5, 0.5)}
 
@@ -68,8 +68,8 @@ def test_json_is_read_too() -> None:
         ("title: My lab", "tittle: My lab", r"line 3.*Did you mean 'title'"),
     ],
 )
-def test_each_problem_is_told_at_its_line(old: str, new: str, said: str) -> None:
-    """Line, place, what is wrong and what is valid."""
+def test_each_problem_is_reported_with_its_line(old: str, new: str, said: str) -> None:
+    """Each problem is reported with its line, its path and what is valid."""
     text = SCENE.replace(old, new, 1)
     assert text != SCENE
     with pytest.raises(ConfigError) as refused:
@@ -77,8 +77,8 @@ def test_each_problem_is_told_at_its_line(old: str, new: str, said: str) -> None
     assert any(re.search(said, str(problem)) for problem in refused.value.problems)
 
 
-def test_all_problems_come_at_once() -> None:
-    """A bad outline, a place in a table and a path to nowhere: three problems."""
+def test_all_problems_are_reported_together() -> None:
+    """A bad outline, a place in a table and a path to nowhere give three problems."""
     text = SCENE.replace("[2, -2], [2, -1]", "[2, -1], [2, -2]").replace("to: goal", "to: gaol")
     with pytest.raises(ConfigError) as refused:
         load_scene(text.replace("goal: [0, 3]", "goal: [0, 1]"))
@@ -86,8 +86,8 @@ def test_all_problems_come_at_once() -> None:
 
 
 @pytest.mark.parametrize("text", ["", "- a", "key: [", "key: a\nbounds_m: *there"])
-def test_what_is_no_scene_file_is_refused(text: str) -> None:
-    """Empty, a list, broken YAML, an alias."""
+def test_files_that_are_no_scene_are_rejected(text: str) -> None:
+    """An empty file, a list, broken YAML and an alias are rejected."""
     with pytest.raises(ConfigError):
         load_scene(text)
 
@@ -112,7 +112,7 @@ ODD: tuple[Any, ...] = (
 @settings(max_examples=80, deadline=None)
 @given(st.data())
 def test_a_broken_scene_file_is_a_scene_or_a_list_of_problems(data: st.DataObject) -> None:
-    """Any value replaced by any other: never another error."""
+    """A scene file with any value replaced is read or rejected with problems."""
     tree = read_source(SCENE).tree
     node, key = _somewhere(tree, data)
     node[key] = data.draw(st.sampled_from(ODD))
@@ -122,7 +122,7 @@ def test_a_broken_scene_file_is_a_scene_or_a_list_of_problems(data: st.DataObjec
 
 
 def _somewhere(tree: Any, data: st.DataObject) -> tuple[Any, Any]:
-    """A mapping or list of the tree, and one of its keys."""
+    """Draw a mapping or list of the tree, and one of its keys."""
     while True:
         keys = sorted(tree) if isinstance(tree, dict) else range(len(tree))
         key = data.draw(st.sampled_from(list(keys)))
@@ -134,7 +134,7 @@ def _somewhere(tree: Any, data: st.DataObject) -> tuple[Any, Any]:
 
 @pytest.mark.parametrize("key", sorted(shipped_scenes()))
 def test_shipped_scenes_say_what_they_assume(key: str) -> None:
-    """Their keys are their names; each tells what is the paper's and what is not."""
+    """Shipped scenes have their keys as names and describe what is not from the paper."""
     scene = load_shipped(key)
     assert scene.name == key
     assert "From the paper:" in scene.about

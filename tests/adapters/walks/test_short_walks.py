@@ -1,4 +1,4 @@
-"""The short walks of Carlisle and Kuo: the table, and single walks out of foot paths."""
+"""Reading the short walks of Carlisle and Kuo: the table, and walks from foot paths."""
 
 import io
 from pathlib import Path
@@ -17,7 +17,7 @@ FOLDER = Path("walking") / "short_walks"
 
 
 def test_the_table_has_the_published_means(shared_data: Path) -> None:
-    """Peak speeds and durations by distance; zeros are missing trials, two of 800."""
+    """Peak speeds and durations by distance are the published ones; two of 800 are missing."""
     table = read_short_walk_table((shared_data / FOLDER / "peak_speed_all_sub.mat").read_bytes())
     assert table.distances_m == DISTANCES_M
     assert table.peak_speeds_m_s.shape == (10, 10, 8)
@@ -32,7 +32,7 @@ def test_the_table_has_the_published_means(shared_data: Path) -> None:
 def test_a_walk_is_as_long_and_as_quick_as_the_table_says(
     shared_data: Path, subject: int, distance: int
 ) -> None:
-    """Duration to 20 ms of the authors'; the peak speed of walks beyond 3 m to 4 %."""
+    """Walks last as long as in the table to 20 ms, with its peak speed to 4 % beyond 3 m."""
     table = read_short_walk_table((shared_data / FOLDER / "peak_speed_all_sub.mat").read_bytes())
     name = f"subject{subject}distance{distance}section1trial1.mat"
     walk = read_foot_walk(
@@ -60,8 +60,8 @@ def _file(**content: object) -> bytes:
     return stream.getvalue()
 
 
-def test_feet_that_head_elsewhere_are_turned_ahead() -> None:
-    """A walk leads along y, never backwards, from the first flat frame to the last."""
+def test_a_walk_is_turned_to_lead_along_y() -> None:
+    """A walk leads along y without going back, from the first flat frame to the last."""
     data = _file(left_walk_info=_foot(101), right_walk_info=_foot(151))
     walk = read_foot_walk(data, name="made", subject="1", stature_m=1.7)
     assert walk.duration_s == pytest.approx(250 / 128.0)
@@ -70,8 +70,8 @@ def test_feet_that_head_elsewhere_are_turned_ahead() -> None:
     assert walk.goal_m[1] == pytest.approx(1.0)
 
 
-def test_files_of_another_kind_are_refused() -> None:
-    """Not MATLAB, no feet, flat frames beyond the path, a foot that goes nowhere, no table."""
+def test_files_of_another_kind_are_rejected() -> None:
+    """Files that are no MATLAB, or lack feet, valid frames, movement or the table, are rejected."""
     still = _foot(101) | {"P": np.zeros((500, 3))}
     late = _foot(401)
     for data in (

@@ -1,4 +1,4 @@
-"""Tables of tracks: headers, units, rates, and what is refused with its line."""
+"""Reading tables of tracks: headers, units, rates and errors with their line."""
 
 from pathlib import Path
 
@@ -15,7 +15,7 @@ SIMPLE = "t,x,y\n0,0,0\n0.5,0.1,0.2\n1,0.3,0.5\n"
 
 
 def test_a_plain_table_is_one_track() -> None:
-    """Without a column of people there is one, in metres and seconds."""
+    """A table without a column of people is one track in metres and seconds."""
     (track,) = read_tracks(SIMPLE.encode(), name="a.csv")
     assert track.times_s == pytest.approx([0.0, 0.5, 1.0])
     assert track.xy_m[2] == pytest.approx([0.3, 0.5])
@@ -32,7 +32,7 @@ def test_a_plain_table_is_one_track() -> None:
     ],
 )
 def test_units_separators_and_rates_are_read(text: str) -> None:
-    """The same track in centimetres and milliseconds, in millimetres and frames, as in Juelich."""
+    """The same track is read in centimetres and milliseconds, in millimetres and frames."""
     reading = TrackReading(rate_hz=2.0, statures_m={"7": 1.8})
     (track,) = read_tracks(text.encode(), name="a.csv", reading=reading)
     assert track.subject == "7"
@@ -42,7 +42,7 @@ def test_units_separators_and_rates_are_read(text: str) -> None:
 
 
 def test_people_are_kept_apart() -> None:
-    """Rows of two people may be mixed."""
+    """Mixed rows of two people give two tracks."""
     text = "id,t,x,y\n1,0,0,0\n2,0,5,5\n1,1,0,1\n2,1,5,6\n"
     tracks = read_tracks(text.encode(), name="a.csv")
     assert [track.subject for track in tracks] == ["1", "2"]
@@ -67,22 +67,22 @@ def test_people_are_kept_apart() -> None:
         ("1 2 3\n", "3 columns without a header"),
     ],
 )
-def test_bad_tables_are_refused_with_their_line(text: str, said: str) -> None:
-    """Nothing is guessed, nothing is skipped."""
+def test_invalid_tables_are_rejected_with_their_line(text: str, said: str) -> None:
+    """An invalid row is rejected with its line instead of being guessed or skipped."""
     with pytest.raises(CaptureError, match=said):
         read_tracks(text.encode(), name="a.csv")
 
 
-def test_a_stature_that_cannot_be_is_refused() -> None:
-    """In centimetres, for one of the people."""
+def test_an_impossible_stature_is_rejected() -> None:
+    """A stature in centimetres of one of the people is rejected."""
     with pytest.raises(CaptureError, match="Stature 180"):
         read_tracks(SIMPLE.encode(), name="a", reading=TrackReading(statures_m={"1": 180.0}))
 
 
 @settings(max_examples=60, deadline=None)
 @given(st.text("0123456789.,;- \t\nexyidtfram#:_cmn", max_size=60) | st.text(max_size=30))
-def test_any_text_gives_tracks_or_a_reason(text: str) -> None:
-    """Whatever a file holds, there is never another error."""
+def test_any_text_gives_tracks_or_an_error(text: str) -> None:
+    """Any text is read as tracks or raises the reader's error, never another one."""
     for head in ("", "t,x,y\n", "id;frame;x_cm;y_cm\n", "# framerate: 16\n"):
         try:
             tracks = read_tracks((head + text).encode(), name="a.csv")
@@ -98,9 +98,9 @@ def test_any_text_gives_tracks_or_a_reason(text: str) -> None:
 def test_trajectories_of_juelich_are_read(
     shared_data: Path, name: str, rate_hz: float, people: int, speed_m_s: float
 ) -> None:
-    """Both layouts; nobody stands, and the median walk has a walking speed.
+    """Both layouts of the Juelich data are read, with a median walk at walking speed.
 
-    The second file tells speeds of its own, .404 m/s in its first row among them.
+    The second file states speeds of its own, .404 m/s in its first row among them.
     """
     data = (shared_data / "walking" / "pedestrian" / name).read_bytes()
     tracks = read_tracks(data, name=name, reading=TrackReading(rate_hz=rate_hz))

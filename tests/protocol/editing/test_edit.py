@@ -1,4 +1,4 @@
-"""Changes to a file's text: they do what they say, and leave every other character alone."""
+"""Edits of a file's text change what they should and leave every other character unchanged."""
 
 import copy
 
@@ -39,7 +39,7 @@ values = st.recursive(
 
 
 def paths(tree: Plain, path: Path = ()) -> list[Path]:
-    """Every place of a tree but its root."""
+    """Return the path of every value in a tree except for its root."""
     found: list[Path] = []
     children: list[tuple[str | int, Plain]] = []
     if isinstance(tree, dict):
@@ -53,7 +53,7 @@ def paths(tree: Plain, path: Path = ()) -> list[Path]:
 
 @st.composite
 def changes(draw: st.DrawFn) -> tuple[str, Change]:
-    """A shipped file and a change that can be made in it."""
+    """Draw a shipped file and a change that can be made in it."""
     text = draw(st.sampled_from(FILES))
     tree = read_source(text).tree
     path = draw(st.sampled_from(paths(tree)))
@@ -73,14 +73,14 @@ def changes(draw: st.DrawFn) -> tuple[str, Change]:
 @settings(max_examples=usually(25, at_length=100), deadline=None)
 @given(changes())
 def test_a_change_does_just_what_it_says(case: tuple[str, Change]) -> None:
-    """The edited text says what the changed tree says, or it is refused with a remedy."""
+    """The edited text gives the changed tree, or the change is rejected with a remedy."""
     text, change = case
     before = read_source(text).tree
     wanted = applied(copy.deepcopy(before), change)
     try:
         after = edit_text(text, [change])
     except ConfigError as error:
-        # Only what no file may hold at all: control characters and too much depth.
+        # Only what no file may contain at all: control characters and too much depth.
         assert all(problem.remedy for problem in error.problems)  # noqa: PT017 - either way is fine
         return
     assert same(read_source(after).tree, wanted)
@@ -88,8 +88,8 @@ def test_a_change_does_just_what_it_says(case: tuple[str, Change]) -> None:
 
 @settings(max_examples=usually(15, at_length=60), deadline=None)
 @given(st.data())
-def test_a_change_of_one_word_touches_one_line(data: st.DataObject) -> None:
-    """Every other line stays as it was, comments included, wherever a number stands."""
+def test_a_change_of_one_number_changes_one_line(data: st.DataObject) -> None:
+    """Changing a number changes one line; all others stay, comments included."""
     text = data.draw(st.sampled_from(FILES))
     tree = read_source(text).tree
     numbers = [path for path in paths(tree) if isinstance(_at(tree, path), int | float)]
@@ -107,7 +107,7 @@ def _at(tree: Plain, path: Path) -> Plain:
 
 
 def test_comments_survive_every_kind_of_change() -> None:
-    """Set, add, insert, move and remove in the shipped study: no comment is lost."""
+    """No change to the shipped study, such as an insertion or a move, loses a comment."""
     after = edit_text(
         STUDY,
         [
@@ -131,7 +131,7 @@ def test_comments_survive_every_kind_of_change() -> None:
 
 
 def test_a_new_entry_is_written_like_its_neighbours() -> None:
-    """A condition gets a key a line, as the others have."""
+    """A new condition is written with one key a line, as the others are."""
     label = {"en": "half a second", "de": "eine halbe Sekunde"}
     value: Plain = {"key": "latency_500", "latency_ms": 500, "label": {**label}}
     after = edit_text(STUDY, [Change(("conditions", 3), "insert", value)])
@@ -151,8 +151,8 @@ def test_a_new_entry_is_written_like_its_neighbours() -> None:
         Change(("orders", "seed"), "move"),
     ],
 )
-def test_a_change_that_does_not_fit_is_refused_with_its_path(change: Change) -> None:
-    """A form that was drawn from another file learns so."""
+def test_a_change_that_does_not_fit_is_rejected_with_its_path(change: Change) -> None:
+    """A change to a path that the file does not have is rejected with that path."""
     with pytest.raises(ConfigError) as caught:
         edit_text(STUDY, [change])
     (problem,) = caught.value.problems

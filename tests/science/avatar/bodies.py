@@ -1,4 +1,4 @@
-"""Models of the avatar for tests."""
+"""Builders of the avatar's bodies and MuJoCo models for tests."""
 
 import mujoco
 
@@ -48,14 +48,14 @@ def mjcf_of(
     scene: Scene = EMPTY,
     options: ModelOptions | None = None,
 ) -> str:
-    """The text of a body of 72 kg, in an empty room without a floor unless told."""
+    """Return the MJCF of a body of 72 kg, by default in an empty room without a floor."""
     masses = body_masses(body, 72.0)
     chosen = default_settings(body, masses) if settings is None else settings
     return build_mjcf(body, masses, chosen, scene=scene, options=options or ModelOptions())
 
 
 def loaded(text: str) -> tuple[mujoco.MjModel, mujoco.MjData]:
-    """The model at its start."""
+    """Load an MJCF and return the model with its data in the initial state."""
     model = mujoco.MjModel.from_xml_string(text)
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
@@ -63,10 +63,10 @@ def loaded(text: str) -> tuple[mujoco.MjModel, mujoco.MjData]:
 
 
 def settings_of(body: Body, *, free: bool = False) -> dict[str, AxisSettings]:
-    """The settings a body of 72 kg starts with."""
+    """Return the default axis settings of a body of 72 kg."""
     return default_settings(body, body_masses(body, 72.0), preset="free" if free else "anatomic")
 
 
 def warnings_of(data: mujoco.MjData) -> int:
-    """How often MuJoCo complained."""
+    """Return the number of warnings that MuJoCo has raised."""
     return sum(int(warning.number) for warning in data.warning)

@@ -1,4 +1,4 @@
-"""Real movements at the rate of a headset, as a participant's body has them."""
+"""Captured movements at the headset's rate, retargeted to the product's body."""
 
 from functools import cache
 from pathlib import Path
@@ -20,10 +20,10 @@ WALKS = (WALK, "cmu_bvh/06_01.bvh", "cmu_bvh/12_02.bvh")
 
 
 def movement_of(path: Path, *, travels: bool) -> Movement:
-    """A capture on the product's body at 90 Hz.
+    """Return a capture retargeted to the product's body at 90 Hz.
 
-    It moves in place and faces -z, as a participant who stays at the tables, or it keeps its own
-    travel and turning.
+    With `travels` it keeps its own travel and turning; without, it moves in place and faces -z, as
+    a participant who stays at the tables.
     """
     if not travels:
         return resample(captured_movement(path, build_skeleton(STATURE_M)), RATE_HZ)
@@ -36,12 +36,12 @@ def movement_of(path: Path, *, travels: bool) -> Movement:
 
 
 def captured(shared_data: Path, name: str) -> Movement:
-    """A capture of the shared data at 90 Hz, in place; read once."""
+    """Return a capture of the shared data at 90 Hz, in place; it is read once."""
     return _read(shared_data / "motion" / name, travels=False)
 
 
 def travelling(shared_data: Path, name: str) -> Movement:
-    """The same with its own travel and turning."""
+    """Return a capture of the shared data at 90 Hz with its own travel and turning."""
     return _read(shared_data / "motion" / name, travels=True)
 
 

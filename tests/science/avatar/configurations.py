@@ -1,4 +1,4 @@
-"""Made-up configurations, and strategies for them."""
+"""Made-up avatar configurations, and hypothesis strategies that generate them."""
 
 import math
 
@@ -22,14 +22,14 @@ drives = st.builds(Drive, gains, gains, gains)
 
 @st.composite
 def axis_settings(draw: st.DrawFn) -> AxisSettings:
-    """Any gains, any range."""
+    """Draw axis settings with any gains and any range."""
     low, high = sorted((draw(angles_rad), draw(angles_rad)))
     return AxisSettings(draw(gains), draw(gains), draw(gains), low, high)
 
 
 @st.composite
 def single_joints(draw: st.DrawFn) -> SingleJoint:
-    """The one joint of any driven part."""
+    """Draw a single joint of any driven part."""
     part = draw(st.sampled_from(DRIVEN))
     low, high = sorted((draw(angles_rad), draw(angles_rad)))
     others = shared_axes(part)
@@ -45,14 +45,14 @@ def single_joints(draw: st.DrawFn) -> SingleJoint:
 
 @st.composite
 def part_axes(draw: st.DrawFn) -> tuple[str, dict[str, AxisSettings]]:
-    """A driven part with any settings of its axes."""
+    """Draw a driven part with any settings of its axes."""
     part = draw(st.sampled_from(DRIVEN))
     return part, {axis.name: draw(axis_settings()) for axis in AXES_OF[part]}
 
 
 @st.composite
 def configurations(draw: st.DrawFn) -> Configuration:
-    """Any configuration of a few parts, some of them locked."""
+    """Draw a configuration of a few parts, some of them locked."""
     parts = draw(st.lists(st.sampled_from(DRIVEN), min_size=1, max_size=4, unique=True))
     axes = {name: draw(axis_settings()) for part in parts for name in axes_of(part)}
     locked = draw(st.lists(st.sampled_from(parts), unique=True))
@@ -78,12 +78,12 @@ def configurations(draw: st.DrawFn) -> Configuration:
 
 
 def whole_body(settings: AxisSettings = FINE_SPRING) -> Configuration:
-    """Every axis alike."""
+    """Return a configuration of the whole body with the same settings for every axis."""
     return Configuration({axis.name: settings for part in DRIVEN for axis in AXES_OF[part]})
 
 
 def axes_of_part(
     part: str, primary: AxisSettings, *shared: AxisSettings
 ) -> dict[str, AxisSettings]:
-    """A part's axes by their role."""
+    """Return a part's axis settings by axis name, given the primary's and the shared axes'."""
     return {primary_axis(part): primary, **dict(zip(shared_axes(part), shared, strict=True))}

@@ -21,7 +21,7 @@ EMPTY = Scene(floor=False)
 
 @cache
 def figure(*lacking: str) -> Figure:
-    """Of the made-up model, without parts that have one of these words in their name."""
+    """Return the made-up model's figure without parts whose names contain one of these words."""
     return figure_of(read_humanoid(humanoid_file(Model(parts=without(*lacking)))).humanoid)
 
 
@@ -34,7 +34,7 @@ def model(
     both: bool = False,
     **parts: ColliderKind,
 ) -> AvatarModel:
-    """Its avatar, whole unless told otherwise; `parts` have colliders of their own."""
+    """Return the avatar model of a figure; `parts` gives parts a collider kind of their own."""
     configuration = replace(
         default_configuration(),
         humanoid=HASH,

@@ -1,4 +1,4 @@
-"""What an avatar must endure: a wall in the way of a fast hand, and trackers that jump about."""
+"""Stress tests for the avatar: a fast hand against a wall, and random poses and teleports."""
 
 import math
 from dataclasses import dataclass
@@ -21,14 +21,14 @@ WALL_FACE_M = -0.31
 
 @dataclass(frozen=True)
 class AgainstWall:
-    """A hand driven into a wall.
+    """What happened when a hand was driven into a wall.
 
     Attributes:
-        speed_m_s: of the hand just before it touched.
-        deepest_m: how far anything was in the wall.
-        farthest_m: how far the middle of the hand came along z.
+        speed_m_s: speed of the hand just before it touched.
+        deepest_m: greatest penetration of the wall.
+        farthest_m: farthest position of the middle of the hand along z.
         touched: names of what was touched.
-        least_force_n: of all contacts.
+        least_force_n: smallest force of all contacts.
     """
 
     speed_m_s: float
@@ -39,7 +39,7 @@ class AgainstWall:
 
 
 def driven_into_a_wall() -> AgainstWall:
-    """Swing the left arm at 2 m/s at the hand into a wall of 2 cm, and go on pressing."""
+    """Swing the left arm into a wall of 2 cm at 2 m/s at the hand, and keep pressing."""
     body = avatar(Scene((_WALL,), floor=False))
     hand = body.model.geom("LeftHand/0").id
     reach_m = abs(body.data.geom_xpos[hand][0]) - 0.129 * STATURE_M
@@ -62,14 +62,14 @@ def driven_into_a_wall() -> AgainstWall:
 
 @dataclass(frozen=True, eq=False)
 class ThrownAbout:
-    """A body after random poses: itself, and whether its angles were always finite."""
+    """A body after random poses, and whether its angles were always finite."""
 
     body: PhysicsAvatar
     always_finite: bool
 
 
 def thrown_about(hips: Hips, jumps: int, every: int) -> ThrownAbout:
-    """Ask for a random pose at each frame, and teleport the hips by up to 10 m at every so many."""
+    """Command random poses, and teleport the hips by up to 10 m in every `every`-th frame."""
     rng = np.random.default_rng(6)
     body = avatar(EIGHT_BOXES, hips=hips, fingers=True)
     finite = True

@@ -1,4 +1,4 @@
-"""Avatars that tests let move, and what they do."""
+"""Simulated avatars for tests, and helpers that move them."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -28,7 +28,7 @@ EIGHT_BOXES = Scene(
 
 @cache
 def model(scene: Scene = EMPTY, *, hips: Hips = "carried", fingers: bool = False) -> AvatarModel:
-    """An avatar with the product's own settings."""
+    """Return an avatar model with the default configuration."""
     usual = default_configuration()
     axes = {
         axis.name: usual.axes[axis.name]
@@ -39,17 +39,17 @@ def model(scene: Scene = EMPTY, *, hips: Hips = "carried", fingers: bool = False
 
 
 def avatar(scene: Scene = EMPTY, *, hips: Hips = "carried", fingers: bool = False) -> PhysicsAvatar:
-    """One of them, in the T-pose."""
+    """Return a simulated avatar in the T-pose."""
     return PhysicsAvatar(model(scene, hips=hips, fingers=fingers).mjcf)
 
 
 def target_angles(built: AvatarModel) -> TargetAngles:
-    """What turns a participant's poses into the avatar's angles."""
+    """Return the converter from a participant's poses to the avatar's angles."""
     return TargetAngles(built.configuration.axes, built.body.parts)
 
 
 def angles(**radians: float) -> FloatArray:
-    """All 91 angles, zero but for those named."""
+    """Return all 91 angles, zero except for those given by name."""
     found = np.zeros(len(AXIS_NAMES))
     for name, angle in radians.items():
         found[AXIS_NAMES.index(name)] = angle
@@ -57,7 +57,7 @@ def angles(**radians: float) -> FloatArray:
 
 
 def run(body: PhysicsAvatar, targets: FloatArray, count: int) -> None:
-    """Ask for the same angles in this many frames."""
+    """Command the same target angles for this many frames."""
     start_s = body.time_s
     for frame in range(1, count + 1):
         body.set_targets(targets)
@@ -65,7 +65,7 @@ def run(body: PhysicsAvatar, targets: FloatArray, count: int) -> None:
 
 
 def angle_of(body: PhysicsAvatar, axis: str) -> float:
-    """Where one axis is."""
+    """Return the current angle of one axis."""
     return float(body.state().angles_rad[AXIS_NAMES.index(axis)])
 
 
@@ -80,13 +80,13 @@ class Followed:
     body: PhysicsAvatar
 
     def errors_deg(self) -> FloatArray:
-        """(N, driven axes) distance from the clamped command."""
+        """Return the (N, driven axes) distances from the clamped command, in degrees."""
         errors = np.degrees(np.abs(self.actual_rad - self.targets.angles_rad))
         return errors[:, ~np.isnan(errors[0])]
 
 
 def follow(built: AvatarModel, movement: Movement, *, delay_s: float = 0.0) -> Followed:
-    """Let an avatar follow a movement from its first pose on, frame by frame."""
+    """Let an avatar follow a movement frame by frame, starting in its first pose."""
     body = PhysicsAvatar(built.mjcf)
     follower = Follower(body, target_angles(built), delay_s=delay_s)
     follower.start(movement.root_positions_m[0], movement.rotations[0])

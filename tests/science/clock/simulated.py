@@ -1,4 +1,7 @@
-"""Two clocks and a network between them, with the truth known: no clock of the machine is read."""
+"""Simulated clocks of a client and a server, and the network between them.
+
+The truth is known, and no clock of the machine is read.
+"""
 
 from dataclasses import dataclass, replace
 
@@ -16,15 +19,15 @@ UTC_S = 1_772_443_800.0
 
 @dataclass(frozen=True)
 class Scenario:
-    """What is between a client's clock and the server's.
+    """The clocks and the network between a client and the server.
 
-    `up_ms`, `down_ms`: shortest ways. `queues_ms`: mean of what queues add to each way, Gamma with
-    `queues_shape`: at 0.5 mostly little and sometimes much, at 2 hardly ever little.
-    `warming_ppm`: change of the client's rate while it warms up over ten minutes. `wander_ppm`:
-    random walk of that rate, per root second. Steps come at 53 % of the time; the server's wall
-    clock does not take part in them. `asleep_s`: how long the client then stands still with its
-    clock. `wrong`: single impossible probes. `resolution_s`: the step in
-    which the client's clock is read. `slew_ppm`: how much faster the server's clock runs in the
+    `up_ms`, `down_ms`: shortest delays of the network in each direction. `queues_ms`: mean of the
+    queueing delay that is added to each direction, Gamma with `queues_shape`: at 0.5 mostly short
+    and sometimes long, at 2 rarely short. `warming_ppm`: change of the client's rate while it warms
+    up over ten minutes. `wander_ppm`: random walk of that rate, per root second. Steps happen at 53
+    % of the time; the server's wall clock does not step. `asleep_s`: how long the client and its
+    clock are then suspended. `wrong`: number of impossible probes. `resolution_s`: the resolution
+    in which the client's clock is read. `slew_ppm`: how much faster the server's clock runs in the
     second third.
     """
 
@@ -91,7 +94,7 @@ SLEWING = replace(_WIFI, name="server slews 350 ppm", slew_ppm=350.0)
 
 @dataclass(frozen=True, eq=False)
 class Simulated:
-    """Probes, and events with the client's time and the true one of the server, (k,) each."""
+    """Probes, and events with the client's time and the server's true time, (k,) each."""
 
     probes: ClockProbes
     event_client_s: FloatArray
@@ -100,7 +103,7 @@ class Simulated:
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a mapping did on the events of a scenario; milliseconds and shares."""
+    """Errors, bounds and coverage of a mapping on a scenario's events; milliseconds and shares."""
 
     scenario: str
     residual_p50_ms: float
@@ -114,7 +117,7 @@ class Outcome:
 
 
 def simulate(scenario: Scenario, rng: np.random.Generator, *, events: int = 2000) -> Simulated:
-    """Run probes and events through the scenario."""
+    """Return the probes and events of the scenario."""
     duration_s = scenario.duration_s
     client = _ClientClock(scenario, rng)
     sent_s = np.arange(0.0, duration_s, scenario.every_s)
@@ -143,7 +146,7 @@ def simulate(scenario: Scenario, rng: np.random.Generator, *, events: int = 2000
 def outcome(
     scenario: Scenario, rng: np.random.Generator, mapping: ClockMapping | None = None
 ) -> Outcome:
-    """Fit the scenario's probes and compare what is said of its events with the truth."""
+    """Fit the scenario's probes and compare the mapping of its events with the truth."""
     simulated = simulate(scenario, rng)
     mapping = mapping or fit_clock(simulated.probes)
     server_s, uncertainty_s = mapping.to_server(simulated.event_client_s)
@@ -163,7 +166,7 @@ def outcome(
 
 
 def table(outcomes: list[Outcome]) -> str:
-    """The outcomes for people: one line a scenario."""
+    """Return the outcomes as a table with one line a scenario."""
     head = (
         f"{'scenario':28} {'residual p50':>12} {'p95 ms':>8} {'bound p50':>10} {'p95 ms':>9}"
         f" {'covered':>8} {'negative':>8} {'segments':>8} {'left out':>8}"
@@ -179,7 +182,7 @@ def table(outcomes: list[Outcome]) -> str:
 
 
 class _ClientClock:
-    """Reads of the client's clock at true times."""
+    """The client's clock, read at true times."""
 
     def __init__(self, scenario: Scenario, rng: np.random.Generator) -> None:
         self._scenario = scenario
@@ -190,7 +193,7 @@ class _ClientClock:
         self._ahead_s = np.concatenate(([0.0], np.cumsum(rate[:-1])))
 
     def __call__(self, true_s: FloatArray) -> FloatArray:
-        """(n,) readings at (n,) true times."""
+        """Return (n,) readings at (n,) true times."""
         own = self._scenario
         client_s = 1000.0 + own.skew_s + true_s + np.interp(true_s, self._seconds, self._ahead_s)
         slept_s = np.clip(true_s - STEPS_AT * own.duration_s, 0.0, own.asleep_s)
@@ -231,7 +234,7 @@ def _way_s(
 
 
 def _spoil(probes: ClockProbes, scenario: Scenario, rng: np.random.Generator) -> None:
-    """Make single probes impossible: half came back before they went, half are just wrong."""
+    """Make single probes impossible: half return before they were sent, half are just wrong."""
     wrong = rng.choice(np.arange(5, len(probes) - 5, 5), scenario.wrong, replace=False)
     half = scenario.wrong // 2
     probes.client_received_s[wrong[:half]] -= rng.uniform(0.5, 5.0, half)

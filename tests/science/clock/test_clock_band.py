@@ -1,4 +1,4 @@
-"""All lines between bounds: the polygon against a general solver."""
+"""The band of all lines between bounds: the polygon algorithm against a general solver."""
 
 import numpy as np
 import pytest
@@ -22,7 +22,7 @@ def _bounds(rng: np.random.Generator, count: int, width_s: float) -> Bounds:
 
 
 def _solved(bounds: Bounds, t_s: float, sign: float) -> float | None:
-    """Smallest (sign 1) or largest (-1) value of any line at a time, by linear programming."""
+    """Return the smallest (sign 1) or largest (-1) value at a time, by linear programming."""
     rows = [[1.0, t] for t in bounds.upper_t_s] + [[-1.0, -t] for t in bounds.lower_t_s]
     limits = [*bounds.upper_s, *(-bounds.lower_s)]
     found = linprog(
@@ -33,7 +33,7 @@ def _solved(bounds: Bounds, t_s: float, sign: float) -> float | None:
 
 @pytest.mark.parametrize("seed", range(12))
 def test_the_extremes_are_those_of_linear_programming(seed: int) -> None:
-    """At times before, between and behind the bounds no line goes further, and one goes as far."""
+    """The band's extremes equal those of linear programming, also outside of the bounds."""
     rng = np.random.default_rng(seed)
     bounds = _bounds(rng, int(rng.integers(1, 60)), 0.005)
     band = band_of(bounds, DRIFT)
@@ -47,7 +47,7 @@ def test_the_extremes_are_those_of_linear_programming(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", range(12))
 def test_there_is_a_band_just_where_the_solver_finds_a_line(seed: int) -> None:
-    """Bounds moved towards each other until about every second set of them crosses."""
+    """A band exists exactly where the solver finds a line, for bounds that nearly cross."""
     rng = np.random.default_rng(seed)
     loose = _bounds(rng, 8, 0.005)
     inwards_s = rng.uniform(0.0, 0.002)
@@ -58,7 +58,7 @@ def test_there_is_a_band_just_where_the_solver_finds_a_line(seed: int) -> None:
 
 
 def test_more_bounds_never_allow_more_lines() -> None:
-    """The extremes of the first k bounds close in as k grows."""
+    """The band of the first k bounds never widens as k grows."""
     bounds = _bounds(np.random.default_rng(3), 40, 0.004)
     at = np.array([0.0, 100.0, 300.0])
     low, high = np.full(3, -np.inf), np.full(3, np.inf)
@@ -72,7 +72,7 @@ def test_more_bounds_never_allow_more_lines() -> None:
 
 
 def test_a_line_outside_is_brought_to_the_edge() -> None:
-    """A slope too steep becomes the steepest, a height too great the highest there."""
+    """A line outside of the band is moved to it: first its slope, then its height."""
     band = band_of(_bounds(np.random.default_rng(4), 30, 0.003), DRIFT)
     assert isinstance(band, Band)
     a_s, slope = band.nearest(9.0, 1.0)

@@ -1,4 +1,4 @@
-"""Where the course breaks: single wrong probes, jumps of either clock, silences."""
+"""Breaks in the clocks' course: single wrong probes, jumps of either clock, and gaps."""
 
 from dataclasses import replace
 
@@ -13,7 +13,7 @@ STEP_AT_S = STEPS_AT * PLAIN.duration_s
 
 
 def _wrong(place: int, count: int) -> ClockProbes:
-    """Probes of ten minutes, `count` of them answered by a server that was 3 s ahead."""
+    """Return probes of ten minutes of which `count` were answered by a server 3 s ahead."""
     probes = simulate(PLAIN, np.random.default_rng(1)).probes
     for readings in (probes.server_received_s, probes.server_sent_s):
         readings[place : place + count] += 3.0
@@ -22,7 +22,7 @@ def _wrong(place: int, count: int) -> ClockProbes:
 
 @pytest.mark.parametrize("place", [0, 1, 150, 299, 300, 301, 302, 598, 599])
 def test_one_impossible_probe_is_left_out_and_cuts_nothing(place: int) -> None:
-    """Wherever it is, also first, last and beside the seam of two windows."""
+    """One wrong probe is left out and starts no new segment, wherever it is."""
     probes = _wrong(place, 1)
     mapping = fit_clock(probes)
     assert sum(segment.left_out for segment in mapping.segments) == 1
@@ -34,7 +34,7 @@ def test_one_impossible_probe_is_left_out_and_cuts_nothing(place: int) -> None:
 
 
 def test_a_negative_round_trip_is_left_out() -> None:
-    """Back before it went: counted, and without influence."""
+    """A probe with a negative round trip is counted as left out and has no influence."""
     probes = simulate(PLAIN, np.random.default_rng(2)).probes
     expected, _ = fit_clock(probes.select(np.arange(len(probes)) != 77)).to_server(
         probes.client_sent_s
@@ -46,7 +46,7 @@ def test_a_negative_round_trip_is_left_out() -> None:
 
 
 def test_two_probes_that_agree_are_a_jump() -> None:
-    """What is said twice is believed: there and back again."""
+    """Two consecutive probes that agree on another offset are a jump, there and back."""
     mapping = fit_clock(_wrong(200, 2))
     assert [round(segment.step_s) for segment in mapping.segments if segment.stepped] == [3, -3]
 
@@ -55,10 +55,10 @@ def test_two_probes_that_agree_are_a_jump() -> None:
     ("client_step_s", "server_step_s", "whose"),
     [(0.5, 0.0, "client"), (-30.0, 0.0, "client"), (0.0, 0.5, "server"), (0.0, -30.0, "server")],
 )
-def test_a_jump_is_told_with_its_size_and_its_clock(
+def test_a_jump_is_reported_with_its_size_and_its_clock(
     client_step_s: float, server_step_s: float, whose: str
 ) -> None:
-    """Two of three clocks are believed: the client's, the server's, the server's wall clock."""
+    """A jump is reported with its size and the clock that jumped, by majority of three clocks."""
     stepping = replace(PLAIN, client_step_s=client_step_s, server_step_s=server_step_s)
     mapping = fit_clock(simulate(stepping, np.random.default_rng(3)).probes)
     (stepped,) = [segment for segment in mapping.segments if segment.stepped]
@@ -67,7 +67,7 @@ def test_a_jump_is_told_with_its_size_and_its_clock(
 
 
 def test_without_a_wall_clock_only_a_server_that_goes_back_is_caught() -> None:
-    """A jump ahead is the same to two clocks as a client that stood still."""
+    """Without a wall clock, a server's jump ahead cannot be told from a suspended client."""
     for server_step_s, whose in ((30.0, "client"), (-30.0, "server")):
         stepping = replace(PLAIN, server_step_s=server_step_s)
         probes = simulate(stepping, np.random.default_rng(4)).probes
@@ -76,7 +76,7 @@ def test_without_a_wall_clock_only_a_server_that_goes_back_is_caught() -> None:
 
 
 def test_a_wall_clock_that_is_set_bends_nothing() -> None:
-    """Only `wall_s` of the segments tells of it."""
+    """A change of the wall clock affects only `wall_s` of the segments, not the mapping."""
     probes = simulate(PLAIN, np.random.default_rng(5)).probes
     plain = fit_clock(probes)
     assert probes.server_utc_s is not None
@@ -90,7 +90,7 @@ def test_a_wall_clock_that_is_set_bends_nothing() -> None:
 
 
 def test_around_a_jump_the_bound_covers_both_sides() -> None:
-    """Between the last probe before it and the first behind it either may be true."""
+    """Between the last probe before a jump and the first after, the bound covers both offsets."""
     stepping = replace(PLAIN, client_step_s=0.5)
     simulated = simulate(stepping, np.random.default_rng(6), events=200_000)
     server_s, uncertainty_s = fit_clock(simulated.probes).to_server(simulated.event_client_s)
@@ -101,9 +101,10 @@ def test_around_a_jump_the_bound_covers_both_sides() -> None:
 def _halves(
     way_s: tuple[float, float], trip_s: tuple[float, float], step_s: float, every_s: float = 1.0
 ) -> ClockProbes:
-    """Two hundred probes, with the way up and the round trip of each half. Truth: server = client.
+    """Return two hundred probes with the way up and the round trip of each half.
 
-    The server's clock steps between the halves, its wall clock does not.
+    True server and client times are equal. The server's clock steps between the halves; its wall
+    clock does not.
     """
     sent_s = every_s * np.arange(200, dtype=np.float64) + 0.0123
     second = np.arange(200) >= 100
@@ -114,8 +115,8 @@ def _halves(
 
 
 @pytest.mark.parametrize("way_s", [(0.0, 0.001), (0.04, 0.001)])
-def test_undoing_a_jump_of_the_server_leaves_its_doubt(way_s: tuple[float, float]) -> None:
-    """After the jump the network was fast, but the jump itself is known no better than before."""
+def test_undoing_a_jump_of_the_server_keeps_its_uncertainty(way_s: tuple[float, float]) -> None:
+    """After an undone jump the bound keeps the jump's uncertainty, however fast the network."""
     probes = _halves(way_s, (0.04, 0.002), 5.0)
     mapping = fit_clock(probes)
     assert [segment.stepped for segment in mapping.segments] == ["", "server"]
@@ -124,7 +125,7 @@ def test_undoing_a_jump_of_the_server_leaves_its_doubt(way_s: tuple[float, float
 
 
 def test_the_course_never_falls_even_where_the_probes_look_like_it() -> None:
-    """The answers begin to come late as the client's clock is set 5 ms ahead."""
+    """Mapped time never goes back, even if replies become slow as the client steps 5 ms ahead."""
     probes = _halves((0.04, 0.0), (0.04, 0.04), 0.0, every_s=0.041)
     ahead_s = np.where(np.arange(200) >= 100, 0.005, 0.0)
     client_s = probes.client_sent_s + ahead_s
@@ -138,8 +139,8 @@ def test_the_course_never_falls_even_where_the_probes_look_like_it() -> None:
     assert (np.diff(course_s) >= 0.0).all()
 
 
-def test_a_time_that_was_shown_twice_is_taken_for_the_first() -> None:
-    """The client's clock was set back by 30 s: the bound covers the second as well."""
+def test_a_repeated_client_time_is_mapped_to_its_first_occurrence() -> None:
+    """A client time that occurs twice maps to the first, and the bound covers the second."""
     stepping = replace(PLAIN, client_step_s=-30.0)
     simulated = simulate(stepping, np.random.default_rng(7), events=20_000)
     server_s, uncertainty_s = fit_clock(simulated.probes).to_server(simulated.event_client_s)
@@ -149,8 +150,8 @@ def test_a_time_that_was_shown_twice_is_taken_for_the_first() -> None:
     assert np.mean(uncertainty_s > 29.0) == pytest.approx(60.0 / 600.0, abs=0.005)
 
 
-def test_a_silence_is_bridged_with_a_bound_that_grows_towards_its_middle() -> None:
-    """Ten minutes without an answer: nobody knows what the clocks did, but they kept the limit."""
+def test_a_gap_is_bridged_with_a_bound_that_grows_towards_its_middle() -> None:
+    """Over ten minutes without replies the bound grows with the drift limit towards the middle."""
     quiet = replace(PLAIN, duration_s=1200.0)
     probes = simulate(quiet, np.random.default_rng(8)).probes
     heard = (np.arange(len(probes)) < 300) | (np.arange(len(probes)) >= 900)

@@ -1,4 +1,4 @@
-"""What must hold of every mapping, and what is known without computing."""
+"""Properties of every clock mapping, and cases with a known solution."""
 
 from dataclasses import replace
 
@@ -14,7 +14,7 @@ PLAIN = SYMMETRIC[0]
 def _probes(
     offset_s: float, way_s: float = 0.0, count: int = 50, drift: float = 0.0
 ) -> ClockProbes:
-    """A client that asks once a second, a server that answers at once."""
+    """Return probes that a client sends once a second and a server answers immediately."""
     sent_s = 10.0 + 1.0007 * np.arange(count, dtype=np.float64) + 0.12345
     received_s = sent_s + 2 * way_s
     server_s = (sent_s + way_s) * (1.0 + drift) + offset_s
@@ -32,7 +32,7 @@ def _moved(probes: ClockProbes, client_s: float, server_s: float) -> ClockProbes
 
 @pytest.mark.parametrize(("client_s", "server_s"), [(512.0, 0.0), (0.0, -77.25), (-3.5, 1e5)])
 def test_shifting_a_clock_shifts_the_offset(client_s: float, server_s: float) -> None:
-    """A client set by c and a server set by s: the mapping moves by both and by nothing else."""
+    """A shift of either clock shifts the mapping by the same amount and changes nothing else."""
     simulated = simulate(PLAIN, np.random.default_rng(1))
     times_s = simulated.event_client_s
     plain, doubt_s = fit_clock(_moved(simulated.probes, 0.0, 0.0)).to_server(times_s)
@@ -45,7 +45,7 @@ def test_shifting_a_clock_shifts_the_offset(client_s: float, server_s: float) ->
 
 @pytest.mark.parametrize("drift", [0.0, 100e-6, -250e-6])
 def test_without_delay_the_mapping_is_exact(drift: float) -> None:
-    """To a microsecond, and the bound is the slack."""
+    """Without network delay the mapping is exact to a microsecond and the bound is the slack."""
     mapping = fit_clock(_probes(-3.75, drift=drift))
     times_s = np.linspace(12.0, 58.0, 40)
     server_s, uncertainty_s = mapping.to_server(times_s)
@@ -55,7 +55,7 @@ def test_without_delay_the_mapping_is_exact(drift: float) -> None:
 
 
 def test_more_probes_never_widen_the_bound() -> None:
-    """Each probe is one more proof."""
+    """Additional probes never widen the bound."""
     probes = simulate(replace(PLAIN, duration_s=250.0), np.random.default_rng(2)).probes
     at_s = np.array([probes.client_sent_s[0] + 5.0])
     widths = []
@@ -67,7 +67,7 @@ def test_more_probes_never_widen_the_bound() -> None:
 
 
 def test_one_probe_gives_half_its_round_trip() -> None:
-    """And the drift limit away from it; nothing else is known."""
+    """The bound of one probe is half its round trip, growing with the drift limit around it."""
     limits = ClockLimits()
     server_s, uncertainty_s = fit_clock(_probes(7.0, way_s=0.02, count=1)).to_server(
         np.array([10.14345, 110.14345, -89.85655])
@@ -78,7 +78,7 @@ def test_one_probe_gives_half_its_round_trip() -> None:
 
 
 def test_without_a_probe_nothing_is_known() -> None:
-    """NaN and inf, never a number that was made up; the same for times that are none."""
+    """Without probes, or for invalid times, the mapping gives NaN with an infinite bound."""
     none = fit_clock(_probes(0.0, count=0))
     lost = _probes(0.0, count=5)
     lost.client_received_s[:] = np.nan
@@ -92,8 +92,8 @@ def test_without_a_probe_nothing_is_known() -> None:
     assert np.isinf(uncertainty_s).tolist() == [True, True, False]
 
 
-def test_only_impossible_probes_tell_nothing() -> None:
-    """Back before it went, or handled for longer than it was away: nothing to go by."""
+def test_impossible_probes_alone_give_no_mapping() -> None:
+    """Probes with impossible times alone give no mapping."""
     backwards = _probes(5.0, way_s=-0.25, count=4)
     assert fit_clock(backwards).segments == ()
     away = _probes(5.0, way_s=0.1, count=4)
@@ -102,7 +102,7 @@ def test_only_impossible_probes_tell_nothing() -> None:
 
 
 def test_a_wander_within_the_slack_cuts_nothing() -> None:
-    """Without delay and 80 us to either side of a line: one segment, and the bound covers it."""
+    """Offsets that wander by 80 us around a line give one segment whose bound covers them."""
     probes = _probes(1.0, count=200)
     server_s = probes.server_received_s + 80e-6 * np.sin(probes.client_sent_s / 12.0)
     probes = replace(probes, server_received_s=server_s, server_sent_s=server_s)
@@ -113,8 +113,8 @@ def test_a_wander_within_the_slack_cuts_nothing() -> None:
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_what_is_told_lies_between_the_bounds(seed: int) -> None:
-    """Also where the ways are so uneven that the mean of the probes' offsets does not."""
+def test_the_mapped_time_lies_between_the_bounds(seed: int) -> None:
+    """The mapped time lies between the bounds, even where the probes' mean offset does not."""
     rng = np.random.default_rng(seed)
     sent_s = np.cumsum(rng.uniform(0.5, 1.5, 12))
     up_s = 0.05 * rng.beta(0.2, 0.6, 12)
@@ -127,15 +127,15 @@ def test_what_is_told_lies_between_the_bounds(seed: int) -> None:
 
 
 def test_away_from_the_probes_the_bound_grows_with_the_drift_limit() -> None:
-    """Before the first and behind the last: 500 ppm of the distance, more or less the own drift."""
+    """Before the first and after the last probe the bound grows by 500 ppm and the drift."""
     mapping = fit_clock(_probes(2.0, way_s=0.001, drift=100e-6))
     _, (near, far, early) = mapping.to_server(np.array([60.0, 1060.0, -940.0]))
     assert far - near == pytest.approx(1000 * (500e-6 + 100e-6), rel=0.02)
     assert early - near == pytest.approx(950 * (500e-6 + 100e-6), rel=0.02)
 
 
-def test_segments_tell_the_mapping() -> None:
-    """t + offset + drift (t - from) of its segment is what `to_server` says, within its bound."""
+def test_segments_describe_the_mapping() -> None:
+    """t + offset + drift (t - from) of its segment equals `to_server`, within its bound."""
     simulated = simulate(PLAIN, np.random.default_rng(5))
     mapping = fit_clock(simulated.probes)
     server_s, uncertainty_s = mapping.to_server(simulated.event_client_s)
@@ -152,7 +152,7 @@ def test_segments_tell_the_mapping() -> None:
 
 
 def test_a_coarse_clock_widens_the_bound_by_its_step() -> None:
-    """A clock read in whole hundredths is one, and the bound says so."""
+    """A clock read in hundredths of a second is detected, and widens the bound by its step."""
     coarse = Scenario("coarse", up_ms=1.0, down_ms=1.0, resolution_s=0.01, duration_s=200.0)
     mapping = fit_clock(simulate(coarse, np.random.default_rng(6)).probes)
     assert mapping.resolution_s == 0.01
@@ -162,15 +162,15 @@ def test_a_coarse_clock_widens_the_bound_by_its_step() -> None:
 
 
 def test_a_bend_beyond_the_limits_costs_at_most_a_round_trip() -> None:
-    """The bound no longer holds there, as the limits say; the error stays below the round trip."""
+    """A drift beyond the limits, which no bound covers, causes errors below 1.5 round trips."""
     simulated = simulate(SLEWING, np.random.default_rng(7))
     server_s, _ = fit_clock(simulated.probes).to_server(simulated.event_client_s)
     shortest_s = np.nanmin(simulated.probes.round_trip_s)
     assert np.abs(server_s - simulated.event_server_s).max() < 1.5 * shortest_s
 
 
-def test_readings_that_do_not_fit_together_are_refused() -> None:
-    """The error names the shapes; a limit names its value."""
+def test_readings_of_different_shapes_are_rejected() -> None:
+    """Readings of different shapes are rejected with the shapes, and a limit with its value."""
     with pytest.raises(ClockError, match="all must be"):
         ClockProbes(np.zeros(2), np.zeros(3), np.zeros(2), np.zeros(2))
     with pytest.raises(ClockError, match=r"drift is 0\.0"):

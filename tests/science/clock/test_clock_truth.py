@@ -1,4 +1,4 @@
-"""The mapping against clocks whose truth is known. Print the figures: `./run bench clock`."""
+"""The clock mapping against simulated clocks. `./run bench clock` prints the figures."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from tests.science.clock.simulated import ASYMMETRIC, SYMMETRIC, Scenario, outco
 @pytest.mark.parametrize("seed", [1, 2, 3])
 @pytest.mark.parametrize("scenario", SYMMETRIC, ids=lambda scenario: scenario.name)
 def test_on_symmetric_paths_the_error_is_small(scenario: Scenario, seed: int) -> None:
-    """95 % within 5 ms, through drift, steps, queues and losses; the bound holds as well."""
+    """On symmetric paths 95 % of errors are within 5 ms through drift, steps, queues and losses."""
     found = outcome(scenario, np.random.default_rng(seed))
     assert found.residual_p95_ms <= 5.0
     assert found.coverage >= 0.999
@@ -20,7 +20,7 @@ def test_on_symmetric_paths_the_error_is_small(scenario: Scenario, seed: int) ->
 @pytest.mark.parametrize("seed", [1, 2, 3])
 @pytest.mark.parametrize("scenario", ASYMMETRIC, ids=lambda scenario: scenario.name)
 def test_on_asymmetric_paths_the_bound_holds(scenario: Scenario, seed: int) -> None:
-    """Half of 35 ms cannot be seen from either end, but the bound says that it may be there."""
+    """On asymmetric paths the bound covers the error, which neither end can see."""
     found = outcome(scenario, np.random.default_rng(seed))
     assert found.coverage >= 0.999
     assert found.negative == 0
@@ -29,7 +29,7 @@ def test_on_asymmetric_paths_the_bound_holds(scenario: Scenario, seed: int) -> N
 
 
 def test_impossible_probes_are_left_out_one_by_one() -> None:
-    """All twenty are found, and none beside them."""
+    """All twenty impossible probes are left out, and no others."""
     (scenario,) = [one for one in SYMMETRIC if one.wrong]
     found = outcome(scenario, np.random.default_rng(4))
     assert found.left_out == scenario.wrong

@@ -1,4 +1,4 @@
-"""A person of known bones and known turns, with markers where the fit says they belong."""
+"""A synthetic person of known bones and rotations, with markers where the fit assumes them."""
 
 from dataclasses import dataclass
 
@@ -49,14 +49,14 @@ NAMES = ("Hips", *_TREE)
 
 
 def body() -> Rig:
-    """The person's bones."""
+    """Return the bones of the synthetic person."""
     parents = (-1, *(NAMES.index(parent) for parent, _ in _TREE.values()))
     offsets = np.array(((0.0, 0.0, 0.0), *(offset for _, offset in _TREE.values())))
     return Rig(NAMES, parents, offsets, identity(len(NAMES)))
 
 
 def moving(seed: int, frames: int = 200) -> RigMotion:
-    """A third of the time the T-pose, then anything that hinges at knees, elbows and ankles."""
+    """Return a third of the frames in the T-pose, then random hinging of the limbs."""
     rng = np.random.default_rng(seed)
     rotations, stand = identity(frames, len(NAMES)), frames // 3
     count = frames - stand
@@ -97,7 +97,7 @@ class _On:
 
 
 def markers_on(motion: RigMotion) -> MarkerMotion:
-    """The CMU's labels on that person."""
+    """Return the movement of the CMU's markers on the person."""
     positions, world = motion.world()
     places = _marker_places()
     seen = [
@@ -170,7 +170,7 @@ _JOINT_OF = {
 
 
 def bodies_on(motion: RigMotion, seed: int) -> BodyMotion:
-    """Rigid bodies at the joints, each strapped on in some way of its own."""
+    """Return rigid bodies at the joints, each attached in a random orientation."""
     rng = np.random.default_rng(seed)
     positions, world = motion.world()
     joints = [motion.rig.index(_JOINT_OF[name]) for name in BODIES]

@@ -1,4 +1,4 @@
-"""What the fit does where markers were not seen, and what it refuses."""
+"""How the fit handles markers that were not seen, and what it rejects."""
 
 import numpy as np
 import pytest
@@ -16,8 +16,8 @@ def _hidden(markers: MarkerMotion, name: str, first: int, end: int) -> MarkerMot
     return MarkerMotion(markers.names, markers.rate_hz, places)
 
 
-def test_a_short_gap_is_bridged_and_told() -> None:
-    """Ten frames without the left knee keep their frames, marked as not observed in that leg."""
+def test_a_short_gap_is_bridged_and_marked() -> None:
+    """Ten frames without the left knee are kept, with that leg marked as not observed."""
     fitted = fit_skeleton(_hidden(markers_on(moving(0)), "LKNE", 20, 30))
     motion = fitted.motion
     assert motion.frame_count == 200
@@ -30,14 +30,14 @@ def test_a_short_gap_is_bridged_and_told() -> None:
 
 
 def test_a_long_gap_in_a_leg_trims_to_the_longest_whole_stretch() -> None:
-    """A knee unseen for 0.6 s leaves the longer side, and says from when on."""
+    """A knee that is unseen for 0.6 s leaves the longer part, with a note of where it begins."""
     fitted = fit_skeleton(_hidden(markers_on(moving(0)), "LKNE", 60, 120))
     assert (fitted.first_frame, fitted.motion.frame_count) == (120, 80)
     assert any("0.80 s from 1.20 s on" in note for note in fitted.notes)
 
 
-def test_a_long_gap_in_an_arm_costs_the_arm() -> None:
-    """An elbow unseen for 0.6 s would cost most of the frames: the arm is left out instead."""
+def test_a_long_gap_in_an_arm_leaves_the_arm_out() -> None:
+    """An arm whose elbow is unseen for 0.6 s is left out, so that all frames are kept."""
     fitted = fit_skeleton(_hidden(markers_on(moving(0)), "LELB", 60, 120))
     assert fitted.motion.frame_count == 200
     assert "LeftUpperArm" in fitted.unfitted
@@ -45,8 +45,8 @@ def test_a_long_gap_in_an_arm_costs_the_arm() -> None:
     assert any("left arm is left out" in note for note in fitted.notes)
 
 
-def test_a_leg_never_seen_whole_is_refused() -> None:
-    """Where no half second holds both legs, the joint that is missing most is named."""
+def test_a_leg_never_seen_whole_is_rejected() -> None:
+    """If no half second shows both legs, the error names the joint that is missing most."""
     markers = markers_on(moving(0))
     for start in range(0, 200, 40):
         markers = _hidden(markers, "RANK", start, start + 39)
@@ -55,14 +55,14 @@ def test_a_leg_never_seen_whole_is_refused() -> None:
 
 
 def test_markers_of_one_leg_are_no_body() -> None:
-    """Clusters on a foot and a shank are refused with what a body takes."""
+    """Markers of a single leg are rejected with the markers that a body needs."""
     names = ("Foot_Marker1", "Foot_Marker2", "Leg_Marker1")
     with pytest.raises(FitError, match=r"Foot_Marker1.*pelvis needs LASI, RASI and SACR"):
         fit_skeleton(MarkerMotion(names, 100.0, np.zeros((10, 3, 3))))
 
 
 def test_a_headset_and_two_controllers_are_no_body() -> None:
-    """Three tracked things are refused with the reason and with what would do."""
+    """Three tracked objects are rejected with the reason and what would suffice."""
     bodies = BodyMotion(
         ("Head", "LeftHand", "RightHand"),
         np.arange(5) / 90.0, np.zeros((5, 3, 3)), identity(5, 3),
@@ -72,7 +72,7 @@ def test_a_headset_and_two_controllers_are_no_body() -> None:
 
 
 def test_missing_bodies_are_named() -> None:
-    """Without the right elbow there is no arm to fit, and the message says which body it is."""
+    """Without a rigid body on the right elbow the error names it as missing."""
     bodies = bodies_on(moving(0), 0)
     kept = [place for place, name in enumerate(BODIES) if name != "right_elbow"]
     few = BodyMotion(
@@ -83,8 +83,8 @@ def test_missing_bodies_are_named() -> None:
         fit_skeleton(few)
 
 
-def test_times_that_stand_still_are_refused() -> None:
-    """Samples without time between them have no rate."""
+def test_times_that_do_not_increase_are_rejected() -> None:
+    """Samples whose times do not increase are rejected, since they have no rate."""
     bodies = bodies_on(moving(0), 0)
     still = BodyMotion(
         bodies.names, np.zeros_like(bodies.times_s), bodies.positions_m, bodies.rotations
@@ -95,7 +95,7 @@ def test_times_that_stand_still_are_refused() -> None:
 
 @pytest.mark.parametrize("seed", range(12))
 def test_any_gaps_and_places_give_a_skeleton_or_a_reason(seed: int) -> None:
-    """Random losses, points on one another and far away never end in anything but these two."""
+    """Random gaps and marker positions always give a skeleton or a `FitError`."""
     rng = np.random.default_rng(seed)
     markers = markers_on(moving(seed % 3))
     places = markers.positions_m.copy()
@@ -112,8 +112,8 @@ def test_any_gaps_and_places_give_a_skeleton_or_a_reason(seed: int) -> None:
     assert np.isfinite(fitted.motion.rig.offsets_m).all()
 
 
-def test_a_bridge_is_a_straight_line_between_what_was_seen() -> None:
-    """Values inside short gaps are interpolated, long and open gaps stay empty."""
+def test_short_gaps_are_interpolated_linearly() -> None:
+    """Short gaps are interpolated linearly; long and open gaps stay empty."""
     values = np.arange(200.0)[:, None] * (1.0, 2.0)
     expected = values.copy()
     values[10:20] = np.nan
@@ -127,6 +127,6 @@ def test_a_bridge_is_a_straight_line_between_what_was_seen() -> None:
 
 
 def test_the_longest_run_is_found() -> None:
-    """Of several runs the longest is returned, and none for none."""
+    """The longest run of true values is found; without any it is empty."""
     assert longest_run(np.array([1, 0, 1, 1, 0], np.bool_)) == (2, 4)
     assert longest_run(np.zeros(3, np.bool_)) == (0, 0)

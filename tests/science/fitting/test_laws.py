@@ -1,4 +1,4 @@
-"""Laws of the fit: what a person of known bones does comes back."""
+"""Properties of the fit: bones and rotations of a synthetic person are recovered."""
 
 import numpy as np
 import pytest
@@ -18,8 +18,8 @@ from tests.science.fitting.synthetic_body import NAMES, bodies_on, markers_on, m
 
 
 @pytest.mark.parametrize("seed", range(8))
-def test_markers_give_back_lengths_and_turns(seed: int) -> None:
-    """Bones to 1e-9 m, turns to 1e-6 rad, from markers on a body that hinges as the fit assumes."""
+def test_markers_recover_lengths_and_rotations(seed: int) -> None:
+    """Markers recover bones to 1e-9 m and rotations to 1e-6 rad if joints hinge as assumed."""
     truth = moving(seed)
     fitted = fit_skeleton(markers_on(truth))
     assert set(fitted.motion.rig.names) == set(NAMES)
@@ -37,7 +37,7 @@ def test_markers_give_back_lengths_and_turns(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_a_turned_room_turns_the_hips_alone(seed: int) -> None:
-    """Turning and shifting the room about the vertical changes no length and no local turn."""
+    """Turning the room about the vertical and shifting it changes only the hips."""
     rng = np.random.default_rng(seed)
     markers = markers_on(moving(seed))
     turn = from_rotation_vector(np.array((0.0, rng.uniform(-3.0, 3.0), 0.0)))
@@ -51,8 +51,8 @@ def test_a_turned_room_turns_the_hips_alone(seed: int) -> None:
 
 
 @pytest.mark.parametrize("scale", [0.6, 1.0, 1.1])
-def test_noise_of_a_millimetre_stays_near_a_millimetre(scale: float) -> None:
-    """Joints follow their centres within 5 mm rms when each marker trembles by a millimetre."""
+def test_marker_noise_of_a_millimetre_moves_joints_little(scale: float) -> None:
+    """With 1 mm of marker noise joints stay within 5 mm rms of their centres."""
     rng = np.random.default_rng(3)
     markers = markers_on(moving(3))
     noisy = markers.positions_m * scale + rng.normal(0.0, 0.001, markers.positions_m.shape)
@@ -62,7 +62,7 @@ def test_noise_of_a_millimetre_stays_near_a_millimetre(scale: float) -> None:
 
 
 def test_a_limb_that_is_not_marked_is_named() -> None:
-    """Without the right wrist the right arm is unfitted, and everything else is as before."""
+    """Without the right wrist the right arm is listed as unfitted, and the rest is unchanged."""
     markers = markers_on(moving(1))
     kept = [name for name in markers.names if name not in {"RWRA", "RWRB"}]
     columns = [markers.names.index(name) for name in kept]
@@ -85,14 +85,14 @@ def test_a_limb_that_is_not_marked_is_named() -> None:
 
 
 def test_another_laboratorys_labels_give_the_same_legs() -> None:
-    """Named as OptiTrack and Qualisys name them, the same markers give the same legs."""
+    """The legs are the same when markers are labelled as by OptiTrack and Qualisys."""
     ours = markers_on(moving(4))
     labels = {f"{s}FWT": f"Waist{s}Front" for s in "LR"} | {
         f"{s}BWT": f"Waist{s}Back" for s in "LR"
     }
     labels |= {f"{s}{a}": f"{s}{b}" for s in "LR" for a, b in _OPTITRACK.items()}
     places = [ours.positions_m[:, ours.names.index(name)] for name in labels]
-    # Their sets have no marker on the second toe: two on either side of it stand for it.
+    # Their sets have no marker on the second toe but one on either side of it.
     names = list(labels.values())
     for side in "LR":
         toe = ours.positions_m[:, ours.names.index(f"{side}TOE")]
@@ -100,7 +100,7 @@ def test_another_laboratorys_labels_give_the_same_legs() -> None:
         across = 0.03 * (1.0 if side == "L" else -1.0)
         right = _foot_right(moving(4), side) * across
         places += [toe + right, toe - right]
-    named = tuple(f"Ann_{name}" for name in names)  # Motive puts the skeleton's name before
+    named = tuple(f"Ann_{name}" for name in names)  # Motive prefixes the skeleton's name
     theirs = MarkerMotion(named, ours.rate_hz, np.stack(places, axis=1))
     here, there = fit_skeleton(ours).motion, fit_skeleton(theirs).motion
     for joint in ("Hips", "LeftUpperLeg", "RightUpperLeg", "LeftLowerLeg", "RightFoot"):
@@ -119,7 +119,7 @@ def _foot_right(motion: RigMotion, side: str) -> FloatArray:
 
 
 def test_the_rig_is_the_bodys() -> None:
-    """Joints are named and ordered like the body's, each below its nearest ancestor there."""
+    """Joints are named and ordered as in the product's body, each below its nearest ancestor."""
     rig = fit_skeleton(markers_on(moving(0))).motion.rig
     assert rig.names == tuple(name for name in JOINT_NAMES if name in rig.names)
     for joint, name in enumerate(rig.names[1:], 1):
@@ -132,7 +132,7 @@ def test_the_rig_is_the_bodys() -> None:
 
 
 def _upright(seed: int) -> RigMotion:
-    """A person whose trunk is one piece, as the bodies on hip and collar see it."""
+    """Return a person with a rigid trunk, as the rigid bodies on hip and collar see it."""
     truth = moving(seed)
     rotations = truth.rotations.copy()
     for name in ("Spine", "UpperChest", "LeftLowerArm", "RightLowerArm"):
@@ -142,14 +142,14 @@ def _upright(seed: int) -> RigMotion:
 
 
 def _without_twist(rotations: FloatArray) -> FloatArray:
-    """Keep the hinge about y alone, since bodies on elbow and hand show no twist of the forearm."""
+    """Keep the rotation about y only, since bodies on elbow and hand show no forearm twist."""
     hinge = rotations * np.array((1.0, 0.0, 1.0, 0.0))
     return normalise(hinge)
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_rigid_bodies_give_back_places_and_turns(seed: int) -> None:
-    """However the bodies are strapped on, the joints lie on them and arms turn as they did."""
+def test_rigid_bodies_recover_positions_and_rotations(seed: int) -> None:
+    """Rigid bodies recover joint positions and arm rotations, however they are attached."""
     truth = _upright(seed)
     fitted = fit_skeleton(bodies_on(truth, seed))
     ours, theirs = fitted.motion, truth
@@ -163,8 +163,8 @@ def test_rigid_bodies_give_back_places_and_turns(seed: int) -> None:
     assert set(fitted.unfitted) >= {"LeftUpperLeg", "RightFoot", "UpperChest"}
 
 
-def test_uneven_times_are_evened_out() -> None:
-    """A logger that leaves samples out gives the same frames, the missing ones in between."""
+def test_uneven_times_are_resampled() -> None:
+    """Samples at uneven times are resampled to an even rate, missing ones interpolated."""
     bodies = bodies_on(moving(2), 2)
     kept = np.delete(np.arange(len(bodies.times_s)), [100, 150])
     uneven = BodyMotion(

@@ -1,4 +1,4 @@
-"""Real people's markers and bodies: the skeletons are those of people, and walk as people do."""
+"""Fits of captured people: the skeletons have human lengths and walk as people do."""
 
 from pathlib import Path
 
@@ -31,7 +31,7 @@ def _bone(motion: RigMotion, name: str) -> float:
 
 
 def _heading(motion: RigMotion) -> tuple[FloatArray, FloatArray]:
-    """Unit vectors forwards and to the right of a walk, over the ground."""
+    """Return horizontal unit vectors ahead and to the right of a walk."""
     hips = motion.root_positions_m
     forward = (hips[-1] - hips[0]) * (1.0, 0.0, 1.0)
     forward = forward / np.linalg.norm(forward)
@@ -40,7 +40,7 @@ def _heading(motion: RigMotion) -> tuple[FloatArray, FloatArray]:
 
 @pytest.mark.parametrize("path", _WALKS)
 def test_walkers_have_the_legs_of_people(shared_data: Path, path: str) -> None:
-    """Left and right differ by under 2 cm; thigh and shank are 35 to 48 cm, alike within 6 cm."""
+    """Thigh and shank are 35 to 48 cm, within 6 cm of each other and 2 cm between sides."""
     motion = _fitted(shared_data, path).motion
     for bone in ("LowerLeg", "Foot"):  # named after the joint below: thigh, then shank
         left, right = _bone(motion, f"Left{bone}"), _bone(motion, f"Right{bone}")
@@ -51,14 +51,14 @@ def test_walkers_have_the_legs_of_people(shared_data: Path, path: str) -> None:
 
 
 @pytest.mark.parametrize("path", _WALKS)
-def test_bones_of_one_length_follow_the_seen_joints(shared_data: Path, path: str) -> None:
-    """Constant bones miss the joint centres of single frames by under a centimetre rms."""
+def test_bones_of_constant_length_follow_the_measured_joints(shared_data: Path, path: str) -> None:
+    """Bones of constant length miss the measured joint centres by less than a centimetre rms."""
     assert _fitted(shared_data, path).residual_m < 0.01
 
 
 @pytest.mark.parametrize("path", _WALKS)
 def test_walkers_keep_left_and_right_and_take_turns(shared_data: Path, path: str) -> None:
-    """Passing each other, feet are 5 cm apart or more, right foot to the right; they take turns."""
+    """Passing feet are 5 cm apart or more, the right one to the right, and they alternate."""
     motion = _fitted(shared_data, path).motion
     forward, right = _heading(motion)
     step = _place(motion, "RightFoot") - _place(motion, "LeftFoot")
@@ -75,7 +75,7 @@ def test_walkers_face_where_they_go_and_bend_their_knees_backwards(
 ) -> None:
     """Hips lie across the walk within 25 degrees; knees bend by 40 to 80 degrees, one way only.
 
-    Some markers are stuck on so that a straight knee seems overstretched: up to 12 degrees pass.
+    Up to 12 degrees of overstretching pass, since some markers make a straight knee seem so.
     """
     motion = _fitted(shared_data, path).motion
     _, right = _heading(motion)
@@ -91,7 +91,7 @@ def test_walkers_face_where_they_go_and_bend_their_knees_backwards(
 
 
 def test_stride_of_the_cmu_walk_is_a_persons(shared_data: Path) -> None:
-    """Heel strikes of one foot come 0.8 to 1.3 s apart, at 1 to 1.5 m/s."""
+    """In the CMU walk, one foot strikes every 0.8 to 1.3 s at 1 to 1.5 m/s."""
     motion = _fitted(shared_data, "cmu_c3d/02_01.c3d").motion
     forward, _ = _heading(motion)
     times: list[float] = []
@@ -107,7 +107,7 @@ def test_stride_of_the_cmu_walk_is_a_persons(shared_data: Path) -> None:
 
 
 def _solved_by_the_cmu(shared_data: Path) -> RigMotion:
-    """The movement of the same trial as the CMU solved it, from its ASF and AMC files."""
+    """Return the movement of the same trial as solved by the CMU, from its ASF and AMC files."""
     folder = shared_data / "motion" / "cmu_asfamc"
     motion = read_capture(
         (folder / "02_01.amc").read_bytes(),
@@ -119,7 +119,7 @@ def _solved_by_the_cmu(shared_data: Path) -> RigMotion:
 
 
 def test_the_cmu_fit_agrees_with_the_cmus_own_skeleton(shared_data: Path) -> None:
-    """Joints from the C3D lie within 4 cm rms of those the CMU solved from them (AMC)."""
+    """Joints fitted to the C3D lie within 4 cm rms of those that the CMU solved (AMC)."""
     theirs = _solved_by_the_cmu(shared_data)
     ours = _fitted(shared_data, "cmu_c3d/02_01.c3d").motion
     pairs = {"LowerLeg": "tibia", "Foot": "foot", "UpperLeg": "femur"}
@@ -134,7 +134,7 @@ def test_the_cmu_fit_agrees_with_the_cmus_own_skeleton(shared_data: Path) -> Non
 
 
 def test_the_cmu_fit_faces_where_the_cmus_own_skeleton_faces(shared_data: Path) -> None:
-    """Hips, chest and head turn about the vertical as in the AMC, to 0.2 degrees in the mean."""
+    """Hips, chest and head turn about the vertical as in the AMC, to 0.2 degrees on average."""
     theirs = _solved_by_the_cmu(shared_data)
     ours = _fitted(shared_data, "cmu_c3d/02_01.c3d").motion
     for joint, bone in (("Hips", "root"), ("UpperChest", "thorax"), ("Head", "head")):
@@ -149,7 +149,7 @@ def test_the_cmu_fit_faces_where_the_cmus_own_skeleton_faces(shared_data: Path) 
 
 @pytest.mark.parametrize("path", ["c3d/Gait.c3d", "trc/walk.trc"])
 def test_outer_markers_alone_give_nearly_the_same_legs(shared_data: Path, path: str) -> None:
-    """Knees and ankles by outer markers lie within 2 cm rms of those midway to the inner ones."""
+    """Outer knee and ankle markers alone move these joints by less than 2 cm rms."""
     file = shared_data / "motion" / path
     both = read_capture(file.read_bytes(), name=file.name).motion
     assert isinstance(both, MarkerMotion)
@@ -166,8 +166,8 @@ def test_outer_markers_alone_give_nearly_the_same_legs(shared_data: Path, path: 
             assert float(np.sqrt(np.mean(np.sum(apart**2, axis=-1)))) < 0.02
 
 
-def test_what_each_file_lacks_is_named(shared_data: Path) -> None:
-    """CMU: all but one of the spine; Gait: no head markers; walk.trc: legs alone."""
+def test_the_unfitted_joints_of_each_file_are_named(shared_data: Path) -> None:
+    """Unfitted joints are named: one spine joint (CMU), the head (Gait), the trunk (walk.trc)."""
     assert _fitted(shared_data, "cmu_c3d/02_01.c3d").unfitted == ("Chest",)
     assert _fitted(shared_data, "c3d/Gait.c3d").unfitted == ("Chest", "Head")
     legs = _fitted(shared_data, "trc/walk.trc")
@@ -179,14 +179,14 @@ def test_what_each_file_lacks_is_named(shared_data: Path) -> None:
 
 
 def test_gait_is_trimmed_to_where_the_person_is_seen(shared_data: Path) -> None:
-    """The person is in the cameras' sight for 1.86 s of 4.87 s, and only these are kept."""
+    """Of 4.87 s only the 1.86 s in which the cameras see the person are kept."""
     fitted = _fitted(shared_data, "c3d/Gait.c3d")
     assert (fitted.first_frame, fitted.motion.frame_count) == (137, 186)
     assert any("1.86 s from 1.37 s on" in note for note in fitted.notes)
 
 
-def test_one_leg_of_clusters_is_refused(shared_data: Path) -> None:
-    """The OptiTrack walk marks one foot, knee and shank, which is no body."""
+def test_clusters_on_one_leg_are_rejected(shared_data: Path) -> None:
+    """The OptiTrack walk, which marks only one leg, is rejected."""
     with pytest.raises(FitError, match="the pelvis needs LASI"):
         _fitted(shared_data, "c3d/walkingOptiTrack.c3d")
 
@@ -194,8 +194,8 @@ def test_one_leg_of_clusters_is_refused(shared_data: Path) -> None:
 def test_vicon_bodies_agree_with_their_authors_bvh(shared_data: Path) -> None:
     """Hip, collar and shoulders lie within 1.2 cm rms of the authors' BVH, forearms within 1 cm.
 
-    The BVH declares its root's turns as ZYX but holds them as ZXY (read as declared, the person's
-    turn about the vertical becomes a bow), and lags by 5 frames, which is their smoothing.
+    The BVH declares its root's rotations as ZYX but stores them as ZXY (read as declared, a turn of
+    the person about the vertical becomes a bow), and lags by 5 frames, which is their smoothing.
     """
     file = shared_data / "motion" / "vicon_tracker" / "HumanRobotHandover_0.bvh"
     declared, held = b"Zposition Zrotation Yrotation X", b"Zposition Zrotation Xrotation Y"
@@ -219,7 +219,7 @@ def test_vicon_bodies_agree_with_their_authors_bvh(shared_data: Path) -> None:
 
 
 def test_vicon_hands_go_where_the_tracker_saw_them(shared_data: Path) -> None:
-    """With bones of one length hands stay within 3 cm rms of their bodies; legs are unfitted."""
+    """Hands of fitted arms stay within 3 cm rms of their rigid bodies; legs are unfitted."""
     file = shared_data / "motion" / "vicon_tracker" / "HumanRobotHandover_0.csv"
     bodies = read_capture(file.read_bytes(), name=file.name).motion
     assert isinstance(bodies, BodyMotion)
@@ -236,7 +236,7 @@ def test_vicon_hands_go_where_the_tracker_saw_them(shared_data: Path) -> None:
 
 
 def test_straight_elbows_do_not_spin(shared_data: Path) -> None:
-    """Where an arm is nearly straight its axis moves on smoothly, by up to 12 degrees a frame."""
+    """A nearly straight arm turns by less than 12 degrees a frame."""
     motion = _fitted(shared_data, "c3d/Gait.c3d").motion
     for side in ("Left", "Right"):
         arm = motion.rotations[:, motion.rig.index(f"{side}UpperArm")]

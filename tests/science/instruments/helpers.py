@@ -10,7 +10,7 @@ CONFIGS = Path(__file__).parents[3] / "study_configs" / "instruments"
 
 
 def shipped(key: str) -> Instrument:
-    """An instrument as it comes with the product."""
+    """Return a shipped instrument by its key."""
     return load_instrument((CONFIGS / f"{key}.yaml").read_text(encoding="utf-8")).instrument
 
 
@@ -33,5 +33,5 @@ _SMALL = Instrument(
 
 
 def small(**changes: object) -> Instrument:
-    """A small instrument with some fields changed."""
+    """Return a small instrument with some fields changed."""
     return replace(_SMALL, **changes)  # type: ignore[arg-type]  # any field

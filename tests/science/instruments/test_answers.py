@@ -1,4 +1,4 @@
-"""Whether a filled-in form can be stored, and in which order its items were asked."""
+"""Validation of submitted answers, and the order in which items are asked."""
 
 import math
 
@@ -29,7 +29,7 @@ PERSON: dict[str, object] = {
 
 
 def test_a_complete_form_has_no_problem() -> None:
-    """Optional items may be absent, None or blank; whole numbers may be floats."""
+    """A complete form is valid; optional items may be missing, and whole numbers be floats."""
     assert validate_answers(DEMOGRAPHICS, PERSON) == ()
     assert validate_answers(DEMOGRAPHICS, {**PERSON, "weight_kg": None}) == ()
     assert validate_answers(DEMOGRAPHICS, {**PERSON, "sex_self_description": " "}) == ()
@@ -57,30 +57,30 @@ def test_a_complete_form_has_no_problem() -> None:
         ("vr_familiarity", 6),
     ],
 )
-def test_an_impossible_answer_is_named_with_what_is_valid(item: str, value: object) -> None:
-    """Type, range, length and required items are checked; the problem says what would do."""
+def test_an_invalid_answer_is_reported_with_what_is_valid(item: str, value: object) -> None:
+    """An answer of wrong type, range or length is reported with what is valid."""
     (problem,) = validate_answers(DEMOGRAPHICS, {**PERSON, item: value})
     assert problem.item == item
     assert problem.valid
     assert problem.remedy
 
 
-def test_all_problems_come_at_once_in_the_order_of_the_items() -> None:
-    """An empty form lists every required item; an unknown item comes last."""
+def test_all_problems_are_reported_in_the_order_of_the_items() -> None:
+    """An empty form lists every required item in order; an unknown item comes last."""
     problems = validate_answers(DEMOGRAPHICS, {"q1": 3})
     required = [item.key for item in DEMOGRAPHICS.items if item.required]
     assert [problem.item for problem in problems] == [*required, "q1"]
 
 
-def test_ranges_are_said_in_words() -> None:
-    """One-sided ranges and units appear in what is valid."""
+def test_ranges_are_described_in_words() -> None:
+    """One-sided ranges and units appear in the description of what is valid."""
     (problem,) = validate_answers(small(), {"q1": 1, "q2": 1, "size": -3})
     assert problem.valid == "a number of at least 0 cm"
 
 
 @given(st.integers(0, 2**63 - 1))
 def test_every_order_asks_each_item_once_and_the_prompt_last(seed: int) -> None:
-    """An order is a permutation; the open prompt never moves."""
+    """Every order is a permutation of the items with the open prompt last."""
     order = item_order(KARAS, seed)
     assert sorted(order) == sorted(KARAS.by_key)
     assert order[-1] == "problems"
@@ -95,12 +95,12 @@ def test_orders_differ_between_seeds() -> None:
 
 
 def test_an_order_is_the_same_in_every_release() -> None:
-    """Seeds are stored with the answers: the drawn order must stay what it was."""
+    """A seed gives the same order in every release, since seeds are stored with the answers."""
     assert item_order(KARAS, 1)[:5] == EXPECTED_START
 
 
 def test_an_instrument_that_does_not_shuffle_keeps_its_order() -> None:
-    """The seed then has no effect."""
+    """Without shuffling, the seed has no effect on the order of the items."""
     assert item_order(DEMOGRAPHICS, 1) == tuple(DEMOGRAPHICS.by_key)
     assert item_order(small(last=("q1",)), 2) == ("q2", "size", "yes", "note", "q1")
 
@@ -109,7 +109,7 @@ EXPECTED_START = ("q2", "q11", "q8", "q10", "q14")
 
 
 def test_an_item_with_a_scale_of_its_own_takes_its_steps_only() -> None:
-    """Multiples of five from 0 to 100, said in words; the others keep the instrument's scale."""
+    """An item with its own scale accepts its steps only; the others keep the instrument's scale."""
     tlx = shipped("raw_tlx")
     answers: dict[str, object] = dict.fromkeys(tlx.by_key, 50)
     assert validate_answers(tlx, answers) == ()

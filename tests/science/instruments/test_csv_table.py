@@ -1,4 +1,4 @@
-"""Scoring CSV files as spreadsheets write them."""
+"""Scoring CSV files as written by spreadsheets."""
 
 import csv
 import io
@@ -21,7 +21,7 @@ EXPECTED = f"id,{SCORES}\np1,8.0,7.0,4.0,1.0407407407407407,1.5611111111111111\n
 
 @given(st.lists(st.lists(st.integers(1, 7), min_size=12, max_size=12), max_size=5))
 def test_every_digit_of_a_score_is_written(rows: list[list[int]]) -> None:
-    """Reading the result back gives exactly the scores of the answers."""
+    """Scores read back from the CSV equal the computed scores exactly."""
     text = "\n".join([",".join(ITEMS), *(",".join(map(str, row)) for row in rows)])
     back = list(csv.DictReader(io.StringIO(score_csv(KARAS, text))))
     assert [{key: float(cell) for key, cell in row.items()} for row in back] == [
@@ -46,19 +46,19 @@ def test_every_digit_of_a_score_is_written(rows: list[list[int]]) -> None:
     ids=["plain", "bom-crlf", "blank", "upper", "semicolon", "tab", "3.0", "3,0", "quoted", "more"],
 )
 def test_the_same_table_in_many_spellings(text: str) -> None:
-    """Byte order marks, separators, blank lines, capitals and decimals make no difference."""
+    """Byte order marks, separators, blank lines, capitals and decimal commas make no difference."""
     assert score_csv(KARAS, text) == EXPECTED
 
 
 def test_quoted_ids_stay_whole() -> None:
-    """Separators, quotes and line breaks inside an id survive."""
+    """Separators, quotes and line breaks inside a quoted id are kept."""
     text = f'{HEADER}\n"a,b ""c""\nd",{EXPERT}\n'
     rows = list(csv.reader(io.StringIO(score_csv(KARAS, text))))
     assert rows[1][0] == 'a,b "c"\nd'
 
 
 def test_missing_answers_leave_scores_empty() -> None:
-    """An empty cell or NA empties just the scores that need it."""
+    """An empty cell or NA leaves only the scores that need it empty."""
     cells = EXPERT.split(",")
     for missing in ("", "NA", " "):
         row = ",".join([*cells[:2], missing, *cells[3:]])
@@ -66,7 +66,7 @@ def test_missing_answers_leave_scores_empty() -> None:
 
 
 def test_a_header_alone_gives_a_header() -> None:
-    """A table without rows is a table."""
+    """A table without rows gives a result without rows."""
     assert score_csv(KARAS, HEADER) == f"id,{SCORES}\n"
 
 
@@ -89,15 +89,15 @@ def test_a_header_alone_gives_a_header() -> None:
         ("agency,q1\n1,2\n", "name of a score"),
     ],
 )
-def test_unusable_tables_say_what_is_wrong_and_where(text: str, said: str) -> None:
-    """Nothing is guessed: the refusal names line, column, value and what is valid."""
+def test_invalid_tables_are_rejected_with_line_and_column(text: str, said: str) -> None:
+    """An invalid table is rejected with line, column, value and what is valid."""
     with pytest.raises(InstrumentTableError, match=said):
         score_csv(KARAS, text)
 
 
 @given(st.text('idq1234567,;\t"\n\r .-8', max_size=60))
 def test_any_text_is_a_table_or_a_table_error(text: str) -> None:
-    """No other exception ever leaves the reader."""
+    """Any text is read as a table or raises a table error, never another exception."""
     try:
         result = score_csv(KARAS, text)
     except InstrumentTableError:

@@ -1,4 +1,4 @@
-"""An instrument that exists is consistent; one that is not says everything that is wrong."""
+"""Validation of instrument definitions: all contradictions are found and reported."""
 
 from collections.abc import Sequence
 
@@ -18,7 +18,7 @@ ONE = {"en": "One"}
 
 
 def likert(key: str) -> Item:
-    """A likert item."""
+    """Return a Likert item."""
     return Item(key, ONE, "likert")
 
 
@@ -67,10 +67,10 @@ def likert(key: str) -> Item:
         ),
     ],
 )
-def test_contradictions_are_refused_at_their_place(
+def test_contradictions_are_reported_at_their_place(
     changes: dict[str, object], path: tuple[str | int, ...], said: str
 ) -> None:
-    """Each contradiction is found, with its path and a sentence."""
+    """Each contradiction in a definition is reported with its path and a sentence."""
     with pytest.raises(InstrumentDefinitionError) as caught:
         small(**changes)
     problem = next(one for one in caught.value.problems if one.path == path)
@@ -92,14 +92,14 @@ def test_contradictions_are_refused_at_their_place(
     ],
 )
 def test_an_item_has_only_the_fields_of_its_type(item: Item, field: str) -> None:
-    """A field that would be ignored is refused, and so is one that is missing."""
+    """An item with a field of another type, or without one of its own, is rejected."""
     with pytest.raises(InstrumentDefinitionError) as caught:
         small(items=(item,), scores=())
     assert ("items", 0, field) in [problem.path for problem in caught.value.problems]
 
 
-def test_all_contradictions_are_found_at_once() -> None:
-    """Nobody has to correct a file five times."""
+def test_all_contradictions_are_reported_together() -> None:
+    """Several contradictions in a definition are reported together."""
     with pytest.raises(InstrumentDefinitionError) as caught:
         small(key="!", version=0, last=("q9",), scores=(Score("s", ONE, "q1 +"),))
     paths: Sequence[object] = [problem.path for problem in caught.value.problems]
@@ -107,7 +107,10 @@ def test_all_contradictions_are_found_at_once() -> None:
 
 
 def test_the_embodiment_questionnaire_is_complete() -> None:
-    """Karas 2020, appendix A.3: 14 items on a 7-step scale and an open prompt at the end."""
+    """The embodiment questionnaire has 14 items on 7 steps and a final open prompt.
+
+    Karas 2020, appendix A.3.
+    """
     karas = shipped("karas2020")
     assert [item.key for item in karas.items] == [
         *(f"q{number}" for number in range(1, 15)),
@@ -147,12 +150,12 @@ def test_the_embodiment_questionnaire_is_complete() -> None:
     ],
 )
 def test_wordings_of_the_embodiment_questionnaire(key: str, wording: str) -> None:
-    """Karas 2020, appendix A.3: item wordings are data and stay exact."""
+    """The embodiment questionnaire's items are worded exactly as in Karas 2020, appendix A.3."""
     assert shipped("karas2020").by_key[key].text["en"] == wording
 
 
 def test_demographics_ask_what_the_tasks_need() -> None:
-    """Handedness decides the direction of the hand task; the participant's code is never asked."""
+    """The demographics ask for the handedness that the hand task needs, never for the code."""
     demographics: Instrument = shipped("demographics")
     choices = {key: [c.key for c in demographics.by_key[key].choices] for key in HANDS_AND_FEET}
     assert choices == HANDS_AND_FEET

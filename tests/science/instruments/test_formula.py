@@ -1,4 +1,4 @@
-"""The language of score formulas: its laws, its limits and its refusals."""
+"""The language of score formulas: its laws, limits and errors."""
 
 import math
 
@@ -17,7 +17,7 @@ numbers = st.floats(-100, 100).map(lambda value: round(value, 3))
 
 
 def value_of(text: str, **values: float) -> float:
-    """The formula's value for one person; NaN where it has none."""
+    """Return the formula's value for one person; NaN if it has none."""
     arrays = {key: np.array([value]) for key, value in values.items()}
     return float(np.ravel(evaluate(parse_formula(text, values.keys()), arrays))[0])
 
@@ -33,7 +33,7 @@ def test_operators_group_as_in_arithmetic(a: float, b: float, c: float) -> None:
 
 @given(numbers, numbers, numbers)
 def test_functions_take_any_number_of_values(a: float, b: float, c: float) -> None:
-    """mean, sum, min and max mean what they say."""
+    """mean, sum, min and max take any number of values."""
     given_values = {"q1": a, "q2": b, "q3": c}
     assert value_of("mean(q1, q2, q3)", **given_values) == (a + b + c) / 3
     assert value_of("sum(q1, q2, q3)", **given_values) == a + b + c
@@ -44,31 +44,31 @@ def test_functions_take_any_number_of_values(a: float, b: float, c: float) -> No
 @pytest.mark.parametrize(
     "formula", ["q1 + q2", "0 * q1", "min(q1, q2)", "max(q2, q1)", "mean(q1, q2)", "q1 / q1", "-q1"]
 )
-def test_whatever_a_missing_answer_enters_has_no_value(formula: str) -> None:
-    """Missing is never silently skipped, not even by a minimum or a factor of zero."""
+def test_a_missing_answer_makes_the_value_missing(formula: str) -> None:
+    """A missing answer makes the value missing, even in a minimum or times zero."""
     assert math.isnan(value_of(formula, q1=math.nan, q2=1.0))
 
 
 @pytest.mark.parametrize("formula", ["1 / 0", "0 / 0", "q1 / (q1 - q1)", "1 / (1 / 0)"])
 def test_dividing_by_zero_gives_no_value(formula: str) -> None:
-    """An infinity appears neither as a result nor on the way to one."""
+    """A division by zero has no value, also in the middle of a formula."""
     assert math.isnan(value_of(formula, q1=2.0))
 
 
 def test_a_column_has_the_values_of_its_rows() -> None:
-    """Evaluating a column is evaluating each person alone."""
+    """Evaluating a column gives the value of each row evaluated alone."""
     column = np.array([1.0, np.nan, 3.0])
     result = evaluate(parse_formula("(q1 + 1) * 2", {"q1"}), {"q1": column})
     np.testing.assert_array_equal(result, [4.0, np.nan, 8.0])
 
 
-def test_names_are_what_the_formula_reads() -> None:
-    """Functions are no names; each item counts once."""
+def test_the_names_of_a_formula_are_its_items() -> None:
+    """The names of a formula are its items, each once, without functions."""
     assert names_in(parse_formula("mean(q1, -q2) / (q1 + 4)", NAMES)) == {"q1", "q2"}
 
 
-def test_zero_has_no_sign() -> None:
-    """A negative zero would look odd in a table."""
+def test_a_formula_never_gives_negative_zero() -> None:
+    """A result of negative zero becomes zero."""
     assert math.copysign(1, value_of("-q1", q1=0.0)) == 1
 
 
@@ -94,10 +94,10 @@ def test_zero_has_no_sign() -> None:
         ("Q1", 0, "'Q1' is unknown"),
     ],
 )
-def test_a_formula_is_refused_at_the_right_character(
+def test_an_invalid_formula_is_rejected_at_the_right_character(
     formula: str, position: int, said: str
 ) -> None:
-    """The error points at the first character that cannot be understood, and says why."""
+    """A syntax error points at the first invalid character and gives the reason."""
     with pytest.raises(FormulaError, match=r".") as caught:
         parse_formula(formula, NAMES)
     assert caught.value.position == position
@@ -106,7 +106,7 @@ def test_a_formula_is_refused_at_the_right_character(
 
 
 def test_a_misspelt_name_gets_a_suggestion() -> None:
-    """The remedy names the closest key and all that are known."""
+    """The error about an unknown name suggests the closest key and lists all keys."""
     with pytest.raises(FormulaError, match="Did you mean ownership"):
         parse_formula("ownershp / 5", {"ownership", "q1"})
 
@@ -120,21 +120,21 @@ def test_a_misspelt_name_gets_a_suggestion() -> None:
         "q1" + " " * MAX_LENGTH,
     ],
 )
-def test_formulas_over_the_limits_are_refused(formula: str) -> None:
-    """Nesting, number of parts and length are limited, so no formula can exhaust the program."""
+def test_formulas_over_the_limits_are_rejected(formula: str) -> None:
+    """Formulas over the limits of nesting, parts or length are rejected."""
     with pytest.raises(FormulaError, match="more than"):
         parse_formula(formula, NAMES)
 
 
 def test_formulas_at_the_limits_are_evaluated() -> None:
-    """The longest chain and the deepest nesting that are read can be computed, too."""
+    """The longest and the most nested formula that are allowed can be evaluated."""
     assert value_of("+".join(["1"] * 200)) == 200
     assert value_of("(" * MAX_DEPTH + "q1" + ")" * MAX_DEPTH, q1=3.0) == 3
 
 
 @given(st.text("q123+-*/(),. meansumxi", max_size=40))
 def test_any_text_is_a_formula_or_a_formula_error(text: str) -> None:
-    """No other exception ever leaves the parser."""
+    """Any text is parsed or raises a formula error, never another exception."""
     try:
         tree = parse_formula(text, NAMES)
     except FormulaError:

@@ -1,4 +1,4 @@
-"""The shipped instruments: vectors from their sources, each computed by hand here."""
+"""The shipped instruments against hand-computed scores from their sources."""
 
 from itertools import count
 
@@ -13,7 +13,7 @@ SCORED = [shipped(key) for key in KEYS if shipped(key).scores]
 
 
 def numbered(values: str, key: str = "q") -> dict[str, object]:
-    """Answers to q1, q2, ... (or r1, r2, ...)."""
+    """Return answers to q1, q2, ... (or r1, r2, ...)."""
     return {f"{key}{at}": int(value) for at, value in zip(count(1), values.split(), strict=False)}
 
 
@@ -81,7 +81,7 @@ VECTORS: dict[str, list[tuple[dict[str, object], dict[str, float]]]] = {
         )
     ],
     "fms": [({"sickness": 13}, {"sickness_score": 13.0})],
-    # Less 4 each: 1, 2, 3, 0 make 6 / 4; -3, 0, -1, 2 make -2 / 4; all 4 / 8.
+    # Minus 4 each: 1, 2, 3, 0 give 6 / 4; -3, 0, -1, 2 give -2 / 4; all 4 / 8.
     "ueq_s": [
         (
             {
@@ -107,14 +107,14 @@ VECTORS: dict[str, list[tuple[dict[str, object], dict[str, float]]]] = {
 def test_hand_computed_vectors(
     key: str, answers: dict[str, object], scores: dict[str, float]
 ) -> None:
-    """Every answer is possible, and the scores are those on paper."""
+    """Each vector's answers are valid and give the scores that were computed by hand."""
     instrument = shipped(key)
     assert validate_answers(instrument, answers) == ()
     assert score_answers(instrument, answers) == pytest.approx(scores, abs=1e-12)
 
 
 def test_every_scored_instrument_has_a_vector() -> None:
-    """None is left out; the one of the thesis has its own tests."""
+    """Every scored instrument has a hand-computed vector, or tests of its own."""
     assert {instrument.key for instrument in SCORED} == {*VECTORS, "karas2020"}
 
 
@@ -124,7 +124,7 @@ def test_every_scored_instrument_has_a_vector() -> None:
     ids=lambda value: value.key,
 )
 def test_stated_ranges_are_those_of_the_scales(instrument: Instrument, score: Score) -> None:
-    """Every formula is linear: its extremes lie where each item is at the better of its ends."""
+    """The stated range of every score is reached at the ends of its items' scales."""
     ends = {
         item.key: (scale.minimum, scale.maximum)
         for item in instrument.items
@@ -145,8 +145,8 @@ def test_stated_ranges_are_those_of_the_scales(instrument: Instrument, score: Sc
 
 
 @pytest.mark.parametrize("key", KEYS)
-def test_everything_is_said_in_both_languages(key: str) -> None:
-    """English and German, with a source, a licence as far as known, and what was verified."""
+def test_every_text_is_there_in_both_languages(key: str) -> None:
+    """Every instrument has English and German texts, a source and what was verified."""
     instrument = shipped(key)
     assert instrument.languages == ("en", "de")
     told = instrument.provenance
@@ -154,14 +154,14 @@ def test_everything_is_said_in_both_languages(key: str) -> None:
 
 
 @pytest.mark.parametrize("key", KEYS)
-def test_what_is_stored_comes_out_the_same(key: str) -> None:
-    """The canonical form holds everything, also scales of single items."""
+def test_the_stored_form_gives_the_same_instrument(key: str) -> None:
+    """The canonical form gives the same instrument back, including scales of single items."""
     loaded = load_instrument((CONFIGS / f"{key}.yaml").read_text(encoding="utf-8"))
     assert parse_instrument_json(loaded.canonical_json) == loaded.instrument
 
 
-def test_the_hash_of_what_is_stored_already_stays() -> None:
-    """What was added later is not written where it is not used."""
+def test_the_hash_of_a_stored_instrument_stays() -> None:
+    """Later optional fields do not change the hash of an instrument that does not use them."""
     text = (CONFIGS / "karas2020.yaml").read_text(encoding="utf-8")
     loaded = load_instrument(text)
     assert '"step"' not in loaded.canonical_json

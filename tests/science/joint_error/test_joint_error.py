@@ -1,4 +1,4 @@
-"""Joint error."""
+"""The joint error between target and actual rotations."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ def _random(rng: np.random.Generator, frames: int = 300) -> rot.FloatArray:
 
 
 def test_identical_rotations_have_no_error(rng: np.random.Generator) -> None:
-    """A body that follows exactly has zero error, whichever sign its quaternions have."""
+    """Equal rotations have zero error, whichever sign their quaternions have."""
     q = _random(rng)
     summary = joint_error_summary(q, -q)
     np.testing.assert_allclose(summary.max_rad, 0.0, atol=1e-12)
@@ -32,7 +32,7 @@ def test_identical_rotations_have_no_error(rng: np.random.Generator) -> None:
 
 
 def test_the_angle_does_not_depend_on_the_parents_frame(rng: np.random.Generator) -> None:
-    """Turning the parent's frame turns the vector part and keeps the angle."""
+    """Turning the parent's frame turns the error vector and keeps its angle."""
     target, actual, turn = _random(rng), _random(rng), rot.normalise(rng.normal(size=4))
     before = joint_errors(target, actual).values_rad
     after = joint_errors(rot.multiply(turn, target), rot.multiply(turn, actual)).values_rad
@@ -41,14 +41,14 @@ def test_the_angle_does_not_depend_on_the_parents_frame(rng: np.random.Generator
 
 
 def test_exchanging_target_and_actual_turns_the_sign(rng: np.random.Generator) -> None:
-    """The error back is the error there with the opposite sign."""
+    """Exchanging target and actual reverses the sign of the error vector."""
     target, actual = _random(rng), _random(rng)
     there, back = joint_errors(target, actual).values_rad, joint_errors(actual, target).values_rad
     np.testing.assert_allclose(back[..., 1:], -there[..., 1:], atol=1e-9)
 
 
 def test_a_known_error_is_found_in_the_parents_axes(rng: np.random.Generator) -> None:
-    """An extra turn about the parent's x axis appears as +x and nothing else."""
+    """An extra rotation about the parent's x axis gives an error of +x only."""
     target = _random(rng)
     extra = rot.from_rotation_vector(np.array((np.radians(10.0), 0.0, 0.0)))
     actual = target.copy()
@@ -62,7 +62,7 @@ def test_a_known_error_is_found_in_the_parents_axes(rng: np.random.Generator) ->
 
 
 def test_summary_follows_its_definitions() -> None:
-    """Mean is signed; rms, 95th percentile and maximum are of sizes."""
+    """The mean is signed; rms, 95th percentile and maximum are of absolute values."""
     angles = np.radians(np.linspace(-10.0, 20.0, 101))
     vectors = np.zeros((101, 22, 3))
     vectors[:, 3, 2] = angles
@@ -80,7 +80,7 @@ def test_summary_follows_its_definitions() -> None:
 
 
 def test_the_hips_have_no_error(rng: np.random.Generator) -> None:
-    """Whatever the hips do, no joint of the summary changes."""
+    """Rotations of the hips do not change the error of any joint."""
     target = _random(rng)
     actual = target.copy()
     actual[:, 0] = rot.normalise(rng.normal(size=(300, 4)))
@@ -104,7 +104,7 @@ def test_bad_samples_are_left_out_and_counted(rng: np.random.Generator) -> None:
 
 
 @pytest.mark.parametrize("shape", [(5, 22, 4), (4, 21, 4), (22, 4)])
-def test_recordings_that_do_not_fit_are_refused(shape: tuple[int, ...]) -> None:
-    """Other shapes than (N, 22, 4), or different lengths, are refused."""
+def test_recordings_of_different_shapes_are_rejected(shape: tuple[int, ...]) -> None:
+    """Recordings that are not (N, 22, 4) or differ in length are rejected."""
     with pytest.raises(JointErrorError, match="do not fit"):
         joint_error_summary(np.zeros((4, 22, 4)), np.zeros(shape))

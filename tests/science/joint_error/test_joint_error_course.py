@@ -1,4 +1,4 @@
-"""How a joint error goes over active time."""
+"""The course of a joint error over active time."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ def _times(duration_s: float) -> FloatArray:
 
 
 def test_the_mean_of_the_bins_is_the_mean_of_the_phase() -> None:
-    """Weighted by samples, whatever is missing, to 1e-12; no sample is lost or counted twice."""
+    """The sample-weighted mean of the bins is the phase's mean to 1e-12, whatever is missing."""
     rng = np.random.default_rng(5)
     active_s = _times(33.0)
     angles_rad = rng.uniform(0.0, np.pi, (len(active_s), JOINTS))
@@ -30,7 +30,7 @@ def test_the_mean_of_the_bins_is_the_mean_of_the_phase() -> None:
 
 
 def test_an_error_that_grows_evenly_grows_evenly_from_bin_to_bin() -> None:
-    """A hundredth of a radian a second: each bin has its value in the middle of its frames."""
+    """For a linearly growing error each bin's mean is the value at the middle of its frames."""
     active_s = _times(20.0)
     angles_rad = np.repeat(0.01 * active_s[:, np.newaxis], JOINTS, axis=1)
     course = joint_error_course(angles_rad, active_s, 20.0)
@@ -40,7 +40,7 @@ def test_an_error_that_grows_evenly_grows_evenly_from_bin_to_bin() -> None:
 
 
 def test_a_bin_without_a_sample_has_no_mean_and_keeps_its_place() -> None:
-    """Nothing is recorded from 5 to 10 s."""
+    """A bin without samples, here from 5 to 10 s, is kept without a mean."""
     active_s = _times(15.0)
     kept = (active_s < 5.0) | (active_s >= 10.0)
     angles_rad = np.full((int(kept.sum()), 2), 0.5)
@@ -49,8 +49,8 @@ def test_a_bin_without_a_sample_has_no_mean_and_keeps_its_place() -> None:
     assert course.samples.tolist() == [2 * BIN_FRAMES, 0, 2 * BIN_FRAMES]
 
 
-def test_frames_behind_the_end_of_the_phase_belong_to_its_last_bin() -> None:
-    """Those of a frame too many, and of a clock that jumped by a year; nothing is lost."""
+def test_frames_after_the_end_of_the_phase_belong_to_its_last_bin() -> None:
+    """Frames after the end of the phase count in its last bin, so none are lost."""
     active_s = np.array([0.0, 9.99, 10.004, 3e7])
     course = joint_error_course(np.array([[0.1], [0.2], [0.3], [0.4]]), active_s, 10.0 + 1e-9)
     assert course.samples.tolist() == [1, 3]
@@ -58,7 +58,7 @@ def test_frames_behind_the_end_of_the_phase_belong_to_its_last_bin() -> None:
 
 
 def test_no_frames_have_no_course_and_shapes_must_fit() -> None:
-    """No bins; and an error that names both shapes."""
+    """Without frames there are no bins; arrays that differ in length raise an error."""
     assert joint_error_course(np.empty((0, 2)), np.empty(0), 60.0).samples.tolist() == []
     with pytest.raises(CourseError, match=r"\(3, 2\) and active times \(4,\)"):
         joint_error_course(np.zeros((3, 2)), np.zeros(4), 60.0)

@@ -1,4 +1,4 @@
-"""The joint error of a recording, now and one delay earlier."""
+"""The joint error of a recording, against the present target and the delayed command."""
 
 import math
 from collections.abc import Mapping
@@ -38,12 +38,12 @@ HEAD_LIMIT_DEG = 22.5
 
 @cache
 def hinges() -> HingeReference:
-    """Of a human body; the compiler is loaded once."""
+    """Return the hinge reference of a human body, built once."""
     return HingeReference(ANATOMIC)
 
 
 def posed(degrees: Mapping[str, FloatArray]) -> FloatArray:
-    """(FRAMES, 22, 4) with these angles of these hinges, and otherwise the T-pose."""
+    """Return (FRAMES, 22, 4) rotations with these hinge angles and the T-pose elsewhere."""
     angles = np.zeros((FRAMES, len(AXIS_NAMES)))
     for axis, values in degrees.items():
         angles[:, AXIS_NAMES.index(axis)] = np.radians(values)
@@ -51,19 +51,19 @@ def posed(degrees: Mapping[str, FloatArray]) -> FloatArray:
 
 
 def of(summary: JointErrorSummary, table: str, joint: str, axis: str) -> float:
-    """One figure; angles in degrees."""
+    """Return one figure of a summary; angles in degrees."""
     value = getattr(summary, table)[ERROR_JOINTS.index(joint), ERROR_AXES.index(axis)]
     return float(value if table == "clipped_share" else math.degrees(value))
 
 
 def nodding(size_deg: float) -> FloatArray:
-    """A head bent forward by so much in frames 20 to 39 and upright otherwise."""
+    """Return head angles: bent forward by `size_deg` in frames 20 to 39 and upright otherwise."""
     frame = np.arange(FRAMES)
     return np.where((frame >= 20) & (frame < 40), size_deg, 0.0)
 
 
 def recorded(target: FloatArray, actual: FloatArray, reference: HingeReference | None) -> Recorded:
-    """A run whose avatar is seen from BEGIN on, on a clock that did not begin at zero."""
+    """Return a run whose avatar is seen from frame BEGIN on, on a clock that starts at 500 s."""
     times_s = 500.0 + np.arange(FRAMES) / RATE_HZ
     asked = ReferenceMotion(target) if reference is None else reference.recording(times_s, target)
     frames = np.arange(BEGIN, FRAMES)
@@ -71,33 +71,33 @@ def recorded(target: FloatArray, actual: FloatArray, reference: HingeReference |
 
 
 def clamped(target: FloatArray, delay_frames: int) -> FloatArray:
-    """What hinges without any inertia would do so many frames later."""
+    """Return what massless hinges would do this many frames later, within their limits."""
     angles = TargetAngles(ANATOMIC).batch(target).angles_rad
     late = np.maximum(np.arange(FRAMES) - delay_frames, 0)
     return joint_rotations(angles[late], target[:, 0])
 
 
 def nodded(size_deg: float, delay_frames: int = DELAY_FRAMES) -> RecordedErrors:
-    """The errors of an avatar that nods with the participant, perfectly within its limits."""
+    """Return the errors of an avatar that follows a nod perfectly within its limits."""
     target = posed({"HeadX": nodding(size_deg)})
     run = recorded(target, clamped(target, delay_frames), hinges())
     return recorded_errors([run], delay_frames / RATE_HZ)
 
 
-def test_an_avatar_that_does_what_it_was_told_has_no_error_then() -> None:
-    """One delay later; against what it is told meanwhile it has the whole."""
+def test_a_perfect_avatar_has_no_error_against_its_delayed_command() -> None:
+    """A perfect avatar has no error against the delayed command, but against the present target."""
     found = nodded(20.0)
     np.testing.assert_allclose(np.nan_to_num(found.command.max_rad), 0.0, atol=1e-9)
     assert of(found.present, "max_rad", "Head", "angle") == pytest.approx(20.0)
-    # Told to nod until frame 39, it nods from 32 to 51: wrong in 30, 31 and from 40 on.
+    # Commanded to nod until frame 39, it nods from 32 to 51: wrong in 30, 31 and from 40 on.
     share = 14 / (FRAMES - BEGIN)
     assert of(found.present, "mean_rad", "Head", "angle") == pytest.approx(20.0 * share)
 
 
-def test_what_the_limits_take_is_the_error_and_its_share_is_exact() -> None:
-    """A nod to 40 deg of which 22.5 can be done: 17.5 deg short, in every nodding sample."""
+def test_the_error_of_clipping_and_its_share_are_exact() -> None:
+    """A nod to 40 deg at a limit of 22.5 gives an error of 17.5 deg and the exact clipped share."""
     found = nodded(40.0)
-    # The head bends forward about -x; so what is missing of it is +x.
+    # The head bends forward about -x, so the missing rotation is +x.
     assert of(found.command, "max_rad", "Head", "angle") == pytest.approx(40.0 - HEAD_LIMIT_DEG)
     share = 20 / (FRAMES - BEGIN)
     assert of(found.command, "mean_rad", "Head", "x") == pytest.approx(17.5 * share)
@@ -108,7 +108,7 @@ def test_what_the_limits_take_is_the_error_and_its_share_is_exact() -> None:
 
 
 def test_a_clipping_belongs_to_the_time_of_the_reference() -> None:
-    """Of the nod's twenty frames ten are in the phase; all of them were commanded in it."""
+    """Clipping counts where the reference is clipped: now in 10 frames, in the command in 20."""
     found = nodded(40.0)
     samples = FRAMES - BEGIN
     assert of(found.present, "clipped_share", "Head", "x") == 10 / samples
@@ -117,7 +117,7 @@ def test_a_clipping_belongs_to_the_time_of_the_reference() -> None:
 
 @pytest.mark.parametrize("delay_frames", [0, 5, 29])
 def test_a_delay_moves_the_command_and_not_the_present(delay_frames: int) -> None:
-    """The same movement of the avatar, explained by another delay."""
+    """Another delay changes the error against the command, not against the present target."""
     target = posed({"HeadX": nodding(20.0), "SpineY": np.linspace(-10.0, 10.0, FRAMES)})
     run = recorded(target, clamped(target, 5), hinges())
     now, later = recorded_errors([run], 0.0), recorded_errors([run], delay_frames / RATE_HZ)
@@ -130,7 +130,7 @@ def test_a_delay_moves_the_command_and_not_the_present(delay_frames: int) -> Non
 
 
 def test_between_two_frames_the_nearer_ones_clipping_counts() -> None:
-    """A delay of 4.6 frames clips as one of 5, one of 4.4 as one of 4."""
+    """Between two frames the nearer one's clipping counts: 4.6 frames as 5, 4.4 as 4."""
     target = posed({"HeadX": nodding(40.0)})
     run = recorded(target, clamped(target, 0), hinges())
     late_s = (BEGIN - 25.0) / RATE_HZ  # the first sample was commanded in frame 25
@@ -145,7 +145,7 @@ def test_between_two_frames_the_nearer_ones_clipping_counts() -> None:
 
 
 def test_plus_x_has_turned_too_far_about_the_parents_x() -> None:
-    """Whatever the hinge's own direction: a head that is 3 deg further back than it was told."""
+    """A head turned 3 deg too far about its parent's x axis has an error of +3 deg about x."""
     target = posed({"HeadX": np.full(FRAMES, 10.0), "HeadY": np.full(FRAMES, 15.0)})
     actual = target.copy()
     head = JOINT_INDEX["Head"]
@@ -158,7 +158,7 @@ def test_plus_x_has_turned_too_far_about_the_parents_x() -> None:
 
 
 def test_runs_count_together() -> None:
-    """A run that is clipped and one that is not: half of the share."""
+    """The clipped share of a clipped and an unclipped run together is half of the former's."""
     nod, still = posed({"HeadX": nodding(40.0)}), posed({})
     runs = [recorded(target, clamped(target, 0), hinges()) for target in (nod, still)]
     alone, both = recorded_errors(runs[:1], 0.0).present, recorded_errors(runs, 0.0).present
@@ -169,7 +169,7 @@ def test_runs_count_together() -> None:
 
 
 def test_a_delayed_copy_is_compared_with_the_raw_rotations_to_the_bit() -> None:
-    """Broken values and times included; it has no limits, so it has no share."""
+    """A delayed copy is compared with raw rotations, and has no clipped share."""
     rng = np.random.default_rng(8)
     target = normalise(rng.normal(size=(FRAMES, 22, 4)))
     target[50, 3], target[60, 4] = np.nan, 0.5
@@ -191,7 +191,7 @@ def test_a_delayed_copy_is_compared_with_the_raw_rotations_to_the_bit() -> None:
         assert np.isnan(got.clipped_share).all()
 
 
-def test_a_recording_without_runs_is_refused() -> None:
-    """There is nothing to summarise."""
+def test_a_recording_without_runs_is_rejected() -> None:
+    """A recording without runs is rejected."""
     with pytest.raises(JointErrorError, match="at least one"):
         recorded_errors([], 0.1)

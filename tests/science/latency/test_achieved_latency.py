@@ -1,4 +1,4 @@
-"""Achieved latency: what is found is what was put in, and how sure it says it is, it is."""
+"""Achieved latency: known latencies are recovered and the intervals cover them."""
 
 from dataclasses import astuple, replace
 from pathlib import Path
@@ -29,7 +29,7 @@ def rng() -> np.random.Generator:
 
 
 def found(run: StreamPair) -> tuple[float, float, float]:
-    """The latency and its interval, which must be there."""
+    """Return the latency and its interval, which must both exist."""
     result = latency_of_runs([run])
     assert result.latency_s is not None, result.reason
     assert result.low_s is not None
@@ -39,7 +39,7 @@ def found(run: StreamPair) -> tuple[float, float, float]:
 
 
 def width(run: StreamPair) -> float:
-    """Length of the interval."""
+    """Return the length of the interval."""
     _, low_s, high_s = found(run)
     return high_s - low_s
 
@@ -48,15 +48,15 @@ def width(run: StreamPair) -> float:
 def test_noise_on_both_streams_leaves_the_latency(
     latency_s: float, rng: np.random.Generator
 ) -> None:
-    """Half a degree of noise on every rotation of both bodies moves the result by under 1 ms."""
+    """Half a degree of noise on all rotations of both bodies changes the result by under 1 ms."""
     run = record(made_movement(rng), latency_s, rng, Flaws(noise_deg=0.5))
     got_s, low_s, high_s = found(run)
     assert got_s == pytest.approx(latency_s, abs=1.0 * MS)
     assert high_s - low_s < 1.0 * MS
 
 
-def test_the_interval_covers_as_often_as_it_says() -> None:
-    """Over forty recordings the truth lies outside about twice, not often and not never."""
+def test_the_interval_has_its_stated_coverage() -> None:
+    """In forty recordings the truth lies outside of the interval in about two."""
     missed = 0
     for seed in range(40):
         rng = np.random.default_rng(seed)
@@ -73,7 +73,7 @@ def test_the_interval_covers_as_often_as_it_says() -> None:
 def test_jitter_and_dropped_frames_widen_the_interval_and_stay_inside(
     latency_s: float,
 ) -> None:
-    """Uneven frames, unsure time stamps and every fifth frame lost are admitted, not hidden."""
+    """Jitter, wrong timestamps and dropped frames widen the interval, which still covers."""
     noise, worse = Flaws(noise_deg=0.5), Flaws(0.5, jitter_s=0.003, stamp_s=0.002, dropped=0.2)
     clean, poor = (
         record(made_movement(np.random.default_rng(2)), latency_s, np.random.default_rng(3), flaws)
@@ -85,7 +85,7 @@ def test_jitter_and_dropped_frames_widen_the_interval_and_stay_inside(
 
 
 def test_slow_errors_widen_the_interval(rng: np.random.Generator) -> None:
-    """Errors that last for a second weigh more than as many that do not."""
+    """Errors that last for a second widen the interval more than equally large quick ones."""
     run = record(made_movement(rng), 0.125, rng, Flaws(noise_deg=0.1))
     drift = np.radians(1.0) * rng.normal(size=(len(run.actual_times_s), 22, 3))
     slow = signal.lfilter([0.02], [1.0, -0.98], drift, axis=0) / np.sqrt(0.02 / 1.98)
@@ -99,7 +99,7 @@ def test_slow_errors_widen_the_interval(rng: np.random.Generator) -> None:
 
 
 def test_identical_streams_have_no_latency(rng: np.random.Generator) -> None:
-    """Zero within 0.1 ms, whichever sign the quaternions have and however they flip."""
+    """Identical streams have zero latency within 0.1 ms, whatever the quaternions' signs."""
     run = record(made_movement(rng), 0.0, rng, Flaws(noise_deg=0.3), duration_s=20.0)
     flips = np.where(rng.random(run.target_rotations.shape[:2]) < 0.5, -1.0, 1.0)
     result = achieved_latency(
@@ -117,7 +117,7 @@ def test_identical_streams_have_no_latency(rng: np.random.Generator) -> None:
 def test_a_captured_movement_through_the_delay_buffer(
     shared_data: Path, name: str, latency_s: float
 ) -> None:
-    """A person's walk, dance or kick, delayed by the avatar's own buffer: under 1 ms off."""
+    """Captured movement delayed by the avatar's own buffer is found to within 1 ms."""
     file = shared_data / "motion" / "cmu_bvh" / f"{name}.bvh"
     run = delayed_copy(*looped_capture(file, 20.0), latency_s)
     got_s, low_s, high_s = found(run)
@@ -126,7 +126,7 @@ def test_a_captured_movement_through_the_delay_buffer(
 
 
 def test_a_filter_adds_its_group_delay(rng: np.random.Generator) -> None:
-    """A body that follows through a filter of constant group delay is late by just that."""
+    """A filter of constant group delay adds exactly that delay."""
     run = record(made_movement(rng), 0.125, rng, duration_s=30.0)
     window = np.hanning(21)[1:-1]
     smooth = signal.lfilter(window / window.sum(), [1.0], run.actual_rotations, axis=0)
@@ -135,7 +135,7 @@ def test_a_filter_adds_its_group_delay(rng: np.random.Generator) -> None:
 
 
 def test_a_slow_controller_adds_about_its_mean_lag(rng: np.random.Generator) -> None:
-    """A first-order follower lags by its time constant at most: less for quicker movement."""
+    """A first-order follower lags by its time constant at most, less for quicker movement."""
     keep = np.exp(-1.0 / (90 * 0.05))
     mean_lag_s = keep / (1.0 - keep) / 90
     run = record(made_movement(rng, highest_hz=0.6), 0.0, rng, duration_s=30.0)
@@ -152,7 +152,7 @@ def _from(run: StreamPair, frame: int) -> dict[str, np.ndarray]:
 
 
 def test_constant_and_slow_differences_are_not_time(rng: np.random.Generator) -> None:
-    """A body whose limbs hang elsewhere, or sink slowly, has the same latency."""
+    """Constant offsets and slow sagging of the limbs do not change the latency."""
     run = record(made_movement(rng), 0.125, rng, duration_s=30.0)
     share = (run.actual_times_s / 30.0)[:, np.newaxis, np.newaxis]
     sag = rot.from_rotation_vector(rng.normal(size=(22, 3)) * 0.1 * (1.0 + share))
@@ -161,7 +161,7 @@ def test_constant_and_slow_differences_are_not_time(rng: np.random.Generator) ->
 
 
 def test_glitches_and_unusable_samples_decide_nothing(rng: np.random.Generator) -> None:
-    """Jumps to anywhere, NaN, non-unit rotations and a joint that is never tracked."""
+    """Glitches, NaN, non-unit rotations and untracked joints do not change the latency."""
     run = record(made_movement(rng), 0.125, rng, Flaws(noise_deg=0.2), duration_s=30.0)
     target, actual = run.target_rotations.copy(), run.actual_rotations.copy()
     wild = rng.random(actual.shape[:2]) < 0.01
@@ -178,7 +178,7 @@ def test_glitches_and_unusable_samples_decide_nothing(rng: np.random.Generator) 
 
 
 def test_the_hips_do_not_count(rng: np.random.Generator) -> None:
-    """Hips are not delayed: whatever they do changes nothing."""
+    """Rotations of the hips, which are not delayed, do not change the latency."""
     run = record(made_movement(rng), 0.125, rng, Flaws(noise_deg=0.2), duration_s=10.0)
     actual = run.actual_rotations.copy()
     actual[:, 0] = rot.normalise(rng.normal(size=(len(actual), 4)))
@@ -186,21 +186,21 @@ def test_the_hips_do_not_count(rng: np.random.Generator) -> None:
 
 
 def test_only_active_frames_count(rng: np.random.Generator) -> None:
-    """Another delay while the clock stands, and frames of a pause, change nothing."""
+    """Frames of a pause, even with another delay, do not change the latency."""
     movement = made_movement(rng)
     wanted = record(movement, 0.125, rng, duration_s=30.0)
     other = record(movement, 0.3, rng, duration_s=30.0)
     active = (wanted.actual_times_s % 6.0) < 4.0
     mixed = np.where(active[:, None, None], wanted.actual_rotations, other.actual_rotations)
     result = latency_of_runs([replace(wanted, actual_rotations=mixed, active=active)])
-    # At the edges the curves see a little of the other side.
+    # At the edges the curves include a little of the other side.
     assert result.latency_s == pytest.approx(0.125, abs=1.0 * MS)
     assert result.samples == active.sum()
     assert result.movement_s == pytest.approx(20.0, abs=0.2)
 
 
 def test_runs_of_the_client_have_clocks_of_their_own(rng: np.random.Generator) -> None:
-    """Two runs whose clocks differ by a day are compared each on its own."""
+    """Runs of the client whose clocks differ by a day are each evaluated separately."""
     movement = made_movement(rng)
     first = record(movement, 0.125, rng, duration_s=4.0)
     second = record(movement, 0.125, rng, duration_s=4.0)
@@ -217,7 +217,7 @@ def test_runs_of_the_client_have_clocks_of_their_own(rng: np.random.Generator) -
 
 
 def test_a_long_phase_with_a_long_pause(rng: np.random.Generator) -> None:
-    """More than a minute in several stretches, hours apart."""
+    """The latency is found over several stretches with pauses of hours between them."""
     movement = made_movement(rng)
     early = record(movement, 0.125, rng, duration_s=70.0)
     late = record(movement, 0.125, rng, duration_s=10.0)

@@ -1,4 +1,4 @@
-"""Achieved latency: where nothing can be said, it is not said, and the reason is."""
+"""Achieved latency: no latency is given where the data do not allow it, but the reason."""
 
 import re
 from dataclasses import astuple, replace
@@ -37,7 +37,7 @@ def rng() -> np.random.Generator:
 
 
 def test_little_movement_gives_no_latency_but_says_how_much(rng: np.random.Generator) -> None:
-    """Under 5 s above 20 deg/s nothing is claimed."""
+    """With less than 5 s above 20 deg/s no latency is given, only the amount of movement."""
     movement = made_movement(rng)
 
     def stops(times_s: FloatArray) -> FloatArray:
@@ -53,7 +53,7 @@ def test_little_movement_gives_no_latency_but_says_how_much(rng: np.random.Gener
 def test_movement_is_what_turns_faster_than_20_degrees_a_second(
     speed_deg_s: float, expected_s: float
 ) -> None:
-    """One joint at a constant speed; noise of the others is no movement."""
+    """Movement is the time in which any joint turns faster than 20 deg/s; noise does not count."""
     rng = np.random.default_rng(1)
     times_s = np.arange(0.0, 8.0, 1 / 90)
     vectors = np.radians(0.2) * rng.normal(size=(len(times_s), 22, 3))
@@ -64,7 +64,7 @@ def test_movement_is_what_turns_faster_than_20_degrees_a_second(
 
 
 def test_unrelated_bodies_have_no_latency(rng: np.random.Generator) -> None:
-    """Another movement, shuffled frames, time turned round, a body that stands: each with why."""
+    """Unrelated, shuffled, reversed or motionless streams have no latency, each with a reason."""
     run = record(made_movement(rng), 0.125, rng, duration_s=30.0)
     other = record(made_movement(rng), 0.125, rng, duration_s=30.0).actual_rotations
     own = run.actual_rotations
@@ -76,7 +76,7 @@ def test_unrelated_bodies_have_no_latency(rng: np.random.Generator) -> None:
 
 
 def test_a_latency_beyond_the_lags_is_not_made_up(rng: np.random.Generator) -> None:
-    """A body that is later than looked for gets no number."""
+    """A latency beyond the searched lags gives no number, but a reason."""
     result = latency_of_runs([record(made_movement(rng), 0.52, rng)], highest_s=0.5)
     assert result.latency_s is None
     assert result.reason is not None
@@ -87,7 +87,7 @@ def test_a_latency_beyond_the_lags_is_not_made_up(rng: np.random.Generator) -> N
 def test_movement_that_repeats_gives_the_smallest_lag_and_says_so(
     latency_s: float, noise_deg: float, rng: np.random.Generator
 ) -> None:
-    """One stride a second, each like the other: a second later would fit as well."""
+    """For perfectly periodic movement the smallest lag is given with a warning."""
     movement = made_movement(rng, highest_hz=0.1)
     stride = record(_every_second(movement), latency_s, rng, Flaws(noise_deg=noise_deg))
     result = latency_of_runs([stride])
@@ -101,7 +101,7 @@ def _every_second(movement: Movement) -> Movement:
 
 
 def test_walking_that_differs_from_step_to_step_is_not_ambiguous(shared_data: Path) -> None:
-    """Left and right steps look much alike, and are told apart all the same."""
+    """The latency of real walking is unambiguous although its steps look alike."""
     times_s, rotations = looped_capture(shared_data / "motion" / "cmu_bvh" / "02_01.bvh", 30.0)
     result = latency_of_runs([delayed_copy(times_s, rotations, 1.2)])
     assert result.latency_s == pytest.approx(1.2, abs=0.1 * MS)
@@ -109,7 +109,7 @@ def test_walking_that_differs_from_step_to_step_is_not_ambiguous(shared_data: Pa
 
 
 def test_latency_is_off_beyond_ten_milliseconds_or_a_frame() -> None:
-    """The longer of the two counts; what is unknown is not off."""
+    """A latency is off beyond the longer of 10 ms and a frame; an unknown one never is."""
     at_90 = AchievedLatency(0.125, 0.124, 0.126, 60.0, 5400, 1 / 90)
     assert tolerance_s(at_90) == 1 / 90
     assert tolerance_s(replace(at_90, frame_s=1 / 120)) == 0.010
@@ -120,7 +120,7 @@ def test_latency_is_off_beyond_ten_milliseconds_or_a_frame() -> None:
 
 
 def test_empty_streams_have_a_reason() -> None:
-    """No frame, one frame, nothing active, or nothing but NaN: no latency, and no error."""
+    """Streams without usable or active frames give no latency, but a reason."""
     rng = np.random.default_rng(0)
     run = record(made_movement(rng), 0.0, rng, duration_s=6.0)
     none = StreamPair(*(values[:0] for values in astuple(run)))
@@ -133,8 +133,8 @@ def test_empty_streams_have_a_reason() -> None:
         assert result.reason == "There are no active frames of both bodies."
 
 
-def test_streams_of_other_shapes_are_refused() -> None:
-    """Wrong joints, unequal lengths and impossible lags are named."""
+def test_streams_of_other_shapes_are_rejected() -> None:
+    """Errors about wrong joints, unequal lengths and impossible lags name them."""
     times_s, q = np.arange(5.0), rot.identity(5, 22)
     with pytest.raises(AchievedLatencyError, match="do not fit"):
         achieved_latency(times_s, q[:, :21], times_s, q)

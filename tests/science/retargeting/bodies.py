@@ -1,4 +1,4 @@
-"""Skeletons for tests: the product's own body, and bodies put together at random."""
+"""Skeletons for tests: the product's own body, and random bodies."""
 
 import numpy as np
 
@@ -19,7 +19,7 @@ _OUTWARDS = {"Arm": (-1.0, 0.0, 0.0), "Hand": (-1.0, 0.0, 0.0), "Leg": (0.0, -1.
 
 
 def own_body(stature_m: float) -> Rig:
-    """The product's own skeleton, T-pose at rest, with tips of head, hands and toes."""
+    """Return the product's skeleton in its T-pose, with ends of head, hands and toes."""
     skeleton = build_skeleton(stature_m)
     ends = []
     for name in _FREE:
@@ -29,16 +29,16 @@ def own_body(stature_m: float) -> Rig:
 
 
 def scaled(rig: Rig, factor: float) -> Rig:
-    """The same body at another size."""
+    """Return the same skeleton at another size."""
     ends = tuple((joint, (factor * x, factor * y, factor * z)) for joint, (x, y, z) in rig.ends)
     return Rig(rig.names, rig.parents, factor * rig.offsets_m, rig.rest_rotations, ends)
 
 
 def random_body(rng: np.random.Generator, *, along_axes_share: float = 0.0) -> Rig:
-    """A body with any bone lengths, directions and rest rotations, and joints between its own.
+    """Return a body with random bone lengths, directions, rest rotations and extra joints.
 
-    A share of them has bones exactly or almost along the axes they are aligned to, or against
-    them, which is where turns are nearly nothing or nearly half.
+    Some of its bones lie exactly or almost along the axes they are aligned to, or against them,
+    where rotations are nearly zero or nearly half a turn.
     """
     along_axes = rng.random() < along_axes_share
     names: list[str] = []
@@ -59,7 +59,7 @@ def random_body(rng: np.random.Generator, *, along_axes_share: float = 0.0) -> R
 
 
 def _along_axis(name: str, rng: np.random.Generator) -> FloatArray:
-    """A bone up, down or sideways, either way round, and off by nothing or 1e-17 to 0.1 of it."""
+    """Return a bone along its axis or against it, exact or off by a fraction of 1e-17 to 0.1."""
     if name.endswith(("UpperLeg", "UpperArm")):
         return np.array((-0.1 if name.startswith("Left") else 0.1, 0.0, 0.0))
     outwards = next((axis for part, axis in _OUTWARDS.items() if part in name), (0.0, 1.0, 0.0))
@@ -69,7 +69,7 @@ def _along_axis(name: str, rng: np.random.Generator) -> FloatArray:
 
 
 def random_movement(rig: Rig, rng: np.random.Generator, frames: int = 60) -> RigMotion:
-    """Every joint turning smoothly its own way, the root wandering upright."""
+    """Return a movement in which every joint turns smoothly and the root wanders upright."""
     times = np.arange(frames)[:, None, None] / 30.0
     joints = rig.joint_count
     swing = rng.normal(size=(joints, 3)) * np.sin(times + rng.uniform(0, 6, (joints, 1)))
@@ -80,7 +80,7 @@ def random_movement(rig: Rig, rng: np.random.Generator, frames: int = 60) -> Rig
 
 
 def turned(motion: RigMotion, turn: FloatArray) -> RigMotion:
-    """The movement in a world turned by one rotation."""
+    """Return the movement in a world turned by one rotation."""
     rotations = motion.rotations.copy()
     rotations[:, 0] = multiply(turn, rotations[:, 0])
     root = rotate(turn, motion.root_positions_m)

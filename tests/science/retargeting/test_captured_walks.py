@@ -1,4 +1,4 @@
-"""Real walks on avatars of three sizes, with the maps that are proposed for them."""
+"""Captured walks on avatars of three sizes, with the joint maps that are proposed for them."""
 
 from pathlib import Path
 
@@ -14,7 +14,7 @@ from tests.science.retargeting.bodies import SAME, own_body
 
 METRES_PER_UNIT = 0.056444
 WALKS = ("02_01", "05_06", "06_01", "12_02")
-# Not the neck: a second joint of it bends between its ends, and no avatar joint takes that.
+# Not the neck: it has a second joint that no avatar joint corresponds to.
 SAME_BONES = (
     ("LeftUpperArm", "LeftLowerArm"),
     ("RightLowerArm", "RightHand"),
@@ -42,7 +42,7 @@ def _direction(places: FloatArray, start: int, end: int) -> FloatArray:
 def test_a_walk_is_the_same_walk_on_any_avatar(
     shared_data: Path, name: str, stature_m: float
 ) -> None:
-    """Limbs point where the person's point; travel is scaled by the legs; the feet start on 0."""
+    """Limbs keep their directions, travel scales with the legs, and feet start on the floor."""
     motion, avatar = _walk(shared_data, name), own_body(stature_m)
     joint_map = propose_joint_map(motion.rig).joint_map
     retargeter = Retargeter(motion.rig, joint_map, avatar, SAME)
@@ -64,7 +64,7 @@ def test_a_walk_is_the_same_walk_on_any_avatar(
 
 @pytest.mark.parametrize("name", ["02_01", "06_01", "12_02"])
 def test_an_avatar_looks_where_it_walks(shared_data: Path, name: str) -> None:
-    """Captures face +z at rest and our avatars -z: still hips and head face along the walk."""
+    """Hips and head face along the walk, though captures face +z at rest and avatars -z."""
     motion, avatar = _walk(shared_data, name), own_body(1.65)
     joint_map = propose_joint_map(motion.rig).joint_map
     result = Retargeter(motion.rig, joint_map, avatar, SAME).batch(motion)

@@ -1,4 +1,4 @@
-"""OptiTrack's world and Unreal's, and Unreal's own Euler angles."""
+"""Coordinates of OptiTrack and of Unreal, and Unreal's Euler angles."""
 
 import numpy as np
 import pytest
@@ -18,8 +18,8 @@ def rng() -> np.random.Generator:
     return np.random.default_rng(4)
 
 
-def test_there_and_back_again(rng: np.random.Generator) -> None:
-    """The way back undoes the way there."""
+def test_converting_there_and_back_changes_nothing(rng: np.random.Generator) -> None:
+    """Converting to another coordinate system and back changes nothing."""
     places, q = rng.normal(size=(50, 3)), normalise(rng.normal(size=(50, 4)))
     places_back, q_back = optitrack_from_unreal(*unreal_from_optitrack(places, q))
     np.testing.assert_allclose(places_back, places, atol=1e-15)
@@ -27,7 +27,7 @@ def test_there_and_back_again(rng: np.random.Generator) -> None:
 
 
 def test_turning_and_converting_can_be_exchanged(rng: np.random.Generator) -> None:
-    """A turned point, converted, is the converted point turned by the converted rotation."""
+    """Converting a turned point equals turning the converted point by the converted rotation."""
     places, q = rng.normal(size=(50, 3)), normalise(rng.normal(size=(50, 4)))
     unreal_cm, unreal_q = unreal_from_optitrack(places, q)
     turned_cm, _ = unreal_from_optitrack(rotate(q, places), q)
@@ -35,7 +35,7 @@ def test_turning_and_converting_can_be_exchanged(rng: np.random.Generator) -> No
 
 
 def test_a_product_of_rotations_is_converted_factor_by_factor(rng: np.random.Generator) -> None:
-    """So local rotations convert like those in the world."""
+    """A product of rotations converts factor by factor, so local rotations convert as well."""
     a, b = normalise(rng.normal(size=(2, 50, 4)))
     origin = np.zeros((50, 3))
     product = unreal_from_optitrack(origin, multiply(a, b))[1]
@@ -54,7 +54,7 @@ def test_a_t_pose_of_motive_faces_unreals_y() -> None:
 
 
 def test_a_rotator_is_yaw_then_pitch_then_roll_with_unreals_signs() -> None:
-    """Yaw turns x to y; a positive pitch raises x to z; a positive roll lowers y, away from z."""
+    """Positive yaw turns x to y, positive pitch raises x to z, positive roll lowers y."""
     x, y = np.eye(3)[:2]
     yaw, pitch, roll = (np.array(a) for a in ((0, 0, 90.0), (0, 90.0, 0), (90.0, 0, 0)))
     np.testing.assert_allclose(rotate(from_rotator(yaw), x), (0, 1, 0), atol=1e-15)
@@ -63,6 +63,6 @@ def test_a_rotator_is_yaw_then_pitch_then_roll_with_unreals_signs() -> None:
 
 
 def test_a_rotator_comes_back(rng: np.random.Generator) -> None:
-    """Angles from a rotation make the rotation again."""
+    """Unreal's angles of a rotation give the same rotation again."""
     q = normalise(rng.normal(size=(200, 4)))
     assert float(np.max(geodesic_angle(from_rotator(to_rotator(q)), q))) < 1e-12

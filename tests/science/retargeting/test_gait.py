@@ -1,4 +1,4 @@
-"""Contacts, steps and leg angles of walks that are known."""
+"""Contacts, steps and leg angles of synthetic walks whose truth is known."""
 
 import numpy as np
 import pytest
@@ -20,7 +20,7 @@ _WALK = made_walk(_BODY)
 
 
 def _turned(motion: RigMotion, angle_rad: float) -> RigMotion:
-    """The same movement in a world turned about up."""
+    """Return the same movement in a world turned about the vertical."""
     turn = from_rotation_vector(np.array((0.0, angle_rad, 0.0)))
     rotations = motion.rotations.copy()
     rotations[:, 0] = multiply(turn, rotations[:, 0])
@@ -34,7 +34,7 @@ def _noisy(motion: RigMotion, rng: np.random.Generator, spread_m: float) -> RigM
 
 
 def test_steps_of_a_made_walk_are_as_long_and_high_as_they_were_made() -> None:
-    """The first and the closing step are half as long; height is that of the swing."""
+    """Step lengths and heights are found; the first and the closing step are half as long."""
     walk = walk_figures(_WALK.motion, mapped(_BODY))
     assert [step.side for step in walk.steps] == ["left", "right", "left", "right", "left"]
     assert [step.length_m for step in walk.steps] == pytest.approx(_WALK.lengths_m, abs=1e-9)
@@ -42,7 +42,7 @@ def test_steps_of_a_made_walk_are_as_long_and_high_as_they_were_made() -> None:
 
 
 def test_lifts_are_found_when_the_feet_leave_and_come_down() -> None:
-    """Within 0.06 s: a foot that has hardly begun to move still counts as down."""
+    """Lifts and contacts are found within 0.06 s of the truth."""
     walk = walk_figures(_WALK.motion, mapped(_BODY))
     found = [(step.lift_s, step.contact_s) for step in walk.steps]
     assert np.array(found) == pytest.approx(np.array(_WALK.lifts_s), abs=0.06)
@@ -52,7 +52,7 @@ def test_lifts_are_found_when_the_feet_leave_and_come_down() -> None:
 
 
 def test_a_standing_foot_does_not_slide_in_its_middle() -> None:
-    """What is measured in contact is what the foot moves at its edges: a few cm/s at most."""
+    """In the middle of a contact a foot does not slide; at its edges, by a few cm/s at most."""
     legs = mapped(_BODY)
     slide = mean_slide_m_s(legs.balls_m(*_WALK.motion.world()), find_contacts(_WALK.motion, legs))
     assert slide is not None
@@ -61,7 +61,7 @@ def test_a_standing_foot_does_not_slide_in_its_middle() -> None:
 
 @pytest.mark.parametrize("factor", [0.01, 0.6, 1.7])
 def test_contacts_do_not_depend_on_size(factor: float) -> None:
-    """A body of another size that does the same is down in the same frames."""
+    """A scaled body with the same movement has contacts in the same frames."""
     motion = _WALK.motion
     other = RigMotion(
         scaled(motion.rig, factor),
@@ -76,13 +76,13 @@ def test_contacts_do_not_depend_on_size(factor: float) -> None:
 
 @pytest.mark.parametrize("angle_rad", [0.7, 2.0, -3.0])
 def test_steps_do_not_depend_on_where_the_walk_heads(angle_rad: float) -> None:
-    """Forward is the direction of travel, whatever the axes of the room."""
+    """Steps do not depend on the direction of the walk in the room."""
     turned = walk_figures(_turned(_WALK.motion, angle_rad), mapped(_BODY))
     assert [s.length_m for s in turned.steps] == pytest.approx(_WALK.lengths_m, abs=1e-9)
 
 
 def test_noise_of_a_millimetre_adds_no_lift() -> None:
-    """Two limits, and gaps of at least 0.06 s, keep a foot at the limit from flickering."""
+    """Noise of a millimetre adds no lift, thanks to hysteresis and a shortest gap of 0.06 s."""
     rng = np.random.default_rng(11)
     walk = walk_figures(_noisy(_WALK.motion, rng, 0.001), mapped(_BODY))
     assert len(walk.steps) == len(_WALK.lengths_m)
@@ -90,7 +90,7 @@ def test_noise_of_a_millimetre_adds_no_lift() -> None:
 
 
 def test_a_floor_that_drifts_does_not_hide_contacts() -> None:
-    """Captured floors tilt, as much as 2 cm a stride in CMU's walks."""
+    """All steps are found on a floor that tilts by 2 cm a metre, as captured floors do."""
     root = _WALK.motion.root_positions_m.copy()
     root[:, 1] -= 0.02 * root[:, 2]
     tilted = RigMotion(_BODY, RATE_HZ, root, _WALK.motion.rotations, _WALK.motion.observed)
@@ -98,7 +98,7 @@ def test_a_floor_that_drifts_does_not_hide_contacts() -> None:
 
 
 def test_standing_still_is_one_contact_without_a_step() -> None:
-    """Both feet are down from the first to the last frame."""
+    """While standing still both feet are down in all frames and there is no step."""
     still = RigMotion(
         _BODY,
         RATE_HZ,
@@ -114,7 +114,7 @@ def test_standing_still_is_one_contact_without_a_step() -> None:
 
 
 def test_heights_are_above_the_ground() -> None:
-    """On a ramp that rises with the way, the ball's height is what is left over it."""
+    """On a ramp the height of the foot is counted from the ramp below it."""
     up = Ramp((0.0, 0.0), (0.0, -1.0), run_m=10.0, rise_m=1.0)
     flat = walk_figures(_WALK.motion, mapped(_BODY)).feet[0]
     over = walk_figures(_WALK.motion, mapped(_BODY), up).feet[0]
@@ -124,7 +124,7 @@ def test_heights_are_above_the_ground() -> None:
 
 
 def _bent(joint: str, angle_rad: float) -> RigMotion:
-    """Two frames of a body at rest with one joint turned about the axis to its right."""
+    """Return two frames of a body at rest with one joint turned about the axis to its right."""
     rotations = identity(2, _BODY.joint_count)
     rotations[:, _BODY.index(joint)] = from_rotation_vector(np.array((angle_rad, 0.0, 0.0)))
     root = np.tile(_BODY.offsets_m[0], (2, 1))
@@ -134,7 +134,7 @@ def _bent(joint: str, angle_rad: float) -> RigMotion:
 
 
 def test_leg_angles_are_zero_standing_and_grow_with_flexion() -> None:
-    """Thigh forward, shin back and toes up are positive, each by the angle it is turned."""
+    """Thigh forward, shin back and toes up are positive, each by the angle turned."""
     rest = leg_angles(_bent("Head", 0.0), SAME)[0]
     hip = leg_angles(_bent("LeftUpperLeg", 0.5), SAME)[0]
     knee = leg_angles(_bent("LeftLowerLeg", -0.7), SAME)[0]
@@ -148,14 +148,14 @@ def test_leg_angles_are_zero_standing_and_grow_with_flexion() -> None:
 
 
 def test_legs_that_are_not_mapped_are_named() -> None:
-    """An upper body has no walk, and says what is missing."""
+    """Walk figures of an upper body are refused with the leg joints that are not mapped."""
     upper = {name: name for name in SAME if "Leg" not in name}
     with pytest.raises(RigError, match="no LeftUpperLeg, LeftLowerLeg, RightUpperLeg"):
         legs_of(_BODY, upper)
 
 
 def test_without_toe_joints_the_end_of_the_foot_is_followed() -> None:
-    """Where toes are unmapped the free end stands in for them, else the ankle."""
+    """Without mapped toes the free end of the foot is followed, or else the ankle."""
     no_toes = {name: name for name in SAME if "Toes" not in name}
     assert legs_of(_BODY, no_toes).left.ball == _BODY.index("LeftFoot")
     tip = (0.0, -0.04, -0.15)

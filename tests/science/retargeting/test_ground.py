@@ -1,4 +1,4 @@
-"""Grounds: heights at places, and what is refused."""
+"""Grounds: their heights at given places, and invalid grounds."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ from app.science.retargeting.ground import Flat, Grid, GroundError, Ramp, Steps
 
 
 def test_flat_ground_has_one_height_in_the_shape_of_its_places() -> None:
-    """Places broadcast, and a single place gives a single height."""
+    """Heights of flat ground have the shape of the places, which are broadcast."""
     heights = Flat(0.3).height_m(np.zeros((4, 1)), np.zeros(3))
     assert heights.shape == (4, 3)
     assert np.all(heights == 0.3)
@@ -15,21 +15,21 @@ def test_flat_ground_has_one_height_in_the_shape_of_its_places() -> None:
 
 
 def test_a_ramp_rises_evenly_between_its_ends() -> None:
-    """Level before, half up in the middle, level behind; across the slope nothing changes."""
+    """A ramp is level before and after its ends, linear between, and constant across."""
     ramp = Ramp(start_m=(0.0, -1.0), uphill=(0.0, -3.0), run_m=2.0, rise_m=0.5)
     z = np.array((1.0, -1.0, -2.0, -3.0, -9.0))
     assert ramp.height_m(7.0, z).tolist() == [0.0, 0.0, 0.25, 0.5, 0.5]
 
 
 def test_steps_add_up_at_their_edges() -> None:
-    """A kerb up and one down again; an edge belongs to its upper side."""
+    """Steps up and down add up, and an edge belongs to its upper side."""
     kerbs = Steps((0.0, 0.0), (1.0, 0.0), edges_m=(1.0, 3.0), rises_m=(0.12, -0.10))
     heights = kerbs.height_m(np.array((0.99, 1.0, 2.0, 3.0)), 0.0)
     assert heights == pytest.approx((0.0, 0.12, 0.12, 0.02), abs=1e-15)
 
 
 def test_a_grid_is_bilinear_and_goes_on_beyond_its_edge() -> None:
-    """A plane given at corners is that plane everywhere inside; outside the edge holds."""
+    """A grid is interpolated bilinearly and keeps its edge's height outside."""
     x, z = np.meshgrid(np.arange(4), np.arange(3), indexing="ij")
     grid = Grid(corner_m=(-1.0, 2.0), cell_m=0.5, heights_m=0.1 * x - 0.2 * z)
     rng = np.random.default_rng(5)
@@ -50,8 +50,8 @@ def test_a_grid_is_bilinear_and_goes_on_beyond_its_edge() -> None:
         (lambda: Grid((0, 0), 1.0, np.full((2, 2), np.nan)), "finite"),
     ],
 )
-def test_impossible_grounds_are_refused(build: object, reason: str) -> None:
-    """The message says what is wrong."""
+def test_impossible_grounds_are_rejected(build: object, reason: str) -> None:
+    """An impossible ground is rejected with the reason."""
     assert callable(build)
     with pytest.raises(GroundError, match=reason):
         build()

@@ -1,4 +1,4 @@
-"""Joint maps: proposed from names and hierarchy, and checked when changed by hand."""
+"""Joint maps: proposed from names and hierarchy, and validated when edited by hand."""
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ BODY = {
 
 
 def rig_of(tree: str) -> Rig:
-    """A rig from lines "joint parent", lengths of no meaning."""
+    """Return a rig from lines "joint parent", with arbitrary bone lengths."""
     pairs = [line.split() for line in tree.strip().splitlines()]
     names = [pair[0] for pair in pairs]
     parents = [names.index(pair[1]) if len(pair) > 1 else -1 for pair in pairs]
@@ -23,7 +23,7 @@ def rig_of(tree: str) -> Rig:
 
 
 def both_sides(limbs: str, left: str, right: str) -> str:
-    """Lines for both sides: `*` in a name is replaced."""
+    """Return the lines for both sides, with `*` in the names replaced."""
     return "\n".join(limbs.strip().replace("*", side) for side in (left, right))
 
 
@@ -116,15 +116,15 @@ ball_* foot_*
     ],
     ids=["cmu-bvh", "asf", "motive", "mannequin", "body", "namespace"],
 )
-def test_the_usual_skeletons_are_read_whole(rig: Rig, unmapped: tuple[str, ...]) -> None:
-    """Each maps every joint it has a part for, in an order that holds, each joint once."""
+def test_the_usual_skeletons_are_mapped_completely(rig: Rig, unmapped: tuple[str, ...]) -> None:
+    """Every joint of the usual skeletons that has a part is mapped, each once, parents first."""
     proposal = propose_joint_map(rig)
     assert proposal.unmapped_body_joints == unmapped
     check_joint_map(rig, proposal.joint_map)
 
 
 def test_known_answers_of_each_naming() -> None:
-    """The parts that different systems call by misleading names."""
+    """Misleading joint names of each system are mapped to the right parts."""
     assert propose_joint_map(ASF).joint_map["Hips"] == "root"
     assert propose_joint_map(ASF).joint_map["LeftHand"] == "lhand"
     assert propose_joint_map(ASF).joint_map["UpperChest"] == "thorax"
@@ -136,7 +136,7 @@ def test_known_answers_of_each_naming() -> None:
 
 
 def test_a_shoulder_is_the_upper_arm_where_there_is_no_other() -> None:
-    """Joints named after the places where bones meet: shoulder, elbow, wrist; hip, knee, ankle."""
+    """A joint called shoulder is the upper arm if limbs are named after joints: elbow, knee."""
     rig = rig_of(
         "pelvis\ntorso pelvis\nneck torso\nhead neck\n"
         + both_sides(
@@ -153,8 +153,8 @@ def test_a_shoulder_is_the_upper_arm_where_there_is_no_other() -> None:
     assert "LeftShoulder" not in joint_map
 
 
-def test_nameless_joints_of_a_limb_are_found_by_where_they_hang() -> None:
-    """Between a thigh and a foot there is a shin, whatever it is called."""
+def test_unnamed_joints_of_a_limb_are_found_by_hierarchy() -> None:
+    """A joint between a thigh and a foot is mapped to the shin, whatever its name."""
     rig = rig_of(
         "base\nbelly base\n"
         + both_sides("*Thigh base\n*X *Thigh\n*Foot *X\n*End *Foot", "Left", "Right")
@@ -167,8 +167,11 @@ def test_nameless_joints_of_a_limb_are_found_by_where_they_hang() -> None:
     assert proposal.sources["LeftFoot"] == "name"
 
 
-def test_a_map_made_by_hand_is_refused_with_every_problem() -> None:
-    """An unknown joint, one used twice, a child above its parent, and no hips, all at once."""
+def test_a_map_made_by_hand_is_rejected_with_every_problem() -> None:
+    """All problems of an invalid joint map are reported together.
+
+    An unknown joint, a duplicate, a child above its parent, and missing hips.
+    """
     with pytest.raises(JointMapError) as refused:
         check_joint_map(
             CMU,

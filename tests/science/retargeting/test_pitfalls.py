@@ -1,7 +1,7 @@
-"""What the paper's printed formulas do if they are followed to the letter, one slip at a time.
+"""What happens if the paper's printed formulas are followed literally, one mistake at a time.
 
-Each test makes one slip on the mannequin and shows by how much the T-pose goes wrong, so that
-nobody puts the slip back in. Without a slip `_aligned` is the product's own T-pose.
+Each test makes one mistake on the mannequin and shows how wrong its T-pose becomes, so that the
+mistake is not reintroduced. Without a mistake `_aligned` gives the product's own T-pose.
 """
 
 from collections.abc import Callable
@@ -32,7 +32,7 @@ ORIGIN = np.zeros(3)
 
 @pytest.fixture(scope="module")
 def right() -> TPose:
-    """The mannequin's T-pose as the product makes it."""
+    """Return the mannequin's T-pose as the product computes it."""
     return t_pose(mannequin(), MANNEQUIN_MAP, UNREAL, local_axes=UNREAL_LOCAL_AXES)
 
 
@@ -45,7 +45,7 @@ def _aligned(
     leaf_first: bool = False,
     fresh: bool = True,
 ) -> FloatArray:
-    """Return local rotations of a T-pose made as the paper prints it, with the slips asked for."""
+    """Return local rotations of a T-pose computed as printed, with the given mistakes."""
     rig = right.rig
     rest, local = rig.rest_world()[1], rig.rest_rotations.copy()
     bones = {bone.joint: bone for bone in right.bones}
@@ -64,7 +64,7 @@ def _aligned(
 
 
 def _off_axis_deg(right: TPose, local: FloatArray) -> dict[str, float]:
-    """Angle between each bone and its axis, by body joint."""
+    """Return the angle between each bone and its axis in degrees, by body joint."""
     world = to_world(right.rig, ORIGIN, local)[1]
     return {bone.body_joint: _angle_deg(bone, world[bone.joint]) for bone in right.bones}
 
@@ -76,59 +76,59 @@ def _angle_deg(bone: Bone, world: FloatArray) -> float:
 
 
 def _turned_deg(right: TPose, local: FloatArray) -> dict[str, float]:
-    """Angle from the right local rotation of each joint to the one given."""
+    """Return the angle from each joint's correct local rotation to the given one, in degrees."""
     angles = np.degrees(geodesic_angle(right.local_rotations, local))
     return dict(zip(right.rig.names, angles.tolist(), strict=True))
 
 
 def _normalised_at_the_end(v: FloatArray, k: FloatArray) -> FloatArray:
-    """q_diff as printed: the axis v x k has the length of the sine, and only q is normalised."""
+    """Return q_diff as printed: the axis v x k is not normalised, only the quaternion is."""
     angle = np.arccos(np.clip(np.dot(v, k), -1.0, 1.0))
     return normalise(np.array((np.cos(angle / 2), *(np.sin(angle / 2) * np.cross(v, k)))))
 
 
-def test_without_a_slip_it_is_the_products_t_pose(right: TPose) -> None:
-    """So what the other tests show is the slip alone."""
+def test_without_a_mistake_it_is_the_products_t_pose(right: TPose) -> None:
+    """Without a mistake, the test's own computation gives the product's T-pose."""
     assert max(_turned_deg(right, _aligned(right)).values()) < 1e-9
 
 
 def test_swapping_parent_and_child_turns_every_bone_round(right: TPose) -> None:
-    """With k from child to parent, as the paper's words have it, all bones end 180 degrees off."""
+    """With k from child to parent, as the paper's text says, all bones end 180 degrees off."""
     off = _off_axis_deg(right, _aligned(right, sign=-1.0))
     assert min(off.values()) == pytest.approx(180.0, abs=1e-4)
 
 
 def test_normalising_only_the_quaternion_leaves_up_to_19_degrees(right: TPose) -> None:
-    """The axis must be made a unit vector first: the lower arms are 19.3 degrees off else."""
+    """Without normalising the axis first, the lower arms are 19.3 degrees off."""
     turned = _turned_deg(right, _aligned(right, difference=_normalised_at_the_end))
     assert max(turned.values()) == pytest.approx(19.3, abs=0.05)
     assert turned["lowerarm_l"] == pytest.approx(max(turned.values()))
 
 
 def test_without_the_inverse_the_upper_arm_is_a_right_angle_off(right: TPose) -> None:
-    """q_diff turns from the axis to the bone; the joint needs its inverse, else 99.7 degrees."""
+    """With q_diff in place of its inverse, the upper arm is 99.7 degrees off."""
     off = _off_axis_deg(right, _aligned(right, inverse=False))
     assert off["LeftUpperArm"] == pytest.approx(99.7, abs=0.05)
     assert off["RightUpperArm"] == pytest.approx(99.7, abs=0.05)
 
 
 def test_leaf_first_bends_what_was_straight(right: TPose) -> None:
-    """What is aligned before its parent turns with it: the lower arms end 49.8 degrees off."""
+    """Aligning a bone before its parent leaves the lower arms 49.8 degrees off."""
     off = _off_axis_deg(right, _aligned(right, leaf_first=True))
     assert off["LeftLowerArm"] == pytest.approx(49.8, abs=0.1)
 
 
 def test_stale_positions_bend_as_much(right: TPose) -> None:
-    """Bones taken from the rest pose, without forward kinematics after each joint, end far off."""
+    """Using the bones of the rest pose, without forward kinematics, gives large errors."""
     off = _off_axis_deg(right, _aligned(right, fresh=False))
     assert max(off.values()) > 40.0
     assert off["LeftLowerArm"] > 40.0
 
 
 def test_the_printed_rotation_of_k_holds_in_the_joints_own_frame_only(right: TPose) -> None:
-    """k_rotated = q_rotated k q_rotated^-1 gives the axis for k in the joint's frame.
+    """k_rotated = q_rotated k q_rotated^-1 gives the axis for k in the joint's frame only.
 
-    For k in component space, where the paper computes it, q_diff^-1 is what turns it.
+    For k in component space, where the paper computes it, q_diff^-1 gives the axis.
     """
     bone = next(bone for bone in right.bones if bone.body_joint == "LeftUpperArm")
     parent = right.world_rotations[right.rig.index("clavicle_l")]
@@ -143,7 +143,7 @@ def test_the_printed_rotation_of_k_holds_in_the_joints_own_frame_only(right: TPo
 
 
 def test_textbook_euler_angles_put_the_head_below_the_pelvis() -> None:
-    """Rz Ry Rx stands the printed initial pose on its head; Unreal's signs stand it up."""
+    """Euler angles as Rz Ry Rx turn the initial pose upside down; Unreal's signs do not."""
     rig = mannequin()
     angles_deg = np.array(list(INITIAL_DEG.values()))
     textbook = from_euler("ZYX", np.radians(angles_deg)[:, ::-1])
@@ -153,7 +153,7 @@ def test_textbook_euler_angles_put_the_head_below_the_pelvis() -> None:
 
 
 def test_an_arccosine_loses_half_the_digits_of_single_precision() -> None:
-    """With arccos(v.k) in float32 bones are off by 5e-4, by half-vectors by 1e-7."""
+    """In float32 bones are off by 5e-4 with arccos(v.k), and by 1e-7 with half-vectors."""
     rng = np.random.default_rng(17)
     by_arccos, by_half_vector = 0.0, 0.0
     for _ in range(3000):

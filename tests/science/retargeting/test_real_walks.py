@@ -1,4 +1,4 @@
-"""CMU's walks on avatars: steps, lifts and slide of people, not of made movements."""
+"""CMU's captured walks on avatars: steps, lifts and foot sliding of real people."""
 
 from itertools import pairwise
 from pathlib import Path
@@ -26,7 +26,7 @@ _WALKS = ("02_01", "06_01", "12_02")
 
 @pytest.fixture(params=_WALKS)
 def walk(request: pytest.FixtureRequest, shared_data: Path) -> tuple[RigMotion, JointMap]:
-    """One of CMU's straight walks with the joint map its names propose."""
+    """Return one of CMU's straight walks with its proposed joint map."""
     motion = read_capture_file(shared_data / f"motion/cmu_bvh/{request.param}.bvh").motion
     assert isinstance(motion, RigMotion)
     return motion, propose_joint_map(motion.rig).joint_map
@@ -48,8 +48,8 @@ def _largest_jerk_m_s(motion: RigMotion) -> float:
     return float(np.linalg.norm(change, axis=-1).max() * motion.rate_hz)
 
 
-def test_a_persons_steps_are_a_persons(walk: tuple[RigMotion, JointMap]) -> None:
-    """Four whole steps or more, of 0.9 to 1.5 m from contact to contact, 5 to 13 cm high.
+def test_the_steps_of_a_captured_person_are_human(walk: tuple[RigMotion, JointMap]) -> None:
+    """Captured walks have four or more steps of 0.9 to 1.5 m between contacts, 5 to 13 cm high.
 
     Strides of adults at 0.8 to 1.4 m/s are that long; feet alternate.
     """
@@ -62,9 +62,9 @@ def test_a_persons_steps_are_a_persons(walk: tuple[RigMotion, JointMap]) -> None
 
 
 def test_one_walk_has_the_same_steps_in_every_format(shared_data: Path) -> None:
-    """AMC (solved by CMU) and C3D (fitted here) agree within 1 cm a step.
+    """Steps of the AMC (solved by CMU) and the C3D (fitted here) agree within 1 cm.
 
-    The BVH of the same walk was made by somebody unknown, whose root is 1.06312 times as far.
+    The BVH of the same walk, by an unknown author, has a root that moves 1.06312 times as far.
     """
     folder = shared_data / "motion"
     amc = _steps_m(read_capture_file(folder / "cmu_asfamc/02_01.amc").motion)
@@ -83,14 +83,14 @@ def _steps_m(motion: RigMotion | MarkerMotion | BodyMotion) -> list[float]:
 
 
 def test_knees_bend_as_knees_of_walkers_do(walk: tuple[RigMotion, JointMap]) -> None:
-    """Between 50 and 85 degrees at most in the swing, and hardly ever backwards."""
+    """Knees of walkers bend by 50 to 85 degrees at most in the swing, and hardly ever backwards."""
     for leg in leg_angles(*walk):
         assert 50.0 < np.degrees(leg.knee_rad.max()) < 85.0
         assert np.degrees(leg.knee_rad.min()) > -2.0
 
 
 def test_lifts_agree_on_the_papers_avatars(walk: tuple[RigMotion, JointMap]) -> None:
-    """All three lift each foot as often as the person, within 0.1 s of each other."""
+    """All three avatars lift each foot as often as the person, within 0.1 s of each other."""
     avatars = [
         (f"{stature_m}", _onto(walk, stature_m).motion, REFERENCE_JOINT_MAP)
         for stature_m in PAPER_STATURES_M
@@ -102,12 +102,13 @@ def test_lifts_agree_on_the_papers_avatars(walk: tuple[RigMotion, JointMap]) -> 
 
 
 @pytest.mark.parametrize("share", [None, 0.43, 0.57])
-def test_holding_the_feet_takes_the_slide_away(
+def test_locking_the_feet_removes_their_slide(
     walk: tuple[RigMotion, JointMap], share: float | None
 ) -> None:
-    """From 0.09 to 0.22 m/s before to less than 0.005 after, hips at most 4 % of a leg lower.
+    """Locking the feet reduces their slide from 0.09 to 0.22 m/s to less than 0.005 m/s.
 
-    No joint's velocity changes from frame to frame by more than twice what it does in the capture.
+    The hips are lowered by at most 4 % of a leg, and no joint's velocity changes from frame to
+    frame by more than twice what it does in the capture.
     """
     held = _onto(walk, 1.65, share, lock=True)
     assert held.walks is not None

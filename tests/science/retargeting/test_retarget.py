@@ -1,4 +1,4 @@
-"""Captures on our skeleton, moving in place, and movement without end."""
+"""Captures on the product's skeleton: moving in place, resampled and looped."""
 
 from pathlib import Path
 
@@ -25,7 +25,7 @@ from app.science.skeleton import (
 
 
 def _own_capture(movement: Movement) -> RigMotion:
-    """A capture made on our own skeleton, in its T-pose and axes."""
+    """Return a capture on the product's own skeleton, in its T-pose and axes."""
     observed = np.ones(movement.rotations.shape[:2], dtype=np.bool_)
     return RigMotion(
         reference_avatar(1.75), 120.0, movement.root_positions_m, movement.rotations, observed
@@ -43,7 +43,7 @@ def _walk(shared_data: Path, name: str = "02_01") -> Path:
 
 
 def _swaying(rng: np.random.Generator, frames: int = 360) -> Movement:
-    """Return a slow movement of all joints but the hips, feet flat and hips still."""
+    """Return a slow movement of all joints except for the hips, with flat feet."""
     times = np.arange(frames) / 120.0
     vectors = 0.3 * rng.normal(size=(22, 3)) * np.sin(times)[:, np.newaxis, np.newaxis]
     vectors[:, 0] = 0.0
@@ -53,7 +53,7 @@ def _swaying(rng: np.random.Generator, frames: int = 360) -> Movement:
 
 
 def test_a_capture_of_our_own_skeleton_comes_back_unchanged(rng: np.random.Generator) -> None:
-    """Where rest pose, axes and size agree, retargeting is the identity."""
+    """A capture of the product's own skeleton is unchanged by retargeting."""
     skeleton, movement = build_skeleton(1.75), _swaying(rng)
     result = movement_in_place(_own_capture(movement), REFERENCE_JOINT_MAP, skeleton)
     assert float(np.max(rot.geodesic_angle(result.rotations, movement.rotations))) < 1e-6
@@ -66,7 +66,7 @@ def test_a_capture_of_our_own_skeleton_comes_back_unchanged(rng: np.random.Gener
 def test_the_way_a_capture_faces_makes_no_difference(
     rng: np.random.Generator, angle_deg: float
 ) -> None:
-    """A person who walked another way gives the same movement, facing -z."""
+    """A capture that faces another way gives the same movement, facing -z."""
     skeleton, movement = build_skeleton(1.75), _swaying(rng)
     turn = rot.from_rotation_vector(np.array((0.0, np.radians(angle_deg), 0.0)))
     local = movement.rotations.copy()
@@ -78,7 +78,7 @@ def test_the_way_a_capture_faces_makes_no_difference(
 
 @pytest.mark.parametrize("name", ["02_01", "06_01", "12_02"])
 def test_bones_point_where_the_captures_bones_point(shared_data: Path, name: str) -> None:
-    """A shank has the same angle to the vertical as in the capture."""
+    """Bones have the same angles to the vertical as in the capture."""
     skeleton, path = build_skeleton(1.75), _walk(shared_data, name)
     clip = read_capture_file(path).motion
     assert isinstance(clip, RigMotion)
@@ -116,7 +116,7 @@ def test_a_walk_stays_in_place_on_the_floor(shared_data: Path, name: str, statur
 
 @pytest.mark.parametrize("name", ["02_01", "06_01", "12_02"])
 def test_a_loop_steps_no_further_than_its_clip(shared_data: Path, name: str) -> None:
-    """The seam and the cross-fade add no jump: at most a tenth over the clip's own largest step."""
+    """At a loop's seam no joint moves more than a tenth further than in the clip itself."""
     clip = resample(captured_movement(_walk(shared_data, name), build_skeleton(1.75)), 90.0)
     looped = loop(clip)
     assert looped.loops
@@ -128,7 +128,7 @@ def test_a_loop_steps_no_further_than_its_clip(shared_data: Path, name: str) -> 
 
 
 def test_resampling_keeps_duration_and_path(rng: np.random.Generator) -> None:
-    """At 90 Hz the movement lasts as long and passes through the same rotations."""
+    """A movement resampled to 90 Hz keeps its duration and passes through the same rotations."""
     movement = _swaying(rng, frames=361)
     again = resample(movement, 90.0)
     assert again.duration_s == pytest.approx(movement.duration_s)
@@ -138,16 +138,16 @@ def test_resampling_keeps_duration_and_path(rng: np.random.Generator) -> None:
     assert rot.is_unit(again.rotations, 1e-12).all()
 
 
-def test_a_map_that_does_not_fit_is_refused(rng: np.random.Generator) -> None:
-    """A joint that the capture lacks is named."""
+def test_a_map_that_does_not_fit_is_rejected(rng: np.random.Generator) -> None:
+    """A joint map with a joint that the capture lacks is rejected with its name."""
     with pytest.raises(JointMapError, match="no joint 'Bauch'"):
         movement_in_place(
             _own_capture(_swaying(rng)), {"Hips": "Hips", "Spine": "Bauch"}, build_skeleton(1.75)
         )
 
 
-def test_movement_that_cannot_be_looped_or_resampled_is_refused(rng: np.random.Generator) -> None:
-    """Too short clips, doubled loops and impossible rates are refused."""
+def test_movement_that_cannot_be_looped_or_resampled_is_rejected(rng: np.random.Generator) -> None:
+    """Clips that are too short, loops of loops and impossible rates are rejected."""
     movement = _swaying(rng)
     with pytest.raises(SkeletonError, match="cannot be looped"):
         loop(_swaying(rng, frames=60))
@@ -160,7 +160,7 @@ def test_movement_that_cannot_be_looped_or_resampled_is_refused(rng: np.random.G
 
 
 def test_legs_that_were_not_captured_stand(shared_data: Path) -> None:
-    """Somebody whose trunk and arms were tracked stands on straight legs and still reaches."""
+    """A person captured without legs stands on straight legs and still moves the arms."""
     skeleton = build_skeleton(1.72)
     path = shared_data / "motion" / "vicon_tracker" / "ObjectInspection_0.csv"
     movement = captured_movement(path, skeleton)
@@ -183,8 +183,8 @@ def test_legs_that_were_not_captured_stand(shared_data: Path) -> None:
         "vicon_tracker/HumanRobotHandover_0.csv",
     ],
 )
-def test_any_capture_with_a_body_makes_a_rehearsing_person(shared_data: Path, file: str) -> None:
-    """Whatever its format: somebody upright of their own stature, in an endless loop."""
+def test_any_capture_with_a_body_makes_a_simulated_person(shared_data: Path, file: str) -> None:
+    """A capture of any format gives an upright simulated person of their own stature."""
     person = make_person(np.random.default_rng(5), shared_data / "motion" / file)
     first = person.participant.pose(0.0, None)
     world = forward_kinematics(person.skeleton, first.root_position_m, first.rotations)
@@ -200,7 +200,9 @@ def test_any_capture_with_a_body_makes_a_rehearsing_person(shared_data: Path, fi
         ("bvh_toolbox/walk01_pos.csv", "captures that can be read"),
     ],
 )
-def test_what_shows_no_body_cannot_rehearse(shared_data: Path, file: str, why: str) -> None:
-    """The refusal names the file and the reason."""
+def test_a_capture_without_a_body_makes_no_simulated_person(
+    shared_data: Path, file: str, why: str
+) -> None:
+    """A capture without a body is rejected with the file and the reason."""
     with pytest.raises(UnusableCapture, match=why):
         make_person(np.random.default_rng(5), shared_data / "motion" / file)

@@ -1,4 +1,4 @@
-"""Where an avatar stands and travels: on its feet, on the ground, whatever bodies are missing."""
+"""Where a retargeted avatar stands and travels, also with parts of the body missing."""
 
 import numpy as np
 import numpy.typing as npt
@@ -19,7 +19,10 @@ def rng() -> np.random.Generator:
 
 
 def test_the_lower_foot_stands_on_the_ground_at_the_start(rng: np.random.Generator) -> None:
-    """Within a millimetre, wherever the capture's own floor was."""
+    """At the start the lower foot is on the ground within a millimetre.
+
+    This holds wherever the capture's own floor was.
+    """
     motion = random_movement(own_body(1.7), rng)
     for stature_m in (1.3, 1.65, 1.9):
         avatar = own_body(stature_m)
@@ -35,12 +38,12 @@ class _Slope:
     """Ground that rises by a tenth along x."""
 
     def height_m(self, x_m: npt.ArrayLike, z_m: npt.ArrayLike) -> FloatArray:
-        """Height of the slope."""
+        """Return the height of the slope."""
         return 0.1 * np.asarray(x_m) + 0.0 * np.asarray(z_m)
 
 
 def test_the_hips_follow_the_ground_below_them(rng: np.random.Generator) -> None:
-    """Beside flat ground the avatar rises by what the ground below its hips rises."""
+    """The avatar is raised by the height of the ground below its hips."""
     motion = random_movement(own_body(1.7), rng)
     retargeter = Retargeter(motion.rig, SAME, own_body(1.9), SAME)
     flat, sloped = retargeter.batch(motion), retargeter.batch(motion, _Slope())
@@ -52,8 +55,8 @@ def test_the_hips_follow_the_ground_below_them(rng: np.random.Generator) -> None
     np.testing.assert_allclose(root, sloped.root_positions_m[0], atol=1e-12)
 
 
-def test_another_frame_can_be_the_one_that_stands(rng: np.random.Generator) -> None:
-    """Captures that start with a pose in the air stand where they are told to."""
+def test_the_frame_that_stands_on_the_ground_can_be_chosen(rng: np.random.Generator) -> None:
+    """The frame in which the avatar stands on the ground can be chosen, for captures with jumps."""
     motion = random_movement(own_body(1.7), rng)
     avatar = own_body(1.5)
     result = Retargeter(motion.rig, SAME, avatar, SAME).batch(motion, standing_frame=-1)
@@ -64,7 +67,7 @@ def test_another_frame_can_be_the_one_that_stands(rng: np.random.Generator) -> N
 
 
 def test_hips_below_a_root_are_where_they_should_be(rng: np.random.Generator) -> None:
-    """A mannequin's root lies under the hips: the root is moved so that the hips travel right."""
+    """A root above the hips in the tree is moved so that the hips travel correctly."""
     body = own_body(1.7)
     offsets = np.concatenate((np.zeros((1, 3)), body.offsets_m))
     ends = tuple((joint + 1, end) for joint, end in body.ends)
@@ -84,7 +87,7 @@ def test_hips_below_a_root_are_where_they_should_be(rng: np.random.Generator) ->
 
 
 def test_an_upper_body_stands_on_the_avatars_legs(rng: np.random.Generator) -> None:
-    """Without legs in the capture the trunk scales, and the avatar's straight legs stand."""
+    """A capture without legs scales by the trunk and stands on the avatar's straight legs."""
     body = own_body(1.7)
     kept = [at for at, name in enumerate(body.names) if not name.endswith(("Leg", "Foot", "Toes"))]
     upper = Rig(

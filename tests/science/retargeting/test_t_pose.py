@@ -1,4 +1,4 @@
-"""The T-pose: laws that hold for any skeleton."""
+"""The T-pose: properties that hold for any skeleton."""
 
 from collections.abc import Iterator
 from functools import lru_cache
@@ -29,7 +29,7 @@ def _aligned() -> tuple[TPose, ...]:
 
 
 def _gaps_of_positions(pose: TPose) -> FloatArray:
-    """|k - v| with k from where forward kinematics puts the joints, of bones between joints."""
+    """Return |k - v| of bones between joints, with k from forward kinematics."""
     positions, _ = to_world(pose.rig, pose.rig.offsets_m[0], pose.local_rotations)
     order = list(SAME)
     gaps = []
@@ -41,7 +41,7 @@ def _gaps_of_positions(pose: TPose) -> FloatArray:
 
 
 def test_every_bone_lies_on_its_axis() -> None:
-    """|k - v| <= 1e-9 for all bones of hundreds of random bodies, antiparallel ones among them."""
+    """|k - v| <= 1e-9 for all bones of hundreds of random bodies, antiparallel ones included."""
     poses = _aligned()
     assert len(poses) == BODIES
     assert all(len(pose.bones) >= 13 for pose in poses)
@@ -50,7 +50,7 @@ def test_every_bone_lies_on_its_axis() -> None:
 
 
 def test_antiparallel_bones_are_among_the_random_ones() -> None:
-    """The random bodies hold bones exactly against their axis, and within 1e-6 of that."""
+    """The random bodies include bones exactly against their axis, and within 1e-6 of that."""
     angles = []
     for pose in _aligned():
         world = pose.rig.rest_world()[1]
@@ -63,7 +63,7 @@ def test_antiparallel_bones_are_among_the_random_ones() -> None:
 
 
 def test_single_precision_keeps_its_digits() -> None:
-    """In float32 |k - v| <= 1e-6 over the same bodies."""
+    """In float32 |k - v| <= 1e-6 for all bones of the random bodies."""
     poses = [t_pose(rig, SAME, dtype=np.float32) for rig in _random_bodies(5)]
     assert {pose.local_rotations.dtype for pose in poses} == {np.dtype(np.float32)}
     assert max(float(np.max(pose.misalignment())) for pose in poses) <= 1e-6
@@ -71,7 +71,7 @@ def test_single_precision_keeps_its_digits() -> None:
 
 @pytest.mark.parametrize("dtype", [np.float64, np.float32])
 def test_a_swing_lands_on_its_end_at_any_angle(dtype: type) -> None:
-    """From 1e-20 to half a turn, and as close to half, a swing is off by a few roundings only."""
+    """A swing maps start to end within a few roundings, from 1e-20 to half a turn."""
     rng = np.random.default_rng(11)
     worst = 0.0
     for _ in range(2000):
@@ -86,7 +86,7 @@ def test_a_swing_lands_on_its_end_at_any_angle(dtype: type) -> None:
 
 
 def test_an_own_body_is_in_its_t_pose_already() -> None:
-    """Where the rest pose is the T-pose nothing turns and nothing moves."""
+    """The product's body, whose rest pose is the T-pose, is unchanged by alignment."""
     rig = own_body(1.7)
     pose = t_pose(rig, SAME)
     np.testing.assert_array_equal(pose.local_rotations, identity(22))
@@ -95,13 +95,13 @@ def test_an_own_body_is_in_its_t_pose_already() -> None:
 
 
 def test_a_t_pose_of_a_t_pose_is_itself() -> None:
-    """What is aligned stays as it is."""
+    """Aligning a T-pose again changes nothing."""
     rng = np.random.default_rng(2)
     for _ in range(50):
         rig = random_body(rng)
         once = t_pose(rig, SAME)
         again = t_pose(Rig(rig.names, rig.parents, rig.offsets_m, once.local_rotations), SAME)
-        # The sockets may have turned with the pelvis, and with them what counts as facing.
+        # Hip sockets may have turned with the pelvis, and so has the body's facing.
         if float(geodesic_angle(once.facing, again.facing)) < 1e-9:
             turn = geodesic_angle(once.local_rotations, again.local_rotations)
             assert float(np.max(turn)) < 1e-7
@@ -109,7 +109,7 @@ def test_a_t_pose_of_a_t_pose_is_itself() -> None:
 
 @pytest.mark.parametrize("yaw_deg", [0.0, 90.0, 180.0, -37.0])
 def test_a_body_is_aligned_in_its_own_facing(yaw_deg: float) -> None:
-    """Facing another way changes the facing and nothing else."""
+    """A body whose rest pose faces another way has the same T-pose, facing that way."""
     half = np.radians(yaw_deg) / 2
     turn = np.array((np.cos(half), 0.0, np.sin(half), 0.0))
     rig = random_body(np.random.default_rng(8))
@@ -125,7 +125,7 @@ def test_a_body_is_aligned_in_its_own_facing(yaw_deg: float) -> None:
 
 
 def test_feet_and_head_are_as_at_rest_in_the_world() -> None:
-    """Whatever turns above them, feet stay on the floor and the eyes look straight ahead."""
+    """Feet and head keep the world orientation that they have at rest."""
     rig = random_body(np.random.default_rng(21))
     rest, pose = rig.rest_world()[1], t_pose(rig, SAME)
     for name in ("LeftFoot", "RightFoot", "Head"):
@@ -133,8 +133,8 @@ def test_feet_and_head_are_as_at_rest_in_the_world() -> None:
         assert float(geodesic_angle(rest[joint], pose.world_rotations[joint])) < 1e-12
 
 
-def test_what_is_not_aligned_keeps_its_local_rotation() -> None:
-    """Collar bones, toes, hands without a finger and joints between keep what they had."""
+def test_joints_that_are_not_aligned_keep_their_local_rotation() -> None:
+    """Collar bones, toes, hands without a finger and extra joints keep their local rotation."""
     rig = random_body(np.random.default_rng(21))
     pose = t_pose(rig, SAME)
     still = [n for n in rig.names if n.startswith("between") or "Shoulder" in n or "Toes" in n]
@@ -145,7 +145,7 @@ def test_what_is_not_aligned_keeps_its_local_rotation() -> None:
 
 
 def test_a_hand_is_aligned_by_its_longest_finger() -> None:
-    """A bent wrist is straightened by where the fingers point, not by the thumb."""
+    """A bent wrist is straightened along the fingers, not along the thumb."""
     body = own_body(1.7)
     hand = body.index("LeftHand")
     fingers = ((hand, (-0.08, -0.12, 0.0)), (hand, (-0.02, 0.0, -0.05)))
@@ -156,7 +156,7 @@ def test_a_hand_is_aligned_by_its_longest_finger() -> None:
 
 
 def test_a_bone_of_no_length_turns_nothing() -> None:
-    """CMU's lower back starts in the hips; they keep their rotation, and nothing fails."""
+    """A bone of zero length, such as CMU's lower back, turns nothing and raises no error."""
     body = own_body(1.7)
     offsets = body.offsets_m.copy()
     offsets[body.index("Spine")] = 0.0
@@ -166,7 +166,7 @@ def test_a_bone_of_no_length_turns_nothing() -> None:
 
 
 def test_the_mannequin_faces_forward_in_unreals_axes() -> None:
-    """Left arm on +x, z up, toes towards +y."""
+    """The mannequin's T-pose has the left arm on +x, z up and the toes towards +y."""
     pose = t_pose(mannequin(), MANNEQUIN_MAP, UNREAL)
     toes, heel = (pose.positions_m[pose.rig.index(name)] for name in ("ball_l", "foot_l"))
     assert float(np.dot(toes - heel, UNREAL.forward)) > 0.15
@@ -175,12 +175,12 @@ def test_the_mannequin_faces_forward_in_unreals_axes() -> None:
 
 
 def test_axes_must_span_a_frame() -> None:
-    """Directions that are not across each other are refused with the values."""
+    """Axes that are not perpendicular are rejected with their values."""
     with pytest.raises(AxesError, match="perpendicular"):
         Axes(up=(0.0, 1.0, 0.0), left=(0.0, 1.0, 0.0))
 
 
-def test_a_map_that_does_not_fit_is_refused() -> None:
-    """An unknown joint is named with those there are."""
+def test_a_map_that_does_not_fit_is_rejected() -> None:
+    """An unknown joint in a joint map is rejected with the existing joints."""
     with pytest.raises(JointMapError, match="'Pelvis'"):
         t_pose(own_body(1.7), {**SAME, "Hips": "Pelvis"})

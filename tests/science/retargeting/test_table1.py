@@ -1,4 +1,4 @@
-"""The paper's Table 1 comes out again, all but the row that contradicts the others."""
+"""The paper's Table 1 is reproduced except for the row that contradicts the others."""
 
 import numpy as np
 import pytest
@@ -13,12 +13,12 @@ from app.science.rig import Rig, to_world
 
 @pytest.fixture(scope="module")
 def rows() -> dict[str, Table1Row]:
-    """The table by joint."""
+    """Return the rows of the table by joint."""
     return {row.joint: row for row in check_table1()}
 
 
 def test_twenty_one_of_twenty_two_rows_agree(rows: dict[str, Table1Row]) -> None:
-    """Every row but the pelvis is within 0.008 degrees, which is the printing's rounding."""
+    """Every row but the pelvis agrees within 0.008 degrees, the rounding of the print."""
     assert len(rows) == 22
     assert [name for name, row in rows.items() if not row.agrees] == ["pelvis"]
     others = [row.difference_deg for name, row in rows.items() if name != "pelvis"]
@@ -26,8 +26,8 @@ def test_twenty_one_of_twenty_two_rows_agree(rows: dict[str, Table1Row]) -> None
     assert max(r.largest_angle_difference_deg for n, r in rows.items() if n != "pelvis") <= 0.007
 
 
-def test_the_pelvis_is_flagged_and_not_tuned(rows: dict[str, Table1Row]) -> None:
-    """84.87 is printed where 85.50 comes out, and only that row is called inconsistent."""
+def test_the_pelvis_row_alone_is_inconsistent(rows: dict[str, Table1Row]) -> None:
+    """The pelvis is printed as 84.87 and computed as 85.50; only this row is inconsistent."""
     pelvis = rows["pelvis"]
     assert pelvis.printed == (-90.0, 84.87, -90.0)
     assert pelvis.computed == pytest.approx((-90.0, 85.50, -90.0), abs=0.01)
@@ -36,12 +36,12 @@ def test_the_pelvis_is_flagged_and_not_tuned(rows: dict[str, Table1Row]) -> None
 
 
 @pytest.mark.parametrize(("pitch_deg", "lean_deg"), [(84.87, 0.63), (None, 0.0)])
-def test_the_other_rows_side_with_the_computed_pelvis(
+def test_the_other_rows_agree_with_the_computed_pelvis(
     rows: dict[str, Table1Row], pitch_deg: float | None, lean_deg: float
 ) -> None:
-    """The printed rows on the printed pelvis give a T-pose that leans by 0.63 degrees as a whole.
+    """With the printed pelvis, the other printed rows give a T-pose that leans by 0.63 degrees.
 
-    On the computed pelvis the same printed rows stand upright, torso and legs.
+    With the computed pelvis the same printed rows stand upright, torso and legs.
     """
     rig = mannequin()
     angles = np.array([rows[name].printed for name in rig.names])
@@ -54,7 +54,7 @@ def test_the_other_rows_side_with_the_computed_pelvis(
 
 
 def test_lengths_of_limbs_make_no_difference() -> None:
-    """Only directions matter: with limbs twice as long the same angles come out."""
+    """Limbs of twice the length give the same angles, since only directions matter."""
     rig = mannequin()
     long = Rig(rig.names, rig.parents, 2.0 * rig.offsets_m, rig.rest_rotations)
     poses = [

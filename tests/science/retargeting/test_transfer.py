@@ -1,4 +1,4 @@
-"""Movement carried from any body to any other: laws, and the compiled code beside plain arrays."""
+"""Movement transferred between any two bodies, and the compiled code against plain arrays."""
 
 import numpy as np
 import pytest
@@ -42,7 +42,7 @@ def rng() -> np.random.Generator:
 def _plain(
     motion: RigMotion, source_map: dict[str, str], avatar: Rig, avatar_map: dict[str, str]
 ) -> FloatArray:
-    """World rotations of the avatar by the equations, joint by joint on whole arrays."""
+    """Return the avatar's world rotations by the equations, joint by joint on whole arrays."""
     theirs, ours = t_pose(motion.rig, source_map), t_pose(avatar, avatar_map)
     world = motion.world()[1]
     turn = multiply(theirs.facing, conjugate(ours.facing))
@@ -62,7 +62,7 @@ def _plain(
 
 
 def test_compiled_and_plain_agree(rng: np.random.Generator) -> None:
-    """The compiled transfer gives what the equations give on plain arrays, for odd pairs."""
+    """The compiled transfer agrees with the equations on plain arrays for random pairs."""
     for _ in range(20):
         source, avatar = random_body(rng), random_body(rng)
         left_out = rng.choice([name for name in SAME if name != "Hips"], 6, replace=False)
@@ -74,8 +74,8 @@ def test_compiled_and_plain_agree(rng: np.random.Generator) -> None:
         assert float(np.max(np.abs(result.rotations - expected))) < 1e-12
 
 
-def test_a_frame_is_a_batch_of_one(rng: np.random.Generator) -> None:
-    """Live and from a file the same movement comes out, to 1e-12."""
+def test_single_frames_equal_the_batch(rng: np.random.Generator) -> None:
+    """Transferring frame by frame and as a batch gives the same movement to 1e-12."""
     source, avatar = random_body(rng), own_body(1.9)
     motion = random_movement(source, rng, frames=50)
     retargeter = Retargeter(source, SAME, avatar, SAME)
@@ -90,11 +90,11 @@ def test_a_frame_is_a_batch_of_one(rng: np.random.Generator) -> None:
 
 
 def test_a_body_on_itself_moves_as_it_did(rng: np.random.Generator) -> None:
-    """Where source and avatar are the same the rotations come back to 1e-12, travel too."""
+    """A movement transferred to the same body is unchanged to 1e-12, travel included."""
     for _ in range(10):
         rig = random_body(rng)
         everything = random_movement(rig, rng)
-        # Joints between the body's own keep their T-pose, so they must not move here.
+        # Extra joints keep their T-pose, so they must not move here.
         still = [joint for joint, name in enumerate(rig.names) if name not in SAME]
         everything.rotations[:, still] = rig.rest_rotations[still]
         result = Retargeter(rig, SAME, rig, SAME).batch(everything)
@@ -106,7 +106,7 @@ def test_a_body_on_itself_moves_as_it_did(rng: np.random.Generator) -> None:
 
 @pytest.mark.parametrize("yaw_deg", [90.0, 180.0, -37.0])
 def test_turning_the_world_turns_the_result(rng: np.random.Generator, yaw_deg: float) -> None:
-    """Who walks another way gives the same movement another way."""
+    """Turning the source's world turns the result by the same rotation."""
     half = np.radians(yaw_deg) / 2
     turn = np.array((np.cos(half), 0.0, np.sin(half), 0.0))
     source, avatar = random_body(rng), own_body(1.3)
@@ -119,7 +119,7 @@ def test_turning_the_world_turns_the_result(rng: np.random.Generator, yaw_deg: f
 
 
 def test_the_way_a_rest_pose_faces_makes_no_difference(rng: np.random.Generator) -> None:
-    """A capture whose rest pose faces +z moves an avatar that faces -z like one that faces -z."""
+    """A capture whose rest pose faces +z gives the same movement as one that faces -z."""
     half_turn = np.array((0.0, 0.0, 1.0, 0.0))
     body, avatar = own_body(1.7), own_body(1.9)
     back = Rig(body.names, body.parents, rotate(half_turn, body.offsets_m), identity(22))
@@ -135,12 +135,12 @@ def test_the_way_a_rest_pose_faces_makes_no_difference(rng: np.random.Generator)
 
 
 def test_bones_point_where_the_sources_bones_point(rng: np.random.Generator) -> None:
-    """At every moment torso, arms and legs of both bodies have the same directions."""
+    """In every frame torso, arms and legs of both bodies have the same directions."""
     source, avatar = random_body(rng), random_body(rng)
     motion = random_movement(source, rng)
     for rig in (source, avatar):
         assert {bone.body_joint for bone in t_pose(rig, SAME).bones} >= {"Neck", "LeftUpperLeg"}
-    # Joints between are at rest on both sides, as the T-pose has them.
+    # Extra joints are at rest on both sides, as in the T-pose.
     still = [joint for joint, name in enumerate(source.names) if name not in SAME]
     motion.rotations[:, still] = source.rest_rotations[still]
     result = Retargeter(source, SAME, avatar, SAME).batch(motion)
@@ -157,7 +157,7 @@ def test_bones_point_where_the_sources_bones_point(rng: np.random.Generator) -> 
 def test_a_scaled_copy_takes_scaled_steps_and_does_not_slide(
     rng: np.random.Generator, factor: float
 ) -> None:
-    """All joints go the scaled way to 1e-9: so do steps, and a foot that stood still stands still.
+    """On a scaled copy all joints move the scaled way to 1e-9, so resting feet rest.
 
     The step ratio is the leg ratio.
     """
@@ -188,7 +188,7 @@ def test_motives_t_pose_gives_the_papers_product(rng: np.random.Generator) -> No
 
 
 def test_unmapped_joints_are_listed_and_keep_their_t_pose(rng: np.random.Generator) -> None:
-    """On both sides; and what was not observed in the source is not in the avatar either."""
+    """Unmapped joints are listed and keep their T-pose; unobserved ones stay unobserved."""
     source, avatar = own_body(1.7), random_body(rng)
     avatar_map = {name: joint for name, joint in SAME.items() if name != "Chest"}
     motion = random_movement(source, rng)
@@ -208,7 +208,7 @@ def test_unmapped_joints_are_listed_and_keep_their_t_pose(rng: np.random.Generat
 
 
 def test_arrays_of_any_layout_give_the_same(rng: np.random.Generator) -> None:
-    """Read-only, strided and single-precision arrays are taken as they come."""
+    """Read-only, strided and single-precision arrays give the same result."""
     source = own_body(1.7)
     motion = random_movement(source, rng)
     retargeter = Retargeter(source, SAME, own_body(1.9), SAME)
@@ -223,8 +223,8 @@ def test_arrays_of_any_layout_give_the_same(rng: np.random.Generator) -> None:
     np.testing.assert_allclose(single[1], expected[1], atol=1e-6)
 
 
-def test_wrong_arrays_are_refused(rng: np.random.Generator) -> None:
-    """A frame of another skeleton, and a movement of one, are told apart before anything moves."""
+def test_wrong_arrays_are_rejected(rng: np.random.Generator) -> None:
+    """A frame and a movement of another skeleton are rejected with different errors."""
     source = own_body(1.7)
     retargeter = Retargeter(source, SAME, own_body(1.9), SAME)
     with pytest.raises(RigError, match=r"\(22, 4\)"):

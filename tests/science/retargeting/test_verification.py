@@ -1,4 +1,4 @@
-"""The paper's verification: one walk on avatars of several sizes, and feet that are held."""
+"""The paper's verification: one walk on avatars of several sizes, and locked feet."""
 
 import numpy as np
 import pytest
@@ -31,7 +31,7 @@ def _onto(
 
 
 def _jerk_m_s(motion: RigMotion) -> float:
-    """Largest change of any joint's velocity from frame to frame: a pop shows here."""
+    """Return the largest change of any joint's velocity from frame to frame, which shows pops."""
     change = np.diff(motion.world()[0], n=2, axis=0)
     return float(np.linalg.norm(change, axis=-1).max() * motion.rate_hz)
 
@@ -39,7 +39,7 @@ def _jerk_m_s(motion: RigMotion) -> float:
 @settings(max_examples=25, deadline=None)
 @given(st.floats(0.5, 2.6))
 def test_steps_scale_exactly_with_the_legs(stature_m: float) -> None:
-    """Under uniform scaling every step has the ratio of the legs, to 1e-9."""
+    """Under uniform scaling the ratio of steps is the ratio of legs, to 1e-9."""
     result = _onto(stature_m)
     assert result.walks is not None
     assert result.leg_ratio == pytest.approx(stature_m / 1.75, rel=1e-12)
@@ -52,7 +52,7 @@ def test_steps_scale_exactly_with_the_legs(stature_m: float) -> None:
 
 @pytest.mark.parametrize("stature_m", [0.8, *PAPER_STATURES_M])
 def test_uniform_scaling_adds_no_slide(stature_m: float) -> None:
-    """Feet slide as the source's do, times the leg ratio, and not more."""
+    """Under uniform scaling feet slide as the source's do, times the leg ratio."""
     walks = _onto(stature_m).walks
     assert walks is not None
     assert walks.source.slide_m_s is not None
@@ -63,7 +63,7 @@ def test_uniform_scaling_adds_no_slide(stature_m: float) -> None:
 @pytest.mark.parametrize("ground", [Flat(0.0), Flat(0.4), Ramp((0.0, 1.0), (0, -1), 8.0, 0.8)])
 @pytest.mark.parametrize("stature_m", PAPER_STATURES_M)
 def test_feet_are_on_the_ground_at_the_start(ground: Ground, stature_m: float) -> None:
-    """The lowest point of the feet is within 1 mm of the ground below it."""
+    """At the start the lowest point of the feet is within 1 mm of the ground."""
     motion = _onto(stature_m, ground=ground).motion
     positions, _ = motion.world()
     gaps = []
@@ -75,8 +75,8 @@ def test_feet_are_on_the_ground_at_the_start(ground: Ground, stature_m: float) -
 
 
 @pytest.mark.parametrize("share", [0.42, 0.45, 0.55, 0.58])
-def test_other_proportions_slide_and_holding_the_feet_ends_it(share: float) -> None:
-    """The knee elsewhere makes feet slide; held, they rest, and nothing pops."""
+def test_locking_the_feet_ends_the_slide_of_other_proportions(share: float) -> None:
+    """Feet slide if the knee is elsewhere; locked feet rest, without pops."""
     free, held = _onto(1.65, share), _onto(1.65, share, lock=True)
     assert free.walks is not None
     assert held.walks is not None
@@ -93,8 +93,8 @@ def test_other_proportions_slide_and_holding_the_feet_ends_it(share: float) -> N
     assert _jerk_m_s(held.motion) < 2.0 * _jerk_m_s(free.motion)
 
 
-def test_held_feet_keep_bones_and_foot_turns() -> None:
-    """No bone changes its length, and feet turn in the world as before."""
+def test_locking_the_feet_keeps_bone_lengths_and_foot_rotations() -> None:
+    """Locking the feet changes neither bone lengths nor the feet's world rotations."""
     free, held = _onto(1.65, 0.45).motion, _onto(1.65, 0.45, lock=True).motion
     before, after = free.world(), held.world()
     for joint, parent in enumerate(free.rig.parents):
@@ -114,8 +114,8 @@ def test_held_feet_keep_bones_and_foot_turns() -> None:
         Ramp((0.0, -0.3), (0.0, -1.0), run_m=2.0, rise_m=0.2),
     ],
 )
-def test_held_feet_stand_on_uneven_ground(ground: Ground) -> None:
-    """Where a foot is down its ball, its lowest point, is on the ground, and so it goes uphill."""
+def test_locked_feet_stand_on_uneven_ground(ground: Ground) -> None:
+    """The ball of a locked foot is on the ground wherever the foot is down, also uphill."""
     held = _onto(1.65, ground=ground, lock=True)
     assert held.walks is not None
     rises = []
@@ -131,7 +131,7 @@ def test_held_feet_stand_on_uneven_ground(ground: Ground) -> None:
 
 
 def test_no_body_jumps_up_a_kerb() -> None:
-    """Without held feet the hips rise by the kerb's height, over some frames, not in one."""
+    """Without locked feet the hips rise by a kerb's height over several frames."""
     kerb = Steps((0.0, -0.75), (0.0, -1.0), (0.0,), (0.12,))
     level, over = _onto(1.65).motion, _onto(1.65, ground=kerb).motion
     rise = over.root_positions_m[:, 1] - level.root_positions_m[:, 1]
@@ -141,8 +141,8 @@ def test_no_body_jumps_up_a_kerb() -> None:
     assert np.diff(rise).max() < 0.01
 
 
-def test_a_leg_that_cannot_reach_lets_go_and_counts_it() -> None:
-    """Contacts that hold both feet for the whole walk ask for the impossible."""
+def test_a_locked_foot_out_of_reach_is_released_and_counted() -> None:
+    """Feet that are locked for a whole walk are released and counted as out of reach."""
     avatar = reference_avatar(1.65)
     moved = _onto(1.65)
     assert moved.walks is not None
@@ -156,7 +156,7 @@ def test_a_leg_that_cannot_reach_lets_go_and_counts_it() -> None:
 
 @pytest.mark.parametrize("frames", [1, 2, 3, 7])
 def test_the_shortest_movements_come_through(frames: int) -> None:
-    """Too short for a step or a speed, but not for a pose; feet held or not, on any ground."""
+    """Movements of very few frames are retargeted, with locked feet or not, without a step."""
     short = RigMotion(
         _WALK.rig,
         _WALK.rate_hz,
@@ -174,8 +174,8 @@ def test_the_shortest_movements_come_through(frames: int) -> None:
         assert result.walks.avatar.steps == ()
 
 
-def test_feet_of_an_upper_body_cannot_be_held() -> None:
-    """Without legs the rest is carried over, but holding feet is refused."""
+def test_feet_of_an_upper_body_cannot_be_locked() -> None:
+    """An upper body is retargeted, but locking its feet is refused."""
     upper = {name: name for name in SAME if "Leg" not in name and "Foot" not in name}
     avatar = reference_avatar(1.3)
     assert retarget_motion(_WALK, upper, avatar, SAME).walks is None
@@ -184,7 +184,7 @@ def test_feet_of_an_upper_body_cannot_be_held() -> None:
 
 
 def test_lifts_agree_on_all_three_avatars_of_the_paper() -> None:
-    """As many lifts, in the same frames, steps as much longer as they are higher."""
+    """All three avatars lift in the same frames, with lengths and heights in the same ratios."""
     results = [(f"{100 * h:.0f}cm", _onto(h)) for h in PAPER_STATURES_M]
     figures = verify(_WALK, SAME, [(name, r.motion, SAME) for name, r in results])
     assert figures.lifts_agree
@@ -195,8 +195,8 @@ def test_lifts_agree_on_all_three_avatars_of_the_paper() -> None:
     assert np.array(longer) / longer[2] == pytest.approx(np.array(higher) / higher[2], abs=1e-9)
 
 
-def test_disagreeing_lifts_are_said() -> None:
-    """An avatar that stands still while the person walks has no lift."""
+def test_disagreeing_lifts_are_reported() -> None:
+    """An avatar that stands still while the person walks is reported as disagreeing."""
     walking = _onto(1.65).motion
     frozen = RigMotion(
         walking.rig,
@@ -211,7 +211,7 @@ def test_disagreeing_lifts_are_said() -> None:
 
 
 def test_movements_of_different_length_are_not_compared() -> None:
-    """Times would not mean the same."""
+    """Verifying movements of different lengths is refused."""
     walking = _onto(1.65).motion
     shorter = RigMotion(
         walking.rig,
@@ -228,7 +228,7 @@ def test_the_papers_step_sizes_are_consistent_with_one_scale_an_avatar() -> None
     """Scales .70, .91 and 1 fit both rows of figure 9 within 5 cm and 0.5 cm; statures only one.
 
     Degen et al. (2022), section 4: 110, 150, 165 cm forward and 16, 20, 22 cm up for 130, 165 and
-    190 cm. Leg lengths are not published, so more than consistency cannot be asked for.
+    190 cm. Leg lengths are not published, so only consistency can be tested.
     """
     for scales, fits in (((0.70, 0.91, 1.0), [True, True]), ((1.30, 1.65, 1.90), [True, False])):
         rows = ((_PAPER_LENGTHS_CM, 5.0), (_PAPER_HEIGHTS_CM, 0.5))
@@ -236,7 +236,7 @@ def test_the_papers_step_sizes_are_consistent_with_one_scale_an_avatar() -> None
 
 
 def _one_scale_fits(printed: tuple[float, ...], scales: tuple[float, ...], within: float) -> bool:
-    """Whether some size times the scales comes as near as that to every printed number."""
+    """Return whether one size times the scales comes within the tolerance of every number."""
     lowest = max((value - within) / s for value, s in zip(printed, scales, strict=True))
     highest = min((value + within) / s for value, s in zip(printed, scales, strict=True))
     return lowest <= highest

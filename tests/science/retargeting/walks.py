@@ -1,4 +1,4 @@
-"""A made walk, of which everything is known: when feet lift, how far and how high they step.
+"""A synthetic walk whose lifts, step lengths and step heights are known.
 
 A person stands, takes steps beginning with the left foot, closes the feet and stands. Feet are flat
 and rest exactly while they are down. Thighs and shins come from `reach_for`, so any rig with the
@@ -21,13 +21,13 @@ STAND_S, SWING_S, DOUBLE_S = 0.5, 0.4, 0.15
 
 @dataclass(frozen=True, eq=False)
 class MadeWalk:
-    """A walk along -z and its truth.
+    """A synthetic walk along -z and its truth.
 
     Attributes:
         motion: the movement.
         lifts_s: (time of lift, time of contact) of every swing in order.
-        lengths_m: how far each swing goes.
-        height_m: how high the foot is at the middle of each.
+        lengths_m: length of each swing.
+        height_m: height of the foot in the middle of each swing.
     """
 
     motion: RigMotion
@@ -37,7 +37,7 @@ class MadeWalk:
 
 
 def made_walk(rig: Rig, *, step_m: float = 0.6, steps: int = 4, height_m: float = 0.12) -> MadeWalk:
-    """Walk `steps` steps of `step_m` from foot to foot, and close the feet."""
+    """Return a walk of `steps` steps of `step_m` that ends with closed feet."""
     lengths = [step_m, *(2.0 * step_m for _ in range(steps - 1)), step_m]
     lifts = [STAND_S + n * (SWING_S + DOUBLE_S) for n in range(len(lengths))]
     times = np.arange(round((lifts[-1] + SWING_S + STAND_S) * RATE_HZ) + 1) / RATE_HZ
@@ -54,12 +54,12 @@ def made_walk(rig: Rig, *, step_m: float = 0.6, steps: int = 4, height_m: float 
 
 
 def mapped(rig: Rig) -> Legs:
-    """The legs of a rig whose joints are named like the body's."""
+    """Return the legs of a rig whose joints are named like the body's."""
     return legs_of(rig, SAME)
 
 
 def _walking(rig: Rig, feet_m: FloatArray, crouch_m: float) -> RigMotion:
-    """Hips midway between the feet, and legs that reach for them; feet (2, N, 3) from the rest."""
+    """Return hips midway between the feet and legs that reach them; feet (2, N, 3) from rest."""
     frames = feet_m.shape[1]
     root = np.tile(rig.offsets_m[0], (frames, 1))
     root[:, 2] += feet_m[:, :, 2].mean(axis=0)

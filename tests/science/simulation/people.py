@@ -1,4 +1,4 @@
-"""People, goals and measuring points that the tests of the participant share."""
+"""Participants, goals and measuring points for the tests of the simulated participant."""
 
 import numpy as np
 
@@ -14,21 +14,21 @@ from app.science.skeleton import JOINT_INDEX, Movement, Pose, build_skeleton, fo
 
 RATE_HZ = 90.0
 SKELETON = build_skeleton(1.75)
-# Aims exactly and never tries again, so that what is held can be measured.
+# Aims exactly and never retries, so that the final pose can be measured.
 EXACT = MovementTraits(precision=1e-6, overshoot_probability=0.0, patience_s=60.0)
 IMPATIENT = MovementTraits(precision=1e-6, overshoot_probability=0.0)
 BOXES = [(-0.375 + 0.25 * i, 1.25, -0.7) for i in range(4)]
 
 
 def rng_of(seed: int = 1) -> np.random.Generator:
-    """Return seeded chance."""
+    """Return a seeded random generator."""
     return np.random.default_rng(seed)
 
 
 def person_of(
     seed: int = 1, traits: MovementTraits | None = EXACT, base: Movement | None = None
 ) -> SimulatedParticipant:
-    """Return a participant, exact and patient unless told otherwise."""
+    """Return a participant, by default exact and patient."""
     base = base or idle_movement(SKELETON, rng_of(99))
     return SimulatedParticipant(SKELETON, base, rng_of(seed), traits=traits)
 
@@ -42,7 +42,7 @@ def follow(
 
 
 def tip(pose: Pose, side: str) -> rot.FloatArray:
-    """Return the finger tip's place in the world."""
+    """Return the position of the fingertip in the world."""
     world = forward_kinematics(SKELETON, pose.root_position_m, pose.rotations)
     hand = JOINT_INDEX[f"{side}Hand"]
     turned = rot.rotate(world.rotations[hand], SKELETON.ends_m[hand])
@@ -50,7 +50,7 @@ def tip(pose: Pose, side: str) -> rot.FloatArray:
 
 
 def sole(pose: Pose, side: str) -> rot.FloatArray:
-    """Return the place of the middle of the sole."""
+    """Return the position of the middle of the sole in the world."""
     world = forward_kinematics(SKELETON, pose.root_position_m, pose.rotations)
     ahead = np.array((0.0, -SKELETON.ankle_height_m, -0.038 * SKELETON.stature_m))
     return np.asarray(world.positions_m[JOINT_INDEX[f"{side}Foot"]] + ahead)

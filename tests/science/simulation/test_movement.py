@@ -1,4 +1,4 @@
-"""How the simulated participant moves: smooth, reproducible, closed loop."""
+"""How the simulated participant moves: smoothly, reproducibly and in a closed loop."""
 
 from pathlib import Path
 
@@ -39,7 +39,7 @@ from tests.science.simulation.people import (
 
 
 def test_the_same_seed_gives_the_same_movement() -> None:
-    """Seed, times and goals decide everything; another seed gives another movement."""
+    """The same seed, times and goals give the same movement; another seed gives another."""
     goal = reach(BOXES[2])
     first, again, other = (
         np.stack([pose.rotations for pose in follow(person_of(seed, None), goal, 0.0, 2.0)])
@@ -50,7 +50,7 @@ def test_the_same_seed_gives_the_same_movement() -> None:
 
 
 def test_movement_is_smooth_through_every_change_of_goal() -> None:
-    """From roaming to reaching, stepping, walking, resting and back no joint jumps."""
+    """No joint jumps when the goal changes between roaming, reaching, stepping and walking."""
     person = person_of(traits=None)
     goals = [
         None, reach(BOXES[0]), reach(BOXES[3]), reach(BOXES[1], "Left"), None,
@@ -68,7 +68,7 @@ def test_movement_is_smooth_through_every_change_of_goal() -> None:
 
 @pytest.mark.parametrize("turned_deg", [120.0, 160.0, 180.0, 200.0])
 def test_no_joint_turns_quicker_than_a_persons(turned_deg: float) -> None:
-    """A hand that hangs palm out is half a turn from where it reaches: it turns there in time."""
+    """A hand that must turn by half a turn on its way to a goal turns no faster than a person's."""
     idle, hand = idle_movement(SKELETON, rng_of(99)), JOINT_INDEX["RightHand"]
     half = np.radians(turned_deg) / 2.0
     rotations = idle.rotations.copy()
@@ -86,7 +86,7 @@ def test_no_joint_turns_quicker_than_a_persons(turned_deg: float) -> None:
 
 
 def test_without_a_goal_the_base_movement_is_played_whole() -> None:
-    """Free roam is the base movement itself, in place."""
+    """In free movement the participant plays the base movement itself, in place."""
     base = idle_movement(SKELETON, rng_of(99))
     poses = follow(person_of(base=base), None, 0.0, 1.0)
     nearest = [float(np.min(np.max(rot.geodesic_angle(base.rotations, p.rotations), axis=1)))
@@ -95,7 +95,7 @@ def test_without_a_goal_the_base_movement_is_played_whole() -> None:
 
 
 def test_a_walking_capture_does_not_stride_at_the_boxes(shared_data: Path) -> None:
-    """While a hand task is done the feet of a walker stand, except for single side steps."""
+    """During a hand task the feet of a walking capture stand, except for single side steps."""
     path = shared_data / "motion" / "cmu_bvh" / "02_01.bvh"
     clip = captured_movement(path, SKELETON)
     base = loop(resample(clip, RATE_HZ))
@@ -109,7 +109,7 @@ def test_a_walking_capture_does_not_stride_at_the_boxes(shared_data: Path) -> No
 
 @pytest.mark.parametrize("latency_s", [0.0, 0.35])
 def test_closed_loop_through_the_delayed_avatar_goes_on(latency_s: float) -> None:
-    """Goals that change when the delayed avatar arrives are all met, in order, within a minute."""
+    """Goals that change when the delayed avatar arrives are all met in order within a minute."""
     person, buffer = person_of(traits=None), DelayBuffer(latency_s)
     person.set_latency(latency_s)
     met, frame = 0, 0
@@ -123,8 +123,8 @@ def test_closed_loop_through_the_delayed_avatar_goes_on(latency_s: float) -> Non
     assert met == 8
 
 
-def test_a_touch_without_effect_is_made_again() -> None:
-    """When the goal stays, the hand leaves the panel after a while and comes back."""
+def test_a_touch_without_effect_is_repeated() -> None:
+    """If the goal stays after a touch, the hand leaves the panel and touches it again."""
     poses = follow(person_of(traits=IMPATIENT), reach(BOXES[2]), 0.0, 6.0)
     depth = np.array([tip(pose, "Right")[2] for pose in poses]) - BOXES[2][2]
     begins = np.flatnonzero((depth[1:] <= 0.0) & (depth[:-1] > 0.0))
@@ -133,7 +133,7 @@ def test_a_touch_without_effect_is_made_again() -> None:
 
 
 def test_the_participant_reacts_before_moving() -> None:
-    """Nothing of the hand moves towards the goal for at least 0.12 s."""
+    """The hand does not move towards a new goal for at least 0.12 s."""
     person = person_of()
     follow(person, reach(BOXES[1]), 0.0, 3.0)
     tips = np.array([tip(p, "Right") for p in follow(person, reach(BOXES[2]), 3.0, 0.12)])
@@ -141,7 +141,7 @@ def test_the_participant_reacts_before_moving() -> None:
 
 
 def test_idle_movement_repeats_without_a_seam() -> None:
-    """The idle loop's seam is a step like any other, and the person stands with hanging arms."""
+    """The idle movement loops without a jump, and the person stands with hanging arms."""
     idle = idle_movement(SKELETON, rng_of())
     inside = largest_step_rad(Movement(idle.rate_hz, idle.root_positions_m, idle.rotations))
     assert largest_step_rad(idle) <= 1.01 * inside

@@ -1,4 +1,4 @@
-"""What the simulated participant reaches, steps on and walks to, and what it refuses."""
+"""Where the simulated participant reaches, steps and walks, and which goals are rejected."""
 
 import numpy as np
 import pytest
@@ -29,12 +29,12 @@ from tests.science.simulation.people import (
 @pytest.mark.parametrize("side", ["Left", "Right"])
 @pytest.mark.parametrize("box", range(4))
 def test_every_hand_box_is_reached_to_a_millimetre(side: str, box: int) -> None:
-    """The finger tip ends where it was aimed, in each box and with either hand."""
+    """The fingertip reaches its target in each box within a millimetre, with either hand."""
     person = person_of()
     pose = follow(person, reach(BOXES[box], side), 0.0, 2.5)[-1]
     assert person.aimed_m is not None
     assert float(np.linalg.norm(tip(pose, side) - person.aimed_m)) < 1e-3
-    # The aim itself presses a little into the panel and misses no other way.
+    # The target itself lies a little inside the panel; there is no other deviation.
     np.testing.assert_allclose(person.aimed_m[:2], BOXES[box][:2], atol=1e-4)
     assert -0.05 < person.aimed_m[2] - BOXES[box][2] < -0.005
 
@@ -42,7 +42,7 @@ def test_every_hand_box_is_reached_to_a_millimetre(side: str, box: int) -> None:
 @pytest.mark.parametrize("side", ["Left", "Right"])
 @pytest.mark.parametrize("target", [(-0.5, 0.01, -0.6), (0.2, 0.01, -0.9), (0.0, 0.15, -1.2)])
 def test_floor_targets_are_stepped_on(side: str, target: tuple[float, float, float]) -> None:
-    """The sole ends flat where it was aimed, also several steps away and on a bar."""
+    """The sole ends flat on its target, also several steps away and on a bar."""
     person = person_of()
     pose = follow(person, step(target, side), 0.0, 6.0)[-1]
     np.testing.assert_allclose(sole(pose, side), person.aimed_m or (), atol=1e-3)
@@ -53,7 +53,7 @@ def test_floor_targets_are_stepped_on(side: str, target: tuple[float, float, flo
 
 
 def test_the_hand_enters_and_leaves_a_box_by_its_opening() -> None:
-    """Deep in a box the finger tip stays in line with it, on the way in and out."""
+    """The fingertip stays in line with a box's opening on the way in and out."""
     person = person_of()
     poses = follow(person, reach(BOXES[3]), 0.0, 2.5)
     poses += follow(person, reach(BOXES[0]), 2.5, 3.0)
@@ -65,7 +65,7 @@ def test_the_hand_enters_and_leaves_a_box_by_its_opening() -> None:
 
 
 def test_feet_lift_over_the_edge_of_a_box() -> None:
-    """On its way the foot is above the edge wherever it is not over its start or its goal."""
+    """A foot is above the box's edge between its start and its goal."""
     person = person_of()
     poses = follow(person, step((0.3, 0.01, -0.6), "Right"), 0.0, 3.0)
     soles = np.array([sole(pose, "Right") for pose in poses])
@@ -77,7 +77,7 @@ def test_feet_lift_over_the_edge_of_a_box() -> None:
 
 
 def test_walking_back_brings_the_body_home() -> None:
-    """From the bar the body walks back to the start square and stands there."""
+    """The body walks back from the bar to the start square and stands there."""
     person = person_of()
     follow(person, step((0.0, 0.15, -1.2), "Right"), 0.0, 5.0)
     home = Goal(GoalKind.WALK_TO, None, (0.0, 0.0, 0.0))
@@ -88,7 +88,7 @@ def test_walking_back_brings_the_body_home() -> None:
 
 
 def test_a_goal_out_of_reach_leaves_the_arm_stretched_towards_it() -> None:
-    """A target metres away does not break the body: it stays finite, upright and near."""
+    """With a target metres away the body stays finite, upright and near."""
     person = person_of()
     goal = Goal(GoalKind.REACH, "RightHand", (0.0, 1.3, -6.0))
     pose = follow(person, goal, 0.0, 6.0)[-1]
@@ -97,8 +97,8 @@ def test_a_goal_out_of_reach_leaves_the_arm_stretched_towards_it() -> None:
     assert float(tip(pose, "Right")[2]) < -0.9
 
 
-def test_bad_requests_are_refused() -> None:
-    """Time that goes back, bases that do not loop, impossible latencies and far walks."""
+def test_invalid_requests_are_rejected() -> None:
+    """Times that go back, bases that do not loop, invalid latencies and far walks are rejected."""
     person = person_of()
     person.pose(1.0, None)
     with pytest.raises(SimulationError, match="in order"):
@@ -122,9 +122,9 @@ def test_bad_requests_are_refused() -> None:
         (GoalKind.STEP, "LeftFoot", (0.0, float("nan"), 0.0)),
     ],
 )
-def test_goals_that_make_no_sense_are_refused(
+def test_invalid_goals_are_rejected(
     kind: GoalKind, effector: str | None, target: tuple[float, float, float] | None
 ) -> None:
-    """A wrong limb, a missing or surplus target and non-finite numbers are refused."""
+    """A wrong limb, a missing or surplus target and non-finite numbers are rejected."""
     with pytest.raises(SimulationError):
         Goal(kind, effector, target)

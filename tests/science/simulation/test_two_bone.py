@@ -1,4 +1,4 @@
-"""Two-bone limbs and smooth paths."""
+"""Inverse kinematics of two-bone limbs, and smooth paths."""
 
 import numpy as np
 import pytest
@@ -35,7 +35,7 @@ def _vector(values: rot.FloatArray) -> Vector:
 
 
 def test_a_reachable_end_is_met(rng: np.random.Generator) -> None:
-    """Whatever the direction, an end within reach is met to a micrometre."""
+    """An end within reach is met to a micrometre in any direction."""
     for _ in range(500):
         root, way = rng.normal(size=3), rng.normal(size=3)
         length = rng.uniform(_UPPER_M - _LOWER_M + 1e-3, _UPPER_M + _LOWER_M)
@@ -53,7 +53,7 @@ def test_a_reachable_end_is_met(rng: np.random.Generator) -> None:
 
 @pytest.mark.parametrize("length_m", [0.7, 5.0])
 def test_an_end_out_of_reach_is_approached_straight(length_m: float) -> None:
-    """Beyond its length the limb is straight towards the end and says what is missing."""
+    """Towards an end out of reach the limb is straight, and reports the missing length."""
     end = (0.0, 0.0, -length_m)
     limb = solve_two_bone((0.0, 0.0, 0.0), end, _UPPER_M, _LOWER_M, _POLE)
     assert limb.short_m == pytest.approx(length_m - _UPPER_M - _LOWER_M)
@@ -61,21 +61,21 @@ def test_an_end_out_of_reach_is_approached_straight(length_m: float) -> None:
 
 
 def test_an_end_too_near_is_approached_as_far_as_the_bones_fold() -> None:
-    """Nearer than the difference of the bones the limb folds and says so by a negative length."""
+    """Towards an end that is too near the limb folds and reports a negative missing length."""
     limb = solve_two_bone((0.0, 0.0, 0.0), (0.0, 0.0, -0.01), _UPPER_M, _LOWER_M, _POLE)
     assert limb.short_m == pytest.approx(0.01 - (_UPPER_M - _LOWER_M))
 
 
 @pytest.mark.parametrize("pole", [(0.0, -1.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 0.0)])
 def test_a_pole_along_the_limb_is_replaced(pole: Vector) -> None:
-    """A pole that lies along the way, or is none, still gives a finite limb that reaches."""
+    """A pole along the limb, or of zero length, still gives a finite limb that reaches."""
     limb = solve_two_bone((0.0, 0.0, 0.0), (0.0, -0.4, 0.0), _UPPER_M, _LOWER_M, pole)
     np.testing.assert_allclose(_end((0.0, 0.0, 0.0), limb), (0.0, -0.4, 0.0), atol=1e-9)
 
 
 @pytest.mark.parametrize("side", [-1.0, 1.0])
 def test_an_elbow_only_bends_the_way_elbows_do(side: float) -> None:
-    """The forearm turns about y alone against the upper arm, forwards from the T-pose."""
+    """From the T-pose the forearm turns about y alone against the upper arm, forwards."""
     limb = solve_two_bone((0.0, 0.0, 0.0), (0.1, 0.0, -0.4), _UPPER_M, _LOWER_M, _POLE)
     upper = np.array(arm_rotation(limb.upper, limb.normal, side))
     lower = np.array(arm_rotation(limb.lower, limb.normal, side))
@@ -88,7 +88,7 @@ def test_an_elbow_only_bends_the_way_elbows_do(side: float) -> None:
 
 
 def test_a_knee_only_bends_backwards() -> None:
-    """The shank turns about -x alone against the thigh: the heel comes towards the seat."""
+    """The shank turns about -x alone against the thigh, so the heel moves backwards."""
     limb = solve_two_bone((0.0, 0.5, 0.0), (0.0, 0.0, -0.1), _UPPER_M, _LOWER_M, (0.0, 0.0, -1.0))
     upper = np.array(leg_rotation(limb.upper, limb.normal))
     lower = np.array(leg_rotation(limb.lower, limb.normal))
@@ -98,22 +98,22 @@ def test_a_knee_only_bends_backwards() -> None:
 
 
 @pytest.mark.parametrize("side", [-1.0, 1.0])
-def test_fingers_point_where_they_are_told(rng: np.random.Generator, side: float) -> None:
-    """The hand's own axis comes to lie along the asked direction, also along the arm's normal."""
+def test_fingers_point_in_the_requested_direction(rng: np.random.Generator, side: float) -> None:
+    """The hand's axis lies along the requested direction, even along the arm's normal."""
     for fingers in (*np.eye(3), rot.rotate(rot.normalise(rng.normal(size=4)), np.eye(3)[0])):
         q = np.array(hand_rotation(_vector(fingers), (0.0, 1.0, 0.0), side))
         np.testing.assert_allclose(rot.rotate(q, np.array((side, 0, 0))), fingers, atol=1e-9)
 
 
 def test_minimum_jerk_known_values() -> None:
-    """Half way at half time, at rest at both ends, and 1.875 times the mean speed between."""
+    """A minimum-jerk path is half way at half time, with a peak of 1.875 times the mean speed."""
     assert [minimum_jerk(s) for s in (-1.0, 0.0, 0.5, 1.0, 2.0)] == [0.0, 0.0, 0.5, 1.0, 1.0]
     slopes = [(minimum_jerk(s + 1e-6) - minimum_jerk(s - 1e-6)) / 2e-6 for s in (0.0, 0.5, 1.0)]
     np.testing.assert_allclose(slopes, (0.0, 1.875, 0.0), atol=1e-5)
 
 
-def test_a_path_begins_ends_and_lasts_as_asked() -> None:
-    """A path through way-points starts and ends in them and takes the whole time."""
+def test_a_path_begins_ends_and_lasts_as_requested() -> None:
+    """A path starts and ends in its way-points and takes exactly the requested time."""
     points: list[Vector] = [(0.0, 0.0, 0.0), (0.0, 0.3, 0.0), (0.5, 0.3, 0.0), (0.5, 0.0, 0.0)]
     path = path_through(points, 2.0, 1.2)
     assert path.end_s == pytest.approx(3.2)
@@ -124,7 +124,7 @@ def test_a_path_begins_ends_and_lasts_as_asked() -> None:
 
 
 def test_waiting_puts_off_the_rest_of_a_path() -> None:
-    """A path told to wait before a leg stands still until then."""
+    """A path with a wait before a leg stands still until then."""
     points: list[Vector] = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0)]
     path = path_through(points, 0.0, 1.0).waiting_to_enter(1, 5.0)
     np.testing.assert_allclose(path.at(5.0), (1.0, 0.0, 0.0), atol=1e-12)

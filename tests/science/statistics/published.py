@@ -1,7 +1,7 @@
-"""Published tables that the statistics are held to.
+"""Published tables against which the statistics are tested.
 
 Those of R and of papers come from the shared data, which are not part of the repository; those that
-pingouin carries are read from its folder, without importing it.
+pingouin contains are read from its folder, without importing it.
 """
 
 import csv
@@ -35,12 +35,12 @@ TEACHING = np.array(
 
 
 def rows(path: Path) -> list[dict[str, str]]:
-    """The rows of a CSV by column."""
+    """Return the columns of a CSV file by their names."""
     return list(csv.DictReader(path.read_text(encoding="utf-8-sig").splitlines()))
 
 
 def in_pingouin(name: str) -> list[dict[str, str]]:
-    """A table that pingouin carries; skips where the package is not installed."""
+    """Return the path of a table in pingouin; skip the test if it is not installed."""
     spec = find_spec("pingouin")
     if spec is None or not spec.submodule_search_locations:
         pytest.skip("pingouin is not installed; it carries this table")
@@ -48,7 +48,7 @@ def in_pingouin(name: str) -> list[dict[str, str]]:
 
 
 def cells(table: list[dict[str, str]], subject: str, within: list[str], measure: str) -> Cells:
-    """A table by cells."""
+    """Return a long table as an array of cells."""
     return cells_of(
         [row[subject] for row in table],
         {factor: [row[factor] for row in table] for factor in within},
@@ -57,5 +57,5 @@ def cells(table: list[dict[str, str]], subject: str, within: list[str], measure:
 
 
 def wide(table: list[dict[str, str]], columns: list[str] | None = None) -> FloatArray:
-    """A wide table as an array, NaN where a cell is empty."""
+    """Return a wide table as an array, NaN where a cell is empty."""
     return np.array([[float(row[name] or "nan") for name in columns or list(row)] for row in table])

@@ -1,4 +1,4 @@
-"""Aligned ranks: what alignment keeps and takes away, and contrasts."""
+"""Aligned ranks: which effects alignment keeps and removes, and contrasts."""
 
 import numpy as np
 import pytest
@@ -14,14 +14,14 @@ from app.science.statistics.arrays import midranks
 
 
 def test_with_one_factor_ranks_are_those_of_the_values() -> None:
-    """Nothing is to be taken out, so it is an analysis of variance of plain ranks."""
+    """With one factor the test is an analysis of variance of the plain ranks."""
     values = np.random.default_rng(1).normal(size=(8, 3))
     ranks = midranks(values.ravel()).reshape(values.shape)
     assert aligned_ranks_within(values).effects[0].f == pytest.approx(rm_anova(ranks).effects[0].f)
 
 
 def test_an_effect_of_one_factor_leaves_the_others_alone() -> None:
-    """However large the effect of latency grows, the tests of limb and interaction stay."""
+    """A growing effect of latency does not change the tests of limb and interaction."""
     rng = np.random.default_rng(2)
     values = rng.normal(size=(10, 3, 2))
     large = values + np.array([0.0, 50.0, 900.0])[:, np.newaxis]
@@ -33,7 +33,7 @@ def test_an_effect_of_one_factor_leaves_the_others_alone() -> None:
 
 
 def test_every_result_says_that_the_method_is_contested() -> None:
-    """Within, between x within, and contrasts."""
+    """Every result of aligned ranks notes that the method is contested."""
     values = np.random.default_rng(3).normal(size=(6, 3))
     results = (
         aligned_ranks_within(values),
@@ -44,7 +44,7 @@ def test_every_result_says_that_the_method_is_contested() -> None:
 
 
 def test_contrasts_are_of_the_ranks_aligned_for_their_factor() -> None:
-    """F of a factor with two levels is t squared; all pairs of all cells take the values' ranks."""
+    """A contrast of two levels has t squared equal to F; contrasts of all cells use plain ranks."""
     rng = np.random.default_rng(4)
     values = rng.normal(size=(9, 2, 2))
     levels = [["0", "350"], ["hand", "foot"]]
@@ -64,7 +64,7 @@ def test_contrasts_are_of_the_ranks_aligned_for_their_factor() -> None:
     assert [(pair.a, pair.b) for pair in main] == [(("hand",), ("foot",))]
 
 
-def test_axes_that_are_not_there_are_refused() -> None:
-    """Axis 0 is the subjects; the message says which are valid."""
+def test_unknown_axes_are_rejected() -> None:
+    """The error about an unknown axis, or axis 0 of the subjects, names the valid ones."""
     with pytest.raises(StatisticsError, match="1 to 1"):
         aligned_contrasts(np.ones((3, 2)), [["a", "b"]], [0])

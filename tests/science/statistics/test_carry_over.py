@@ -1,4 +1,4 @@
-"""Order, sequence and carry-over in a Williams design."""
+"""Effects of order, sequence and carry-over in a Williams design."""
 
 import numpy as np
 import pytest
@@ -12,10 +12,10 @@ EFFECT = {"0": 0.0, "125": -1.0, "350": -3.0}
 
 
 class Experiment:
-    """Every order of three latencies `repeats` times, two limbs a period."""
+    """An experiment with every order of three latencies `repeats` times, and two limbs a period."""
 
     def __init__(self, repeats: int = 2) -> None:
-        """Lay the design out."""
+        """Create the rows of the design."""
         orders = [tuple(LEVELS[at] for at in row) for row in williams(3)] * repeats
         self.rows = [
             (who, order, period, limb)
@@ -29,7 +29,7 @@ class Experiment:
         self.limbs = [limb for _, _, _, limb in self.rows]
 
     def values(self, left_behind: dict[str, float], practice: float, noise: float) -> np.ndarray:
-        """The effect of the latency, practice, and what the period before leaves behind."""
+        """Return values with effects of latency and practice, and carry-over between periods."""
         rng = np.random.default_rng(23)
         level = rng.normal(size=max(self.people) + 1)
         exact = [
@@ -42,7 +42,7 @@ class Experiment:
         return np.array(exact) + noise * rng.normal(size=len(exact))
 
     def diagnose(self, values: np.ndarray) -> CarryOver:
-        """With the limb as a further factor."""
+        """Return the carry-over analysis with the limb as a further factor."""
         return carry_over(
             values,
             self.people,
@@ -53,12 +53,12 @@ class Experiment:
 
 
 def codes(found: CarryOver) -> list[str]:
-    """What was concluded."""
+    """Return the codes of the conclusions."""
     return [one.code for one in found.conclusions]
 
 
 def test_carry_over_is_found_and_measured() -> None:
-    """Differences of what conditions leave behind come out as they went in."""
+    """Simulated differences in carry-over between conditions are recovered."""
     experiment = Experiment()
     values = experiment.values({"0": 0.0, "125": 0.5, "350": 2.0}, 0.0, 0.05)
     found = experiment.diagnose(values)
@@ -71,8 +71,8 @@ def test_carry_over_is_found_and_measured() -> None:
     assert found.carry_over.df_term == 2
 
 
-def test_what_all_conditions_leave_behind_looks_like_period() -> None:
-    """The same carry-over after each cannot be told from practice, and the result says so."""
+def test_equal_carry_over_of_all_conditions_looks_like_period() -> None:
+    """Equal carry-over after all conditions is reported as confounded with practice."""
     experiment = Experiment()
     found = experiment.diagnose(experiment.values(dict.fromkeys(LEVELS, 2.0), 0.0, 0.3))
     assert found.period.p < 1e-6
@@ -81,8 +81,8 @@ def test_what_all_conditions_leave_behind_looks_like_period() -> None:
     assert codes(found)[-1] == "limits"
 
 
-def test_nothing_shown_is_not_nothing_there() -> None:
-    """Without carry-over the result names the largest one that the data leave possible."""
+def test_absence_of_carry_over_is_reported_with_a_bound() -> None:
+    """Without carry-over the result names the largest one compatible with the data."""
     experiment = Experiment()
     found = experiment.diagnose(experiment.values(dict.fromkeys(LEVELS, 0.0), 0.0, 1.0))
     widest = max(max(-one.value.low, one.value.high) for one in found.differences)
@@ -92,7 +92,7 @@ def test_nothing_shown_is_not_nothing_there() -> None:
 
 
 def test_the_complete_design_is_balanced() -> None:
-    """Each latency four times at each position, each neighbour four times, no order missing."""
+    """Each latency occurs four times at each position and after each other latency."""
     experiment = Experiment()
     orders = experiment.diagnose(experiment.values(dict.fromkeys(LEVELS, 0.0), 0.1, 1.0)).orders
     assert orders.balanced
@@ -103,7 +103,7 @@ def test_the_complete_design_is_balanced() -> None:
 
 
 def test_the_sequence_is_tested_between_participants() -> None:
-    """Six orders of twelve people leave six degrees of freedom, and one person each leaves none."""
+    """Twelve people in six orders leave 6 error df; one person an order leaves none."""
     experiment, single = Experiment(), Experiment(1)
     sequence = experiment.diagnose(experiment.values(dict.fromkeys(LEVELS, 0.0), 0.1, 0.5)).sequence
     assert sequence is not None
@@ -114,7 +114,7 @@ def test_the_sequence_is_tested_between_participants() -> None:
 
 
 def test_a_missing_order_is_named() -> None:
-    """Without one order's participants the design is unbalanced and the order is missing."""
+    """Without the participants of one order the design is unbalanced and names that order."""
     experiment = Experiment()
     values = experiment.values(dict.fromkeys(LEVELS, 0.0), 0.1, 0.5)
     kept = [at for at, row in enumerate(experiment.rows) if row[1] != LEVELS]
@@ -130,7 +130,7 @@ def test_a_missing_order_is_named() -> None:
 
 
 def test_an_unknown_condition_before_is_left_out_and_counted() -> None:
-    """Without a participant's second period the third one has no known condition before it."""
+    """A period after a missing one has no known previous condition and is left out."""
     experiment = Experiment()
     values = experiment.values(dict.fromkeys(LEVELS, 0.0), 0.1, 0.5)
     kept = [at for at, row in enumerate(experiment.rows) if (row[0], row[2]) != (4, 1)]
@@ -145,6 +145,6 @@ def test_an_unknown_condition_before_is_left_out_and_counted() -> None:
 
 
 def test_a_period_has_one_condition() -> None:
-    """Two conditions in one period are refused by name."""
+    """Two conditions in one period of a participant are rejected by name."""
     with pytest.raises(ModelError, match="Participant 1 has the conditions a and b in period 1"):
         carry_over([1.0, 2.0, 3.0], [1, 1, 1], ["a", "b", "a"], [1, 1, 2])

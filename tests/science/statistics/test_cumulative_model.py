@@ -1,4 +1,4 @@
-"""Cumulative link models against R's `ordinal`, and against their own laws."""
+"""Cumulative link models against R's `ordinal`, and their own properties."""
 
 import csv
 from pathlib import Path
@@ -22,14 +22,14 @@ from app.science.statistics.mixed.terms import ModelError, factor
 
 
 class Wine(NamedTuple):
-    """Bitterness of wine, 1 to 5, by nine judges (Randall 1989)."""
+    """Bitterness of wine, 1 to 5, rated by nine judges (Randall 1989)."""
 
     ratings: list[int]
     judges: list[str]
     design: Design
 
     def fit(self, nodes: int, link: Link = "logit") -> CumulativeModel:
-        """With judges; without for no nodes."""
+        """Fit the model with random judges, or without judges for `nodes` of 0."""
         judges = self.judges if nodes else None
         return fit_cumulative_model(
             self.ratings, judges, self.design, link=link, nodes=max(nodes, 1)
@@ -38,7 +38,7 @@ class Wine(NamedTuple):
 
 @pytest.fixture(scope="module")
 def wine(shared_data: Path) -> Wine:
-    """The example of R's package `ordinal`."""
+    """Return the example data of R's package `ordinal`."""
     with (shared_data / "statistics" / "ordinal_wine.csv").open() as file:
         rows = list(csv.DictReader(file))
     temp = factor("temp", [row["temp"] for row in rows])
@@ -51,12 +51,12 @@ def wine(shared_data: Path) -> Wine:
 
 
 def effects(model: CumulativeModel) -> list[float]:
-    """Estimates alone."""
+    """Return the estimates alone."""
     return [one.estimate for one in model.effects]
 
 
 def test_the_plain_model_is_that_of_r(wine: Wine) -> None:
-    """ordinal::clm on its wine data: effects, thresholds and log-likelihood."""
+    """Effects, thresholds and log-likelihood equal those of ordinal::clm on its wine data."""
     model = wine.fit(0)
     assert effects(model) == pytest.approx([2.5031, 1.5278], abs=5e-5)
     found = [one.estimate for one in model.thresholds]
@@ -67,7 +67,7 @@ def test_the_plain_model_is_that_of_r(wine: Wine) -> None:
 
 
 def test_the_mixed_model_by_laplace_is_that_of_r(wine: Wine) -> None:
-    """ordinal::clmm with its default, Laplace's approximation."""
+    """With Laplace's approximation the mixed model equals that of ordinal::clmm."""
     model = wine.fit(1)
     assert effects(model) == pytest.approx([3.0630, 1.8349], abs=5e-5)
     assert model.participant_variance == pytest.approx(1.2795, abs=1e-4)
@@ -77,14 +77,14 @@ def test_the_mixed_model_by_laplace_is_that_of_r(wine: Wine) -> None:
 
 
 def test_the_mixed_model_by_quadrature_is_that_of_r(wine: Wine) -> None:
-    """ordinal::clmm with ten quadrature points."""
+    """With ten quadrature points the mixed model equals that of ordinal::clmm."""
     model = wine.fit(10)
     assert effects(model) == pytest.approx([3.0619, 1.8334], abs=5e-5)
     assert model.log_likelihood == pytest.approx(-81.5325, abs=5e-5)
 
 
 def test_contact_improves_the_model(wine: Wine) -> None:
-    """The likelihood ratio is twice the difference of two fits, and terms are tested by it."""
+    """The likelihood ratio of a term is twice the difference of two fits."""
     small = fit_cumulative_model(wine.ratings, wine.judges, build_design(wine.design.factors[:1]))
     expected = likelihood_ratio(small, wine.fit(1))
     assert expected.statistic == pytest.approx(
@@ -99,7 +99,7 @@ def test_contact_improves_the_model(wine: Wine) -> None:
 @pytest.mark.parametrize("link", ["logit", "probit"])
 @pytest.mark.parametrize("nodes", [1, 7])
 def test_the_gradient_is_that_of_the_likelihood(wine: Wine, link: Link, nodes: int) -> None:
-    """Differences of the approximated likelihood agree with its analytic gradient."""
+    """The analytic gradient equals numeric differences of the approximated likelihood."""
     order = np.argsort(wine.judges, kind="stable")
     codes = np.unique(np.array(wine.judges), return_inverse=True)[1][order]
     answers = Answers(
@@ -118,7 +118,7 @@ def test_the_gradient_is_that_of_the_likelihood(wine: Wine, link: Link, nodes: i
 
 @pytest.mark.parametrize("link", ["logit", "probit"])
 def test_quadrature_is_the_integral(link: Link) -> None:
-    """Twenty nodes agree with adaptive integration over a participant's effect."""
+    """Twenty quadrature nodes agree with adaptive integration over a participant's effect."""
     answers = Answers(np.array([0, 2, 1, 2]), np.zeros((4, 0)), np.zeros(4, dtype=np.int64), 3)
     f = expit if link == "logit" else ndtr
 
@@ -134,7 +134,7 @@ def test_quadrature_is_the_integral(link: Link) -> None:
 
 
 def test_turning_the_scale_round_turns_the_effects_round(wine: Wine) -> None:
-    """6 minus the answer gives the same likelihood, opposite effects, mirrored thresholds."""
+    """Reversed answers give the same likelihood, opposite effects and mirrored thresholds."""
     plain = wine.fit(1, "probit")
     turned = fit_cumulative_model(
         [6 - one for one in wine.ratings], wine.judges, wine.design, link="probit"
@@ -145,8 +145,8 @@ def test_turning_the_scale_round_turns_the_effects_round(wine: Wine) -> None:
     assert [one.estimate for one in turned.thresholds] == pytest.approx(mirrored, abs=1e-5)
 
 
-def test_names_of_categories_do_not_matter(wine: Wine) -> None:
-    """Categories that nobody chose are left out and told; the estimates are the same."""
+def test_unused_categories_are_left_out_and_reported(wine: Wine) -> None:
+    """Categories that nobody chose are reported and do not change the estimates."""
     stretched = fit_cumulative_model(
         [2 * one - 1 for one in wine.ratings], wine.judges, wine.design, scale=range(1, 10)
     )
@@ -158,7 +158,7 @@ def test_names_of_categories_do_not_matter(wine: Wine) -> None:
 
 
 def test_alike_participants_have_no_variance() -> None:
-    """Answers balanced within everybody leave nothing between them; the plain model remains."""
+    """Participants who do not differ get a variance of zero, and the fit is the plain model's."""
     answers, people = [1, 2, 3] * 8, [who for who in range(12) for _ in range(2)]
     design = build_design([factor("limb", ["hand", "foot"] * 12)])
     model = fit_cumulative_model(answers, people, design)
@@ -169,8 +169,8 @@ def test_alike_participants_have_no_variance() -> None:
     assert model.log_likelihood == pytest.approx(plain.log_likelihood, abs=1e-9)
 
 
-def test_separated_answers_are_told() -> None:
-    """All answers of one condition at the end of the scale leave its effect without an estimate."""
+def test_separated_answers_are_reported() -> None:
+    """If all answers of a condition are at one end of the scale, its effect is not estimated."""
     answers = [1, 5, 2, 5, 3, 5, 1, 5, 2, 5, 2, 5]
     people = [who for who in range(6) for _ in range(2)]
     design = build_design([factor("limb", ["hand", "foot"] * 6)])
@@ -188,10 +188,10 @@ def test_separated_answers_are_told() -> None:
         ([1, 2, 3], 3, None, "do not fit"),
     ],
 )
-def test_what_cannot_be_fitted_is_refused(
+def test_answers_that_cannot_be_fitted_are_rejected(
     answers: list[int], people: int, scale: range | None, told: str
 ) -> None:
-    """Constant answers, strange answers, too few people: said, not computed."""
+    """Constant answers, answers off the scale and too few people are rejected."""
     design = build_design([factor("limb", ["hand", "foot"] * 3)])
     names = [at % people for at in range(len(answers))]
     with pytest.raises(ModelError, match=told):
@@ -199,13 +199,13 @@ def test_what_cannot_be_fitted_is_refused(
 
 
 def test_models_of_other_answers_are_not_compared(wine: Wine) -> None:
-    """A likelihood ratio needs the same answers, fitted in the same way."""
+    """Models of other answers, or fitted in another way, cannot be compared."""
     with pytest.raises(ModelError, match="differ in nodes"):
         likelihood_ratio(wine.fit(0), wine.fit(1))
 
 
 def test_contrasts_are_effects_where_there_are_two_levels(wine: Wine) -> None:
-    """Warm less cold is the coefficient; within contact it is the same without an interaction."""
+    """The contrast of two levels is their coefficient, also within levels of another factor."""
     model = wine.fit(1)
     (warm, *_) = model.effects
     (found,) = cumulative_contrasts(model, "temp", against="cold")

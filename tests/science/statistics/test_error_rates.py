@@ -1,4 +1,4 @@
-"""Data sets without effects, and the shipped table of what tests make of them."""
+"""Simulated data sets without effects, and the shipped table of the tests' error rates."""
 
 import json
 from pathlib import Path
@@ -13,7 +13,7 @@ from tests.benchmarks.null_tests import ABOUT, GROUPS
 
 
 def row(rate: float, kind: str = "rejection", *, exact: bool = False) -> ErrorRate:
-    """A row with 2,000 data sets."""
+    """Return a row of the table for 2,000 data sets."""
     made = {"participants": 0, "sets": 2000, "failed": 0, "rate": rate, "exact": exact}
     text = {"test": "friedman_exact", "scenario": "level", "measure": "item", "kind": kind}
     stored = {"seed": 1, "design": {}, "rows": [text | made]}
@@ -23,20 +23,20 @@ def row(rate: float, kind: str = "rejection", *, exact: bool = False) -> ErrorRa
 
 @pytest.fixture(scope="module")
 def shipped() -> ErrorRates:
-    """The table that the product brings."""
+    """Return the error rates that are shipped with the product."""
     return error_rates_from_json(Path(TABLE).read_text(encoding="utf-8"))
 
 
 def test_the_same_seed_gives_the_same_data() -> None:
-    """All randomness comes from the generator."""
+    """The same seed gives the same data sets."""
     one, other = (null_data(NullDesign(12), np.random.default_rng(4)) for _ in range(2))
     assert np.array_equal(one.measure, other.measure)
     assert np.array_equal(one.item, other.item)
     assert one.measure.shape == one.item.shape == (12, 3, 2)
 
 
-def test_nothing_has_an_effect() -> None:
-    """Over many participants latencies and limbs have equal means, with reactions too."""
+def test_the_data_sets_have_no_effects() -> None:
+    """Over many participants all latencies and limbs have equal means and deviations."""
     data = null_data(NullDesign(60_000, reaction=0.8), np.random.default_rng(1))
     for values in (data.measure, data.item.astype(float)):
         assert np.ptp(values.mean(axis=(0, 2))) < 0.03
@@ -45,7 +45,7 @@ def test_nothing_has_an_effect() -> None:
 
 
 def test_reactions_make_far_latencies_less_alike() -> None:
-    """With them 350 ms resembles 0 ms less than 125 ms does; without, all resemble alike."""
+    """With reactions 350 ms correlates less with 0 ms than 125 ms does; without, equally."""
     for reaction in (0.0, 0.8):
         data = null_data(NullDesign(30_000, reaction=reaction), np.random.default_rng(7))
         alike = np.array(np.corrcoef(data.measure[:, :, 0], rowvar=False))
@@ -53,7 +53,7 @@ def test_reactions_make_far_latencies_less_alike() -> None:
 
 
 def test_items_are_answered_as_people_answer() -> None:
-    """From 1 to 7, all used, mostly agreement, and the same answer often."""
+    """Simulated answers use all of 1 to 7, mostly agree, and often repeat."""
     data = null_data(NullDesign(6000), np.random.default_rng(2))
     shares = np.bincount(data.item.ravel(), minlength=8)[1:] / data.item.size
     assert shares.min() > 0.01
@@ -63,7 +63,7 @@ def test_items_are_answered_as_people_answer() -> None:
 
 
 def test_orders_are_complete_blocks() -> None:
-    """Each latency equally often in each period."""
+    """Each latency occurs equally often in each period."""
     periods = null_data(NullDesign(18), np.random.default_rng(3)).periods
     for latency in range(3):
         assert np.bincount(periods[:, latency]).tolist() == [0, 6, 6, 6]
@@ -72,7 +72,7 @@ def test_orders_are_complete_blocks() -> None:
 
 
 def test_alpha_of_the_population_follows_from_the_levels() -> None:
-    """Without levels items have nothing in common."""
+    """Without differences between participants' levels, the population's alpha is zero."""
     assert population_alpha(NullDesign(0, level_sd=0.0), np.random.default_rng(5)) == pytest.approx(
         0.0, abs=0.01
     )
@@ -90,25 +90,25 @@ def test_alpha_of_the_population_follows_from_the_levels() -> None:
     ],
 )
 def test_a_page_warns_out_of_bounds(rate: float, kind: str, warning: str) -> None:
-    """4 to 6.5 % for tests, 93.5 % for intervals."""
+    """Warnings appear outside of 4 to 6.5 % for tests and below 93.5 % for intervals."""
     assert row(rate, kind).warning == warning
 
 
 def test_an_exact_test_that_rejects_too_often_breaks_its_promise() -> None:
-    """Three standard errors above 5 %, and no more."""
+    """An exact test is within its guarantee up to three standard errors above 5 %."""
     assert row(0.064, exact=True).is_within_guarantee
     assert not row(0.065, exact=True).is_within_guarantee
 
 
 def test_exact_tests_keep_their_promise(shipped: ErrorRates) -> None:
-    """On the shipped data sets none rejects in more than 5 % and three standard errors."""
+    """No exact test of the shipped table rejects beyond 5 % and three standard errors."""
     exact = [one for one in shipped.rows if one.exact]
     assert {one.test for one in exact} == {name for name, about in ABOUT.items() if about.exact}
     assert [one for one in exact if not one.is_within_guarantee] == []
 
 
 def test_every_test_was_tried_on_two_thousand_data_sets(shipped: ErrorRates) -> None:
-    """And could hardly ever not be made."""
+    """Every row of the shipped table has two thousand data sets, of which hardly any failed."""
     for name in ABOUT:
         found = shipped.of(name)
         assert found is not None
@@ -117,7 +117,7 @@ def test_every_test_was_tried_on_two_thousand_data_sets(shipped: ErrorRates) -> 
 
 
 def test_a_study_is_judged_by_data_sets_of_its_size(shipped: ErrorRates) -> None:
-    """The nearest number of participants counts; what was not measured has no row."""
+    """A study gets the row of the nearest number of participants; an unknown test has none."""
     for participants, nearest in ((11, 12), (16, 18), (40, 24)):
         found = shipped.near("clmm_laplace", participants)
         assert found is not None
@@ -126,13 +126,13 @@ def test_a_study_is_judged_by_data_sets_of_its_size(shipped: ErrorRates) -> None
 
 
 def test_the_page_of_the_documents_is_that_of_the_table(shipped: ErrorRates) -> None:
-    """Made of the same figures."""
+    """The page of the documentation equals the page generated from the table."""
     assert Path(PAGE).read_text(encoding="utf-8") == page(shipped)
 
 
 @pytest.mark.parametrize("group", GROUPS)
-def test_every_group_of_tests_can_be_made(group: str) -> None:
-    """On one data set each, with names that the table knows."""
+def test_every_group_of_tests_can_be_computed(group: str) -> None:
+    """Every group of tests runs on one data set and has names that the table knows."""
     rng = np.random.default_rng(6)
     outcomes = dict(GROUPS[group](null_data(NullDesign(12), rng), 0.66, rng))
     assert outcomes

@@ -1,4 +1,4 @@
-"""Friedman's test: enumeration, invariances, limits."""
+"""Friedman's test: enumeration, invariances and limits."""
 
 from itertools import permutations, product
 
@@ -16,7 +16,7 @@ _DRAWN = settings(max_examples=40, deadline=None)
 
 @st.composite
 def likert(draw: st.DrawFn, most_subjects: int = 8, most_levels: int = 4) -> FloatArray:
-    """Answers 1 to 5 with many ties, not all the same."""
+    """Draw answers 1 to 5 with many ties that are not all equal."""
     n = draw(st.integers(2, most_subjects))
     k = draw(st.integers(2, most_levels))
     row = st.lists(st.integers(1, 5), min_size=k, max_size=k)
@@ -27,7 +27,7 @@ def likert(draw: st.DrawFn, most_subjects: int = 8, most_levels: int = 4) -> Flo
 
 
 def _by_brute_force(blocks: FloatArray) -> float:
-    """The share of all arrangements whose statistic is at least as large."""
+    """Return the share of all arrangements whose statistic is at least as large."""
     seen = friedman(blocks, exact_up_to=0).statistic
     arrangements = [sorted(permutations(row)) for row in blocks.tolist()]
     found = [
@@ -47,7 +47,7 @@ def _by_brute_force(blocks: FloatArray) -> float:
     ],
 )
 def test_the_exact_p_is_that_of_every_arrangement(blocks: list[list[float]]) -> None:
-    """With and without ties, of two to four levels."""
+    """The exact p equals the enumeration of all arrangements, with and without ties."""
     test = friedman(blocks)
     assert test.method == "exact"
     assert test.p == pytest.approx(_by_brute_force(np.array(blocks)), abs=1e-12)
@@ -56,7 +56,7 @@ def test_the_exact_p_is_that_of_every_arrangement(blocks: list[list[float]]) -> 
 @_DRAWN
 @given(likert())
 def test_names_and_scales_do_not_matter(blocks: FloatArray) -> None:
-    """Other orders of subjects and levels, and any monotone transform, give the same result."""
+    """Reordering subjects or levels and monotone transforms do not change the result."""
     rng = np.random.default_rng(blocks.size)
     moved = blocks[rng.permutation(blocks.shape[0])][:, rng.permutation(blocks.shape[1])]
     before = friedman(blocks)
@@ -69,7 +69,7 @@ def test_names_and_scales_do_not_matter(blocks: FloatArray) -> None:
 @_DRAWN
 @given(likert())
 def test_p_and_agreement_stay_in_bounds(blocks: FloatArray) -> None:
-    """W from 0 to 1, p from above 0 to 1, mean ranks that average (k + 1) / 2."""
+    """W is from 0 to 1, p above 0 up to 1, and mean ranks average (k + 1) / 2."""
     test = friedman(blocks)
     assert -1e-12 <= test.kendall_w <= 1.0 + 1e-12
     assert 0.0 < test.p <= 1.0
@@ -77,7 +77,7 @@ def test_p_and_agreement_stay_in_bounds(blocks: FloatArray) -> None:
 
 
 def test_exact_and_asymptotic_meet_at_many_subjects() -> None:
-    """At 60 subjects they differ by less than .01; at 6 by more than that."""
+    """Exact and asymptotic p differ by less than .01 at 60 subjects, by more at 6."""
     rng = np.random.default_rng(5)
     many = friedman(rng.normal((0.0, 0.1, 0.25), size=(60, 3)), exact_up_to=60)
     assert many.method == "exact"
@@ -87,22 +87,22 @@ def test_exact_and_asymptotic_meet_at_many_subjects() -> None:
 
 
 def test_full_agreement_has_the_smallest_p_there_is() -> None:
-    """Of 12 people in one order: W 1 and p 6 / 6^12."""
+    """Twelve people in full agreement have W 1 and p 6 / 6^12."""
     test = friedman(np.tile([1.0, 2.0, 3.0], (12, 1)))
     assert test.kendall_w == pytest.approx(1.0)
     assert test.p == pytest.approx(6.0 / 6.0**12, rel=1e-9)
 
 
-def test_too_many_arrangements_are_said() -> None:
-    """Nine levels cannot be enumerated: p is asymptotic, and the note says why."""
+def test_too_many_arrangements_give_an_asymptotic_p() -> None:
+    """With nine levels p is asymptotic, and a note gives the reason."""
     test = friedman(np.random.default_rng(1).normal(size=(5, 9)))
     assert test.method == "asymptotic"
     assert test.p == test.p_asymptotic
     assert "9 levels" in test.note
 
 
-def test_what_cannot_be_tested_is_refused() -> None:
-    """Constant rows, one subject, one level, a missing value: each says what is needed."""
+def test_data_that_cannot_be_tested_are_rejected() -> None:
+    """Constant rows, one subject, one level and missing values are rejected with what is needed."""
     with pytest.raises(ConstantData, match="nothing to rank"):
         friedman([[1.0, 1.0], [2.0, 2.0]])
     with pytest.raises(TooFewData, match="1 complete subjects"):

@@ -1,4 +1,4 @@
-"""Published results, digit by digit, each with its source."""
+"""Published results, reproduced digit by digit, each with its source."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -26,7 +26,10 @@ from tests.science.statistics.published import TEACHING, WINE, cells, in_pingoui
 
 
 def test_friedman_of_the_rounding_times(shared_data: Path) -> None:
-    """R, ?friedman.test, RoundingTimes (Hollander and Wolfe 1973): 11.143, df 2, p .003805."""
+    """Friedman's test of RoundingTimes (Hollander and Wolfe 1973): 11.143, df 2, p .003805.
+
+    R, ?friedman.test.
+    """
     table = rows(shared_data / "statistics" / "rounding_times.csv")
     test = friedman(wide(table, ["round_out", "narrow_angle", "wide_angle"]))
     assert test.statistic == pytest.approx(11.143, abs=5e-4)
@@ -38,7 +41,10 @@ def test_friedman_of_the_rounding_times(shared_data: Path) -> None:
 
 
 def test_friedman_of_the_wines_is_exact_with_ties() -> None:
-    """Pingouin's tests: Q 2, chi-square p .3678794, W .0833333; the exact p with ties is .3870."""
+    """Friedman's test of pingouin's wines: Q 2, chi-square p .3678794, W .0833333.
+
+    The exact p with ties is .3870.
+    """
     test = friedman(WINE)
     assert test.statistic == pytest.approx(2.0, abs=1e-12)
     assert test.p_asymptotic == pytest.approx(0.3678794, abs=5e-8)
@@ -48,7 +54,10 @@ def test_friedman_of_the_wines_is_exact_with_ties() -> None:
 
 
 def test_anova_with_two_factors_within() -> None:
-    """Pingouin's `rm_anova2`, checked there against jamovi: F, generalised eta squared, epsilon."""
+    """A two-way ANOVA of pingouin's `rm_anova2` gives its F, generalised eta squared and epsilon.
+
+    Pingouin checked these against jamovi.
+    """
     found = cells(in_pingouin("rm_anova2"), "Subject", ["Time", "Metric"], "Performance")
     effects = {one.name: one for one in rm_anova(found.values, found.factors).effects}
     published = {
@@ -65,7 +74,10 @@ def test_anova_with_two_factors_within() -> None:
 
 
 def test_anova_with_one_factor_within_and_missing_values() -> None:
-    """Pingouin's `rm_anova_wide`, 9 of 12 rows complete: F, p, epsilon, Mauchly's W, p GG."""
+    """An ANOVA of pingouin's `rm_anova_wide` uses 9 of 12 rows and gives its published values.
+
+    F, p, epsilon, Mauchly's W and p GG.
+    """
     complete, left_out = complete_rows(wide(in_pingouin("rm_anova_wide")))
     assert (complete.shape, left_out) == ((9, 4), 3)
     (effect,) = rm_anova(complete).effects
@@ -77,7 +89,10 @@ def test_anova_with_one_factor_within_and_missing_values() -> None:
 
 
 def test_aligned_ranks_of_a_split_plot(shared_data: Path) -> None:
-    """ARTool, Higgins1990Table5: the F values of its documentation, with their freedoms."""
+    """Aligned ranks of ARTool's Higgins1990Table5 give the F values of its documentation.
+
+    Degrees of freedom included.
+    """
     table = rows(shared_data / "statistics" / "higgins1990table5.csv")
     found = cells(table, "Tray", ["Fertilizer"], "DryMatter")
     moisture = {row["Tray"]: row["Moisture"] for row in table}
@@ -91,7 +106,7 @@ def test_aligned_ranks_of_a_split_plot(shared_data: Path) -> None:
 
 
 def test_cronbach_alpha_and_its_interval() -> None:
-    """Pingouin's `cronbach_alpha` (15 people, 10 items): .592 [.195, .840]."""
+    """Alpha of pingouin's `cronbach_alpha` (15 people, 10 items) is .592 [.195, .840]."""
     found = cells(in_pingouin("cronbach_alpha"), "Subj", ["Items"], "Scores")
     result = cronbach_alpha(found.values)
     assert found.values.shape == (15, 10)
@@ -101,7 +116,10 @@ def test_cronbach_alpha_and_its_interval() -> None:
 
 
 def test_signed_rank_with_a_zero_difference() -> None:
-    """Pingouin's tests, checked there against JASP: W 20.5, matched rank-biserial -.379."""
+    """Signed ranks with a zero difference give W 20.5 and a rank-biserial of -.379.
+
+    From pingouin's tests, which were checked against JASP.
+    """
     x = [20, 22, 19, 20, 22, 18, 24, 20, 19, 24, 26, 13]
     y = [38, 37, 33, 29, 14, 12, 20, 22, 17, 25, 26, 16]
     test = signed_rank(x, y)
@@ -111,7 +129,10 @@ def test_signed_rank_with_a_zero_difference() -> None:
 
 
 def test_page_trend_of_the_three_ways_of_teaching() -> None:
-    """Scipy's documentation of `page_trend_test`: L 133.5, exact p .00181912, normal .00126934."""
+    """Page's test of scipy's `page_trend_test` example: L 133.5, exact p .00181912.
+
+    The normal approximation gives .00126934.
+    """
     test = page_trend(TEACHING)
     assert test.statistic == 133.5
     assert test.p == pytest.approx(0.00181912, abs=5e-9)
@@ -120,14 +141,17 @@ def test_page_trend_of_the_three_ways_of_teaching() -> None:
 
 
 def test_power_of_twelve_participants() -> None:
-    """G*Power 3 and pingouin, m = 3, r = .5: .823 at .14, .416 at .06; 80 % at .06 takes 27."""
+    """Power of 12 with m = 3, r = .5: .823 at .14, .416 at .06; 80 % at .06 takes 27.
+
+    G*Power 3 and pingouin.
+    """
     assert rm_anova_power(12, Expected(0.14)) == pytest.approx(0.823, abs=5e-4)
     assert rm_anova_power(12, Expected(0.06)) == pytest.approx(0.416, abs=5e-4)
     assert subjects_needed(0.80, Expected(0.06)) == 27
 
 
 def test_workload_of_four_ways_of_pointing(shared_data: Path) -> None:
-    """Raw TLX: the authors' means, and Friedman's test as the notes on their data give it."""
+    """Raw TLX of four ways of pointing gives the authors' means and their Friedman test."""
     table = rows(shared_data / "questionnaires" / "tlxscores.csv")
     found = _workload(table, lambda points: float(np.mean([5.0 * (one - 1.0) for one in points])))
     means = dict(zip(found.levels[0], found.values.mean(axis=0), strict=True))
@@ -139,7 +163,7 @@ def test_workload_of_four_ways_of_pointing(shared_data: Path) -> None:
 
 
 def test_ties_do_not_depend_on_how_a_mean_was_rounded(shared_data: Path) -> None:
-    """Sums and means of the same answers: .199 for object - laser; unrounded means give .190."""
+    """Sums and means of the same answers tie alike: p .199; unrounded means would give .190."""
     table = rows(shared_data / "questionnaires" / "tlxscores.csv")
     sums = _workload(table, sum)
     means = _workload(table, lambda points: sum(5.0 * (one - 1.0) for one in points) / 6.0)
@@ -168,9 +192,10 @@ def _workload(table: list[dict[str, str]], score: Callable[[list[float]], float]
 def test_split_plot_anova_agrees_with_pingouin(
     name: str, published: tuple[tuple[float, int, int] | None, ...]
 ) -> None:
-    """Pingouin 0.7, `mixed_anova`: with groups of one size, and of several but for the mean within.
+    """The split-plot ANOVA agrees with pingouin 0.7's `mixed_anova`.
 
-    Which pingouin takes over subjects; here every group counts alike.
+    With groups of unequal sizes the mean within differs, which pingouin takes over subjects; here
+    every group counts equally.
     """
     table = in_pingouin(name)
     found = cells(table, "Subject", ["Time"], "Scores")

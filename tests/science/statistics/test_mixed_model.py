@@ -24,7 +24,7 @@ LIMBS = ("hand", "foot")
 
 @pytest.fixture(scope="module")
 def sleep(shared_data: Path) -> MixedModel:
-    """Reaction times over days without sleep, random intercept and slope (Belenky 2003; lme4)."""
+    """Fit reactions over days without sleep, random intercept and slope (Belenky 2003; lme4)."""
     with (shared_data / "statistics" / "sleepstudy.csv").open() as file:
         rows = list(csv.DictReader(file))
     days = covariate("days", [float(row["Days"]) for row in rows])
@@ -39,7 +39,7 @@ def sleep(shared_data: Path) -> MixedModel:
 def study(
     seed: int, participants: int = 12, spread: float = 2.0
 ) -> tuple[np.ndarray, list[int], Design]:
-    """A balanced 3 x 2 experiment without effects."""
+    """Return a balanced 3 x 2 experiment without effects."""
     rng = np.random.default_rng(seed)
     cells = [(who, one, two) for who in range(participants) for one in LATENCIES for two in LIMBS]
     people = [who for who, _, _ in cells]
@@ -56,7 +56,7 @@ def study(
 
 
 def test_the_sleep_study_is_that_of_lme4(sleep: MixedModel) -> None:
-    """lme4's published fit of its own example: effects, REML criterion and variances.
+    """Effects, REML criterion and variances of the sleep study equal lme4's published fit.
 
     Its releases print 612.09 or 612.10 for the intercepts' variance, by the optimiser they had.
     """
@@ -71,14 +71,14 @@ def test_the_sleep_study_is_that_of_lme4(sleep: MixedModel) -> None:
 
 
 def test_degrees_of_freedom_of_the_sleep_study(sleep: MixedModel) -> None:
-    """Each participant has a line of their own, so the mean slope has 18 - 1 of them (lmerTest)."""
+    """The mean slope has 18 - 1 df, since each participant has their own line (lmerTest)."""
     _, days = fixed_effects(sleep)
     assert days.value.se == pytest.approx(1.5458, abs=5e-5)
     assert days.value.df == pytest.approx(17.0, abs=0.01)
 
 
 def test_balanced_data_give_the_analysis_of_variance() -> None:
-    """Without missing cells F and degrees of freedom are those of the additive ANOVA."""
+    """Without missing cells F and df are those of the additive ANOVA."""
     values, people, design = study(3)
     cube = values.reshape(12, 3, 2)
     means = cube.mean(axis=(0, 2))
@@ -97,7 +97,7 @@ def test_balanced_data_give_the_analysis_of_variance() -> None:
 
 
 def test_the_gradient_is_that_of_the_criterion() -> None:
-    """Analytic derivatives of the restricted likelihood agree with differences of it."""
+    """The analytic gradient equals numeric differences of the restricted likelihood."""
     values, people, design = study(5)
     z = np.column_stack([np.ones(len(values)), np.tile([0.0, 1.0], 36)])
     rows = Rows(values, design.matrix, z, np.array(people))
@@ -117,15 +117,15 @@ def test_the_gradient_is_that_of_the_criterion() -> None:
 
 
 def test_an_equal_shift_of_all_changes_the_intercept_alone() -> None:
-    """Adding a constant, or changing the unit, leaves every test as it is."""
+    """Adding a constant, or changing the unit, leaves every test unchanged."""
     values, people, design = study(7)
     plain = term_tests(fit_mixed_model(values, people, design))
     other = term_tests(fit_mixed_model(1000.0 * values + 4e4, people, design))
     assert [one.f for one in other] == pytest.approx([one.f for one in plain], rel=1e-3)
 
 
-def test_participants_who_do_not_differ_are_told() -> None:
-    """A zero variance is a singular fit; the degrees of freedom are those of plain regression."""
+def test_participants_who_do_not_differ_are_reported() -> None:
+    """A zero variance is reported as singular, with the df of plain regression."""
     values, people, design = study(11, spread=0.0)
     values = values - np.repeat(values.reshape(12, 6).mean(axis=1), 6)
     model = fit_mixed_model(values, people, design)
@@ -135,7 +135,7 @@ def test_participants_who_do_not_differ_are_told() -> None:
 
 
 def test_missing_cells_are_allowed() -> None:
-    """A participant without two cells stays in, and marginal means weigh cells alike."""
+    """A participant without two cells stays in, and marginal means weigh cells equally."""
     values, people, _ = study(13)
     cells = [(one, two) for _ in range(12) for one in LATENCIES for two in LIMBS]
     kept = [at for at in range(len(values)) if at not in (0, 7)]
@@ -156,7 +156,7 @@ def test_missing_cells_are_allowed() -> None:
 
 
 def test_contrasts_can_be_against_one_level_within_another_factor() -> None:
-    """Each latency against 0 ms within each limb, Holm's correction over two within a limb."""
+    """Each latency is compared with 0 ms within each limb, with Holm over two comparisons."""
     values, people, design = study(17)
     found = contrasts(fit_mixed_model(values, people, design), "latency", by="limb", against="0")
     assert [(one.a, one.b, one.within) for one in found] == [
@@ -169,8 +169,8 @@ def test_contrasts_can_be_against_one_level_within_another_factor() -> None:
     assert hand[0].p_holm == pytest.approx(min(1.0, 2 * hand[0].value.p))
 
 
-def test_terms_that_follow_from_each_other_are_refused() -> None:
-    """The message names the coefficient that cannot be estimated."""
+def test_linearly_dependent_terms_are_rejected() -> None:
+    """Linearly dependent terms are rejected with the coefficient that cannot be estimated."""
     with pytest.raises(ModelError, match=r"limb\[b\] cannot be estimated"):
         build_design([factor("block", [1, 2, 1, 2]), factor("limb", ["a", "b", "a", "b"])])
 
@@ -184,17 +184,17 @@ def test_terms_that_follow_from_each_other_are_refused() -> None:
         ([1.0, 2.0, 3.0], [1, 2, 3], "do not fit"),
     ],
 )
-def test_what_cannot_be_fitted_is_refused(
+def test_data_that_cannot_be_fitted_are_rejected(
     values: list[float], people: list[int], told: str
 ) -> None:
-    """Missing values, too few people, single observations: said, not computed."""
+    """Missing values, too few people and single observations are rejected."""
     design = build_design([factor("limb", ["a", "b", "a", "b", "a", "b"])])
     with pytest.raises(ModelError, match=told):
         fit_mixed_model(values, people, design)
 
 
 def test_a_slope_never_fits_worse_than_none() -> None:
-    """The search reaches the optimum also where the best variance of the slope is zero."""
+    """A model with a random slope never has a worse criterion than one without."""
     for seed in range(4):
         values, people, design = study(seed)
         slope = covariate("foot", np.tile([-0.5, 0.5], 36))

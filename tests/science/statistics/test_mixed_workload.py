@@ -25,7 +25,7 @@ ITEMS = ("Mental", "Physical", "Temporal", "Performance", "Effort", "Frustration
 
 
 class Workload(NamedTuple):
-    """Raw TLX, 0 to 100, one a person and session."""
+    """Raw TLX scores, 0 to 100, one for each person and session."""
 
     scores: list[float]
     people: list[str]
@@ -33,7 +33,7 @@ class Workload(NamedTuple):
     sessions: list[int]
 
     def fit(self, *interactions: tuple[str, ...]) -> MixedModel:
-        """Method and session, and what else is asked for, with random participants."""
+        """Fit method, session and further terms with random participants."""
         factors = [
             factor("method", self.methods, METHODS),
             factor("session", self.sessions),
@@ -41,7 +41,7 @@ class Workload(NamedTuple):
         return fit_mixed_model(self.scores, self.people, build_design(factors, (), interactions))
 
     def table(self) -> np.ndarray:
-        """(people, methods)."""
+        """Return the scores as (people, methods)."""
         known = {
             (who, how): score
             for who, how, score in zip(self.people, self.methods, self.scores, strict=True)
@@ -53,7 +53,7 @@ class Workload(NamedTuple):
 
 @pytest.fixture(scope="module")
 def workload(shared_data: Path) -> Workload:
-    """Answers 1 to 21 stand for 0 to 100 in steps of five."""
+    """Return the scores, with answers 1 to 21 recoded to 0 to 100 in steps of five."""
     with (shared_data / "questionnaires" / "tlxscores.csv").open() as file:
         rows = list(csv.DictReader(file))
     return Workload(
@@ -66,12 +66,12 @@ def workload(shared_data: Path) -> Workload:
 
 @pytest.fixture(scope="module")
 def authors(workload: Workload) -> MixedModel:
-    """The authors' model: method, session and both together."""
+    """Return the authors' model: method, session and their interaction."""
     return workload.fit(("method", "session"))
 
 
 def test_marginal_means_are_those_of_the_authors(authors: MixedModel) -> None:
-    """Object, cube, fixed (the stick) and laser, with their standard error."""
+    """Marginal means and SE of object, cube, fixed (the stick) and laser are the authors'."""
     found = marginal_means(authors, "method")
     assert [one.value.estimate for one in found] == pytest.approx(
         [22.8125, 25.15625, 16.97917, 18.48958], abs=5e-6
@@ -81,14 +81,14 @@ def test_marginal_means_are_those_of_the_authors(authors: MixedModel) -> None:
 
 
 def test_variances_are_those_of_the_authors(authors: MixedModel) -> None:
-    """87.12 between people, 15.86 within."""
+    """The variances are the authors': 87.12 between people, 15.86 within."""
     assert authors.random_covariance[0, 0] == pytest.approx(87.12, abs=0.01)
     assert authors.residual_sd**2 == pytest.approx(15.86, abs=0.005)
     assert authors.converged
 
 
 def test_terms_are_those_of_the_authors(authors: MixedModel) -> None:
-    """F, and Satterthwaite's degrees of freedom for unbalanced sessions."""
+    """F and Satterthwaite's df of all terms are the authors', for unbalanced sessions."""
     expected = {
         "method": (14.439, 3, 32.877),
         "session": (9.487, 3, 32.877),
@@ -102,7 +102,7 @@ def test_terms_are_those_of_the_authors(authors: MixedModel) -> None:
 
 
 def test_holms_pattern_is_that_of_the_authors(authors: MixedModel) -> None:
-    """All six comparisons of methods, t values and p after Holm.
+    """t and Holm's p of all six comparisons of methods are the authors'.
 
     emmeans has Kenward and Roger's 33 degrees of freedom, Satterthwaite's are 32.88.
     """
@@ -123,7 +123,7 @@ def test_holms_pattern_is_that_of_the_authors(authors: MixedModel) -> None:
 
 
 def test_without_the_interaction_the_pattern_holds(workload: Workload) -> None:
-    """Method and session alone reject the same four comparisons."""
+    """Without the interaction the same four comparisons are significant."""
     rejected = {(one.a, one.b) for one in contrasts(workload.fit(), "method") if one.p_holm < 0.05}
     assert rejected == {
         ("Object", "Stick"),
@@ -133,11 +133,11 @@ def test_without_the_interaction_the_pattern_holds(workload: Workload) -> None:
     }
 
 
-def test_ranks_tell_less(workload: Workload) -> None:
-    """Friedman's test finds methods to differ; exact Wilcoxon leaves object and laser alike.
+def test_rank_tests_find_fewer_differences(workload: Workload) -> None:
+    """Friedman's test is significant; exact Wilcoxon does not separate object and laser.
 
-    Their p of .066, before Holm, is the share of all 2^15 signs of the differences that are not
-    zero whose rank sum is as far out. Tables for samples without ties have .064.
+    The authors' p of .066, before Holm, is the share of all 2^15 signs of the differences that are
+    not zero whose rank sum is as extreme. Tables for samples without ties have .064.
     """
     table = workload.table()
     found = friedman(table, exact_up_to=0)

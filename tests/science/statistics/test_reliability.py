@@ -24,7 +24,7 @@ from app.science.statistics.arrays import FloatArray
 
 
 def _with_covariance(loadings: list[float], errors: list[float], n: int = 60) -> FloatArray:
-    """Answers whose sample covariance is exactly l l' + diag(e)."""
+    """Return answers whose sample covariance is exactly l l' + diag(e)."""
     rng = np.random.default_rng(1)
     k = len(loadings)
     drawn = rng.normal(size=(n, k))
@@ -36,7 +36,7 @@ def _with_covariance(loadings: list[float], errors: list[float], n: int = 60) ->
 
 
 def test_items_that_load_alike_have_omega_equal_to_alpha() -> None:
-    """Four items with loading 1 and error 1: 16 / (16 + 4)."""
+    """Four items with loading 1 and error 1 have omega and alpha of 16 / (16 + 4)."""
     answers = _with_covariance([1.0] * 4, [1.0] * 4)
     omega = mcdonald_omega(answers, rng=np.random.default_rng(1), resamples=99)
     assert omega.omega == pytest.approx(0.8, abs=1e-9)
@@ -44,7 +44,7 @@ def test_items_that_load_alike_have_omega_equal_to_alpha() -> None:
 
 
 def test_omega_recovers_unequal_loadings_where_alpha_is_too_low() -> None:
-    """Loadings .9, .7, .5, .3 and their errors: (2.4)^2 / ((2.4)^2 + sum of errors)."""
+    """Omega of loadings .9, .7, .5, .3 is (2.4)^2 / ((2.4)^2 + sum of errors); alpha is lower."""
     loadings = [0.9, 0.7, 0.5, 0.3]
     errors = [1.0 - one * one for one in loadings]
     answers = _with_covariance(loadings, errors)
@@ -59,7 +59,7 @@ def test_omega_recovers_unequal_loadings_where_alpha_is_too_low() -> None:
 
 
 def test_incomplete_answers_are_left_out_and_counted() -> None:
-    """One of 61 subjects skipped an item."""
+    """A subject who skipped an item is left out and counted."""
     answers = np.vstack([_with_covariance([1.0] * 4, [1.0] * 4), [1.0, 2.0, math.nan, 1.0]])
     result = cronbach_alpha(answers)
     assert (result.n, result.n_left_out) == (60, 1)
@@ -67,8 +67,8 @@ def test_incomplete_answers_are_left_out_and_counted() -> None:
     assert result.without_item == pytest.approx([0.75] * 4)
 
 
-def test_scales_that_have_no_reliability_are_refused() -> None:
-    """Constant sums, constant items, one item, two items for omega."""
+def test_scales_that_have_no_reliability_are_rejected() -> None:
+    """Constant sums or items, one item, and two items for omega are rejected."""
     with pytest.raises(ConstantData, match="sum of the 2 items"):
         cronbach_alpha([[1.0, 2.0], [2.0, 1.0], [3.0, 0.0]])
     with pytest.raises(TooFewData, match="2 items"):
@@ -82,7 +82,7 @@ def test_scales_that_have_no_reliability_are_refused() -> None:
 
 
 def test_an_interval_can_be_computed_again() -> None:
-    """The same seed gives the same ends; another seed nearly the same."""
+    """The same seed gives the same bootstrap interval; another seed nearly the same."""
     data = np.random.default_rng(6).gamma(2.0, size=20)
     one, again, other = (
         bootstrap_interval(data, mean_of, rng=np.random.default_rng(seed)) for seed in (1, 1, 2)
@@ -95,7 +95,7 @@ def test_an_interval_can_be_computed_again() -> None:
 
 
 def test_intervals_move_with_unit_and_origin() -> None:
-    """Of the median, in cm and from another zero."""
+    """A bootstrap interval of the median scales and shifts with the data."""
     data = np.random.default_rng(7).normal(size=15)
     metres = bootstrap_interval(data, median_of, rng=np.random.default_rng(1))
     other = bootstrap_interval(100.0 * data + 5.0, median_of, rng=np.random.default_rng(1))
@@ -104,7 +104,7 @@ def test_intervals_move_with_unit_and_origin() -> None:
 
 
 def test_values_that_are_all_equal_have_an_interval_of_no_width() -> None:
-    """BCa is not defined for them, and the result says that it is not BCa."""
+    """The interval of equal values has no width and is not called BCa."""
     found = bootstrap_interval(np.full(5, 3.0), mean_of, rng=np.random.default_rng(1))
     assert (found.low, found.high, found.method) == (3.0, 3.0, "percentile")
     with pytest.raises(TooFewData, match="at least 2"):
@@ -112,7 +112,10 @@ def test_values_that_are_all_equal_have_an_interval_of_no_width() -> None:
 
 
 def test_the_interval_of_a_mean_is_students() -> None:
-    """Five values by hand: mean 3, SD sqrt(2.5), t .975 with 4 df 2.776445; NaN is left out."""
+    """The interval of a mean is Student's, and NaN is left out.
+
+    Five values by hand: mean 3, SD sqrt(2.5), t .975 with 4 df 2.776445.
+    """
     found = mean_interval([1.0, 2.0, 3.0, math.nan, 4.0, 5.0])
     reach = 2.776445 * math.sqrt(2.5 / 5.0)
     assert (found.mean, found.n, found.kind) == (3.0, 5, "between")
@@ -122,7 +125,10 @@ def test_the_interval_of_a_mean_is_students() -> None:
 
 
 def test_intervals_within_subjects_leave_out_how_subjects_differ() -> None:
-    """However far apart subjects are; of two conditions they are 1/sqrt(2) of the difference's."""
+    """Within-subject intervals ignore differences between subjects.
+
+    Those of two conditions are 1/sqrt(2) as wide as that of their difference.
+    """
     values = np.random.default_rng(9).normal(size=(12, 2))
     apart = values + 100.0 * np.arange(12.0)[:, np.newaxis]
     near, far = within_subject_intervals(values), within_subject_intervals(apart)
@@ -133,7 +139,7 @@ def test_intervals_within_subjects_leave_out_how_subjects_differ() -> None:
 
 
 def test_power_grows_with_subjects_and_effect_and_is_alpha_without_one() -> None:
-    """Monotone in both; at a vanishing effect it is the test's own error rate."""
+    """Power grows with subjects and effect, and without an effect is the test's alpha."""
     powers = [rm_anova_power(n, Expected(0.1)) for n in (4, 8, 16, 32)]
     assert powers == sorted(powers)
     assert rm_anova_power(12, Expected(0.2)) > rm_anova_power(12, Expected(0.1))
@@ -142,8 +148,8 @@ def test_power_grows_with_subjects_and_effect_and_is_alpha_without_one() -> None
     assert rm_anova_power(needed, Expected(0.1)) >= 0.9 > rm_anova_power(needed - 1, Expected(0.1))
 
 
-def test_effects_that_cannot_be_are_refused() -> None:
-    """Each says its name and value."""
+def test_impossible_effects_are_rejected() -> None:
+    """Impossible arguments of a power analysis are rejected by name and value."""
     with pytest.raises(StatisticsError, match=r"partial eta squared 1\.5"):
         Expected(1.5)
     with pytest.raises(StatisticsError, match=r"epsilon 0\.3; valid from 0\.500"):

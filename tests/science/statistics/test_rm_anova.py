@@ -1,4 +1,4 @@
-"""Analysis of variance: identities, invariances, what cannot be tested."""
+"""Repeated-measures ANOVA: identities, invariances and designs that cannot be tested."""
 
 import math
 
@@ -18,7 +18,7 @@ from tests.science.statistics.published import in_pingouin, wide
 
 
 def test_two_levels_are_a_paired_t_test() -> None:
-    """F is t squared, and epsilon 1."""
+    """With two levels F is t squared and epsilon is 1."""
     rng = np.random.default_rng(1)
     values = rng.normal((0.0, 0.5), size=(12, 2))
     (effect,) = rm_anova(values).effects
@@ -31,7 +31,7 @@ def test_two_levels_are_a_paired_t_test() -> None:
 
 
 def test_the_sums_of_squares_add_up() -> None:
-    """Effects, their errors and subjects make up all of the variation of a 3 x 2 design."""
+    """Sums of squares of effects, errors and subjects add up to the total of a 3 x 2 design."""
     values = np.random.default_rng(2).normal(size=(7, 3, 2))
     effects = rm_anova(values, ("latency", "limb")).effects
     subjects = values.mean(axis=(1, 2))
@@ -42,7 +42,7 @@ def test_the_sums_of_squares_add_up() -> None:
 
 
 def test_unit_origin_and_order_do_not_matter() -> None:
-    """Another unit, another zero, other orders of subjects and levels: the same F and epsilon."""
+    """Unit, origin and the order of subjects and levels do not change F and epsilon."""
     rng = np.random.default_rng(3)
     values = rng.normal(size=(9, 3, 2))
     before = rm_anova(values).effects
@@ -54,14 +54,14 @@ def test_unit_origin_and_order_do_not_matter() -> None:
 
 
 def test_epsilon_is_one_with_sphericity_and_its_least_without() -> None:
-    """Of contrasts that vary alike, and of contrasts that all are one."""
+    """Epsilon is 1 under sphericity and minimal when all contrasts are proportional."""
     assert greenhouse_geisser(np.eye(4)) == pytest.approx(1.0)
     assert greenhouse_geisser(np.ones((4, 4))) == pytest.approx(0.25)
     assert mauchly(np.eye(3), 10) == pytest.approx((1.0, 1.0))
 
 
 def test_contrasts_are_orthonormal_and_add_up_to_zero() -> None:
-    """Of two to six levels."""
+    """The contrasts of two to six levels are orthonormal and sum to zero."""
     for levels in range(2, 7):
         columns = contrasts(levels)
         assert columns.T @ columns == pytest.approx(np.eye(levels - 1), abs=1e-12)
@@ -69,9 +69,10 @@ def test_contrasts_are_orthonormal_and_add_up_to_zero() -> None:
 
 
 def test_mauchly_agrees_with_pingouin() -> None:
-    """Pingouin 0.7, `sphericity` of `rm_anova_wide`: W .30678, p .16336.
+    """Mauchly's test agrees with pingouin 0.7's `sphericity` of `rm_anova_wide`.
 
-    R and pingouin put the number of levels, not of contrasts, into the last term of p.
+    W .30678, p .16336. R and pingouin put the number of levels, not of contrasts, into the last
+    term of p.
     """
     complete, _ = complete_rows(wide(in_pingouin("rm_anova_wide")))
     (effect,) = rm_anova(complete).effects
@@ -79,14 +80,14 @@ def test_mauchly_agrees_with_pingouin() -> None:
     assert effect.mauchly_p == pytest.approx(0.16336, abs=2e-4)
 
 
-def test_unequal_groups_count_alike_in_the_mean_within() -> None:
+def test_groups_of_unequal_size_count_equally() -> None:
     """Type III: the mean within is that of the groups' means, whatever their sizes."""
     rng = np.random.default_rng(4)
     values = rng.normal(size=(8, 3))
     groups = ["a"] * 4 + ["b"] * 4
     result = split_plot_anova(values, groups)
     assert result.group_sizes == (4, 4)
-    # With equal groups the mean within is that of all subjects alike.
+    # With equal groups the mean within is that of all subjects.
     mean = values.mean(axis=0)
     expected = 8.0 * float(np.square(mean - mean.mean()).sum())
     assert result.within.ss == pytest.approx(expected)
@@ -96,8 +97,8 @@ def test_unequal_groups_count_alike_in_the_mean_within() -> None:
     assert uneven.within.ss == pytest.approx(weight * np.square(means - means.mean()).sum())
 
 
-def test_what_has_no_error_is_refused() -> None:
-    """Subjects that all differ alike leave nothing to test against."""
+def test_data_without_error_variance_are_rejected() -> None:
+    """Data in which all subjects differ equally are rejected, since there is no error term."""
     values = np.arange(5.0)[:, np.newaxis] + [0.0, 1.0, 3.0]
     with pytest.raises(ConstantData, match="same amount"):
         rm_anova(values)

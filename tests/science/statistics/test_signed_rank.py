@@ -1,4 +1,4 @@
-"""Signed ranks, Holm's adjustment and pairwise comparisons: enumeration and laws."""
+"""Signed ranks, Holm's adjustment and pairwise comparisons: enumeration and properties."""
 
 import math
 from itertools import product
@@ -19,7 +19,7 @@ _P_VALUES = st.lists(st.floats(0.0, 1.0), min_size=1, max_size=8)
 
 
 def _by_brute_force(differences: FloatArray, alternative: Alternative, zeros: ZeroRule) -> float:
-    """The share of all assignments of signs that is at least as extreme."""
+    """Return the share of all assignments of signs that are at least as extreme."""
     moved = differences != 0.0
     sizes = np.abs(differences)
     ranks = midranks(sizes[moved]) if zeros == "wilcoxon" else midranks(sizes)[moved]
@@ -40,7 +40,7 @@ def _by_brute_force(differences: FloatArray, alternative: Alternative, zeros: Ze
 def test_the_exact_p_is_that_of_every_assignment_of_signs(
     differences: list[int], alternative: Alternative, zeros: ZeroRule
 ) -> None:
-    """With ties and zeros, by either rule for zeros, one- and two-sided."""
+    """The exact p equals the enumeration of all signs, with ties and zeros, one- and two-sided."""
     x = np.array(differences, dtype=np.float64)
     test = signed_rank(x, np.zeros_like(x), alternative=alternative, zeros=zeros)
     assert test.method == "exact"
@@ -50,7 +50,7 @@ def test_the_exact_p_is_that_of_every_assignment_of_signs(
 @_DRAWN
 @given(_DIFFERENCES)
 def test_turning_the_pairs_round_turns_the_effect_round(differences: list[int]) -> None:
-    """W and p stay, the rank-biserial changes sign, greater becomes less."""
+    """Swapping the pairs keeps W and p, negates the rank-biserial and reverses the direction."""
     x, y = np.array(differences, dtype=np.float64), np.zeros(len(differences))
     there, back = signed_rank(x, y), signed_rank(y, x)
     assert (there.w, there.p) == (back.w, back.p)
@@ -59,7 +59,7 @@ def test_turning_the_pairs_round_turns_the_effect_round(differences: list[int]) 
 
 
 def test_without_ties_p_is_that_of_scipy() -> None:
-    """Twelve continuous pairs, two-sided and one-sided."""
+    """Without ties p equals scipy's, two-sided and one-sided."""
     rng = np.random.default_rng(8)
     x, y = rng.normal(0.4, 1.0, 12), rng.normal(size=12)
     for alternative in ("two-sided", "greater", "less"):
@@ -69,7 +69,7 @@ def test_without_ties_p_is_that_of_scipy() -> None:
 
 
 def test_the_normal_approximation_is_that_of_scipy_and_is_met() -> None:
-    """With ties, and within .01 of the exact p at 50 pairs; beyond 50 it is the p reported."""
+    """The normal p is scipy's, within .01 of the exact one at 50 pairs, and given beyond 50."""
     rng = np.random.default_rng(2)
     x, y = rng.integers(1, 8, size=(2, 80)).astype(np.float64)
     fifty = signed_rank(x[:50], y[:50])
@@ -82,27 +82,27 @@ def test_the_normal_approximation_is_that_of_scipy_and_is_met() -> None:
 
 
 def test_equal_differences_of_decimals_tie() -> None:
-    """0.3 - 0.2 and 0.2 - 0.1 are both 0.1, whatever their last bit."""
+    """0.3 - 0.2 and 0.2 - 0.1 tie, whatever their last bit."""
     decimal = signed_rank([0.3, 0.2, 0.5, 0.1], [0.2, 0.1, 0.1, 0.2])
     whole = signed_rank([3.0, 2.0, 5.0, 1.0], [2.0, 1.0, 1.0, 2.0])
     assert (decimal.w, decimal.p) == (whole.w, whole.p)
 
 
 def test_missing_pairs_are_left_out_and_counted() -> None:
-    """Two of five pairs lack a value: n is 3 and n_left_out 2."""
+    """Pairs with a missing value are left out and counted."""
     nan = math.nan
     test = signed_rank([1.0, nan, 3.0, 4.0, 5.0], [0.0, 1.0, 1.0, nan, 1.0])
     assert (test.n, test.n_left_out, test.p) == (3, 2, 0.25)
 
 
-def test_no_difference_at_all_speaks_against_nothing() -> None:
-    """All pairs equal: p 1, effect 0, and the zeros are counted."""
+def test_equal_pairs_give_a_p_of_one() -> None:
+    """If all pairs are equal, p is 1, the effect is 0 and the zeros are counted."""
     test = signed_rank([1.0, 2.0, 3.0], [1.0, 2.0, 3.0])
     assert (test.p, test.p_asymptotic, test.rank_biserial, test.n_zero) == (1.0, 1.0, 0.0, 3)
 
 
-def test_unusable_pairs_are_refused() -> None:
-    """Other lengths, nothing in common, infinities, unknown words."""
+def test_unusable_pairs_are_rejected() -> None:
+    """Unequal lengths, no complete pairs, infinities and unknown options are rejected."""
     with pytest.raises(StatisticsError, match="pair up"):
         signed_rank([1.0, 2.0], [1.0])
     with pytest.raises(TooFewData, match="None of 2 pairs"):
@@ -116,7 +116,7 @@ def test_unusable_pairs_are_refused() -> None:
 @_DRAWN
 @given(_P_VALUES)
 def test_adjusted_p_values_keep_their_order(p_values: list[float]) -> None:
-    """Never below the p adjusted, never above 1 or Bonferroni's, in the same order."""
+    """Adjusted p values keep their order, are at least p and at most Bonferroni's or 1."""
     adjusted = holm(p_values)
     for p, after in zip(p_values, adjusted, strict=True):
         assert p <= after <= min(1.0, p * len(p_values) + 1e-15)
@@ -125,7 +125,7 @@ def test_adjusted_p_values_keep_their_order(p_values: list[float]) -> None:
 
 
 def test_holm_by_hand() -> None:
-    """.01, .04, .03 become .03, .06, .06; a test that was not made does not count."""
+    """Holm's p of .01, .04, .03 are .03, .06, .06; missing tests do not count."""
     assert holm([0.01, 0.04, 0.03]) == pytest.approx((0.03, 0.06, 0.06))
     adjusted = holm([0.01, math.nan, 0.03])
     assert adjusted[0] == pytest.approx(0.02)
@@ -134,7 +134,7 @@ def test_holm_by_hand() -> None:
         holm([1.2])
 
 
-def test_pairs_take_who_has_both() -> None:
+def test_a_pairwise_comparison_uses_all_complete_pairs() -> None:
     """A subject without the third level still counts in the first pair."""
     values = [[1.0, 2.0, 3.0], [2.0, 4.0, 6.0], [1.0, 3.0, math.nan]]
     first, second, third = pairwise(values, ["0", "125", "350"])

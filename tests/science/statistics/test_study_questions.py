@@ -1,4 +1,4 @@
-"""The questions of a latency study: planned comparisons, shares, correlations, demographics."""
+"""Analyses of a latency study: planned comparisons, shares, correlations and demographics."""
 
 import math
 
@@ -28,7 +28,7 @@ _AGENCY = np.array(
 
 
 def test_the_first_latency_that_differs() -> None:
-    """350 ms, not 125; two comparisons with 0 ms, adjusted for two."""
+    """The first latency that differs from 0 ms is found, adjusted for two comparisons."""
     found = against_reference(_AGENCY, _LEVELS, "0")
     assert [(one.a, one.b) for one in found.comparisons] == [("125", "0"), ("350", "0")]
     assert found.first_that_differs == "350"
@@ -39,7 +39,7 @@ def test_the_first_latency_that_differs() -> None:
 
 
 def test_a_predicted_fall_is_tested_one_sided() -> None:
-    """Supported as a fall, not as a rise, and its comparisons are one-sided too."""
+    """A predicted fall is tested one-sided; it is supported as a fall and not as a rise."""
     falls = directional(_AGENCY, _LEVELS, "falls")
     rises = directional(_AGENCY, _LEVELS, "rises")
     assert falls.supported
@@ -51,8 +51,8 @@ def test_a_predicted_fall_is_tested_one_sided() -> None:
         directional(_AGENCY, _LEVELS, "drops")  # type: ignore[arg-type]  # no such word
 
 
-def test_who_lacks_a_level_counts_where_they_can() -> None:
-    """Listwise for the trend, pairwise for the comparisons."""
+def test_a_subject_without_a_level_counts_in_the_other_comparisons() -> None:
+    """A subject without a level is left out of the trend but not of the other comparisons."""
     values = _AGENCY.copy()
     values[0, 2] = math.nan
     found = directional(values, _LEVELS, "falls")
@@ -61,7 +61,7 @@ def test_who_lacks_a_level_counts_where_they_can() -> None:
 
 
 def test_components_side_by_side_are_shares_of_their_maxima() -> None:
-    """Karas 2020, table 7.2: 8 of 15, 7 of 12, 4 of 9."""
+    """Components are shares of their maxima: 8 of 15, 7 of 12 (Karas 2020, table 7.2)."""
     assert share_of_maximum([8.0, math.nan, -15.0], 15.0)[[0, 2]] == pytest.approx([8 / 15, -1.0])
     assert share_of_maximum(7.0, 12.0) == pytest.approx(7 / 12)
     with pytest.raises(StatisticsError, match=r"16\.0 is beyond the maximum of 15"):
@@ -71,7 +71,7 @@ def test_components_side_by_side_are_shares_of_their_maxima() -> None:
 
 
 def test_contact_time_divides_among_finger_hand_and_arm() -> None:
-    """Each subject's shares add up to 1; who touched nothing has none."""
+    """A subject's contact shares add up to 1; without any contact they are missing."""
     times = {
         "RightIndexDistal": [3.0, 0.0],
         "RightThumbDistal": [1.0, 0.0],
@@ -91,8 +91,8 @@ def test_contact_time_divides_among_finger_hand_and_arm() -> None:
     assert (found.total_s.tolist(), found.n_without_contact) == ([10.0, 0.0], 1)
 
 
-def test_contact_times_that_cannot_be_are_refused() -> None:
-    """A part without a group, a negative time, other lengths, nothing at all."""
+def test_impossible_contact_times_are_rejected() -> None:
+    """An unknown part, a negative time, unequal lengths and empty data are rejected."""
     with pytest.raises(StatisticsError, match="No group was given for Head"):
         contact_shares({"Head": [1.0]}, {})
     with pytest.raises(StatisticsError, match="Head: give one time"):
@@ -104,7 +104,7 @@ def test_contact_times_that_cannot_be_are_refused() -> None:
 
 
 def test_rank_correlation_is_that_of_scipy() -> None:
-    """With ties and a missing pair; the interval holds rho."""
+    """Rank correlation with ties and a missing pair is scipy's, and its interval includes rho."""
     rng = np.random.default_rng(5)
     x = rng.integers(1, 8, 12).astype(np.float64)
     y = x + rng.normal(0.0, 2.0, 12)
@@ -117,7 +117,7 @@ def test_rank_correlation_is_that_of_scipy() -> None:
 
 
 def test_rank_correlation_knows_its_limits() -> None:
-    """A monotone relation is 1, turned round -1; constants and three pairs are refused."""
+    """Monotone relations give 1 or -1; constants and three pairs are rejected."""
     x = np.arange(6.0)
     assert spearman(x, np.exp(x)).rho == 1.0
     assert spearman(x, -(x**3)).rho == -1.0
@@ -128,7 +128,10 @@ def test_rank_correlation_knows_its_limits() -> None:
 
 
 def test_demographics_are_explored_and_say_so() -> None:
-    """Numbers by Spearman, categories as scipy's Kruskal-Wallis; all adjusted together."""
+    """Demographics are labelled exploratory and adjusted together.
+
+    Numbers use Spearman's correlation, categories Kruskal and Wallis's test.
+    """
     scores = np.array([1.0, 3.0, 2.0, 5.0, 4.0, 6.0, 6.0, math.nan])
     age = [20.0, 25.0, 22.0, 31.0, 29.0, 40.0, math.nan, 30.0]
     sex = ["f", "m", "f", "m", "f", "m", None, "f"]

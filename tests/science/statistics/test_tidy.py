@@ -1,4 +1,4 @@
-"""A tidy table as cells: order of levels, replicates, what is missing, what is refused."""
+"""Tables of cells from tidy rows: order of levels, duplicates, missing and invalid rows."""
 
 import math
 from collections.abc import Sequence
@@ -24,10 +24,7 @@ def _cells(rows: Sequence[tuple[str, str, str, str | float]]) -> Cells:
 
 
 def test_rows_find_their_cells_whatever_their_order() -> None:
-    """Levels in order of number, subjects as they come; the rows the other way round give the same.
-
-    Subjects too, but for their order.
-    """
+    """The order of the rows changes only the order of the subjects; levels are sorted."""
     found, turned = _cells(_ROWS), _cells(_ROWS[::-1])
     assert found.subjects == ("P2", "P1")
     assert found.levels == (("0", "125", "350"), ("foot", "hand"))
@@ -35,8 +32,8 @@ def test_rows_find_their_cells_whatever_their_order() -> None:
     np.testing.assert_array_equal(turned.values[::-1], found.values)
 
 
-def test_nothing_is_left_out_in_silence() -> None:
-    """A mean of two rows is counted, an empty cell too, and who lacks one is named."""
+def test_averaged_and_missing_rows_are_counted() -> None:
+    """Averaged rows and empty cells are counted, and incomplete subjects are named."""
     found = _cells(_ROWS)
     assert found.values[1, 1, 0] == 3.0
     assert (found.n_averaged, found.n_missing, found.n_empty) == (1, 1, 1)
@@ -45,15 +42,15 @@ def test_nothing_is_left_out_in_silence() -> None:
     assert complete.values.shape == (1, 3, 2)
 
 
-def test_a_row_that_is_not_there_is_missing_too() -> None:
-    """The same as a row without a value, except that no row counts as empty."""
+def test_a_missing_row_is_a_missing_value() -> None:
+    """A missing row counts as a missing value, but not as an empty row."""
     found = _cells([row for row in _ROWS if row[3] != "NA"])
     assert (found.n_missing, found.n_empty) == (1, 0)
     assert found.complete().left_out == ("P1",)
 
 
 def test_the_mean_over_a_factor_takes_complete_subjects() -> None:
-    """P1 has no value for the hand at 350, so none for 350."""
+    """The mean over a factor is missing for a subject who lacks one of its cells."""
     by_latency = _cells(_ROWS).of_factor(1)
     assert by_latency[0].tolist() == [5.0, 3.5, 2.5]
     assert by_latency[1, :2].tolist() == [4.5, 4.75]
@@ -61,7 +58,7 @@ def test_the_mean_over_a_factor_takes_complete_subjects() -> None:
 
 
 def test_means_of_decimals_tie() -> None:
-    """0.1, 0.2 and 0.3 average to 0.2 exactly."""
+    """0.1, 0.2 and 0.3 average to exactly 0.2."""
     rows = [("A", level, "x", value) for level in "12" for value in ("0.1", "0.2", "0.3")]
     rows += [("B", level, "x", "0.2") for level in "12"]
     rows += [(who, level, "y", "1") for who in "AB" for level in "12"]
@@ -80,13 +77,13 @@ def test_means_of_decimals_tie() -> None:
     ],
 )
 def test_levels_are_ordered_as_people_would(found: list[str], ordered: tuple[str, ...]) -> None:
-    """Numbers by value, one number once; others by their words and the numbers in them."""
+    """Numeric levels are sorted by value, others by their words and the numbers in them."""
     assert ordered_levels(found) == ordered
     assert ordered_levels(found[::-1]) == ordered
 
 
 def test_a_level_is_found_by_its_number() -> None:
-    """ "0.0" is the level "0"; another is refused with those there are."""
+    """ "0.0" finds the level "0"; an unknown level is rejected with the existing ones."""
     assert place_of(("0", "125"), "0.0") == 0
     with pytest.raises(StatisticsError, match="there are: 0, 125"):
         place_of(("0", "125"), "350")
@@ -103,16 +100,16 @@ def test_a_level_is_found_by_its_number() -> None:
         (("P1", "NA", "hand", "1"), r"Line 14, column 'latency': 'NA' is not a name"),
     ],
 )
-def test_a_row_that_cannot_be_used_is_named(
+def test_an_invalid_row_is_rejected_with_its_line(
     row: tuple[str, str, str, str | float], words: str
 ) -> None:
-    """Its line, its column and what stands there."""
+    """An invalid row is rejected with its line, its column and its value."""
     with pytest.raises(UnusableTable, match=words):
         _cells([*_ROWS, row])
 
 
-def test_tables_with_too_little_are_refused() -> None:
-    """No row, one subject, one level, columns of other lengths, no factor."""
+def test_tables_that_are_too_small_are_rejected() -> None:
+    """No rows, one subject, one level, unequal columns and no factor are rejected."""
     with pytest.raises(TooFewData, match="no row"):
         cells_of([], {"latency": []}, [])
     with pytest.raises(TooFewData, match="only one subject, 'P1'"):

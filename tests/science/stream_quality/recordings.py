@@ -1,4 +1,4 @@
-"""Sound recordings of bodies that move, and faults put into them at known places."""
+"""Sound recordings of moving bodies, and faults put into them at known places."""
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -25,7 +25,7 @@ CAPTURES = ("02_01.bvh", "06_01.bvh")
 
 @dataclass(frozen=True)
 class Recording:
-    """Times (n,), rotations (n, 22, 4) and places (n, 3), single precision as on the wire."""
+    """Times (n,), rotations (n, 22, 4) and positions (n, 3), single precision as transmitted."""
 
     times_s: NDArray[np.float64]
     rotations: NDArray[np.float32]
@@ -35,15 +35,15 @@ class Recording:
         return len(self.times_s)
 
     def copy(self) -> "Recording":
-        """One that may be spoilt."""
+        """Return a copy that may be changed."""
         return Recording(self.times_s.copy(), self.rotations.copy(), self.positions_m.copy())
 
     def part(self, of: slice) -> "Recording":
-        """Some of its frames."""
+        """Return a slice of its frames."""
         return Recording(self.times_s[of], self.rotations[of], self.positions_m[of])
 
     def without(self, frames: NDArray[np.int64]) -> "Recording":
-        """The recording with frames missing."""
+        """Return the recording without these frames."""
         kept = np.ones(len(self), np.bool_)
         kept[frames] = False
         return replace(
@@ -56,7 +56,7 @@ class Recording:
 
 @lru_cache(maxsize=8)
 def generated(seed: int = 1) -> Recording:
-    """Half a minute of tasks and free movement by a simulated participant."""
+    """Return half a minute of tasks and free movement by a simulated participant."""
     person = person_of(seed, None)
     goals = [None, reach(BOXES[0]), reach(BOXES[3]), reach(BOXES[1], "Left"), None]
     goals += [step((0.2, 0.01, -0.5), "Right"), None]
@@ -70,7 +70,7 @@ def generated(seed: int = 1) -> Recording:
 
 @lru_cache(maxsize=4)
 def captured(file: Path) -> Recording:
-    """A capture of a person, repeated to half a minute."""
+    """Return a capture of a person, repeated to half a minute."""
     clip = captured_movement(file, SKELETON)
     movement = loop(resample(clip, RATE_HZ))
     frames = np.arange(round(30 * RATE_HZ)) % len(movement.rotations)
@@ -82,12 +82,12 @@ def captured(file: Path) -> Recording:
 
 
 def captures(shared_data: Path) -> list[Recording]:
-    """Every capture that is free of faults itself."""
+    """Return every capture that has no faults itself."""
     return [captured(shared_data / "motion" / "cmu_bvh" / name) for name in CAPTURES]
 
 
 def jitter(recording: Recording, rng: np.random.Generator) -> Recording:
-    """As trackers deliver it: every joint trembles by a hundredth of a degree, times by 0.3 ms."""
+    """Return the recording with tracker noise: a hundredth of a degree and 0.3 ms."""
     spoilt = recording.copy()
     noise = rng.normal(scale=np.radians(0.01), size=(len(recording), JOINT_COUNT, 3))
     shaken = rot.multiply(rot.from_rotation_vector(noise), recording.rotations.astype(float))
@@ -98,7 +98,7 @@ def jitter(recording: Recording, rng: np.random.Generator) -> Recording:
 
 @dataclass(frozen=True)
 class Found:
-    """How many were put in, how many of them were found, and how much else was found."""
+    """Counts of inserted faults, of those that were found, and of false alarms."""
 
     there: int
     hits: int
@@ -106,19 +106,19 @@ class Found:
 
     @property
     def precision(self) -> float:
-        """The share of what was found that was there."""
+        """Return the share of found faults that had been inserted."""
         return self.hits / max(1, self.hits + self.false)
 
     @property
     def recall(self) -> float:
-        """The share of what was there that was found."""
+        """Return the share of inserted faults that were found."""
         return self.hits / max(1, self.there)
 
     def __add__(self, other: "Found") -> "Found":
         return Found(self.there + other.there, self.hits + other.hits, self.false + other.false)
 
     def line(self, what: str) -> str:
-        """For the log."""
+        """Return the counts as a line of the log."""
         return (
             f"{what:<34}{self.there:>7} there, {self.hits:>7} found, {self.false:>4} false:"
             f" precision {self.precision:.4f}, recall {self.recall:.4f}"
@@ -126,5 +126,5 @@ class Found:
 
 
 def compare(there: NDArray[np.bool_], found: NDArray[np.bool_]) -> Found:
-    """Mark against mark."""
+    """Count inserted, found and falsely found faults from two masks."""
     return Found(int(there.sum()), int((there & found).sum()), int((found & ~there).sum()))

@@ -1,4 +1,4 @@
-"""How many faults are found and how many are invented, over generated and captured movement."""
+"""Precision and recall of the fault detection on generated and captured movement."""
 
 import sys
 from pathlib import Path
@@ -38,7 +38,7 @@ BAD_QUATERNIONS: dict[str, tuple[float, float, float, float]] = {
 
 @pytest.fixture
 def recordings(shared_data: Path) -> list[Recording]:
-    """Generated and captured movement, as it is and as trackers deliver it."""
+    """Return generated and captured movement, without and with tracker noise."""
     rng = np.random.default_rng(20)
     plain = [generated(1), generated(2), *captures(shared_data)]
     return [*plain, *(jitter(one, rng) for one in plain)]
@@ -47,7 +47,7 @@ def recordings(shared_data: Path) -> list[Recording]:
 def test_every_bad_quaternion_is_flagged_and_no_good_one(
     recordings: list[Recording], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Each kind, in any joint, here and on the wire alike: precision and recall are 1."""
+    """Bad quaternions are found with precision and recall 1, here and by `app.wire`."""
     rng = np.random.default_rng(19)
     lines = []
     for kind, quaternion in BAD_QUATERNIONS.items():
@@ -66,11 +66,11 @@ def test_every_bad_quaternion_is_flagged_and_no_good_one(
             total += compare(there, found)
         assert (total.precision, total.recall) == (1.0, 1.0), kind
         lines.append(total.line(f"{kind} quaternion"))
-    tell(capsys, lines)
+    print_figures(capsys, lines)
 
 
 def test_jumps_are_found(recordings: list[Recording], capsys: pytest.CaptureFixture[str]) -> None:
-    """A joint turned by 30 to 180 degrees from one frame on, or hips put 0.2 to 2 m away."""
+    """Joints that turn by 30 to 180 degrees and hips that move 0.2 to 2 m at once are found."""
     rng = np.random.default_rng(21)
     turned, shifted = Found(0, 0, 0), Found(0, 0, 0)
     for recording in recordings:
@@ -89,7 +89,7 @@ def test_jumps_are_found(recordings: list[Recording], capsys: pytest.CaptureFixt
         judged = examine(bad.times_s, bad.rotations, bad.positions_m)
         turned += compare(there, judged.turned)
         shifted += compare(np.isin(np.arange(len(bad)), places), judged.shifted)
-    tell(capsys, [turned.line("joint that jumps"), shifted.line("hips that jump")])
+    print_figures(capsys, [turned.line("joint that jumps"), shifted.line("hips that jump")])
     for found in (turned, shifted):
         assert found.precision == 1.0
         assert found.recall == 1.0
@@ -98,10 +98,10 @@ def test_jumps_are_found(recordings: list[Recording], capsys: pytest.CaptureFixt
 def test_frozen_joints_are_found(
     recordings: list[Recording], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """One to four joints at a time, for 1.2 to 8 s: all of them where the others tremble.
+    """Up to four joints frozen for 1.2 to 8 s are all found if the others have tracker noise.
 
-    Without a tremble a leg that a solver places rests now and then, and cannot be told from one
-    that froze: nothing is said then, rather than something false.
+    Without noise a leg that a solver places rests now and then, and cannot be distinguished from a
+    frozen one: nothing is reported then.
     """
     rng = np.random.default_rng(22)
     half = len(recordings) // 2
@@ -109,7 +109,9 @@ def test_frozen_joints_are_found(
         sum((_frozen(one, rng) for one in part for _ in range(6)), Found(0, 0, 0))
         for part in (recordings[:half], recordings[half:])
     )
-    tell(capsys, [trembling.line("frozen joint, as tracked"), smooth.line("frozen joint, smooth")])
+    print_figures(
+        capsys, [trembling.line("frozen joint, as tracked"), smooth.line("frozen joint, smooth")]
+    )
     assert (trembling.precision, trembling.recall) == (1.0, 1.0)
     assert smooth.precision == 1.0
     assert smooth.recall >= 0.7
@@ -127,7 +129,7 @@ def _frozen(recording: Recording, rng: np.random.Generator) -> Found:
 
 
 def test_movement_without_a_fault_raises_none(recordings: list[Recording]) -> None:
-    """Not one mark in four minutes."""
+    """Four minutes of movement without faults raise no flag."""
     for recording in recordings:
         judged = examine(recording.times_s, recording.rotations, recording.positions_m)
         marks = (judged.non_finite, judged.non_unit, judged.turned, judged.shifted, judged.frozen)
@@ -136,19 +138,19 @@ def test_movement_without_a_fault_raises_none(recordings: list[Recording]) -> No
         assert not judged.pacing.backwards.any()
 
 
-def test_a_spoilt_capture_is_not_taken_for_a_sound_one(
+def test_the_faults_of_a_faulty_capture_are_found(
     shared_data: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """In this dance the feet flip over within a frame, at more than 10,000 deg/s: it is told."""
+    """Feet that flip within a frame in a captured dance, at over 10,000 deg/s, are found."""
     dance = captured(shared_data / "motion" / "cmu_bvh" / "05_06.bvh")
     judged = examine(dance.times_s, dance.rotations, dance.positions_m)
     joints = set(np.flatnonzero(judged.turned.any(axis=0)).tolist())
-    tell(capsys, [f"CMU 05_06: {int(judged.jumped.sum())} frames jump in {len(dance)}"])
+    print_figures(capsys, [f"CMU 05_06: {int(judged.jumped.sum())} frames jump in {len(dance)}"])
     assert {JOINT_INDEX["LeftFoot"], JOINT_INDEX["RightFoot"]} <= joints
 
 
 def _episodes(there: NDArray[np.bool_], found: NDArray[np.bool_]) -> Found:
-    """Stretches that were put in and found, and stretches that were found where none is."""
+    """Count frozen stretches that were inserted and found, and those found elsewhere."""
     hits = [bool(found[stretch].any()) for stretch in _stretches(there)]
     false = [not there[stretch].any() for stretch in _stretches(found)]
     return Found(len(hits), sum(hits), sum(false))
@@ -166,7 +168,7 @@ def _axis(rng: np.random.Generator) -> NDArray[np.float64]:
     return np.asarray(axis / np.linalg.norm(axis))
 
 
-def tell(capsys: pytest.CaptureFixture[str], lines: list[str]) -> None:
-    """Figures for whoever reads the log."""
+def print_figures(capsys: pytest.CaptureFixture[str], lines: list[str]) -> None:
+    """Print the figures for the log."""
     with capsys.disabled():
         sys.stdout.write("\n" + "\n".join(lines) + "\n")

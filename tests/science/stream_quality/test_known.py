@@ -14,12 +14,12 @@ HEAD, HAND = JOINT_INDEX["Head"], JOINT_INDEX["RightHand"]
 
 
 def quality(recording: Recording, counted: NDArray[np.bool_] | None = None) -> StreamQuality:
-    """The faults counted."""
+    """Return the counted faults."""
     return assess(recording.times_s, recording.rotations, recording.positions_m, counted=counted)
 
 
 def test_a_sound_recording_has_no_fault() -> None:
-    """28 s at 90 frames a second, feet standing, toes and collarbones never moving."""
+    """A sound recording of 28 s with standing feet and unmoving toes has no fault."""
     found = quality(generated())
     assert found.frames == 28 * 90
     assert found.span_s == pytest.approx(28.0 - FRAME_S)
@@ -30,7 +30,7 @@ def test_a_sound_recording_has_no_fault() -> None:
 
 @pytest.mark.parametrize(("missing", "gaps"), [(1, 0), (2, 0), (3, 1), (45, 1)])
 def test_a_gap_is_longer_than_two_late_frames(missing: int, gaps: int) -> None:
-    """At 90 Hz two missing frames leave 33 ms, three leave 44 ms."""
+    """At 90 Hz 33 ms (two missing frames) are no gap, 44 ms are one."""
     found = quality(generated().without(np.arange(100, 100 + missing)))
     assert found.gaps == gaps
     length_s = (missing + 1) * FRAME_S if gaps else 0.0
@@ -39,14 +39,14 @@ def test_a_gap_is_longer_than_two_late_frames(missing: int, gaps: int) -> None:
 
 
 def test_at_a_low_frame_rate_a_gap_is_longer() -> None:
-    """At 30 Hz, 67 ms are one frame that came late; 100 ms are a gap."""
+    """At 30 Hz 67 ms (one late frame) are no gap, 100 ms are one."""
     slow = generated().part(slice(None, None, 3))
     assert quality(slow.without(np.array([50]))).gaps == 0
     assert quality(slow.without(np.array([50, 51]))).gaps == 1
 
 
 def test_a_time_that_is_not_later_runs_backwards() -> None:
-    """Once for a step back, once for a time that is told twice."""
+    """A time that goes back, or repeats, counts once as backwards."""
     bad = generated().copy()
     bad.times_s[200:] -= 5.0
     assert quality(bad).backwards == 1
@@ -56,7 +56,7 @@ def test_a_time_that_is_not_later_runs_backwards() -> None:
 
 
 def test_a_pose_that_is_off_for_one_frame_jumps_there_and_back() -> None:
-    """Both changes are marked, and only at that joint."""
+    """A joint that is wrong for one frame has two jumps, and no other joint has any."""
     bad = generated().copy()
     bad.rotations[500, HEAD] = (0.0, 0.0, 1.0, 0.0)
     found = examine(bad.times_s, bad.rotations, bad.positions_m)
@@ -66,7 +66,7 @@ def test_a_pose_that_is_off_for_one_frame_jumps_there_and_back() -> None:
 
 @pytest.mark.parametrize(("turn_deg", "jumps"), [(21.0, 0), (24.0, 1)])
 def test_the_fastest_turn_is_an_argument(turn_deg: float, jumps: int) -> None:
-    """2,000 deg/s are 22.2 degrees in a frame at 90 Hz; another limit gives another answer."""
+    """The speed limit is an argument: 2,000 deg/s are 22.2 degrees in a frame at 90 Hz."""
     still = np.zeros((10, 22, 4), np.float32)
     still[..., 0] = 1.0
     half = np.radians(turn_deg) / 2.0
@@ -79,28 +79,28 @@ def test_the_fastest_turn_is_an_argument(turn_deg: float, jumps: int) -> None:
 
 @pytest.mark.parametrize(("step_m", "jumps"), [(0.10, 0), (0.12, 1)])
 def test_hips_that_move_faster_than_anybody_jump(step_m: float, jumps: int) -> None:
-    """10 m/s are 11 cm in a frame at 90 Hz."""
+    """Hips faster than 10 m/s, 11 cm in a frame at 90 Hz, count as a jump."""
     bad = generated().copy()
     bad.positions_m[700:, 0] += np.float32(step_m) - np.diff(bad.positions_m[699:701, 0])[0]
     assert quality(bad).jumps == jumps
 
 
 def test_a_stutter_of_the_clock_is_no_jump() -> None:
-    """Two frames told 1 ms apart show what a body does in 11 ms."""
+    """Two frames with timestamps 1 ms apart and a movement of 11 ms are no jump."""
     bad = generated().copy()
     bad.times_s[1::5] -= FRAME_S - 0.001
     assert quality(bad).jumps == 0
 
 
 def test_a_person_may_move_while_nothing_is_seen() -> None:
-    """After a gap of half a second the hand may be anywhere."""
+    """After a gap of half a second any pose is accepted."""
     bad = generated().without(np.arange(800, 845))
     bad.rotations[800:, HAND] = (0.0, 1.0, 0.0, 0.0)
     assert quality(bad).jumps == 0
 
 
 def test_a_frozen_joint_is_named_and_timed() -> None:
-    """From its last change on, to a frame."""
+    """A frozen joint is reported from its last change on, to a frame."""
     bad = generated().copy()
     bad.rotations[900:1350, HEAD] = bad.rotations[900, HEAD]
     found = quality(bad)
@@ -110,21 +110,21 @@ def test_a_frozen_joint_is_named_and_timed() -> None:
 
 @pytest.mark.parametrize("frames", [45, 88])
 def test_a_short_stillness_is_no_freeze(frames: int) -> None:
-    """Less than a second."""
+    """A joint that is still for less than a second is not frozen."""
     bad = generated().copy()
     bad.rotations[900 : 900 + frames, HEAD] = bad.rotations[900, HEAD]
     assert quality(bad).frozen_joints == ()
 
 
 def test_a_joint_that_never_moved_is_still_and_not_frozen() -> None:
-    """Nobody tracks it."""
+    """A joint that never moves, since it is not tracked, is not frozen."""
     bad = generated().copy()
     bad.rotations[:, HEAD] = (1.0, 0.0, 0.0, 0.0)
     assert quality(bad).frozen_joints == ()
 
 
 def test_a_joint_that_rests_now_and_then_is_not_frozen() -> None:
-    """As legs that a solver places: still while standing, moving with each step."""
+    """A joint that rests repeatedly, such as a leg placed by a solver, is not frozen."""
     bad = generated().copy()
     for begin in range(0, len(bad), 360):
         bad.rotations[begin : begin + 180, HEAD] = bad.rotations[begin, HEAD]
@@ -132,30 +132,30 @@ def test_a_joint_that_rests_now_and_then_is_not_frozen() -> None:
 
 
 def test_a_body_that_stands_still_as_a_whole_is_not_frozen() -> None:
-    """As the picture does at the end of a phase."""
+    """A body that is still as a whole, as at the end of a phase, is not frozen."""
     bad = generated().copy()
     bad.rotations[1200:] = bad.rotations[1200]
     assert quality(bad).frozen_joints == ()
 
 
 def test_a_joint_that_freezes_again_is_found_again() -> None:
-    """Having been frozen does not count as rest."""
+    """A joint that freezes a second time is found again."""
     bad = generated().copy()
     for begin in (500, 1100, 1700):
         bad.rotations[begin : begin + 270, HEAD] = bad.rotations[begin, HEAD]
     assert quality(bad).frozen_s[HEAD] == pytest.approx(9.0, abs=6 * FRAME_S)
 
 
-def test_a_gap_freezes_nobody() -> None:
-    """A joint that is the same before and after ten seconds without frames was not watched."""
+def test_a_gap_is_no_freeze() -> None:
+    """A joint that is the same before and after a gap of ten seconds is not frozen."""
     bad = generated().copy()
     bad.rotations[600:660, HEAD] = bad.rotations[600, HEAD]
     bad.times_s[630:] += 10.0
     assert quality(bad).frozen_joints == ()
 
 
-def test_only_what_is_counted_counts() -> None:
-    """Faults outside active time are known and not summed."""
+def test_faults_outside_active_time_are_not_counted() -> None:
+    """Faults outside of active time are not counted."""
     bad = generated().copy()
     bad.rotations[100, 0, 0] = np.nan
     bad.rotations[200, 0] *= 1.1
@@ -170,7 +170,7 @@ def test_only_what_is_counted_counts() -> None:
 
 
 def test_a_gap_counts_if_the_clock_ran_before_it() -> None:
-    """A headset that was taken off in active time left a gap in it; one that was paused did not."""
+    """A gap counts if active time was running before it, not if the clock was paused."""
     bad = generated().copy()
     bad.times_s[450:] += 60.0
     ran = np.arange(len(bad)) < 450
@@ -179,7 +179,7 @@ def test_a_gap_counts_if_the_clock_ran_before_it() -> None:
 
 
 def test_a_span_may_begin_with_another_pose() -> None:
-    """Where the avatar's delay is set anew its pose changes at once, and that is no jump."""
+    """A pose that changes because the avatar's delay was changed is no jump."""
     first, then = generated().part(slice(0, 300)), generated().part(slice(900, 1200)).copy()
     then.rotations[:, HAND] = (0.0, 1.0, 0.0, 0.0)
     memory = examine(first.times_s, first.rotations, first.positions_m).after

@@ -1,4 +1,4 @@
-"""What holds for every recording, whatever is wrong with it."""
+"""Properties of the quality check for every recording, whatever its faults."""
 
 import numpy as np
 import pytest
@@ -21,7 +21,7 @@ USUAL_S = 1.0 / RATE_HZ
 
 
 def judged(recording: Recording, before: Memory | None = None) -> Examination:
-    """Every frame judged, against 90 frames a second."""
+    """Examine every frame of a recording at an expected rate of 90 Hz."""
     return examine(
         recording.times_s,
         recording.rotations,
@@ -32,12 +32,12 @@ def judged(recording: Recording, before: Memory | None = None) -> Examination:
 
 
 def quality(recording: Recording) -> StreamQuality:
-    """The faults counted."""
+    """Return the counted faults."""
     return assess(recording.times_s, recording.rotations, recording.positions_m)
 
 
 def spoilt(seed: int) -> Recording:
-    """A recording with a little of everything."""
+    """Return a recording with a few faults of every kind."""
     rng = np.random.default_rng(seed)
     bad = generated().copy()
     for _ in range(3):
@@ -56,7 +56,7 @@ def spoilt(seed: int) -> Recording:
 @given(seed=st.integers(0, 40), cuts=st.lists(st.integers(1, 2400), max_size=6, unique=True))
 @settings(max_examples=60, deadline=None)
 def test_it_does_not_matter_where_a_recording_is_cut(seed: int, cuts: list[int]) -> None:
-    """Span after span, with what is remembered, gives the same marks as all at once."""
+    """Examining a recording in spans with the carried memory gives the same flags as at once."""
     whole = spoilt(seed)
     expected = judged(whole)
     parts, before = [], Memory()
@@ -71,8 +71,8 @@ def test_it_does_not_matter_where_a_recording_is_cut(seed: int, cuts: list[int])
         assert np.array_equal(pieces, getattr(expected.pacing, name)), name
 
 
-def test_a_recording_is_not_touched() -> None:
-    """Judging changes no bit."""
+def test_examining_does_not_change_a_recording() -> None:
+    """Examining a recording does not change any bit of it."""
     bad = spoilt(3)
     before = (bad.times_s.tobytes(), bad.rotations.tobytes(), bad.positions_m.tobytes())
     judged(bad)
@@ -80,21 +80,21 @@ def test_a_recording_is_not_touched() -> None:
 
 
 def test_the_other_sign_of_a_quaternion_is_the_same_rotation() -> None:
-    """A stream that changes sign at any frame turns no joint."""
+    """A quaternion that changes its sign is no jump."""
     flipped = generated().copy()
     flipped.rotations[::7] *= -1.0
     assert quality(flipped).jumps == 0
 
 
 def test_precision_of_the_numbers_does_not_matter() -> None:
-    """Judged in double precision a recording has the same faults."""
+    """A recording has the same faults in double precision."""
     bad = spoilt(4)
     wide = assess(bad.times_s, bad.rotations.astype(float), bad.positions_m.astype(float))
     assert wide == quality(bad)
 
 
 def test_faults_of_runs_add_up() -> None:
-    """Two runs together have the faults of both; a gap between them is not known."""
+    """Two runs together have the faults of both; the gap between them is unknown."""
     one, other = quality(spoilt(5)), quality(spoilt(6))
     both = combine([one, other])
     assert both.frames == one.frames + other.frames
@@ -105,7 +105,7 @@ def test_faults_of_runs_add_up() -> None:
 
 
 def test_no_frames_have_no_faults() -> None:
-    """And no frame rate."""
+    """A recording without frames has no faults and no frame rate."""
     empty = quality(generated().part(slice(0)))
     assert (empty.frames, empty.frame_rate_hz, empty.span_s) == (0, None, 0.0)
     after = judged(generated().part(slice(0))).after
@@ -113,8 +113,8 @@ def test_no_frames_have_no_faults() -> None:
 
 
 @pytest.mark.parametrize("shape", [(5, 21, 4), (4, 22, 4), (5, 22, 3)])
-def test_arrays_that_do_not_belong_together_are_refused(shape: tuple[int, ...]) -> None:
-    """The refusal names the shapes."""
+def test_arrays_of_different_lengths_are_rejected(shape: tuple[int, ...]) -> None:
+    """Arrays that do not fit together are rejected with their shapes."""
     with pytest.raises(QualityError, match="do not match"):
         examine(np.zeros(5), np.zeros(shape), np.zeros((5, 3)))
     with pytest.raises(QualityError, match="do not match"):
@@ -125,8 +125,8 @@ def test_arrays_that_do_not_belong_together_are_refused(shape: tuple[int, ...]) 
 
 @given(seed=st.integers(0, 10_000))
 @settings(max_examples=60, deadline=None)
-def test_whatever_comes_can_be_judged(seed: int) -> None:
-    """Any bits at all: no error, no warning, and figures that are numbers."""
+def test_any_bits_can_be_examined(seed: int) -> None:
+    """Arbitrary bits raise no error and no warning, and give finite figures."""
     rng = np.random.default_rng(seed)
     odd = generated().part(slice(0, 200)).copy()
     places = rng.random(odd.rotations.shape) < 0.02

@@ -1,4 +1,4 @@
-"""Random phases that make progress: hypothesis draws moves, the state decides what they mean."""
+"""Random phases that make progress: hypothesis draws moves, which depend on the state."""
 
 from hypothesis import strategies as st
 
@@ -25,7 +25,7 @@ _PLACES = {
 }
 LAYOUTS = ("hand", "hand_rim", "foot", "foot_reversing", "foot_right")
 
-# (quarter seconds since the last move, what, which surface, which part)
+# (quarter seconds since the previous move, what, which surface, which part)
 MOVES = st.lists(
     st.tuples(
         st.integers(0, 4),
@@ -40,7 +40,7 @@ Steps = list[ContactChange | Command]
 
 
 def random_run(name: str, moves: Moves) -> tuple[TaskRun, Steps]:
-    """A right-handed phase on a layout, frozen at the end, and the inputs that made it."""
+    """Return a right-handed phase on a layout, frozen at the end, and its inputs."""
     run = TaskRun(TaskRules(layout(name), Laterality.RIGHT), ())
     steps: Steps = [Command(CommandKind.START, 0.0)]
     run.apply(steps[0])
@@ -49,7 +49,7 @@ def random_run(name: str, moves: Moves) -> tuple[TaskRun, Steps]:
         time_s += quarters / 4
         if what == "clock":
             kind = CommandKind.RESUME if run.state.paused else CommandKind.PAUSE
-            # A pause lasts, and one instant has one change: what a record can tell apart.
+            # A record needs pauses of some length and at most one change an instant.
             time_s = max(time_s, paused_s + 0.25) if run.state.paused else time_s
             paused_s = time_s
             steps.append(Command(kind, time_s))
@@ -64,7 +64,7 @@ def random_run(name: str, moves: Moves) -> tuple[TaskRun, Steps]:
 
 
 def _change(run: TaskRun, time_s: float, what: str, place: int, part: int) -> ContactChange:
-    """Touch or leave the goal with the first part, or toggle any contact."""
+    """Return a change: touch or leave the goal with the first part, or toggle any contact."""
     limb = run.state.rules.layout.limb.value
     goal = current_goal(run.state)
     contact = Contact(f"{limb}/{_PLACES[limb][place]}", _PARTS[limb][part])

@@ -1,4 +1,4 @@
-"""The active clock stands still in pauses."""
+"""The active clock, which is stopped during pauses."""
 
 from itertools import pairwise
 
@@ -11,7 +11,7 @@ from app.science.tasks import ActiveClock, ClockError
 
 @given(st.lists(st.integers(0, 100), min_size=1, max_size=20))
 def test_active_time_is_the_sum_of_the_running_spans(quarters: list[int]) -> None:
-    """Pausing and resuming in turn adds up every other span."""
+    """Active time is the sum of the spans between resuming and pausing."""
     times_s = [sum(quarters[: index + 1]) / 4 for index in range(len(quarters))]
     clock, expected_s = ActiveClock().begin(times_s[0]), 0.0
     for index, (before_s, now_s) in enumerate(pairwise(times_s)):
@@ -21,19 +21,19 @@ def test_active_time_is_the_sum_of_the_running_spans(quarters: list[int]) -> Non
 
 
 def test_a_clock_knows_when_a_phase_is_over() -> None:
-    """60 s of active time with a pause of 5 s are over 65 s after the start."""
+    """60 s of active time with a pause of 5 s end 65 s after the start."""
     clock = ActiveClock().begin(10.0).pause(20.0)
     assert clock.reaches_s(60.0) is None
     assert clock.resume(25.0).reaches_s(60.0) == 75.0
 
 
 def test_an_unbegun_clock_shows_zero() -> None:
-    """Before it begins no time is active."""
+    """Before the clock begins, active time is zero."""
     assert ActiveClock().active_s(5.0) == 0.0
 
 
 def test_time_must_not_go_back() -> None:
-    """Asking about, pausing or resuming in the past is an error with both times."""
+    """A time before the previous one is rejected with both times."""
     clock = ActiveClock().begin(2.0)
     with pytest.raises(ClockError, match=r"back from 2.0 s to 1.0 s"):
         clock.active_s(1.0)
@@ -45,8 +45,8 @@ def test_time_must_not_go_back() -> None:
         clock.active_s(float("nan"))
 
 
-def test_calls_that_do_not_fit_are_refused() -> None:
-    """A clock begins once, pauses while it runs and resumes while it stands."""
+def test_calls_out_of_order_are_rejected() -> None:
+    """A clock can begin once, pause only while running and resume only while paused."""
     clock = ActiveClock()
     with pytest.raises(ClockError, match="Begin it before resuming"):
         clock.resume(0.0)

@@ -1,4 +1,4 @@
-"""Capsule contacts are exact, and fast forms agree with the plain one."""
+"""Capsule contacts are exact, and the fast forms agree with the plain one."""
 
 import numpy as np
 import pytest
@@ -19,13 +19,13 @@ ARRAYS = SurfaceArrays.of(layout("hand_rim"))
 
 
 def body(rng: np.random.Generator, n_frames: int) -> tuple[Floats, Floats]:
-    """Random capsules around the boxes: segments (N, 22, 2, 3) and radii (22,)."""
+    """Return random capsules around the boxes: segments (N, 22, 2, 3) and radii (22,)."""
     segments = rng.uniform((-1.0, 0.8, -1.0), (1.0, 1.8, 0.2), (n_frames, 22, 2, 3))
     return segments, rng.uniform(0.01, 0.1, 22)
 
 
 def sampled_distance_m(start: Floats, end: Floats, low: Floats, high: Floats) -> Floats:
-    """Brute force: the nearest of 2001 points along each segment."""
+    """Return the distance by brute force: the nearest of 2001 points of each segment."""
     share = np.linspace(0.0, 1.0, 2001)[:, None]
     points = start[:, None] + share * (end - start)[:, None]
     outside = points - np.clip(points, low[:, None], high[:, None])
@@ -35,7 +35,7 @@ def sampled_distance_m(start: Floats, end: Floats, low: Floats, high: Floats) ->
 
 @given(st.integers(0, 2**32 - 1), st.sampled_from(["any", "point", "parallel", "tiny"]))
 def test_distance_agrees_with_sampling(seed: int, shape: str) -> None:
-    """No sampled point is nearer, and the nearest sample is at most half a step away."""
+    """The distance agrees with sampled points along the segment to half a step."""
     rng = np.random.default_rng(seed)
     start, end = rng.normal(size=(2, 50, 3))
     if shape == "point":
@@ -54,7 +54,7 @@ def test_distance_agrees_with_sampling(seed: int, shape: str) -> None:
 
 
 def test_distance_does_not_depend_on_the_direction() -> None:
-    """Swapping the ends of a segment changes nothing."""
+    """Swapping the ends of a segment does not change the distance."""
     rng = np.random.default_rng(1)
     start, end = rng.normal(size=(2, 200, 3))
     low, high = -rng.uniform(0.1, 1.0, (200, 3)), rng.uniform(0.1, 1.0, (200, 3))
@@ -63,7 +63,7 @@ def test_distance_does_not_depend_on_the_direction() -> None:
 
 
 def test_the_broad_phase_loses_no_contact() -> None:
-    """Touches are exactly the pairs whose distance is at most the radius."""
+    """Contacts are exactly the pairs whose distance is at most the radius."""
     segments, radii = body(np.random.default_rng(2), 1)
     n_surfaces = len(ARRAYS.keys)
     surface, part = np.divmod(np.arange(n_surfaces * 22), 22)
@@ -76,7 +76,7 @@ def test_the_broad_phase_loses_no_contact() -> None:
 
 
 def test_frames_at_once_are_frames_one_by_one() -> None:
-    """The batched form equals the single one, over more frames than one chunk."""
+    """The batched form gives the same contacts as single frames, across chunks."""
     segments, radii = body(np.random.default_rng(3), 300)
     together = np.array(touching_frames(ARRAYS, segments, radii, 0.02))
     single = [np.array(touching_and_near(ARRAYS, frame, radii, 0.02)) for frame in segments]
@@ -84,7 +84,7 @@ def test_frames_at_once_are_frames_one_by_one() -> None:
 
 
 def test_whatever_touches_is_near() -> None:
-    """The release margin only adds pairs."""
+    """The release margin only adds pairs, so every contact is also near."""
     segments, radii = body(np.random.default_rng(4), 20)
     touches, near = touching_frames(ARRAYS, segments, radii, 0.02)
     assert np.all(near | ~touches)
@@ -92,7 +92,7 @@ def test_whatever_touches_is_near() -> None:
 
 
 def test_a_body_far_from_everything_touches_nothing() -> None:
-    """Both forms return their full shape without a single contact."""
+    """A distant body has no contacts, in arrays of the full shape."""
     segments, radii = body(np.random.default_rng(5), 3)
     far = segments + np.array([0.0, 0.0, 5.0])
     assert not touching(ARRAYS, far[0], radii).any()
@@ -100,8 +100,8 @@ def test_a_body_far_from_everything_touches_nothing() -> None:
     assert not touching_frames(ARRAYS, far, radii)[0].any()
 
 
-def test_shapes_that_do_not_fit_are_refused() -> None:
-    """The refusal names the expected and the given shape."""
+def test_arrays_of_wrong_shape_are_rejected() -> None:
+    """Arrays of a wrong shape are rejected with the expected and the given shape."""
     with pytest.raises(ValueError, match=r"Expected segments of shape \(P, 2, 3\), got \(2, 3\)"):
         touching(ARRAYS, np.zeros((2, 3)), np.zeros(1))
     with pytest.raises(ValueError, match=r"one radius per part: \(4,\), got \(3,\)"):

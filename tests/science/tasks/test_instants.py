@@ -1,4 +1,4 @@
-"""What happens at one instant, told in several steps."""
+"""Several inputs at the same instant."""
 
 from app.science.tasks import (
     Command,
@@ -16,7 +16,7 @@ from tests.science.tasks.vector_files import layout
 
 
 def test_stepping_on_the_start_square_at_the_completion_is_no_arrival() -> None:
-    """The step must come after the completion, not at its instant."""
+    """A step on the start square must come after the completion, not at the same instant."""
     run = TaskRun(TaskRules(layout("foot"), Laterality.RIGHT), ())
     run.command(CommandKind.START, 0.0)
     for time_s, key in enumerate(("4/panel", "3/panel", "2/panel", "1/panel", "target"), start=1):
@@ -26,7 +26,7 @@ def test_stepping_on_the_start_square_at_the_completion_is_no_arrival() -> None:
 
 
 def test_a_pause_of_no_length_makes_no_new_touch() -> None:
-    """Intervals that meet are one contact, so the record does not see a touch where they meet."""
+    """A contact through a pause of no length stays one contact, live and in the record."""
     rules = TaskRules(layout("hand"), Laterality.RIGHT)
     run = TaskRun(rules, ())
     run.command(CommandKind.START, 0.0)

@@ -1,4 +1,4 @@
-"""Boxes become surfaces that enclose their cavity, or a clear refusal."""
+"""Boxes become surfaces that enclose their cavity, or are rejected."""
 
 from dataclasses import replace
 from itertools import combinations
@@ -28,7 +28,7 @@ START = BlockSpec((0.0, 0.0, 0.0), (0.5, 0.01, 0.5))
 
 
 def hand(**changes: Any) -> TaskLayout:
-    """A hand layout with some arguments changed."""
+    """Return a hand layout with some arguments changed."""
     given: dict[str, Any] = {
         "limb": Limb.HAND,
         "boxes": HAND_BOXES,
@@ -41,13 +41,13 @@ def hand(**changes: Any) -> TaskLayout:
 
 
 def foot(**changes: Any) -> TaskLayout:
-    """A foot layout with some arguments changed."""
+    """Return a foot layout with some arguments changed."""
     given = {"limb": Limb.FOOT, "boxes": FOOT_BOXES, "target": BAR, "start_square": START}
     return hand(**(given | changes))
 
 
 def overlap_m(one: Surface, other: Surface) -> float:
-    """How deep two surfaces reach into each other; negative when apart."""
+    """Return how deep two surfaces overlap, negative if they are apart."""
     return min(
         one.half_size_m[axis]
         + other.half_size_m[axis]
@@ -60,7 +60,7 @@ def overlap_m(one: Surface, other: Surface) -> float:
 def test_surfaces_of_a_layout_never_overlap(
     width_m: float, height_m: float, depth_m: float, wall_m: float
 ) -> None:
-    """Panel, walls and rim bars meet but do not reach into each other, whatever the sizes."""
+    """Panels, walls and rim bars touch but never overlap, whatever the sizes."""
     boxes = tuple(replace(box, inner_size_m=(width_m, height_m, depth_m)) for box in HAND_BOXES)
     sides = (Side.LEFT, Side.RIGHT, Side.TOP, Side.BOTTOM, Side.FRONT_RIM)
     surfaces = hand(boxes=boxes, sides=sides, wall_thickness_m=wall_m).surfaces
@@ -68,7 +68,7 @@ def test_surfaces_of_a_layout_never_overlap(
 
 
 def test_surfaces_come_box_by_box_then_target_then_start() -> None:
-    """Keys name limb, box and side, in a fixed order."""
+    """Surfaces are ordered by box, then target and start, and keyed by limb, box and side."""
     keys = [surface.key for surface in foot().surfaces]
     first = ["foot/1/panel", "foot/1/left", "foot/1/right", "foot/1/front", "foot/1/back"]
     assert (first, ["foot/target", "foot/start"]) == (keys[:5], keys[-2:])
@@ -76,7 +76,7 @@ def test_surfaces_come_box_by_box_then_target_then_start() -> None:
 
 
 def test_hand_boxes_open_towards_the_participant() -> None:
-    """The panel closes the -z end and nothing stands at the +z end."""
+    """A hand box has its panel at the -z end and is open at the +z end."""
     surfaces = hand().by_key
     panel = surfaces["hand/1/panel"]
     assert panel.center_m == pytest.approx((-0.6, 1.2, -0.655))
@@ -86,7 +86,7 @@ def test_hand_boxes_open_towards_the_participant() -> None:
 
 
 def test_foot_boxes_open_at_the_top() -> None:
-    """The panel is the floor plate with its top at the cavity's bottom; front is nearer (+z)."""
+    """A foot box has its panel at the bottom and is open at the top; front is nearer (+z)."""
     surfaces = foot().by_key
     panel = surfaces["foot/2/panel"]
     assert panel.center_m[1] + panel.half_size_m[1] == pytest.approx(0.0)
@@ -95,7 +95,7 @@ def test_foot_boxes_open_at_the_top() -> None:
 
 
 def test_only_configured_sides_exist() -> None:
-    """Sides left out of the configuration are not built, and no wall reaches for them."""
+    """Sides that are not configured are not built."""
     surfaces = hand(sides=(Side.LEFT, Side.BOTTOM)).by_key
     assert "hand/1/top" not in surfaces
     left = surfaces["hand/1/left"]
@@ -104,14 +104,14 @@ def test_only_configured_sides_exist() -> None:
 
 
 def test_rim_bars_are_one_side() -> None:
-    """Each wall carries a rim bar, and all bars of a box share one unit."""
+    """Each wall has a rim bar, and all bars of a box form one side."""
     bars = [s for s in layout("hand_rim").surfaces if s.side is Side.FRONT_RIM and s.box == 2]
     assert len(bars) == 4
     assert {bar.unit for bar in bars} == {"hand/2/front_rim"}
 
 
 def test_vector_layouts_are_mirror_images_of_themselves() -> None:
-    """The vectors' rows are symmetric, so mirrored tasks can be compared on them."""
+    """The layouts of the vectors are symmetric, so that mirrored tasks can be compared."""
     for spec in read_all()["layouts"]["layouts"].values():
         centers = {tuple(surface["center_m"]) for surface in spec["surfaces"]}
         assert {(-x or 0.0, y, z) for x, y, z in centers} == centers
@@ -147,8 +147,8 @@ def test_vector_layouts_are_mirror_images_of_themselves() -> None:
         ({"start_square": START}, "no walk back"),
     ],
 )
-def test_impossible_hand_layouts_are_refused(changes: dict[str, Any], message: str) -> None:
-    """Each refusal names the value and what to do."""
+def test_impossible_hand_layouts_are_rejected(changes: dict[str, Any], message: str) -> None:
+    """An impossible hand layout is rejected with the value and what to do."""
     with pytest.raises(LayoutError, match=message):
         hand(**changes)
 
@@ -165,7 +165,7 @@ def test_impossible_hand_layouts_are_refused(changes: dict[str, Any], message: s
         ),
     ],
 )
-def test_impossible_foot_layouts_are_refused(changes: dict[str, Any], message: str) -> None:
-    """Foot tasks need a start square apart from the boxes, and boxes on the floor."""
+def test_impossible_foot_layouts_are_rejected(changes: dict[str, Any], message: str) -> None:
+    """A foot layout needs a start square apart from its boxes, and boxes on the floor."""
     with pytest.raises(LayoutError, match=message):
         foot(**changes)

@@ -1,4 +1,4 @@
-"""Laws of the rules and of the record, over random phases; then what is refused."""
+"""Properties of the task rules and of the record over random phases, and invalid inputs."""
 
 from collections import Counter
 from dataclasses import replace
@@ -39,7 +39,7 @@ PROGRESS = (EventKind.PANEL_GREEN, EventKind.TASK_COMPLETED)
 
 
 def mirrored_name(name: str) -> str:
-    """A surface key or part name as a mirror shows it (four boxes in a row)."""
+    """Return a surface key or part name mirrored left to right (four boxes in a row)."""
     words = [str(5 - int(word)) if word.isdigit() else word for word in name.split("/")]
     swap = {"left": "right", "right": "left"}
     name = "/".join(swap.get(word, word) for word in words)
@@ -50,7 +50,7 @@ def mirrored_name(name: str) -> str:
 
 
 def mirrored(step: ContactChange | Command) -> ContactChange | Command:
-    """An input as a mirror shows it."""
+    """Return an input mirrored left to right."""
     if isinstance(step, Command):
         return step
     begins, ends = (
@@ -61,13 +61,13 @@ def mirrored(step: ContactChange | Command) -> ContactChange | Command:
 
 
 def essence(event: TaskEvent) -> tuple[object, ...]:
-    """An event without its part where that is the first of several by name."""
+    """Return an event's values without the part where it is the first of several by name."""
     part = None if event.kind in CHOSEN_BY_NAME else event.part
     return (event.kind, event.time_s, event.active_s, event.task, event.surface, part)
 
 
 def test_random_phases_complete_tasks() -> None:
-    """The moves of these tests do reach completions, in hand and foot tasks."""
+    """The random moves of these tests do complete hand and foot tasks."""
     for name in LAYOUTS:
         assert len(random_run(name, TWO_TASKS)[0].summary().completions) == 2
 
@@ -75,8 +75,8 @@ def test_random_phases_complete_tasks() -> None:
 @given(NAMES, MOVES)
 @example("foot", TWO_TASKS)
 @example("hand", TWO_TASKS)
-def test_the_record_gives_the_completions_again(name: str, moves: Moves) -> None:
-    """Completions derived from intervals and commands equal those seen live."""
+def test_the_record_gives_the_live_completions(name: str, moves: Moves) -> None:
+    """Completions derived from intervals and commands equal those of the live run."""
     run, steps = random_run(name, moves)
     commands = [step for step in steps if isinstance(step, Command)]
     assert run.summary().completions == rederive(run.state.rules, run.intervals, commands)
@@ -84,8 +84,8 @@ def test_the_record_gives_the_completions_again(name: str, moves: Moves) -> None
 
 @given(NAMES, MOVES)
 @example("foot", TWO_TASKS)
-def test_the_record_gives_the_events_again(name: str, moves: Moves) -> None:
-    """Progress, mistakes, walk backs and red sides all follow from the record."""
+def test_the_record_gives_the_live_events(name: str, moves: Moves) -> None:
+    """Events derived from the record equal those of the live run."""
     run, steps = random_run(name, moves)
     commands = [step for step in steps if isinstance(step, Command)]
     events = replay(run.state.rules, run.intervals, commands)[1]
@@ -97,7 +97,7 @@ def test_the_record_gives_the_events_again(name: str, moves: Moves) -> None:
 @given(NAMES, MOVES)
 @example("hand", TWO_TASKS)
 def test_completions_are_numbered_and_in_order(name: str, moves: Moves) -> None:
-    """Numbers count up, both times rise, durations add up, and every box is touched once."""
+    """Completions are numbered in order, their durations add up, and each touches all boxes."""
     run, _ = random_run(name, moves)
     done = run.summary().completions
     assert [c.number for c in done] == list(range(1, len(done) + 1))
@@ -118,7 +118,7 @@ def test_a_side_is_red_no_longer_than_its_parts_touch_it(name: str, moves: Moves
 
 @given(NAMES, MOVES)
 def test_red_time_of_the_record_is_what_was_shown(name: str, moves: Moves) -> None:
-    """The union of intervals equals the time between the red and the white events."""
+    """The union of intervals equals the time between the events to red and to white."""
     run, _ = random_run(name, moves)
     shown: Counter[str] = Counter()
     for event in run.events:
@@ -130,8 +130,8 @@ def test_red_time_of_the_record_is_what_was_shown(name: str, moves: Moves) -> No
 
 
 @given(NAMES, MOVES)
-def test_intervals_hold_active_time_only(name: str, moves: Moves) -> None:
-    """Every interval is as long on the active clock as on the wall, and lies within the phase."""
+def test_intervals_contain_active_time_only(name: str, moves: Moves) -> None:
+    """Every interval is as long on the active clock as on the wall clock, and within the phase."""
     run, steps = random_run(name, moves)
     for interval in run.intervals:
         length_s = interval.end_s - interval.begin_s
@@ -143,7 +143,7 @@ def test_intervals_hold_active_time_only(name: str, moves: Moves) -> None:
 def test_the_order_of_parts_does_not_change_the_union(
     parts: list[tuple[str, float, float]],
 ) -> None:
-    """Red time is a property of the set of intervals."""
+    """The red time of a side does not depend on the order of its intervals."""
     intervals = [ContactInterval("hand/1/left", p, b, e, b, e) for p, b, e in parts]
     assert red_spans(intervals) == {"hand/1/left": ((1.0, 6.0),)}
 
@@ -182,7 +182,7 @@ def test_a_mirrored_left_hander_does_the_same(name: str, moves: Moves) -> None:
 
 @given(NAMES, MOVES)
 def test_the_goal_carries_the_lowest_number_that_is_not_green(name: str, moves: Moves) -> None:
-    """Numbers are a permutation and lead through the boxes in the current order."""
+    """The box numbers are a permutation, and the goal has the lowest that is not green."""
     run, _ = random_run(name, moves)
     state = replace(run.state, frozen=False, walk_back_since_s=None)
     numbers = displayed_numbers(state)
@@ -192,16 +192,16 @@ def test_the_goal_carries_the_lowest_number_that_is_not_green(name: str, moves: 
     assert expected == current_goal(state)
 
 
-def test_unknown_surfaces_are_refused() -> None:
-    """The refusal names the surface and lists the valid ones."""
+def test_unknown_surfaces_are_rejected() -> None:
+    """An unknown surface is rejected with the valid ones."""
     state = TaskRules(layout("hand"), Laterality.RIGHT).initial()
     with pytest.raises(TaskRuleError, match=r"no surface 'hand/9/panel'. Use one of: hand/1/panel"):
         advance(state, ContactChange(0.0, (Contact("hand/9/panel", "RightHand"),)))
 
 
 @pytest.mark.parametrize("time_s", [0.5, float("nan"), float("inf")])
-def test_time_that_does_not_go_on_is_refused(time_s: float) -> None:
-    """Going back, or no number at all, is an error and leaves the run as it was."""
+def test_times_that_go_back_are_rejected(time_s: float) -> None:
+    """A time that goes back or is not a number raises an error and leaves the run unchanged."""
     run = TaskRun(TaskRules(layout("hand"), Laterality.RIGHT), ())
     run.command(CommandKind.START, 1.0)
     before = run.state
@@ -211,7 +211,7 @@ def test_time_that_does_not_go_on_is_refused(time_s: float) -> None:
 
 
 def test_a_contact_cannot_begin_and_end_in_one_change() -> None:
-    """The refusal names the contact and asks for two changes."""
+    """A contact that begins and ends in one change is rejected by name."""
     state = TaskRules(layout("hand"), Laterality.RIGHT).initial()
     contact = Contact("hand/target", "Head")
     with pytest.raises(TaskRuleError, match="Give two changes instead"):

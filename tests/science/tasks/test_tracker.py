@@ -1,4 +1,4 @@
-"""Frames become changes, with hysteresis, and refused frames leave no trace."""
+"""Frames become contact changes with hysteresis; rejected frames change nothing."""
 
 import numpy as np
 import pytest
@@ -24,7 +24,7 @@ PARTS = ("RightHand", "LeftHand")
 
 
 def table(*contacts: tuple[str, str]) -> Bools:
-    """A (S, P) table with these contacts."""
+    """Return an (S, P) table with these contacts."""
     touches = np.zeros((len(KEYS), len(PARTS)), dtype=np.bool_)
     for surface, part in contacts:
         touches[KEYS.index(surface), PARTS.index(part)] = True
@@ -32,7 +32,7 @@ def table(*contacts: tuple[str, str]) -> Bools:
 
 
 def started() -> TaskRun:
-    """A run that starts at 0 s."""
+    """Return a run that starts at 0 s."""
     run = TaskRun(TaskRules(PLACE, Laterality.RIGHT), PARTS)
     run.command(CommandKind.START, 0.0)
     return run
@@ -40,7 +40,7 @@ def started() -> TaskRun:
 
 @given(st.lists(st.booleans(), min_size=1, max_size=40), st.integers(0, 2**16))
 def test_a_margin_only_joins_contacts(touches: list[bool], seed: int) -> None:
-    """With a margin there are never more intervals, and each raw contact lies within one."""
+    """A margin never gives more intervals, and each raw contact lies within one."""
     near = np.random.default_rng(seed).random(len(touches)) < 0.5
     raw, held = started(), started()
     for index, touch in enumerate(touches):
@@ -55,14 +55,14 @@ def test_a_margin_only_joins_contacts(touches: list[bool], seed: int) -> None:
 
 
 def test_near_alone_begins_nothing() -> None:
-    """The margin holds a contact but never makes one."""
+    """Being within the margin keeps a contact but never begins one."""
     run = started()
     run.frame(1.0, table(), table(("hand/1/left", "RightHand")))
     assert run.state.contacts == frozenset()
 
 
 def test_changes_name_surface_and_part() -> None:
-    """What begins and what ends is told apart."""
+    """A change lists the contacts that begin and those that end, by surface and part."""
     tracker = ContactTracker(KEYS, PARTS)
     state = TaskRules(PLACE, Laterality.RIGHT).initial()
     change = tracker.observe(1.0, table(("hand/1/left", "RightHand")))
@@ -73,8 +73,8 @@ def test_changes_name_surface_and_part() -> None:
     assert change.ends == (Contact("hand/1/left", "RightHand"),)
 
 
-def test_a_refused_frame_leaves_no_trace() -> None:
-    """After a frame from the past the same contact can still begin."""
+def test_a_rejected_frame_changes_nothing() -> None:
+    """After a rejected frame from the past the same contact can still begin."""
     run = started()
     run.frame(2.0, table(("hand/1/left", "LeftHand")))
     both = table(("hand/1/left", "LeftHand"), ("hand/4/panel", "RightHand"))
@@ -84,7 +84,7 @@ def test_a_refused_frame_leaves_no_trace() -> None:
     assert [event.surface for event in events] == ["hand/4/panel"]
 
 
-def test_tables_of_another_shape_are_refused() -> None:
-    """The refusal names the expected and the given shape."""
+def test_tables_of_another_shape_are_rejected() -> None:
+    """A table of another shape is rejected with the expected and the given shape."""
     with pytest.raises(ValueError, match=r"Expected near of shape \(21, 2\).*got \(2, 21\)"):
         ContactTracker(KEYS, PARTS).observe(0.0, table(), table().T)

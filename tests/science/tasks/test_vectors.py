@@ -1,4 +1,4 @@
-"""The shared vectors: what the rules here and in the headset must both do."""
+"""The shared vectors of the task rules, which the headset must reproduce too."""
 
 from dataclasses import asdict
 
@@ -36,7 +36,7 @@ FRAMES = [pytest.param(vector, id=name) for name, vector in of_kind("frames")]
 
 
 def play(vector: Json) -> tuple[TaskRun, list[TaskState]]:
-    """The run of a rules vector, and its state after each input."""
+    """Return the run of a rules vector, and its state after each input."""
     rules = TaskRules(layout(vector["layout"]), Laterality(vector["writing_hand"]))
     run, states = TaskRun(rules, ()), []
     for entry in vector["inputs"]:
@@ -51,7 +51,7 @@ def play(vector: Json) -> tuple[TaskRun, list[TaskState]]:
 
 @pytest.mark.parametrize("vector", RULES)
 def test_events_are_those_of_the_vector(vector: Json) -> None:
-    """Every rules vector gives its events, in order, with both times."""
+    """Every rules vector gives its events in order, with both times."""
     run, _ = play(vector)
     assert vector["expected"]["events"] == [asdict(event) for event in run.events]
 
@@ -70,7 +70,7 @@ def test_summaries_are_those_of_the_vector(vector: Json) -> None:
 
 @pytest.mark.parametrize("vector", WITH_INTERVALS)
 def test_intervals_are_those_of_the_vector(vector: Json) -> None:
-    """Where a vector lists its contact intervals, these are all that are recorded."""
+    """The recorded contact intervals are exactly those of the vector, where it lists them."""
     run, _ = play(vector)
     expected = [tuple(interval.values()) for interval in vector["expected"]["intervals"]]
     found = [tuple(asdict(interval).values()) for interval in run.intervals]
@@ -79,7 +79,7 @@ def test_intervals_are_those_of_the_vector(vector: Json) -> None:
 
 @pytest.mark.parametrize("vector", RULES)
 def test_views_are_those_of_the_vector(vector: Json) -> None:
-    """At the times a vector names, goal, numbers and colours are what it says."""
+    """Goal, numbers and colours are those of the vector at its times."""
     _, states = play(vector)
     for view in vector["expected"]["views"]:
         past = [entry["time_s"] <= view["time_s"] for entry in vector["inputs"]]
@@ -94,7 +94,7 @@ def test_views_are_those_of_the_vector(vector: Json) -> None:
 
 @pytest.mark.parametrize("vector", RULES)
 def test_completions_can_be_derived_from_the_record(vector: Json) -> None:
-    """Intervals and commands alone give the completions of every vector again."""
+    """The completions of every vector follow from its intervals and commands alone."""
     run, _ = play(vector)
     told = [step(entry) for entry in vector["inputs"] if not entry.get("refused")]
     commands = [given for given in told if isinstance(given, Command)]
@@ -103,7 +103,7 @@ def test_completions_can_be_derived_from_the_record(vector: Json) -> None:
 
 
 def test_layouts_are_those_of_the_vector() -> None:
-    """Every layout of the vectors gives its surfaces, in order."""
+    """Every layout of the vectors gives its surfaces in order."""
     for spec in read_all()["layouts"]["layouts"].values():
         surfaces = build(spec).surfaces
         assert [s["key"] for s in spec["surfaces"]] == [s.key for s in surfaces]
@@ -116,7 +116,7 @@ def test_layouts_are_those_of_the_vector() -> None:
 
 
 def test_distances_are_those_of_the_vector() -> None:
-    """Segment-to-block distances have their known values."""
+    """Distances between segments and blocks are those of the vector."""
     cases = read_all()["distances"]["cases"]
     names = ("start_m", "end_m", "low_m", "high_m")
     found = segment_box_distance_m(*(np.array([case[n] for case in cases]) for n in names))
@@ -124,7 +124,7 @@ def test_distances_are_those_of_the_vector() -> None:
 
 
 def test_touches_are_those_of_the_vector() -> None:
-    """Capsules touch, and are near enough to hold, exactly the surfaces of the vector."""
+    """Capsules touch, and are near, exactly the surfaces of the vector."""
     vector = read_all()["touches"]
     arrays = SurfaceArrays.of(layout(vector["layout"]))
     for case in vector["cases"]:
@@ -138,7 +138,7 @@ def test_touches_are_those_of_the_vector() -> None:
 
 @pytest.mark.parametrize("vector", FRAMES)
 def test_frames_give_the_intervals_of_the_vector(vector: Json) -> None:
-    """Frames of capsules become the contact intervals of the vector."""
+    """Frames of capsules give the contact intervals of the vector."""
     place = layout(vector["layout"])
     arrays, radii = SurfaceArrays.of(place), np.array(vector["radii_m"])
     run = TaskRun(TaskRules(place, Laterality(vector["writing_hand"])), tuple(vector["parts"]))

@@ -1,4 +1,4 @@
-"""Reads `tests/vectors/tasks`; its README describes the format."""
+"""Read `tests/vectors/tasks`; its README describes the format."""
 
 import json
 from pathlib import Path
@@ -24,22 +24,22 @@ Json = dict[str, Any]
 
 
 def read_all() -> dict[str, Json]:
-    """Every vector by its file name."""
+    """Return every vector by its file name."""
     return {path.stem: json.loads(path.read_text()) for path in sorted(FOLDER.glob("*.json"))}
 
 
 def of_kind(kind: str) -> list[tuple[str, Json]]:
-    """The vectors of one kind, with their names."""
+    """Return the vectors of one kind, with their names."""
     return [(name, vector) for name, vector in read_all().items() if vector["kind"] == kind]
 
 
 def layout(name: str) -> TaskLayout:
-    """One of the layouts in layouts.json, built."""
+    """Return one of the layouts in layouts.json."""
     return build(read_all()["layouts"]["layouts"][name])
 
 
 def build(spec: Json) -> TaskLayout:
-    """A layout from its specification."""
+    """Return the layout of a specification."""
     return build_layout(
         Limb(spec["limb"]),
         tuple(
@@ -58,7 +58,7 @@ def build(spec: Json) -> TaskLayout:
 
 
 def step(entry: Json) -> Command | ContactChange:
-    """One entry of a rules vector's inputs."""
+    """Return one entry of a rules vector's inputs as a command or a change."""
     if "command" in entry:
         return Command(CommandKind(entry["command"]), entry["time_s"])
     begins = tuple(Contact(*contact) for contact in entry["begins"])

@@ -1,4 +1,4 @@
-"""Scenes by chance: boxes, discs and triangles on a floor, and two places that are free."""
+"""Random scenes of boxes, discs and triangles on a floor, with two free places."""
 
 import math
 
@@ -13,7 +13,7 @@ SIDE_M = 4.0
 
 
 def random_scene(rng: np.random.Generator) -> tuple[Scene, Point, Point]:
-    """A floor of 4 x 4 m with three to nine obstacles, and two free places at least 2 m apart."""
+    """Return a 4 x 4 m floor with three to nine obstacles and two free places 2 m apart or more."""
     obstacles = tuple(
         Obstacle(f"obstacle {at}", _outline(rng)) for at in range(int(rng.integers(3, 10)))
     )

@@ -1,4 +1,4 @@
-"""Small made-up databases and blending spaces for tests: maps of one peak, by dependencies."""
+"""Small made-up walk databases and blending spaces for tests."""
 
 import numpy as np
 
@@ -16,14 +16,14 @@ WALKS, PEOPLE = 120, 6
 
 
 def dependency_rows(rng: np.random.Generator, walks: int = WALKS) -> FloatArray:
-    """(walks, 2) lengths and statures; a person has one stature."""
+    """Return (walks, 2) lengths and statures; each person has one stature."""
     statures = 1.6 + 0.06 * np.arange(PEOPLE)
     lengths = rng.uniform(0.5, 4.0, walks)
     return np.stack([lengths, statures[np.arange(walks) % PEOPLE]], axis=-1)
 
 
 def made_up_database(grid: ParameterGrid = GRID, walks: int = WALKS, seed: int = 1) -> WalkDatabase:
-    """A walk of L m at v m/s takes L / v + v / a; a person prefers a v that grows with stature."""
+    """Return walks that take L / v + v / a; a person's v grows with their stature."""
     rng = np.random.default_rng(seed)
     rows = dependency_rows(rng, walks)
     wanted = np.clip(rows[:, 1] - 0.6 + 0.05 * rng.standard_normal(walks), 0.3, 1.9)
@@ -47,7 +47,7 @@ def made_up_database(grid: ParameterGrid = GRID, walks: int = WALKS, seed: int =
 
 
 def made_up_space(grid: ParameterGrid = GRID, k: int = 20, entries: int = 400) -> BlendingSpace:
-    """A densified space of maps with one peak each."""
+    """Return a densified blending space of maps with one peak each."""
     rng = np.random.default_rng(2)
     rows = dependency_rows(rng)
     peaks = np.stack([0.4 + 0.3 * rows[:, 0], rows[:, 1] - 0.6, 1.5 - 0.2 * rows[:, 0]], axis=-1)

@@ -1,7 +1,7 @@
-"""Models without one of their parameters: what each is worth.
+"""Walk databases without one parameter, which show what each parameter contributes.
 
-Without a dependency, walks are told apart by the others. Without a steering parameter, it is held
-at one value for everybody, as a static model does, and the others remain distributed.
+Without a dependency, walks differ by the others only. Without a steering parameter, it is fixed to
+one value for everybody, as in a static model, and the others remain distributed.
 """
 
 from dataclasses import replace
@@ -13,7 +13,11 @@ from app.science.walking.records import ParameterGrid, WalkingError
 
 
 def without_dependency(database: WalkDatabase, name: str) -> WalkDatabase:
-    """The database without one of several dependencies; raises WalkingError for another name."""
+    """Return the database without one dependency.
+
+    Raises:
+        WalkingError: it is unknown or the only one.
+    """
     if name not in database.names or len(database.names) == 1:
         raise WalkingError(f"{name} cannot be left out of {', '.join(database.names)}.")
     kept = [at for at, own in enumerate(database.names) if own != name]
@@ -21,8 +25,8 @@ def without_dependency(database: WalkDatabase, name: str) -> WalkDatabase:
     return replace(database, names=names, vectors=database.vectors[:, kept])
 
 
-def holding(database: WalkDatabase, parameter: str, value: float) -> WalkDatabase:
-    """The database with a steering parameter held at the node nearest to a value.
+def with_fixed_parameter(database: WalkDatabase, parameter: str, value: float) -> WalkDatabase:
+    """Return the database with a steering parameter fixed to the node nearest to a value.
 
     Raises:
         WalkingError: there is no such parameter.

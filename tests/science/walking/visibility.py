@@ -1,7 +1,7 @@
-"""The reference planner: the shortest path of all, by the full visibility graph.
+"""The reference planner: the shortest path by the full visibility graph.
 
-Among convex outlines the shortest path bends only at their corners. The graph over all corners
-holds it exactly; it is slow where there are many, and here to check the quick planner against.
+Among convex outlines the shortest path bends only at their corners, and the graph over all corners
+contains it exactly. It is slow with many corners, and is used to check the fast planner.
 """
 
 from dataclasses import dataclass
@@ -18,12 +18,12 @@ from app.science.walking.scene.scene import Scene
 
 @dataclass(frozen=True, eq=False)
 class VisibilityPlanner:
-    """Plans the shortest paths in one scene; a `Planner` like the quick one."""
+    """A `Planner` that finds the exact shortest paths in one scene."""
 
     scene: Scene
 
     def plan(self, start_m: Point, goal_m: Point) -> PlannedPath:
-        """Find the shortest way; raises SceneError as `LazyThetaPlanner.plan` does."""
+        """Return the shortest path; raises SceneError as `LazyThetaPlanner.plan` does."""
         check_ends(self.scene, start_m, goal_m)
         corners = self.scene.widened_obstacles(start_m, goal_m)
         ends = np.array([start_m, goal_m], dtype=np.float64)

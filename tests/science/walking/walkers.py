@@ -1,6 +1,6 @@
-"""Walkers made for tests: minimum-jerk speed along a rounded path, slower in turns, swaying.
+"""Synthetic walkers for tests: minimum-jerk speed on a rounded path, slower in turns, swaying.
 
-They are not made by the planner or its follower, and labelled synthetic.
+They do not use the planner's follower, and are labelled synthetic.
 """
 
 from collections.abc import Iterator
@@ -33,10 +33,10 @@ def walker(
     subject: str = "1",
     sway_m: float = SWAY_M,
 ) -> Walk:
-    """Walk along a path from rest to rest, as people do over short distances.
+    """Return a walk along a path from rest to rest, as people walk over short distances.
 
     Peak speed grows with distance as v = 1.464 (1 - exp(-d / 1.879)) m/s (short walks of Carlisle
-    and Kuo), times `vigour`; turning costs time.
+    and Kuo), times `vigour`; turning takes extra time.
     """
     line = by_length(path.points_m)
     line = gaussian_filter1d(line, ROUNDED_M / 0.01, axis=0, mode="nearest")
@@ -56,7 +56,7 @@ def walker(
 
 
 def _sway(times_s: FloatArray, along: FloatArray, places: FloatArray, sway_m: float) -> FloatArray:
-    """Side to side once in two steps, not at rest."""
+    """Return a lateral sway of one cycle in two steps, none at rest."""
     ahead = np.gradient(places, axis=0)
     ahead /= np.maximum(np.linalg.norm(ahead, axis=1, keepdims=True), 1e-9)
     aside = np.stack([-ahead[:, 1], ahead[:, 0]], axis=-1)
@@ -67,16 +67,16 @@ def _sway(times_s: FloatArray, along: FloatArray, places: FloatArray, sway_m: fl
 
 
 def laboratory() -> list[Scene]:
-    """The sixteen scenes of the paper's first experiment."""
+    """Return the sixteen scenes of the paper's first experiment."""
     return [straight_scene(length) for length in STRAIGHT_M] + [
         pole_scene(turn, length) for turn in POLE_DEG for length in POLE_M
     ]
 
 
 def population(count: int, subjects: int, seed: int = 1) -> Iterator[tuple[LazyThetaPlanner, Walk]]:
-    """Walks of many people over all scenes of the laboratory, with the planner of each scene.
+    """Return walks of many people over all scenes of the laboratory, with their planned paths.
 
-    Starts and goals differ by some centimetres from walk to walk, as captured ones do.
+    Starts and goals differ by some centimetres from walk to walk, as in captures.
     """
     rng = np.random.default_rng(seed)
     planners = [LazyThetaPlanner(scene) for scene in laboratory()]

@@ -1,4 +1,4 @@
-"""The body of an avatar: where its joints lie, what it may lack, which lengths it takes."""
+"""The avatar's body: its joint positions, optional parts and segment lengths."""
 
 import numpy as np
 import pytest
@@ -17,7 +17,7 @@ def _without(*absent: str) -> list[str]:
 
 @pytest.mark.parametrize("stature_m", [0.5, 1.518, 1.75, 2.6])
 def test_the_body_joints_are_those_of_the_skeleton(stature_m: float) -> None:
-    """All 22 joints of the product's skeleton lie at the same offsets, to the bit."""
+    """All 22 joints lie at exactly the same offsets as in the product's skeleton."""
     body, skeleton = build_body(stature_m), build_skeleton(stature_m)
     offsets = np.array([body.parts[name].joint_m for name in JOINT_NAMES])
     assert np.array_equal(offsets, skeleton.offsets_m)
@@ -27,7 +27,10 @@ def test_the_body_joints_are_those_of_the_skeleton(stature_m: float) -> None:
 
 
 def test_the_middle_finger_ends_near_the_tip_of_the_hand() -> None:
-    """Buchholz 1992: palm .446, segments .266, .170 and .108 make .990 of the hand's length."""
+    """The palm and the middle finger's segments add up to .990 of the hand's length.
+
+    Buchholz 1992: palm .446, segments .266, .170 and .108.
+    """
     body = build_body(1.75)
     tip = v_add(body.places_m()["LeftMiddleDistal"], body.parts["LeftMiddleDistal"].end_m)
     reach = v_length(v_subtract(tip, body.places_m()["LeftHand"]))
@@ -44,7 +47,7 @@ def test_fingers_lie_in_their_order_with_the_thumb_in_front() -> None:
 
 
 def test_both_sides_are_mirror_images() -> None:
-    """Joints, bone ends and shapes of the left are those of the right, mirrored at x = 0."""
+    """Left joints, bone ends and shapes are the right ones mirrored at x = 0."""
     body = build_body(1.8)
     for name, part in body.parts.items():
         other = body.parts[mirrored_name(name)]
@@ -68,7 +71,7 @@ def _mirrored(v: tuple[float, float, float]) -> tuple[float, float, float]:
 
 @pytest.mark.parametrize("stature_m", [1.5, 1.75, 2.0])
 def test_its_shapes_reach_from_the_floor_to_the_stature(stature_m: float) -> None:
-    """In the T-pose soles lie on the floor and the head ends at the body height."""
+    """In the T-pose the soles lie on the floor and the top of the head is at the stature."""
     body = build_body(stature_m)
     places = body.places_m()
     low, high = [], []
@@ -88,7 +91,7 @@ def test_its_shapes_reach_from_the_floor_to_the_stature(stature_m: float) -> Non
 
 @pytest.mark.parametrize("name", SEGMENT_NAMES)
 def test_a_measured_length_replaces_the_expected_one(name: str) -> None:
-    """Each segment becomes as long as it was measured, and the feet stay on the floor."""
+    """Each segment takes its measured length, and the feet stay on the floor."""
     measured = 1.1 * segment_lengths(1.75)[name]
     body = build_body(1.75, segments_m={name: measured})
     places = body.places_m()
@@ -99,7 +102,7 @@ def test_a_measured_length_replaces_the_expected_one(name: str) -> None:
 
 
 def _lengths(body: Body) -> dict[str, float]:
-    """Measure a built body with a ruler."""
+    """Return the segment lengths of a built body, measured between its joints."""
     at, end = body.places_m(), {name: part.end_m for name, part in body.parts.items()}
 
     def between(a: str, b: str) -> float:
@@ -132,36 +135,36 @@ def _lengths(body: Body) -> dict[str, float]:
         ({"tail": 0.3}, ["tail", "upper_arm", "shoulders"]),
     ],
 )
-def test_an_implausible_length_is_refused(segments: dict[str, float], words: list[str]) -> None:
-    """The error names the segment, the value and what would be valid."""
+def test_an_implausible_length_is_rejected(segments: dict[str, float], words: list[str]) -> None:
+    """The error about an implausible segment length names the segment, the value and the range."""
     with pytest.raises(BodyError) as caught:
         build_body(1.75, segments_m=segments)
     assert all(word in str(caught.value) for word in words)
 
 
 @pytest.mark.parametrize("stature_m", [0.4, 175.0, float("nan")])
-def test_an_impossible_stature_is_refused(stature_m: float) -> None:
-    """A stature in centimetres, of nobody, or of no number is an error."""
+def test_an_impossible_stature_is_rejected(stature_m: float) -> None:
+    """A stature in centimetres, out of range, or that is not a number raises an error."""
     with pytest.raises(BodyError, match="stature"):
         build_body(stature_m)
 
 
 @pytest.mark.parametrize("missing", REQUIRED_PARTS)
 def test_a_model_without_a_required_part_is_no_humanoid(missing: str) -> None:
-    """The error names the part that is missing."""
+    """A model that lacks a required part is rejected with the name of that part."""
     with pytest.raises(BodyError, match=f"no {missing}, so it is not a humanoid"):
         build_body(1.75, parts=_without(missing))
 
 
-def test_a_model_that_is_nothing_like_a_human_is_refused() -> None:
-    """A quadruped's bones give one error that names all required parts."""
+def test_a_model_that_is_nothing_like_a_human_is_rejected() -> None:
+    """A quadruped's bones give one error that names all missing parts."""
     with pytest.raises(BodyError) as caught:
         build_body(1.75, parts=["Spine", "FrontLeftPaw", "Tail"])
     assert "Hips, Head" in str(caught.value)
 
 
-def test_children_of_a_missing_part_hang_on_the_next_one_above() -> None:
-    """Without Chest, UpperChest, Neck and shoulders, joints stay where they were."""
+def test_children_of_a_missing_part_attach_to_the_next_part_above() -> None:
+    """Joints stay in place when Chest, UpperChest, Neck and shoulders are missing."""
     absent = ("Chest", "UpperChest", "Neck", "LeftShoulder", "RightShoulder", "LeftToes")
     whole, body = build_body(1.75), build_body(1.75, parts=_without(*absent))
     assert body.parts["Head"].parent == "Spine"
@@ -175,7 +178,7 @@ def test_children_of_a_missing_part_hang_on_the_next_one_above() -> None:
 
 
 def test_the_shapes_of_a_missing_part_stay_where_they_were() -> None:
-    """The trunk is as thick without Chest and UpperChest as with them: the spine carries it."""
+    """The spine takes over the shapes of a missing Chest and UpperChest."""
     body = build_body(1.75, parts=_without("Chest", "UpperChest"))
     shapes = body.parts["Spine"].shapes
     assert len(shapes) == 3
@@ -195,13 +198,13 @@ def test_a_hand_of_four_fingers_has_no_fifth() -> None:
 
 
 def test_a_finger_of_two_segments_keeps_its_length() -> None:
-    """The shape of a missing last segment goes to the one before."""
+    """The shape of a missing last finger segment is added to the segment before it."""
     body = build_body(1.75, parts=_without("LeftIndexDistal"))
     assert len(body.parts["LeftIndexIntermediate"].shapes) == 2
 
 
 def test_a_hand_without_fingers_is_one_box_as_long_as_the_hand() -> None:
-    """Palm and fingers together, from the wrist to the tip."""
+    """Without fingers, the hand is one box from the wrist to the fingertip."""
     body = build_body(1.75, parts=_without(*FINGER_PARTS))
     (box,) = body.parts["RightHand"].shapes
     assert isinstance(box, Box)
@@ -210,13 +213,13 @@ def test_a_hand_without_fingers_is_one_box_as_long_as_the_hand() -> None:
 
 
 def test_names_of_other_bones_are_skipped() -> None:
-    """Eyes and jaw of a rig are no parts of the body."""
+    """Bones that are not body parts, such as eyes and jaw, are ignored."""
     body = build_body(1.75, parts=[*PART_NAMES, "LeftEye", "Jaw"])
     assert tuple(body.parts) == PART_NAMES
 
 
 def test_parts_come_parents_first() -> None:
-    """A present part's parent is present and comes before it."""
+    """Every part's parent is present and is listed before the part."""
     body = build_body(1.75)
     seen: set[str | None] = {None}
     for name, part in body.parts.items():

@@ -1,4 +1,4 @@
-"""The body of a humanoid model: its joints and lengths, a person's masses."""
+"""Bodies built from a humanoid model: the model's joints and lengths, a person's masses."""
 
 from dataclasses import replace
 from math import dist
@@ -29,7 +29,7 @@ LACKING = [(), ("Little",), ("Little", "Ring"), ("Toes", "UpperChest", "Neck", "
 
 @pytest.mark.parametrize("lacking", LACKING)
 def test_joints_lie_where_the_model_has_them(lacking: tuple[str, ...]) -> None:
-    """As large as the person, in the body and in the simulated model."""
+    """Joints lie where the model has them, scaled to the person, in the body and the simulation."""
     own = figure(*lacking)
     body = build_body(STATURE_M, figure=own)
     assert set(body.parts) == set(own.places_m)
@@ -42,7 +42,7 @@ def test_joints_lie_where_the_model_has_them(lacking: tuple[str, ...]) -> None:
 
 
 def test_lengths_are_the_models_own() -> None:
-    """The short arms count, as long as the person makes them."""
+    """Segments keep the model's own proportions, here short arms, scaled to the person."""
     own = figure()
     usual = segment_lengths(humanoid_model.STATURE_M)
     assert own.segments_m["upper_arm"] == pytest.approx(0.93 * usual["upper_arm"], abs=1e-5)
@@ -53,7 +53,7 @@ def test_lengths_are_the_models_own() -> None:
 
 
 def test_shapes_reach_from_joint_to_joint() -> None:
-    """Limbs and fingers of the model's own lengths; soles on the floor."""
+    """Limb and finger shapes span the model's own joints, and the soles lie on the floor."""
     body = build_body(STATURE_M, figure=figure())
     places_m = body.places_m()
     for part, after in (
@@ -72,7 +72,7 @@ def test_shapes_reach_from_joint_to_joint() -> None:
 
 @pytest.mark.parametrize("lacking", LACKING)
 def test_masses_are_a_persons(lacking: tuple[str, ...]) -> None:
-    """All of the mass is there, and every part can be turned."""
+    """The part masses add up to the person's mass, and every hinge has a positive inertia."""
     body = build_body(STATURE_M, figure=figure(*lacking))
     masses = body_masses(body, 72.0)
     assert masses.total_kg == pytest.approx(72.0)
@@ -83,7 +83,7 @@ def test_masses_are_a_persons(lacking: tuple[str, ...]) -> None:
 
 
 def test_what_the_model_lacks_has_no_hinge() -> None:
-    """A configuration of the whole body serves a hand with four fingers."""
+    """With a configuration of the whole body, a model with four fingers has no fifth's hinges."""
     built = model(own=figure("Little"))
     found, _ = loaded(built.mjcf)
     names = {found.joint(row).name for row in range(found.njnt)}
@@ -92,7 +92,7 @@ def test_what_the_model_lacks_has_no_hinge() -> None:
 
 
 def test_a_configuration_without_fingers_leaves_them_out() -> None:
-    """The configuration decides as well as the model."""
+    """A body has no fingers if the configuration has none, even if the model has them."""
     usual = whole_body()
     axes = {
         axis.name: usual.axes[axis.name]
@@ -104,8 +104,8 @@ def test_a_configuration_without_fingers_leaves_them_out() -> None:
     assert not set(built.body.parts) & set(FINGER_PARTS)
 
 
-def test_unusual_lengths_count_as_the_nearest_persons() -> None:
-    """Arms of half the length: joints stay, masses are a person's, and a note says so."""
+def test_unusual_lengths_take_the_masses_of_the_nearest_plausible_length() -> None:
+    """Forearms of half the length keep their joints, get plausible masses and cause a note."""
 
     def shortened(document: dict[str, Any]) -> None:
         for node in document["nodes"]:
@@ -122,13 +122,13 @@ def test_unusual_lengths_count_as_the_nearest_persons() -> None:
 
 
 def test_a_model_and_measured_lengths_exclude_each_other() -> None:
-    """A body has one set of lengths."""
+    """A body cannot be built from a model and from measured lengths simultaneously."""
     with pytest.raises(BodyError, match="either a model or measured lengths"):
         build_body(STATURE_M, figure=figure(), segments_m={"thigh": 0.43})
 
 
-def test_the_model_a_configuration_names_must_be_there() -> None:
-    """And none is taken that it does not name."""
+def test_the_model_must_be_the_one_that_the_configuration_names() -> None:
+    """A named model must be given, and a model that is not named is rejected."""
     named = replace(whole_body(), humanoid=HASH)
     with pytest.raises(BodyError, match=HASH):
         avatar_model(named, STATURE_M)

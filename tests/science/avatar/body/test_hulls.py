@@ -1,4 +1,4 @@
-"""Convex pieces: they hold their points, have few corners, and are always the same."""
+"""Convex pieces: they enclose their points, have few corners and are deterministic."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ GRID_M = 1e-5
 
 
 def cloud(seed: int, count: int, size_m: float = 0.1) -> FloatArray:
-    """Points on a dented ball."""
+    """Return random points on a dented ball."""
     rng = np.random.default_rng(seed)
     points = rng.normal(size=(count, 3))
     points /= np.linalg.norm(points, axis=1, keepdims=True)
@@ -21,7 +21,7 @@ def cloud(seed: int, count: int, size_m: float = 0.1) -> FloatArray:
 
 
 def outside_m(piece: Piece, points: FloatArray) -> float:
-    """How far the farthest point is outside of the piece."""
+    """Return how far the farthest point lies outside of the piece, in metres."""
     hull = ConvexHull(np.array(piece.corners_m))
     heights = points @ hull.equations[:, :3].T + hull.equations[:, 3]
     return max(float(heights.max()), 0.0)
@@ -29,8 +29,8 @@ def outside_m(piece: Piece, points: FloatArray) -> float:
 
 @settings(max_examples=60, deadline=None, derandomize=True)
 @given(st.integers(0, 10_000), st.integers(8, 3_000), st.floats(0.01, 0.3))
-def test_a_piece_holds_its_points(seed: int, count: int, size_m: float) -> None:
-    """All of them to within what it says of itself, which is a millimetre if corners suffice."""
+def test_a_piece_encloses_its_points(seed: int, count: int, size_m: float) -> None:
+    """A piece encloses its points to its stated tolerance, a millimetre if corners suffice."""
     points = cloud(seed, count, size_m)
     piece = piece_of(points)
     assert piece is not None
@@ -41,7 +41,7 @@ def test_a_piece_holds_its_points(seed: int, count: int, size_m: float) -> None:
 
 
 def test_a_box_is_its_corners() -> None:
-    """Points inside and on the faces of a box add nothing."""
+    """The piece of a box has the box's eight corners, whatever points lie inside."""
     rng = np.random.default_rng(1)
     inside = rng.uniform(-0.05, 0.05, (500, 3))
     corners = [(x, y, z) for x in (-0.05, 0.05) for y in (-0.05, 0.05) for z in (-0.05, 0.05)]
@@ -49,8 +49,8 @@ def test_a_box_is_its_corners() -> None:
     assert piece == Piece(tuple(corners), 0.0)
 
 
-def test_neither_order_nor_a_last_digit_decides() -> None:
-    """The same corners in the same order."""
+def test_a_piece_does_not_depend_on_order_or_rounding() -> None:
+    """Shuffled and slightly perturbed points give the same corners in the same order."""
     points = cloud(2, 800)
     rng = np.random.default_rng(3)
     grid = np.round(points, 5)
@@ -73,13 +73,13 @@ def test_neither_order_nor_a_last_digit_decides() -> None:
         cloud(4, 100, 1e-4),
     ],
 )
-def test_what_encloses_nothing_has_no_piece(points: FloatArray) -> None:
-    """Nothing, a point, a line, a sheet, a crumb."""
+def test_points_without_volume_have_no_piece(points: FloatArray) -> None:
+    """No points, a point, a line, a flat sheet and a tiny cloud give no piece."""
     assert piece_of(points) is None
 
 
 def test_a_piece_grows_with_its_body() -> None:
-    """Twice as large, on the same grid."""
+    """A piece scaled by two has corners twice as far out, to the grid's resolution."""
     piece = piece_of(cloud(5, 60))
     assert piece is not None
     assert np.allclose(piece.scaled(2.0).corners_m, 2.0 * np.array(piece.corners_m), atol=GRID_M)

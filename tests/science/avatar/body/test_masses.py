@@ -17,7 +17,7 @@ POPULATIONS: tuple[Population, ...] = ("male", "female", "average")
 
 @pytest.mark.parametrize(("file", "table"), [("BSPmale", MALE), ("BSPfemale", FEMALE)])
 def test_the_tables_are_de_levas(shared_data: Path, file: str, table: dict[str, Segment]) -> None:
-    """Every number equals that of the published table."""
+    """Every number of the mass tables equals that of de Leva's published table."""
     lines = (shared_data / "models" / f"{file}_ZdeLeva.txt").read_text().splitlines()
     rows = {cells[0].strip(): cells for cells in (line.split("\t") for line in lines)}
     for name, row in table.items():
@@ -27,20 +27,20 @@ def test_the_tables_are_de_levas(shared_data: Path, file: str, table: dict[str, 
 
 
 def test_average_is_the_mean_of_men_and_women() -> None:
-    """Thigh: (.1416 + .1478) / 2 of the mass."""
+    """The average is the mean of men and women: thigh (.1416 + .1478) / 2 of the mass."""
     assert segments_of("average")["Thigh"].mass == pytest.approx(0.1447)
 
 
 @pytest.mark.parametrize("population", POPULATIONS)
 @pytest.mark.parametrize("total_kg", [1.0, 72.0, 500.0])
 def test_the_parts_weigh_as_much_as_the_body(population: Population, total_kg: float) -> None:
-    """The masses add up to the total."""
+    """The masses of the parts add up to the body's mass."""
     masses = body_masses(build_body(1.75), total_kg, population=population)
     assert masses.total_kg == pytest.approx(total_kg, rel=1e-14, abs=1e-12)
 
 
 def test_relative_masses_are_the_published_ones() -> None:
-    """Of 100 kg of a man: thigh 14.16, shank 4.33, hand with fingers .61, head with neck 6.94."""
+    """A man of 100 kg: thigh 14.16, shank 4.33, hand with fingers .61, head with neck 6.94."""
     parts = body_masses(build_body(1.75), 100.0, population="male").parts
     assert parts["LeftUpperLeg"].mass_kg == pytest.approx(14.16)
     assert parts["LeftLowerLeg"].mass_kg == pytest.approx(4.33)
@@ -50,13 +50,13 @@ def test_relative_masses_are_the_published_ones() -> None:
 
 
 def test_the_upper_trunk_is_shared_in_equal_parts() -> None:
-    """Upper chest and shoulders weigh a third each (Karas 2020, section 6.4.1)."""
+    """Upper chest and both shoulders weigh a third each of it (Karas 2020, section 6.4.1)."""
     parts = body_masses(build_body(1.75), 100.0, population="male").parts
     for part in ("UpperChest", "LeftShoulder", "RightShoulder"):
         assert parts[part].mass_kg == pytest.approx(15.96 / 3.0)
 
 
-# Segment of the table, its parts, and (length of the segment, stature 1) x radii about x, y, z.
+# Segment of the table: its parts, its length at stature 1, and its radii about x, y, z.
 _WHOLE = {
     "Upper trunk 2": (("UpperChest", "LeftShoulder", "RightShoulder"), 0.39 * 0.345, "tls"),
     "Middle trunk": (("Spine", "Chest"), 0.35 * 0.345, "tls"),
@@ -71,7 +71,7 @@ _WHOLE = {
 @pytest.mark.parametrize("name", _WHOLE)
 @pytest.mark.parametrize("population", POPULATIONS)
 def test_the_parts_of_a_segment_keep_its_inertia(name: str, population: Population) -> None:
-    """Divided among its parts, a segment has the radii of gyration of the table."""
+    """A segment divided among parts keeps the radii of gyration of the table."""
     parts, length, letters = _WHOLE[name]
     body = build_body(1.0)
     whole = _together(body, body_masses(body, 70.0, population=population), parts)
@@ -87,7 +87,10 @@ def _together(body: Body, masses: BodyMasses, parts: tuple[str, ...]) -> Inertia
 
 
 def test_centres_of_mass_lie_where_the_table_says() -> None:
-    """A man's upper arm: .5772 of the way to the elbow; hand: .3624 of the way to the fingertip."""
+    """Centres of mass lie at the table's fractions of their segments.
+
+    A man's upper arm: .5772 of the way to the elbow; hand: .3624 of the way to the fingertip.
+    """
     body = build_body(1.0)
     masses = body_masses(body, 70.0, population="male")
     assert masses.parts["LeftUpperArm"].center_m == pytest.approx((-0.5772 * 0.186, 0.0, 0.0))
@@ -104,7 +107,7 @@ def test_centres_of_mass_lie_where_the_table_says() -> None:
 def test_every_part_is_a_possible_rigid_body(
     population: Population, stature_m: float, segments: dict[str, float]
 ) -> None:
-    """Mass and principal moments are above zero, and none exceeds the sum of the other two."""
+    """Mass and principal moments are positive, and no moment exceeds the sum of the other two."""
     body = build_body(stature_m, segments_m=segments)
     for part, found in body_masses(body, 72.0, population=population).parts.items():
         xx, yy, zz, xy, xz, yz = found.inertia_kg_m2
@@ -114,8 +117,8 @@ def test_every_part_is_a_possible_rigid_body(
         assert moments[2] <= (moments[0] + moments[1]) * (1.0 + 1e-9), part
 
 
-def test_what_is_missing_is_carried_by_the_part_above() -> None:
-    """Without fingers, toes, chest and shoulders the body has the same mass, centre, inertia."""
+def test_a_missing_part_s_mass_goes_to_the_part_above() -> None:
+    """Mass, centre and inertia of the body stay the same when optional parts are missing."""
     absent = {*FINGER_PARTS, "Chest", "LeftShoulder", "RightToes", "Neck"}
     whole = build_body(1.75)
     less = build_body(1.75, parts=[part for part in PART_NAMES if part not in absent])
@@ -127,7 +130,7 @@ def test_what_is_missing_is_carried_by_the_part_above() -> None:
 
 
 def test_both_sides_weigh_the_same() -> None:
-    """Left and right are mirror images in mass, centre and inertia."""
+    """Left and right parts are mirror images in mass, centre of mass and inertia."""
     parts = body_masses(build_body(1.75), 72.0).parts
     for name, part in parts.items():
         twin = parts[mirrored_name(name)]
@@ -139,20 +142,20 @@ def test_both_sides_weigh_the_same() -> None:
 
 
 @pytest.mark.parametrize("total_kg", [0.0, -72.0, 7200.0, float("nan")])
-def test_an_impossible_mass_is_refused(total_kg: float) -> None:
-    """A body weighs 1 to 500 kg."""
+def test_an_impossible_mass_is_rejected(total_kg: float) -> None:
+    """A body mass outside of 1 to 500 kg is rejected."""
     with pytest.raises(BodyError, match="1 to 500 kg"):
         body_masses(build_body(1.75), total_kg)
 
 
-def test_estimates_are_told() -> None:
-    """Each split that no table gives is named: trunk, neck, fingers and toes."""
+def test_estimates_are_listed() -> None:
+    """Each split that no table gives is listed as an estimate: trunk, neck, fingers and toes."""
     told = " ".join(ESTIMATES)
     assert all(word in told for word in ("Middle trunk", "neck", "fingers", "toes", "shoulders"))
 
 
 def test_remainder_undoes_combined() -> None:
-    """A thing without one of its two halves is the other half."""
+    """Subtracting one of two combined masses gives the other."""
     a = of_shape(Capsule((0.1, 0.0, 0.2), (0.4, 0.3, 0.0), 0.05), 2.0)
     b = of_shape(Box((-0.3, 0.2, 0.1), (0.1, 0.2, 0.3)), 5.0)
     left = remainder(combined([a, b]), [b])
@@ -162,7 +165,10 @@ def test_remainder_undoes_combined() -> None:
 
 
 def test_inertia_about_an_axis_is_steiners() -> None:
-    """A ball of 3 kg, radius .1, half a metre away: 2/5 m r^2 + m d^2."""
+    """Inertia about a distant axis follows Steiner's theorem: 2/5 m r^2 + m d^2.
+
+    Here a ball of 3 kg, radius .1 m, half a metre from the axis.
+    """
     ball = of_shape(Capsule((0.5, 0.0, 0.0), (0.5, 0.0, 0.0), 0.1), 3.0)
     assert ball.about_axis((0.0, 0.0, 0.0), (0.0, 1.0, 0.0)) == pytest.approx(0.012 + 0.75)
     assert ball.about_axis((0.0, 0.0, 0.0), (1.0, 0.0, 0.0)) == pytest.approx(0.012)

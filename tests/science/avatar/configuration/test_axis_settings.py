@@ -1,4 +1,4 @@
-"""Settings of one axis: what is refused and why, locking, and angles that files keep."""
+"""Settings of one axis: validation, locking, and angles that survive a file."""
 
 import math
 from dataclasses import replace
@@ -28,10 +28,10 @@ from tests.science.avatar.configurations import FINE_SPRING, angles_rad, axis_se
         ({"low_rad": 3.0}, "low_deg", "171.887 deg, lies above the upper one, 125 deg"),
     ],
 )
-def test_a_value_that_cannot_be_is_refused_by_name(
+def test_an_invalid_value_is_reported_with_its_key(
     change: dict[str, float], path: str, said: str
 ) -> None:
-    """With its key in a file, the value in the file's unit, and what is valid."""
+    """An invalid value is reported with its key and unit as in a file, and what is valid."""
     with pytest.raises(AvatarSettingsError) as caught:
         replace(FINE_SPRING, **change)
     (problem,) = caught.value.problems
@@ -41,15 +41,15 @@ def test_a_value_that_cannot_be_is_refused_by_name(
     assert problem.remedy
 
 
-def test_all_that_is_wrong_is_told_at_once() -> None:
-    """Not only the first value."""
+def test_all_problems_of_an_axis_are_reported_together() -> None:
+    """Five invalid values of an axis give five problems."""
     with pytest.raises(AvatarSettingsError) as caught:
         AxisSettings(-1.0, -1.0, -1.0, -9.0, 9.0)
     assert len(caught.value.problems) == 5
 
 
 def test_limits_that_are_one_angle_lock_the_axis() -> None:
-    """Also away from the T-pose; then the body starts there."""
+    """Equal limits lock the axis at their angle, which is then its rest angle."""
     locked = FINE_SPRING.locked_at(math.radians(30.0))
     assert locked.locked
     assert not FINE_SPRING.locked
@@ -61,7 +61,7 @@ def test_limits_that_are_one_angle_lock_the_axis() -> None:
 
 @given(angles_rad)
 def test_degrees_give_the_angle_back_to_the_bit(angle_rad: float) -> None:
-    """A settled angle is what its file says, and within 1e-11 rad of the angle that was given."""
+    """A rounded angle survives degrees exactly and lies within 1e-11 rad of the original."""
     settled = rounded_angle(angle_rad)
     assert math.radians(degrees_of(settled)) == settled
     assert rounded_angle(settled) == settled
@@ -70,7 +70,7 @@ def test_degrees_give_the_angle_back_to_the_bit(angle_rad: float) -> None:
 
 @given(axis_settings(), angles_rad)
 def test_clamping_keeps_what_is_allowed(settings: AxisSettings, angle_rad: float) -> None:
-    """An allowed angle stays; any other becomes the nearer limit."""
+    """Clamping keeps an angle within the limits and moves any other to the nearer limit."""
     clamped = settings.clamped(angle_rad)
     assert settings.low_rad <= clamped <= settings.high_rad
     allowed = settings.low_rad <= angle_rad <= settings.high_rad
@@ -78,7 +78,7 @@ def test_clamping_keeps_what_is_allowed(settings: AxisSettings, angle_rad: float
 
 
 def test_zero_has_no_sign() -> None:
-    """So equal settings have one spelling in a file."""
+    """Negative zeros are stored as zero, so equal settings are written identically."""
     settings = AxisSettings(-0.0, 0.0, 0.0, -0.0, 0.0)
     assert math.copysign(1.0, settings.kp) == 1.0
     assert math.copysign(1.0, settings.low_rad) == 1.0

@@ -1,4 +1,4 @@
-"""A configuration: what it refuses, groups, a cast, and the edits that make a new one."""
+"""Avatar configurations: validation, groups, locks, and the edits that make a new one."""
 
 import math
 from dataclasses import replace
@@ -24,7 +24,7 @@ BODY = whole_body()
 
 
 def test_the_shipped_configuration_drives_every_axis() -> None:
-    """With gains, and within the limits of the T-pose it starts from."""
+    """Every axis of the default configuration has gains and limits that include the T-pose."""
     shipped = default_configuration()
     assert tuple(shipped.axes) == AXIS_NAMES
     for settings in shipped.axes.values():
@@ -34,7 +34,7 @@ def test_the_shipped_configuration_drives_every_axis() -> None:
 
 
 def test_axes_come_in_the_order_of_the_body() -> None:
-    """Whatever order they were given in, so equal configurations are equal to the letter."""
+    """Axes are sorted in the body's order, so that equal configurations compare and hash equal."""
     shuffled = Configuration({name: BODY.axes[name] for name in reversed(AXIS_NAMES)})
     assert tuple(shuffled.axes) == AXIS_NAMES
     assert shuffled == BODY
@@ -64,10 +64,10 @@ def test_axes_come_in_the_order_of_the_body() -> None:
         ),
     ],
 )
-def test_what_cannot_be_is_refused_with_its_place(
+def test_an_invalid_value_is_reported_with_its_place(
     change: dict[str, object], path: str, said: str
 ) -> None:
-    """One slip, one problem, with what is valid."""
+    """One invalid value gives one problem with its path and what is valid."""
     with pytest.raises(AvatarSettingsError) as caught:
         replace(BODY, **change)  # type: ignore[arg-type]  # the fact
     (problem,) = caught.value.problems
@@ -77,7 +77,7 @@ def test_what_cannot_be_is_refused_with_its_place(
 
 
 def test_groups_are_those_of_the_thesis() -> None:
-    """Figure 6.2; together with single parts, and with the driven axes of section 3.2."""
+    """The groups are those of the thesis's figure 6.2, with the driven axes of section 3.2."""
     assert set(GROUPS) == {
         *("all", "trunk", "trunk_head", "head", "left_leg", "left_foot", "left_arm"),
         *("left_fingers", "right_leg", "right_foot", "right_arm", "right_fingers"),
@@ -103,7 +103,7 @@ def test_groups_are_those_of_the_thesis() -> None:
 
 
 def test_trunk_head_and_limbs_are_the_whole_body() -> None:
-    """Nothing is in none of them, and no part is in two."""
+    """Trunk with head, legs, arms and fingers contain every part exactly once."""
     limbs = [f"{side}_{limb}" for side in ("left", "right") for limb in ("leg", "arm", "fingers")]
     parts = [part for group in ("trunk_head", *limbs) for part in parts_of(group)]
     assert sorted(parts) == sorted(PART_NAMES)
@@ -113,8 +113,8 @@ def test_trunk_head_and_limbs_are_the_whole_body() -> None:
             assert mirrored == parts_of(group.replace("left_", "right_"))
 
 
-def test_a_cast_holds_a_group_and_comes_off_again() -> None:
-    """Its axes are locked while it is on; their own limits are kept."""
+def test_a_lock_fixes_a_group_until_it_is_removed() -> None:
+    """The axes of a locked group have equal limits; unlocking restores their own limits."""
     cast = lock(BODY, "left_fingers", {"LeftIndexProximalZ": math.radians(30.0)})
     assert cast.locked_groups == ("left_fingers",)
     assert cast.locked_axes == set(axes_of("left_fingers"))
@@ -127,15 +127,15 @@ def test_a_cast_holds_a_group_and_comes_off_again() -> None:
 
 
 def test_a_held_axis_stays_within_its_limits() -> None:
-    """Where the T-pose is not among them, it is held at the nearest angle."""
+    """An axis whose limits exclude the T-pose is locked at the nearest allowed angle."""
     bent = replace(FINE_SPRING, low_rad=math.radians(20.0))
     knee = lock(with_axis(BODY, "LeftLowerLegX", bent), "left_leg")
     assert knee.in_force["LeftLowerLegX"].low_rad == bent.low_rad
     assert knee.in_force["LeftLowerLegX"].locked
 
 
-def test_overlapping_locks_come_off_one_by_one() -> None:
-    """The foot stays locked when the leg is set free."""
+def test_overlapping_locks_are_removed_one_by_one() -> None:
+    """A locked foot stays locked when the lock of its leg is removed."""
     both = lock(lock(BODY, "left_foot", {"LeftFootX": 0.1}), "left_leg")
     assert both.locked_groups == ("left_leg", "left_foot")
     foot = unlock(both, "left_leg")
@@ -144,14 +144,14 @@ def test_overlapping_locks_come_off_one_by_one() -> None:
     assert again == BODY
 
 
-def test_an_axis_without_a_range_is_locked_without_a_cast() -> None:
-    """Tuning skips both kinds."""
+def test_an_axis_without_a_range_counts_as_locked() -> None:
+    """An axis with equal limits counts as locked even if its group is not."""
     still = with_axis(BODY, "LeftLowerArmZ", FINE_SPRING.locked_at(0.0))
     assert still.locked_axes == {"LeftLowerArmZ"}
 
 
 def test_mirroring_gives_the_right_side_what_the_left_has() -> None:
-    """The middle and the left stay; a second time changes nothing."""
+    """Mirroring copies the left side's settings to the right and is idempotent."""
     stiff = replace(FINE_SPRING, kp=999.0)
     odd = replace(FINE_SPRING, kp=1.0)
     body = with_axis(with_axis(BODY, "LeftUpperArmX", stiff), "RightFootZ", odd)
@@ -163,7 +163,7 @@ def test_mirroring_gives_the_right_side_what_the_left_has() -> None:
 
 
 def test_a_hand_without_its_counterpart_keeps_its_settings() -> None:
-    """A model may lack a finger on one side only."""
+    """A right finger keeps its settings when mirroring a model that lacks the left one."""
     body = without_parts(
         with_axis(BODY, "RightLittleDistalZ", replace(FINE_SPRING, kp=5.0)),
         frozenset({"LeftLittleDistal"}),
@@ -172,8 +172,8 @@ def test_a_hand_without_its_counterpart_keeps_its_settings() -> None:
     assert mirror_left_to_right(body).axes["RightLittleDistalZ"].kp == 5.0
 
 
-def test_a_model_that_lacks_parts_lacks_what_was_said_of_them() -> None:
-    """Axes and held angles go; the rest stays."""
+def test_settings_of_missing_parts_are_dropped() -> None:
+    """Axes and held angles of missing parts are dropped; the rest stays."""
     body = lock(BODY, "left_fingers", {"LeftLittleDistalZ": 0.3, "LeftIndexDistalZ": 0.2})
     four = without_parts(body, frozenset(part for part in PART_NAMES if "Little" in part))
     assert len(four.axes) == 91 - 8
@@ -182,7 +182,7 @@ def test_a_model_that_lacks_parts_lacks_what_was_said_of_them() -> None:
 
 
 def test_global_settings_reach_every_axis_of_a_group() -> None:
-    """And no other; what is not given stays."""
+    """Global settings change every axis of a group, no other axis, and only the given values."""
     body = with_global(BODY, group="head", kp=50.0)
     assert {name for name, one in body.axes.items() if one.kp == 50.0} == set(axes_of("head"))
     assert body.axes["HeadX"].kd == FINE_SPRING.kd
@@ -194,13 +194,13 @@ def test_global_settings_reach_every_axis_of_a_group() -> None:
 
 
 def test_colliders_are_switched_part_by_part() -> None:
-    """The others have what the body has."""
+    """A part without a collider kind of its own has that of the body."""
     body = replace(BODY, colliders="none", part_colliders={"LeftHand": "simple"})
     assert (body.collider_of("LeftHand"), body.collider_of("Head")) == ("simple", "none")
 
 
 def test_every_name_of_a_group_can_be_locked() -> None:
-    """Groups and single parts alike."""
+    """Every group and every single part can be locked by its name."""
     assert lock(BODY, "all").locked_axes == set(AXIS_NAMES)
     for group in GROUP_NAMES:
         assert lock(BODY, group).locked_axes == set(axes_of(group))

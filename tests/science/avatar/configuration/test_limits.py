@@ -1,4 +1,4 @@
-"""How far the axes turn, and which layers of the body collide."""
+"""The ranges of the axes, and which layers of the body collide."""
 
 from math import degrees, pi
 
@@ -11,7 +11,7 @@ from app.science.avatar.configuration.limits import ANATOMIC, ESTIMATE, FREE, li
 
 @pytest.mark.parametrize("limits", [ANATOMIC, FREE])
 def test_every_axis_has_limits_around_the_t_pose(limits: dict[str, object]) -> None:
-    """Low lies below high, or both are zero: locked; the T-pose is always within."""
+    """Every axis has limits that include the T-pose; both are zero for a locked axis."""
     assert tuple(limits) == AXIS_NAMES
     for name in AXIS_NAMES:
         bounds = limits_of("free" if limits is FREE else "anatomic")[name]
@@ -21,7 +21,7 @@ def test_every_axis_has_limits_around_the_t_pose(limits: dict[str, object]) -> N
 
 
 def test_both_sides_turn_equally_far() -> None:
-    """Directions are mirrored already, so the angles are the same."""
+    """Left and right axes have equal limits, since their directions are already mirrored."""
     for name in AXIS_NAMES:
         assert ANATOMIC[name] == ANATOMIC[mirrored_name(name)]
 
@@ -40,7 +40,7 @@ def test_both_sides_turn_equally_far() -> None:
     ],
 )
 def test_published_ranges(axis: str, low_deg: float, high_deg: float) -> None:
-    """Values of the handbooks, and none of them called an estimate."""
+    """Ranges from handbooks equal the published values and are not called estimates."""
     bounds = ANATOMIC[axis]
     assert (degrees(bounds.low_rad), degrees(bounds.high_rad)) == pytest.approx((low_deg, high_deg))
     assert not bounds.estimated
@@ -53,22 +53,22 @@ def test_the_neck_turns_as_far_as_published_in_all() -> None:
         assert degrees(both) == pytest.approx(45.0)
 
 
-def test_only_the_elbows_third_axis_tells_the_presets_apart() -> None:
-    """`anatomic` locks it, `free` lets it turn all the way round as the thesis did."""
+def test_the_presets_differ_only_in_the_elbows_third_axis() -> None:
+    """`anatomic` locks the elbow's third axis; `free` lets it turn fully, as the thesis did."""
     differing = {name for name in AXIS_NAMES if ANATOMIC[name] != FREE[name]}
     assert differing == {"LeftLowerArmZ", "RightLowerArmZ"}
     assert (FREE["LeftLowerArmZ"].low_rad, FREE["LeftLowerArmZ"].high_rad) == (-pi, pi)
     assert ANATOMIC["LeftLowerArmZ"].low_rad == ANATOMIC["LeftLowerArmZ"].high_rad == 0.0
 
 
-def test_estimates_say_so() -> None:
-    """The spine's shares and the wrist's turn are ours, and marked."""
+def test_estimates_are_marked_as_estimates() -> None:
+    """The shares of the spine and the turn of the wrist are our estimates and marked as such."""
     for axis in ("SpineX", "HeadY", "LeftHandX", "LeftFootY"):
         assert ANATOMIC[axis].source.startswith(ESTIMATE)
 
 
 def test_every_part_has_a_layer() -> None:
-    """Fingers belong to the hand, toes to the foot, head and neck to the torso."""
+    """Every part has a layer: fingers that of the hand, toes of the foot, head of the torso."""
     assert tuple(LAYER_OF) == PART_NAMES
     assert set(LAYER_OF.values()) == set(LAYERS)
     assert LAYER_OF["LeftRingDistal"] == "left_hand"
@@ -77,7 +77,7 @@ def test_every_part_has_a_layer() -> None:
 
 
 def test_a_hand_touches_arms_and_upper_body_and_an_arm_does_not() -> None:
-    """Karas 2020, section 4.2.1."""
+    """Hands collide with arms and torso, and arms do not (Karas 2020, section 4.2.1)."""
     assert collide("LeftHand", "Chest")
     assert collide("LeftHand", "LeftUpperArm")
     assert collide("LeftIndexDistal", "RightLowerArm")
@@ -87,13 +87,13 @@ def test_a_hand_touches_arms_and_upper_body_and_an_arm_does_not() -> None:
 
 
 def test_no_layer_collides_with_itself() -> None:
-    """Fingers of one hand, and neighbours of the trunk, pass through each other."""
+    """Parts of one layer, such as the fingers of a hand, pass through each other."""
     assert all(len(pair) == 2 for pair in COLLIDING)
 
 
 @pytest.mark.parametrize("self_collision", [True, False])
-def test_bits_say_what_the_layers_say(*, self_collision: bool) -> None:
-    """Two parts' masks meet exactly where their layers collide, and always meet the scene's."""
+def test_collision_masks_match_the_layers(*, self_collision: bool) -> None:
+    """Two parts' masks match exactly where their layers collide, and always match the scene's."""
     bits = {part: collision_bits(part, self_collision=self_collision) for part in PART_NAMES}
     for part, a in bits.items():
         assert a.contype & 1

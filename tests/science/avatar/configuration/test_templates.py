@@ -1,4 +1,4 @@
-"""The two templates and the way between them: Karas (2020), sections 2.2.3, 4.2.3 and 6.3."""
+"""The two joint templates and their conversion: Karas (2020), sections 2.2.3, 4.2.3, 6.3."""
 
 import math
 from dataclasses import replace
@@ -40,13 +40,13 @@ FIGURE_6_1 = Drive(kp=6143.597, kd=529.7784, max_torque_nm=1200.0)
 
 
 def ranged(low_deg: float, high_deg: float, drive: Drive = FIGURE_6_1) -> AxisSettings:
-    """An axis with these limits."""
+    """Return axis settings with these limits."""
     low, high = math.radians(low_deg), math.radians(high_deg)
     return AxisSettings(drive.kp, drive.kd, drive.max_torque_nm, low, high)
 
 
 def figure_2_4() -> SingleJoint:
-    """The thesis's example of a joint: x from -41 to 125, y 45, z 35 degrees."""
+    """Return the thesis's example of a joint: x from -41 to 125, y 45, z 35 degrees."""
     return SingleJoint(
         part=THIGH,
         low_rad=math.radians(-41.0),
@@ -58,12 +58,12 @@ def figure_2_4() -> SingleJoint:
 
 
 def degrees(settings: AxisSettings) -> tuple[float, float]:
-    """The limits of an axis."""
+    """Return the limits of an axis in degrees."""
     return degrees_of(settings.low_rad), degrees_of(settings.high_rad)
 
 
 def test_the_thesis_joint_splits_into_its_axes() -> None:
-    """Figures 2.4 and 2.5: y and z limits go both ways, each axis gets the drive it had."""
+    """The joint of figures 2.4 and 2.5 gives axes with symmetric y and z limits and its drives."""
     axes = to_multiple(figure_2_4())
     assert {name: degrees(one) for name, one in axes.items()} == {
         "LeftUpperLegX": (-41.0, 125.0),
@@ -76,7 +76,7 @@ def test_the_thesis_joint_splits_into_its_axes() -> None:
 
 
 def test_twenty_degrees_become_twenty_either_way() -> None:
-    """Figure 4.8."""
+    """A limit of 20 degrees becomes a range from -20 to 20 degrees (figure 4.8)."""
     joint = figure_2_4()
     joint = replace(joint, limits_rad={**joint.limits_rad, "LeftUpperLegZ": math.radians(20.0)})
     assert degrees(to_multiple(joint)["LeftUpperLegZ"]) == (-20.0, 20.0)
@@ -84,13 +84,13 @@ def test_twenty_degrees_become_twenty_either_way() -> None:
 
 @given(single_joints())
 def test_single_to_multiple_and_back_is_the_same_joint(joint: SingleJoint) -> None:
-    """Nothing is lost that way."""
+    """A single joint converted to multiple axes and back is unchanged."""
     assert to_single(joint.part, to_multiple(joint)) == joint
 
 
 @given(part_axes())
 def test_multiple_to_single_allows_every_pose(drawn: tuple[str, dict[str, AxisSettings]]) -> None:
-    """The symmetric limit is the greater of the two, and the primary axis keeps both."""
+    """A symmetric limit is the larger of an axis's two; the primary axis keeps both."""
     part, axes = drawn
     joint = to_single(part, axes)
     primary = axes[primary_axis(part)]
@@ -102,19 +102,19 @@ def test_multiple_to_single_allows_every_pose(drawn: tuple[str, dict[str, AxisSe
 
 
 @given(part_axes())
-def test_a_joint_that_was_only_looked_at_changes_nothing(
+def test_an_unedited_single_joint_changes_no_axis(
     drawn: tuple[str, dict[str, AxisSettings]],
 ) -> None:
-    """Multiple, seen as single and put back, is as it was, with both sides and every drive."""
+    """Axes shown as a single joint and stored unedited keep both limits and every drive."""
     part, axes = drawn
     assert edited(to_single(part, axes), axes) == axes
 
 
 @given(part_axes(), limits_rad)
-def test_an_edited_limit_goes_to_the_side_it_came_from(
+def test_an_edited_limit_replaces_the_larger_of_the_two(
     drawn: tuple[str, dict[str, AxisSettings]], limit_rad: float
 ) -> None:
-    """The other side stays, as far as a range of one side of the T-pose allows."""
+    """An edited limit replaces the larger of an axis's two; the other stays where possible."""
     part, axes = drawn
     assume(shared_axes(part))
     name = shared_axes(part)[0]
@@ -138,7 +138,7 @@ def test_an_edited_limit_goes_to_the_side_it_came_from(
 
 
 def test_the_smaller_side_is_kept_in_the_multiple_template() -> None:
-    """Section 6.3 with numbers: 45 is shown; 30 replaces it; -20 stays."""
+    """Editing the shown limit 45 to 30 keeps the other limit at -20 (section 6.3)."""
     axes = axes_of_part(THIGH, ranged(-41.0, 125.0), ranged(-20.0, 45.0), ranged(-50.0, 10.0))
     joint = to_single(THIGH, axes)
     second, third = shared_axes(THIGH)
@@ -149,8 +149,8 @@ def test_the_smaller_side_is_kept_in_the_multiple_template() -> None:
     assert degrees(after[third]) == (-60.0, 10.0)
 
 
-def test_a_range_beside_the_t_pose_does_not_turn_inside_out() -> None:
-    """From 20 to 45 degrees, edited to 10: both limits are 10."""
+def test_a_range_that_excludes_the_t_pose_stays_ordered() -> None:
+    """A range from 20 to 45 degrees edited to 10 has both limits at 10."""
     axes = axes_of_part(THIGH, ranged(-41.0, 125.0), ranged(20.0, 45.0), ranged(-45.0, -20.0))
     second, third = shared_axes(THIGH)
     ten = dict.fromkeys((second, third), math.radians(10.0))
@@ -160,7 +160,7 @@ def test_a_range_beside_the_t_pose_does_not_turn_inside_out() -> None:
 
 
 def test_the_common_drive_is_the_stiffest_taken_whole() -> None:
-    """A kp is not mixed with the kd of another axis."""
+    """The shared drive is that of the stiffest axis; gains of several axes are not mixed."""
     soft = ranged(-20.0, 20.0, Drive(kp=100.0, kd=900.0, max_torque_nm=9000.0))
     axes = axes_of_part(THIGH, ranged(-41.0, 125.0, FIGURE_2_5), soft, ranged(-30.0, 30.0))
     joint = to_single(THIGH, axes)
@@ -168,10 +168,10 @@ def test_the_common_drive_is_the_stiffest_taken_whole() -> None:
 
 
 @given(part_axes(), drives)
-def test_an_edited_common_drive_is_every_sharing_axis_drive(
+def test_an_edited_common_drive_applies_to_every_sharing_axis(
     drawn: tuple[str, dict[str, AxisSettings]], drive: Drive
 ) -> None:
-    """What was set is what is seen afterwards; limits and the primary axis stay."""
+    """An edited shared drive applies to all sharing axes; limits and the primary axis stay."""
     part, axes = drawn
     assume(shared_axes(part) and to_single(part, axes).shared_drive != drive)
     after = edited(replace(to_single(part, axes), shared_drive=drive), axes)
@@ -183,7 +183,7 @@ def test_an_edited_common_drive_is_every_sharing_axis_drive(
 
 
 def test_every_driven_part_has_one_primary_axis() -> None:
-    """And shares the others; the left side's is the right side's."""
+    """Every driven part has one primary axis, the same on both sides, and shares the others."""
     for part in DRIVEN:
         names = [axis.name for axis in AXES_OF[part]]
         assert sorted([primary_axis(part), *shared_axes(part)]) == sorted(names)
@@ -196,7 +196,7 @@ def test_every_driven_part_has_one_primary_axis() -> None:
 
 
 def test_a_configuration_is_edited_part_by_part() -> None:
-    """Parts that are not named, and parts that the model lacks, stay as they are."""
+    """Parts that are not named or that the model lacks stay unchanged."""
     body = whole_body()
     template = single_template(body)
     assert set(template) == set(DRIVEN)
@@ -219,10 +219,10 @@ def test_a_configuration_is_edited_part_by_part() -> None:
         ({"limits_rad": {"LeftUpperLegY": 0.5, "LeftUpperLegZ": -0.5}}, "cannot be -28.6479 deg"),
     ],
 )
-def test_a_joint_that_does_not_fit_its_part_is_refused(
+def test_a_joint_that_does_not_fit_its_part_is_rejected(
     change: dict[str, object], said: str
 ) -> None:
-    """With what is valid."""
+    """A single joint that does not match its part is rejected with what is valid."""
     with pytest.raises(AvatarSettingsError, match=said) as caught:
         replace(figure_2_4(), **change)  # type: ignore[arg-type]  # the fact
     assert caught.value.problems[0].valid

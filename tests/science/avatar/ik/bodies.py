@@ -1,4 +1,4 @@
-"""An avatar's model, poses of it, and the goals that trackers on these poses would give."""
+"""A model of the avatar, poses of it, and the goals that trackers on these poses give."""
 
 from functools import cache
 
@@ -30,7 +30,7 @@ UPRIGHT = np.array((1.0, 0.0, 0.0, 0.0))
 
 @cache
 def mjcf(*, welded: bool = False) -> str:
-    """The whole body of 52 parts between walls."""
+    """Return the MJCF of the whole body of 52 parts between three walls."""
     body = build_body(STATURE_M)
     masses = body_masses(body, MASS_KG)
     options = ModelOptions(hips="welded" if welded else "carried")
@@ -39,12 +39,15 @@ def mjcf(*, welded: bool = False) -> str:
 
 @cache
 def model(*, welded: bool = False) -> mujoco.MjModel:
-    """The same, loaded; nobody changes it."""
+    """Return the loaded model of the whole body; it is cached and must not be changed."""
     return mujoco.MjModel.from_xml_string(mjcf(welded=welded))
 
 
 def random_pose(chain: Chain, rng: np.random.Generator, share: float = 0.6) -> FloatArray:
-    """Angles of every hinge within a share of its range around the middle of rest and range."""
+    """Return a random angle of every hinge, near the middle between rest and its range.
+
+    `share` is the part of each range that is used.
+    """
     rest = np.array([REST_POSE_RAD.get(name, 0.0) for name in chain.axis_names])
     pose = rest.copy()
     at = chain.moving
@@ -62,7 +65,7 @@ def reached(
     *,
     waist: bool = True,
 ) -> Goals:
-    """The goals that this very pose reaches."""
+    """Return the goals that this pose reaches exactly."""
     chain.place(hips_m, hips, angles_rad)
     count = len(GOAL_PARTS)
     tracked = np.ones(count, dtype=np.bool_)
@@ -75,10 +78,10 @@ def reached(
 
 
 def turned_hips(yaw_rad: float) -> FloatArray:
-    """Hips that look another way."""
+    """Return the rotation of hips turned about the vertical by this yaw."""
     return from_rotation_vector(np.array((0.0, yaw_rad, 0.0)))
 
 
 def smooth(fraction: float) -> float:
-    """From 0 to 1 without a jerk at either end."""
+    """Return a smooth step from 0 to 1, with zero speed at both ends."""
     return fraction * fraction * (3.0 - 2.0 * fraction)

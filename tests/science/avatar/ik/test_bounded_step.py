@@ -1,4 +1,4 @@
-"""The step within bounds against what defines it and against SciPy."""
+"""The bounded least-squares step, against its defining conditions and against SciPy."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from app.science.rotations import FloatArray
 
 
 def _problem(seed: int, size: int = 41) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Five goals weighted as a body's, and so far away that many bounds are met."""
+    """Return the terms of a step towards five distant goals, where many bounds are active."""
     rng = np.random.default_rng(seed)
     matrix = rng.normal(size=(30, size)) * np.tile((3.0, 3.0, 3.0, 1.0, 1.0, 1.0), 5)[:, None]
     pull = matrix.T @ rng.normal(size=30)
@@ -18,8 +18,11 @@ def _problem(seed: int, size: int = 41) -> tuple[FloatArray, FloatArray, FloatAr
 
 
 @pytest.mark.parametrize("seed", range(40))
-def test_nothing_within_the_bounds_is_better(seed: int) -> None:
-    """Free unknowns are not pulled anywhere; held ones are pulled outwards (Karush-Kuhn-Tucker)."""
+def test_the_step_is_optimal_within_the_bounds(seed: int) -> None:
+    """The step meets the Karush-Kuhn-Tucker conditions.
+
+    The gradient of free unknowns is zero; that of unknowns at a bound points outwards.
+    """
     hessian, pull, low, high = _problem(seed)
     step = bounded_step(hessian, pull, low, high)
     left = pull - hessian @ step
@@ -33,8 +36,8 @@ def test_nothing_within_the_bounds_is_better(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_scipy_finds_the_same(seed: int) -> None:
-    """Bounded-variable least squares, an independent algorithm, ends at the same step."""
+def test_scipy_finds_the_same_step(seed: int) -> None:
+    """SciPy's bounded-variable least squares, an independent algorithm, finds the same step."""
     hessian, pull, low, high = _problem(seed)
     root = np.linalg.cholesky(hessian)
     found = lsq_linear(root.T, np.linalg.solve(root, pull), (low, high), method="bvls", tol=1e-14)
@@ -42,7 +45,7 @@ def test_scipy_finds_the_same(seed: int) -> None:
 
 
 def test_without_bounds_it_is_the_solution_of_the_equations() -> None:
-    """Infinite bounds change nothing."""
+    """With infinite bounds the step solves the unbounded normal equations."""
     hessian, pull, low, _ = _problem(1)
     far = np.full(len(low), np.inf)
     step = bounded_step(hessian, pull, -far, far)

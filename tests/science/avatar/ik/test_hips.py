@@ -1,4 +1,4 @@
-"""Where the hips must be, told from head and shins."""
+"""Estimating the hips from the head and the shins."""
 
 from math import radians
 
@@ -24,7 +24,7 @@ POSTURES: list[tuple[str, dict[str, float], float]] = [
 
 @pytest.fixture
 def chain() -> Chain:
-    """A body to put into postures."""
+    """Return the kinematic chain of the avatar."""
     return Chain(bodies.model())
 
 
@@ -35,7 +35,7 @@ def chain() -> Chain:
 def test_hips_are_found_in_usual_postures(
     chain: Chain, angles_deg: dict[str, float], lean_deg: float, yaw: float
 ) -> None:
-    """Within 5 cm and 10 degrees, whichever way somebody faces."""
+    """In usual postures the hips are found within 5 cm and 10 degrees, at any facing."""
     hips = _leaning(yaw, lean_deg)
     place, turn = _estimate(chain, angles_deg, hips)
     assert float(np.linalg.norm(place - HIPS_M)) < 0.05
@@ -43,7 +43,7 @@ def test_hips_are_found_in_usual_postures(
 
 
 def test_hips_of_somebody_upright_are_exact(chain: Chain) -> None:
-    """Standing straight and legs apart leave nothing to guess."""
+    """The estimated hips of a person standing upright, legs together or apart, are exact."""
     for angles_deg in ({}, {"LeftUpperLegZ": 20.0, "RightUpperLegZ": 20.0}):
         place, turn = _estimate(chain, angles_deg, _leaning(1.0, 0.0))
         np.testing.assert_allclose(place, HIPS_M, atol=1e-9)
@@ -51,7 +51,7 @@ def test_hips_of_somebody_upright_are_exact(chain: Chain) -> None:
 
 
 def test_without_shins_the_hips_hang_below_the_head(chain: Chain) -> None:
-    """The trunk is taken for upright, and faces where the head faces."""
+    """Without shins the trunk is assumed to be upright and to face where the head faces."""
     hips = _leaning(0.5, 0.0)
     place, turn = _estimate(chain, {"LeftUpperLegX": 90.0}, hips, shins=False)
     np.testing.assert_allclose(place, HIPS_M, atol=1e-9)
@@ -59,7 +59,7 @@ def test_without_shins_the_hips_hang_below_the_head(chain: Chain) -> None:
 
 
 def test_impossible_bodies_have_hips_too(chain: Chain) -> None:
-    """A head between its knees, or looking along its own right, gives numbers, not NaN."""
+    """Impossible postures, such as a head between the knees, give finite hips."""
     for turn in ((1.0, 0.0, 0.0, 0.0), (0.5**0.5, 0.0, 0.0, 0.5**0.5)):
         everything = Tracked((0.0, 1.0, 0.0), turn)
         place, rotation = estimated_hips(chain.trunk, everything, (everything, everything))

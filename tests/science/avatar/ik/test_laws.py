@@ -1,4 +1,4 @@
-"""What must hold for inverse kinematics whatever the numbers."""
+"""Properties of the inverse kinematics that hold for all goals."""
 
 import mujoco
 import numpy as np
@@ -26,12 +26,12 @@ LEFT_HAND = GOAL_PARTS.index("LeftHand")
 
 @pytest.fixture
 def chain() -> Chain:
-    """A body to take goals from."""
+    """Return the kinematic chain of the avatar."""
     return Chain(bodies.model())
 
 
 def settled(solver: InverseKinematics, goals: Goals, frames: int = 60) -> Solution:
-    """The solution when the goals stay."""
+    """Return the solution after solving for the same goals in many frames."""
     for _ in range(frames - 1):
         solver.solve(goals)
     return solver.solve(goals)
@@ -40,7 +40,7 @@ def settled(solver: InverseKinematics, goals: Goals, frames: int = 60) -> Soluti
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("waist", [True, False])
 def test_a_pose_that_can_be_reached_is_reached(chain: Chain, seed: int, *, waist: bool) -> None:
-    """What is left is the pull of the rest pose: 2 mm and half a degree at most."""
+    """Reachable goals are met within 2 mm and half a degree, the pull of the rest pose."""
     pose = bodies.random_pose(chain, np.random.default_rng(seed))
     goals = bodies.reached(chain, pose, HIPS_M, HIPS, waist=waist)
     solution = settled(InverseKinematics(bodies.model()), goals)
@@ -50,8 +50,8 @@ def test_a_pose_that_can_be_reached_is_reached(chain: Chain, seed: int, *, waist
 
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("waist", [True, False])
-def test_without_the_rest_pose_nothing_is_left(chain: Chain, seed: int, *, waist: bool) -> None:
-    """With next to no pull of the rest pose the error vanishes with it."""
+def test_without_a_rest_pose_the_error_vanishes(chain: Chain, seed: int, *, waist: bool) -> None:
+    """With a negligible rest-pose weight the goal errors vanish."""
     pose = bodies.random_pose(chain, np.random.default_rng(seed))
     goals = bodies.reached(chain, pose, HIPS_M, HIPS, waist=waist)
     free = InverseKinematics(bodies.model(), weights=Weights(rest=1e-4))
@@ -61,7 +61,7 @@ def test_without_the_rest_pose_nothing_is_left(chain: Chain, seed: int, *, waist
 
 
 def test_the_rest_pose_itself_is_found_exactly(chain: Chain) -> None:
-    """Goals of the rest pose give its angles: nothing pulls elsewhere."""
+    """Goals of the rest pose give exactly the rest pose's angles."""
     rest = InverseKinematics(bodies.model())
     pose = rest.solve(goals_of({})).angles_rad
     found = settled(rest, bodies.reached(chain, pose, HIPS_M, HIPS))
@@ -70,7 +70,7 @@ def test_the_rest_pose_itself_is_found_exactly(chain: Chain) -> None:
 
 @pytest.mark.parametrize("seed", range(3))
 def test_an_independent_optimiser_finds_nothing_better(chain: Chain, seed: int) -> None:
-    """SciPy's trust-region solver, from our solution on the same cost and limits, stays there."""
+    """SciPy's trust-region solver cannot improve our solution under the same cost and limits."""
     pose = bodies.random_pose(chain, np.random.default_rng(seed))
     goals = bodies.reached(chain, pose, HIPS_M, HIPS)
     solution = settled(InverseKinematics(bodies.model()), goals, 200)
@@ -92,7 +92,7 @@ def test_an_independent_optimiser_finds_nothing_better(chain: Chain, seed: int) 
 
 
 def test_angles_stay_within_their_limits(chain: Chain) -> None:
-    """Goals anywhere, also behind the back and inside the trunk, never break a limit."""
+    """No goals, even behind the back or inside the trunk, make an angle exceed its limits."""
     rng = np.random.default_rng(11)
     solver = InverseKinematics(bodies.model())
     for _ in range(60):
@@ -105,7 +105,7 @@ def test_angles_stay_within_their_limits(chain: Chain) -> None:
 
 
 def test_a_goal_out_of_reach_is_pointed_at(chain: Chain) -> None:
-    """A hand sent a metre too far stretches the arm towards the goal, and rests there."""
+    """An arm whose goal is a metre too far stretches towards it and rests there."""
     solver = InverseKinematics(bodies.model())
     rest = bodies.reached(chain, solver.solve(goals_of({})).angles_rad, HIPS_M, bodies.UPRIGHT)
     shoulder = chain.data.body("LeftUpperArm").xpos.copy()
@@ -126,7 +126,7 @@ def test_a_goal_out_of_reach_is_pointed_at(chain: Chain) -> None:
 
 @pytest.mark.parametrize("waist", [True, False])
 def test_goals_that_move_smoothly_give_angles_that_do(chain: Chain, *, waist: bool) -> None:
-    """At 90 Hz from one pose to another, no axis moves three times as far as the pose's did."""
+    """Smoothly moving goals at 90 Hz move no axis three times as fast as the pose's own axes."""
     rng = np.random.default_rng(3)
     first, last = bodies.random_pose(chain, rng), bodies.random_pose(chain, rng)
     poses = [first + bodies.smooth(i / 90.0) * (last - first) for i in range(91)]
@@ -141,7 +141,7 @@ def test_goals_that_move_smoothly_give_angles_that_do(chain: Chain, *, waist: bo
 
 
 def test_the_same_goals_give_the_same_angles() -> None:
-    """Nothing is left over from an earlier person after a reset."""
+    """After a reset the same goals give the same angles, whatever came before."""
     rng = np.random.default_rng(4)
     goals = [_anywhere(rng) for _ in range(5)]
     solver = InverseKinematics(bodies.model())
@@ -151,7 +151,7 @@ def test_the_same_goals_give_the_same_angles() -> None:
 
 
 def test_a_limb_whose_tracker_is_lost_is_held(chain: Chain) -> None:
-    """An arm keeps its angles while nothing tells of its hand; the other follows."""
+    """An arm keeps its angles while its hand is not tracked; the other arm follows."""
     rng = np.random.default_rng(5)
     one, two = (bodies.random_pose(chain, rng) for _ in range(2))
     solver = InverseKinematics(bodies.model())
@@ -168,8 +168,8 @@ def test_a_limb_whose_tracker_is_lost_is_held(chain: Chain) -> None:
     assert np.isnan(after.position_errors_m[LEFT_HAND])
 
 
-def test_hips_that_nothing_tells_of_stay(chain: Chain) -> None:
-    """With neither waist nor head the body stays where it was."""
+def test_hips_without_waist_and_head_trackers_stay(chain: Chain) -> None:
+    """Without waist and head trackers the hips stay where they were."""
     pose = bodies.random_pose(chain, np.random.default_rng(6))
     solver = InverseKinematics(bodies.model())
     goals = bodies.reached(chain, pose, HIPS_M, HIPS)
@@ -181,7 +181,7 @@ def test_hips_that_nothing_tells_of_stay(chain: Chain) -> None:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_welded_hips_make_no_difference(seed: int) -> None:
-    """The same goals give the same angles whichever way the model carries its hips."""
+    """The same goals give the same angles with welded hips and with carried hips."""
     found = []
     for welded in (False, True):
         model = bodies.model(welded=welded)
@@ -192,7 +192,7 @@ def test_welded_hips_make_no_difference(seed: int) -> None:
 
 
 def test_turning_the_room_turns_only_the_hips(chain: Chain) -> None:
-    """The angles do not depend on where in the room, nor which way, somebody stands."""
+    """The angles do not depend on the person's position or facing in the room."""
     pose = bodies.random_pose(chain, np.random.default_rng(8))
     found = []
     for hips_m, yaw in ((HIPS_M, 0.0), (HIPS_M + np.array((3.0, 0.0, -2.0)), 2.5)):
@@ -203,8 +203,8 @@ def test_turning_the_room_turns_only_the_hips(chain: Chain) -> None:
     assert float(turn) == pytest.approx(2.5, abs=1e-6)
 
 
-def test_bad_goals_and_models_are_refused() -> None:
-    """Errors name the part, what is wrong with it and what would be right."""
+def test_invalid_goals_and_models_are_rejected() -> None:
+    """Errors about invalid goals and models name the part and what is wrong with it."""
     upright = (1.0, 0.0, 0.0, 0.0)
     with pytest.raises(IkError, match="'Tail' is not a tracked part"):
         goals_of({"Tail": ((0.0, 0.0, 0.0), upright)})

@@ -1,4 +1,4 @@
-"""Real people's movements, as trackers on head, hands, waist and shins would have told them."""
+"""Inverse kinematics from simulated trackers on captured movements of real people."""
 
 from pathlib import Path
 
@@ -23,7 +23,10 @@ CLIPS = ["cmu_bvh/02_01.bvh", "cmu_bvh/12_02.bvh", "vicon_tracker/ObjectInspecti
 @pytest.mark.parametrize("file", CLIPS)
 @pytest.mark.parametrize("waist", [True, False])
 def test_trackers_of_real_people_are_followed(shared_data: Path, file: str, *, waist: bool) -> None:
-    """Mean goal error at most 2.5 mm and 0.4 degrees; a free elbow within 10 cm of the person's."""
+    """Goals of real movements are met within 2.5 mm and 0.4 degrees on average.
+
+    The elbow, which has no goal, stays within 10 cm of the person's.
+    """
     skeleton = build_skeleton(bodies.STATURE_M)
     movement = resample(captured_movement(shared_data / "motion" / file, skeleton), RATE_HZ)
     world = forward_kinematics(skeleton, movement.root_positions_m, movement.rotations)
@@ -45,5 +48,5 @@ def test_trackers_of_real_people_are_followed(shared_data: Path, file: str, *, w
 
 
 def _mean(rows: list[FloatArray]) -> float:
-    """Of what follows the first half second, in which the body finds its pose."""
+    """Return the mean after the first half second, in which the body finds its pose."""
     return float(np.mean(rows[int(RATE_HZ / 2) :]))

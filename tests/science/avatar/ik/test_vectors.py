@@ -1,4 +1,4 @@
-"""The shared vectors: what the physics and inverse kinematics here and in the browser both do."""
+"""The shared vectors of physics and inverse kinematics, which the browser must reproduce too."""
 
 import re
 
@@ -18,26 +18,29 @@ CASES = [pytest.param(case, id=case["name"]) for case in read("ik")["cases"]]
 
 @pytest.fixture(scope="module")
 def model() -> mujoco.MjModel:
-    """The vectors' own model."""
+    """Return the model that is stored with the vectors."""
     return mujoco.MjModel.from_xml_string((FOLDER / "body.xml").read_text())
 
 
 def test_the_files_are_what_the_script_makes() -> None:
-    """Nobody edited a file by hand, and the algorithms still do what they did."""
+    """The stored vector files equal what the script makes today."""
     made = make_all()
     assert {path.stem for path in FOLDER.glob("*.json")} == set(made)
     for name, vector in made.items():
         _assert_alike(read(name), vector)
 
 
-def test_the_model_is_of_the_kind_that_is_written_today() -> None:
-    """Today's model has the same elements, attributes, bodies and axes; numbers may differ."""
+def test_the_stored_model_has_todays_structure() -> None:
+    """Today's model has the elements, attributes, bodies and axes of the stored one.
+
+    Their numbers may differ.
+    """
     assert _kind((FOLDER / "body.xml").read_text()) == _kind(bodies.mjcf())
 
 
 @pytest.mark.parametrize("case", CASES)
 def test_angles_are_those_of_the_vector(case: Json, model: mujoco.MjModel) -> None:
-    """Every frame gives its angles, in order, and leaves all other axes at rest."""
+    """Every frame's goals give the vector's angles, with all other axes at rest."""
     solver = InverseKinematics(model)
     solved = [
         solver.solve(goals_from(frame, waist=case["waist"])).angles_rad
@@ -51,8 +54,8 @@ def test_angles_are_those_of_the_vector(case: Json, model: mujoco.MjModel) -> No
     assert _apart(found[:, others], [at_rest] * len(found)) == 0.0
 
 
-def test_the_cases_hold_what_makes_them_hard() -> None:
-    """One hand is out of reach by decimetres for a while, one is not tracked for a while."""
+def test_the_cases_contain_unreachable_and_untracked_goals() -> None:
+    """In some frames of the vectors one hand is out of reach, and in others one is not tracked."""
     for case in read("ik")["cases"]:
         errors = np.array(case["position_errors_m"], dtype=np.float64)
         left, right = (errors[:, GOAL_PARTS.index(f"{side}Hand")] for side in ("Left", "Right"))
@@ -61,7 +64,7 @@ def test_the_cases_hold_what_makes_them_hard() -> None:
 
 
 def test_hands_press_against_the_wall(model: mujoco.MjModel) -> None:
-    """The trajectory is one of contacts: it is another where the front wall is not solid."""
+    """Contacts matter to the trajectory: it differs if the front wall does not collide."""
     vector = read("trajectory")
     touching = [sample["ncon"] for sample in vector["samples"]]
     assert sum(count > 0 for count in touching) >= 30
@@ -74,12 +77,15 @@ def test_hands_press_against_the_wall(model: mujoco.MjModel) -> None:
 
 
 def test_the_chain_of_the_vectors_model_moves_41_axes(model: mujoco.MjModel) -> None:
-    """Nine of the spine, six of neck and head, eight an arm, five a leg."""
+    """The vectors' model moves 41 axes.
+
+    Nine of the spine, six of neck and head, eight of each arm, five of each leg.
+    """
     assert len(Chain(model).moving) == 9 + 6 + 2 * 8 + 2 * 5
 
 
 def _kind(mjcf: str) -> list[str]:
-    """The text without its numbers."""
+    """Return the text of an MJCF without its numbers."""
     return re.sub(r"-?\d+(\.\d+)?(e-?\d+)?( -?\d+(\.\d+)?(e-?\d+)?)*(?=\")", "#", mjcf).splitlines()
 
 
@@ -89,7 +95,7 @@ def _apart(found: object, expected: object) -> float:
 
 
 def _assert_alike(found: object, expected: object, path: str = "") -> None:
-    """Equal but for the last digits of numbers."""
+    """Assert that two JSON values are equal up to the last digits of their numbers."""
     if isinstance(expected, dict) and isinstance(found, dict):
         assert found.keys() == expected.keys(), path
         for key in expected:

@@ -1,8 +1,8 @@
-"""Makes the avatar's vectors: `python -m tests.science.avatar.ik.vector_files` writes them.
+"""Make the avatar's vectors: `python -m tests.science.avatar.ik.vector_files` writes them.
 
-`tests/vectors/avatar/README.md` describes the files. They hold the browser's physics and inverse
-kinematics to the server's. They are a fact about algorithms, not about today's gains: tests read
-the model from its file, so another body or another tuning leaves them valid.
+`tests/vectors/avatar/README.md` describes the files. With them the browser's physics and inverse
+kinematics are checked against the server's. They describe the algorithms, not today's gains: tests
+read the model from its file, so that they stay valid when the body or the tuning changes.
 """
 
 import json
@@ -26,7 +26,7 @@ _DECIMALS = 12
 
 
 def make_all() -> dict[str, Json]:
-    """Every JSON file by its name, for the model that lies beside them."""
+    """Return the contents of every JSON file by its name, for the stored model."""
     model = mujoco.MjModel.from_xml_string((FOLDER / "body.xml").read_text())
     goals = _goal_frames(Chain(model))
     controls = _controls(Chain(model))
@@ -51,13 +51,13 @@ def make_all() -> dict[str, Json]:
 
 
 def read(name: str) -> Json:
-    """One file as it lies there."""
+    """Return one stored vector file."""
     found: Json = json.loads((FOLDER / f"{name}.json").read_text())
     return found
 
 
 def as_text(vector: Json) -> str:
-    """Readable line by line: one frame, one sample a line."""
+    """Return a vector as JSON with one frame or sample a line."""
     lines = []
     for key, value in vector.items():
         rows = isinstance(value, list) and value and not isinstance(value[0], str)
@@ -71,14 +71,17 @@ def as_text(vector: Json) -> str:
 
 
 def goals_from(frame: Json, *, waist: bool) -> Goals:
-    """The goals of one frame of ik.json."""
+    """Return the goals of one frame of ik.json."""
     tracked = np.array(frame["tracked"], dtype=np.bool_)
     tracked[0] &= waist
     return Goals(np.array(frame["positions_m"]), np.array(frame["rotations"]), tracked)
 
 
 def _goal_frames(chain: Chain) -> list[Goals]:
-    """A body that goes through five poses, reaches too far once and loses a tracker once."""
+    """Return the goals of a body that goes through five poses.
+
+    For some frames one hand is out of reach, and for others one is not tracked.
+    """
     rng = np.random.default_rng(7)
     poses = np.array([bodies.random_pose(chain, rng) for _ in range(6)])
     places = (0.0, 0.9, 0.0) + 0.2 * rng.uniform(-0.5, 0.5, (6, 3))
@@ -96,7 +99,7 @@ def _goal_frames(chain: Chain) -> list[Goals]:
             positions[GOAL_PARTS.index("LeftHand")] += (-0.5, 0.3, 0.2)
         if index in LOST:
             tracked[GOAL_PARTS.index("RightHand")] = False
-        # Six digits, as a tracker tells; what follows is exact for what is written here.
+        # Rounded to six digits, so that the stored goals are exactly those that are solved.
         frames.append(Goals(np.round(positions, 6), np.round(goals.rotations, 6), tracked))
     return frames
 
@@ -126,7 +129,7 @@ def _case(model: mujoco.MjModel, name: str, goals: list[Goals], *, waist: bool) 
 
 
 def _controls(chain: Chain) -> Json:
-    """Targets at key moments: hands forward into the wall, aside into the others, and back."""
+    """Return motor targets at key moments: hands forward into the wall, aside, and back."""
     rng = np.random.default_rng(8)
     keys = []
     for key in range(KEYS):
@@ -141,13 +144,13 @@ def _controls(chain: Chain) -> Json:
 
 
 def samples(model: mujoco.MjModel, controls: Json) -> list[Json]:
-    """The simulated body every `sample_s`: its qpos, and how many points touch."""
+    """Return the simulated body every `sample_s`: its qpos and number of contacts, rounded."""
     found = simulate(model, controls)
     return [{"ncon": touching, "qpos": _rounded(qpos)} for touching, qpos in found]
 
 
 def simulate(model: mujoco.MjModel, controls: Json) -> list[tuple[int, FloatArray]]:
-    """The same unrounded: how many points touch, and qpos."""
+    """Return the number of contacts and the qpos of every sample, not rounded."""
     data = mujoco.MjData(model)
     keys, hips = np.array(controls["targets_rad"]), np.array(controls["hips_m"])
     steps_a_key = round(controls["key_s"] / model.opt.timestep)
@@ -168,7 +171,7 @@ def simulate(model: mujoco.MjModel, controls: Json) -> list[tuple[int, FloatArra
 
 
 def _rounded(values: FloatArray) -> list[float | None]:
-    """Twelve decimals; what is not a number is null."""
+    """Round to twelve decimals; NaN becomes null."""
     return [None if np.isnan(one) else round(one, _DECIMALS) + 0.0 for one in values.tolist()]
 
 

@@ -54,7 +54,7 @@ def test_a_model_has_a_hinge_and_a_motor_for_each_axis(
 
 @pytest.mark.parametrize("parts", [PART_NAMES, NO_FINGERS])
 def test_the_model_weighs_what_the_body_weighs(parts: list[str]) -> None:
-    """72 kg, to the twelve digits that are written."""
+    """The model weighs 72 kg, to the twelve digits that are written."""
     model, _ = loaded(mjcf_of(build_body(1.75, parts=parts)))
     assert mujoco.mj_getTotalmass(model) == pytest.approx(72.0, abs=1e-9)
 
@@ -73,7 +73,7 @@ def test_it_starts_in_the_skeletons_t_pose(hips: str, stature_m: float) -> None:
 
 
 def test_a_part_turns_by_the_product_of_its_axes() -> None:
-    """parent_from_part = R(axis 1) R(axis 2) R(axis 3), in the order of the table of parts."""
+    """A part's rotation is R(axis 1) R(axis 2) R(axis 3), in the order of the table of parts."""
     body = build_body(1.75)
     model, data = loaded(mjcf_of(body, settings=settings_of(body, free=True)))
     rng = np.random.default_rng(6)
@@ -91,7 +91,7 @@ def test_a_part_turns_by_the_product_of_its_axes() -> None:
 
 @pytest.mark.parametrize("locked", ["LeftUpperArmY", "LeftUpperArmZ", "LeftUpperArmX"])
 def test_a_locked_axis_stays_at_its_angle(locked: str) -> None:
-    """Locked at 40 degrees it has no hinge, and the others turn the part as if it had one."""
+    """An axis locked at 40 degrees has no hinge but still turns its part."""
     body = build_body(1.75)
     settings = settings_of(body)
     settings[locked] = replace(settings[locked], low_rad=radians(40), high_rad=radians(40))
@@ -110,7 +110,7 @@ def test_a_locked_axis_stays_at_its_angle(locked: str) -> None:
 
 
 def test_the_text_is_the_same_to_the_byte_in_every_process() -> None:
-    """Neither hash seed nor process decides a byte."""
+    """The MJCF does not depend on the process or its hash seed, to the byte."""
     code = (
         "import hashlib;"
         "from tests.science.avatar.bodies import STUDY_BOXES, mjcf_of;"
@@ -132,13 +132,13 @@ def test_the_text_is_the_same_to_the_byte_in_every_process() -> None:
 
 
 def test_nothing_of_the_body_touches_itself_in_the_t_pose() -> None:
-    """With self-collision the standing body has no contact."""
+    """In the T-pose the body has no contact with itself when self-collision is on."""
     _, data = loaded(mjcf_of(build_body(1.75)))
     assert data.ncon == 0
 
 
 def test_hinges_know_the_inertia_they_move() -> None:
-    """In the T-pose or with bent elbows and knees, the greater diagonal of the mass matrix."""
+    """A hinge's inertia is the greater of its mass-matrix diagonals straight and bent."""
     body = build_body(1.75)
     masses = body_masses(body, 72.0)
     settings = default_settings(body, masses)
@@ -156,7 +156,7 @@ def test_hinges_know_the_inertia_they_move() -> None:
 
 
 def test_both_sides_are_driven_alike() -> None:
-    """Inertia of hinges, gains and limits of the left are those of the right."""
+    """Hinge inertias, gains and limits are equal on the left and the right."""
     body = build_body(1.75)
     model, _ = loaded(mjcf_of(body))
     for axis in driven_axes(body, settings_of(body)):
@@ -168,8 +168,8 @@ def test_both_sides_are_driven_alike() -> None:
         assert one.forcerange == pytest.approx(two.forcerange)
 
 
-def test_an_axis_without_settings_is_refused() -> None:
-    """The error names the axis."""
+def test_an_axis_without_settings_is_rejected() -> None:
+    """An axis without settings is rejected by its name."""
     body = build_body(1.75)
     settings = settings_of(body)
     del settings["HeadY"]

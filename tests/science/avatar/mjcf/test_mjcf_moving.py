@@ -1,4 +1,4 @@
-"""The avatar's model in motion: it stands, follows, touches and never explodes."""
+"""The avatar's model in motion: it stands, follows, touches and stays stable."""
 
 from dataclasses import replace
 from math import radians
@@ -29,7 +29,7 @@ from tests.science.avatar.bodies import (
 @pytest.mark.parametrize("hips", ["carried", "welded"])
 @pytest.mark.parametrize("floor", [True, False])
 def test_it_stands_still(hips: str, *, floor: bool) -> None:
-    """Five seconds at zero targets: no warning, no drift, and no joint bent by 1.5 degrees."""
+    """After 5 s at zero targets no joint is bent by 1.5 degrees, without drift or warning."""
     options = WELDED if hips == "welded" else CARRIED
     body = build_body(1.75)
     model, data = loaded(mjcf_of(body, scene=Scene(floor=floor), options=options))
@@ -44,7 +44,7 @@ def test_it_stands_still(hips: str, *, floor: bool) -> None:
 
 
 def test_a_target_is_followed_and_clamped_to_the_limits() -> None:
-    """An elbow asked to bend by 200 degrees bends by 150."""
+    """An elbow with a target of 200 degrees bends to its limit of 150."""
     body = build_body(1.75)
     model, data = loaded(mjcf_of(body, options=ModelOptions(gravity=False)))
     motor = model.actuator("LeftLowerArmY").id
@@ -54,7 +54,7 @@ def test_a_target_is_followed_and_clamped_to_the_limits() -> None:
 
 
 def test_added_latency_can_be_changed_while_the_model_runs() -> None:
-    """A motor with a delay of 100 ms starts 100 ms later, to a step or two; up to one second."""
+    """A motor with a delay of 100 ms starts 100 ms later, to two steps; 1 s is the most."""
     body = build_body(1.75, parts=NO_FINGERS)
     model, data = loaded(mjcf_of(body, options=ModelOptions(gravity=False)))
     motor = model.actuator("LeftLowerArmY").id
@@ -71,7 +71,7 @@ def test_added_latency_can_be_changed_while_the_model_runs() -> None:
 
 @pytest.mark.parametrize("hips", ["carried", "welded"])
 def test_a_hand_at_two_metres_a_second_stops_at_a_wall(hips: str) -> None:
-    """The wall is entered by at most 5 mm and never passed."""
+    """A hand at 2 m/s enters a wall by at most 5 mm and never passes it."""
     wall = SceneBox("wall", (0.0, 1.43, -0.5), (1.5, 0.6, 0.005))
     options = WELDED if hips == "welded" else CARRIED
     model, data = loaded(mjcf_of(build_body(1.75), scene=Scene((wall,)), options=options))
@@ -93,7 +93,7 @@ def test_a_hand_at_two_metres_a_second_stops_at_a_wall(hips: str) -> None:
 
 
 def test_jumping_targets_never_explode() -> None:
-    """A hundred jumps of all targets over their whole range: no warning, no reset of the clock."""
+    """A hundred jumps of all targets over their range cause neither a warning nor a reset."""
     model, data = loaded(mjcf_of(build_body(1.75), scene=Scene()))
     rng = np.random.default_rng(1)
     for _ in range(100):
@@ -107,7 +107,7 @@ def test_jumping_targets_never_explode() -> None:
 @pytest.mark.parametrize("hips", ["carried", "welded"])
 @pytest.mark.parametrize(("stature_m", "mass_kg"), [(1.5, 45.0), (1.75, 72.0), (2.0, 120.0)])
 def test_limbs_come_to_rest_after_a_jump(hips: str, stature_m: float, mass_kg: float) -> None:
-    """Two seconds after a jump of all targets nothing trembles, whatever the body."""
+    """Two seconds after a jump of all targets no limb oscillates, whatever the body."""
     body = build_body(stature_m, parts=NO_FINGERS)
     masses = body_masses(body, mass_kg)
     options = ModelOptions(hips="welded" if hips == "welded" else "carried", self_collision=False)
@@ -122,7 +122,7 @@ def test_limbs_come_to_rest_after_a_jump(hips: str, stature_m: float, mass_kg: f
 
 
 def test_a_hand_touches_the_chest_and_the_arm_passes_it() -> None:
-    """With crossed arms there are contacts of hands, none of an arm with the torso."""
+    """With crossed arms the hands touch the torso and the arms pass through it."""
     model, data = loaded(mjcf_of(build_body(1.75), options=ModelOptions(gravity=False)))
     targets = {"LeftUpperArmY": 130.0, "LeftLowerArmY": 100.0, "LeftUpperArmZ": -25.0}
     pairs: set[frozenset[str]] = set()
@@ -138,7 +138,7 @@ def test_a_hand_touches_the_chest_and_the_arm_passes_it() -> None:
 
 
 def test_without_self_collision_only_the_scene_is_touched() -> None:
-    """The switch leaves the feet on the floor and nothing else."""
+    """Without self-collision only the feet touch anything, the floor."""
     body = build_body(1.75)
     options = ModelOptions(self_collision=False, gravity=False)
     model, data = loaded(mjcf_of(body, scene=Scene(), options=options))
@@ -158,7 +158,7 @@ def test_without_self_collision_only_the_scene_is_touched() -> None:
     ],
 )
 def test_a_model_that_lacks_parts_stands_too(absent: list[str]) -> None:
-    """A hand of four fingers, a rig of Unity's least bones, and a finger of two segments."""
+    """Models with four fingers, two finger segments or Unity's minimal bones stand as well."""
     body = build_body(1.75, parts=[part for part in PART_NAMES if part not in absent])
     model, data = loaded(mjcf_of(body, scene=Scene()))
     mujoco.mj_step(model, data, nstep=500)
@@ -168,7 +168,7 @@ def test_a_model_that_lacks_parts_stands_too(absent: list[str]) -> None:
 
 
 def test_a_motor_without_torque_lets_the_limb_hang() -> None:
-    """A greatest torque of zero is no torque, not an unbounded one."""
+    """A greatest torque of zero means no torque, not unlimited torque."""
     body = build_body(1.75, parts=NO_FINGERS)
     settings = settings_of(body)
     settings["LeftUpperArmZ"] = replace(settings["LeftUpperArmZ"], max_torque_nm=0.0)

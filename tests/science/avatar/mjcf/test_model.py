@@ -1,4 +1,4 @@
-"""A configured body as a model: deterministic, and switched as the configuration says."""
+"""The avatar model of a configuration: deterministic, and with the configuration's settings."""
 
 from dataclasses import replace
 from xml.etree import ElementTree as ET
@@ -15,12 +15,12 @@ SHIPPED = default_configuration()
 
 
 def root_of(mjcf: str) -> ET.Element:
-    """The model as a tree."""
+    """Return the root element of a model's MJCF."""
     return ET.fromstring(mjcf)  # noqa: S314 - our own text
 
 
 def test_the_same_configuration_gives_the_same_bytes() -> None:
-    """So the hash of a model need not be kept beside that of its configuration."""
+    """The same configuration always gives the same MJCF, so its hash identifies the model."""
     first, second = (avatar_model(SHIPPED, 1.75) for _ in range(2))
     assert first.mjcf == second.mjcf
     assert len(first.content_hash) == 64
@@ -29,7 +29,7 @@ def test_the_same_configuration_gives_the_same_bytes() -> None:
 
 
 def test_gains_and_limits_are_the_configurations() -> None:
-    """Of every axis that turns; a locked one has no motor."""
+    """Every free axis has the configuration's gains and limits; a locked one has no motor."""
     stiff = replace(SHIPPED.axes["HeadX"], kp=321.0, kd=12.0, max_torque_nm=34.0)
     body = with_axis(SHIPPED, "HeadX", stiff)
     motors = {one.get("name"): one for one in root_of(avatar_model(body, 1.75).mjcf).iter("pid")}
@@ -41,7 +41,7 @@ def test_gains_and_limits_are_the_configurations() -> None:
 
 
 def test_switches_reach_the_model() -> None:
-    """Gravity, hips and mass."""
+    """The model has the configuration's gravity, hips and mass."""
     light = replace(SHIPPED, gravity=False, hips="welded", total_mass_kg=50.0)
     model = avatar_model(light, 1.75)
     root = root_of(model.mjcf)
@@ -53,7 +53,7 @@ def test_switches_reach_the_model() -> None:
 
 
 def test_four_fingers_are_enough() -> None:
-    """Parts that the configuration lacks are not in the model; one it cannot do without is told."""
+    """The model omits parts that the configuration lacks; a missing required part is reported."""
     little = frozenset(part for part in PART_NAMES if "Little" in part)
     model = avatar_model(without_parts(SHIPPED, little), 1.75)
     assert set(model.body.parts) == set(PART_NAMES) - little

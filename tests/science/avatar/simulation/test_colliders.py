@@ -1,4 +1,4 @@
-"""Convex pieces as colliders: at a wall, under each other, and switched while the body runs."""
+"""Convex pieces as colliders: against a wall, next to each other, and switched at run time."""
 
 from dataclasses import replace
 from typing import Any
@@ -36,13 +36,13 @@ ARM = ("LeftUpperArm", "LeftLowerArm", "LeftHand")
 
 
 def touching(body: PhysicsAvatar) -> set[str]:
-    """The shapes that touch anything."""
+    """Return the names of the shapes that touch anything."""
     rows = body.data.contact.geom[: body.data.ncon].ravel().tolist()
     return {body.model.geom(row).name for row in rows}
 
 
 def press(body: PhysicsAvatar, seconds: float = 0.8) -> set[str]:
-    """Swing the left arm forward; what touches at the end."""
+    """Swing the left arm forward and return the shapes that touch anything at the end."""
     for _ in range(round(seconds / STEP_S)):
         body.set_targets(angles(LeftUpperArmY=1.2))
         body.step_to(body.time_s + STEP_S)
@@ -51,7 +51,7 @@ def press(body: PhysicsAvatar, seconds: float = 0.8) -> set[str]:
 
 @pytest.mark.parametrize("hips", ["carried", "welded"])
 def test_a_hand_of_skin_stops_at_a_wall(hips: Hips) -> None:
-    """Swung at 2 m/s it enters the wall by at most 5 mm, and never comes out behind."""
+    """A hand with a mesh collider at 2 m/s enters a wall by at most 5 mm and never passes it."""
     body = PhysicsAvatar(model("mesh", scene=WALL, hips=hips).mjcf)
     reach_m = abs(body.data.body("LeftMiddleProximal").xpos[0]) - 0.129 * STATURE_M
     deepest_m, fastest, before_m = 0.0, 0.0, 0.0
@@ -73,7 +73,7 @@ def test_a_hand_of_skin_stops_at_a_wall(hips: Hips) -> None:
 
 
 def test_colliders_are_chosen_part_by_part_while_it_runs() -> None:
-    """The arm leaves the wall to its other shapes, passes it without any, and none are lost."""
+    """Parts switch between simple shapes, meshes and no collider while the simulation runs."""
     body = PhysicsAvatar(model(scene=WALL, both=True).mjcf)
     assert {body.switches.collider(part) for part in body.parts} == {"simple"}
     simple = press(body)
@@ -94,7 +94,7 @@ def test_colliders_are_chosen_part_by_part_while_it_runs() -> None:
 
 
 def test_a_part_that_passes_through_keeps_its_kind() -> None:
-    """Whether it touches and with what are two switches."""
+    """Switching a part's collisions off and on keeps its collider kind."""
     body = PhysicsAvatar(model("mesh", scene=WALL).mjcf)
     for part in body.parts:
         body.switches.set_collider(part, on=False)
@@ -113,7 +113,7 @@ def test_a_part_that_passes_through_keeps_its_kind() -> None:
 
 @pytest.mark.parametrize("kind", ["simple", "mesh", "none"])
 def test_parts_are_built_with_their_own_colliders(kind: ColliderKind) -> None:
-    """Each kind for one part, another for the rest; the other shape touches nothing."""
+    """A part with a collider kind of its own touches with that kind only."""
     rest: ColliderKind = "mesh" if kind != "mesh" else "simple"
     body = PhysicsAvatar(model(rest, LeftHand=kind).mjcf)
     assert body.switches.collider("LeftHand") == kind
@@ -125,7 +125,7 @@ def test_parts_are_built_with_their_own_colliders(kind: ColliderKind) -> None:
 
 
 def test_without_a_model_a_part_may_touch_nothing_and_be_switched_on() -> None:
-    """`none` is a kind for every body."""
+    """A body without a humanoid model can start with collider `none` and switch it to `simple`."""
     usual = default_configuration()
     built = avatar_model(replace(usual, colliders="none"), STATURE_M, scene=WALL)
     body = PhysicsAvatar(built.mjcf)
@@ -135,7 +135,7 @@ def test_without_a_model_a_part_may_touch_nothing_and_be_switched_on() -> None:
 
 
 def test_pieces_need_a_model() -> None:
-    """In a configuration, and in a model that runs."""
+    """The collider `mesh` is rejected without a humanoid model, at the start and at run time."""
     for mesh in ({"colliders": "mesh"}, {"part_colliders": {"Head": "mesh"}}):
         configuration = replace(default_configuration(), **mesh)
         with pytest.raises(BodyError, match="Upload a humanoid model"):
@@ -148,7 +148,7 @@ def test_pieces_need_a_model() -> None:
 
 
 def test_a_part_without_skin_keeps_its_simple_shapes() -> None:
-    """It is listed, and touches with those."""
+    """A part without a mesh is listed as a fallback and touches with its simple shapes."""
     whole = figure()
     pieces = {part: one for part, one in whole.pieces.items() if part != "LeftHand"}
     built = model("mesh", own=replace(whole, pieces=pieces), scene=WALL)
@@ -159,13 +159,13 @@ def test_a_part_without_skin_keeps_its_simple_shapes() -> None:
 
 
 def test_a_model_is_the_same_to_the_byte() -> None:
-    """With pieces in it, and however they were kept."""
+    """The MJCF of an avatar with meshes is deterministic, to the byte."""
     assert model("mesh").mjcf == model("mesh").mjcf
     assert model("mesh").mjcf != model().mjcf
 
 
 def test_pieces_change_no_mass_and_no_hinge() -> None:
-    """Only what touches differs."""
+    """Mesh colliders change neither masses nor inertias nor hinge armatures."""
     plain, _ = loaded(model().mjcf)
     skin, _ = loaded(model("mesh").mjcf)
     assert np.array_equal(plain.body_mass, skin.body_mass)
@@ -174,7 +174,7 @@ def test_pieces_change_no_mass_and_no_hinge() -> None:
 
 
 def followed(built: AvatarModel) -> PhysicsAvatar:
-    """A body that follows two seconds of a made-up movement."""
+    """Let an avatar follow two seconds of a made-up movement and return it."""
     body = PhysicsAvatar(built.mjcf)
     follower = Follower(body, target_angles(built))
     hips = np.array((0.0, built.body.places_m()["Hips"][1], 0.0))
@@ -192,7 +192,7 @@ def followed(built: AvatarModel) -> PhysicsAvatar:
 @pytest.mark.parametrize("lacking", [("Little",), ("Little", "Ring"), ("Toes", "UpperChest")])
 @pytest.mark.parametrize("kind", ["simple", "mesh"])
 def test_models_that_lack_parts_follow(lacking: tuple[str, ...], kind: ColliderKind) -> None:
-    """Hands with four and three fingers, a body without toes: no number that is none, no reset."""
+    """Models without some fingers or toes follow a movement without NaN and without a reset."""
     body = followed(model(kind, own=figure(*lacking), scene=Scene()))
     assert body.health.restored == 0
     assert body.time_s == pytest.approx(2.0)
@@ -201,9 +201,9 @@ def test_models_that_lack_parts_follow(lacking: tuple[str, ...], kind: ColliderK
 @settings(max_examples=usually(8, at_length=25), deadline=None, derandomize=True)
 @given(st.integers(0, 10_000))
 def test_odd_bodies_stand(seed: int) -> None:
-    """Bones between half and one and a half times as long: refused by name, or a body that holds.
+    """Bodies with bones of half to one and a half times the length are rejected or stay stable.
 
-    With simple shapes on one side and skin on the other.
+    Here with simple shapes on one side and meshes on the other.
     """
     rng = np.random.default_rng(seed)
 
@@ -229,7 +229,7 @@ def test_odd_bodies_stand(seed: int) -> None:
 
 
 def test_random_poses_never_explode() -> None:
-    """200 jumps of all targets among skins and walls, and 20 teleports: no failure, no reset."""
+    """200 random poses and 20 teleports among meshes and walls cause no failure or reset."""
     rng = np.random.default_rng(8)
     body = PhysicsAvatar(model("mesh", scene=replace(WALL, floor=True)).mjcf)
     for frame in range(1, 201):
@@ -243,8 +243,8 @@ def test_random_poses_never_explode() -> None:
     assert body.time_s == pytest.approx(200 / 90.0, abs=STEP_S)
 
 
-def test_an_empty_room_is_as_before() -> None:
-    """A body without a model has neither meshes nor another way of finding contacts."""
+def test_a_body_without_a_humanoid_model_has_no_meshes() -> None:
+    """A body without a humanoid model has no meshes and default contact detection."""
     text = avatar_model(default_configuration(), STATURE_M, scene=EMPTY).mjcf
     assert "mesh" not in text
     assert "midphase" not in text

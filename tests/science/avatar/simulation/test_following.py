@@ -1,4 +1,4 @@
-"""Targets in joints and targets in the room."""
+"""Targets relative to the parent joint, and targets in the space of the room."""
 
 import math
 
@@ -18,7 +18,7 @@ PUSH_NM = 150.0
 
 
 def _pushed(target_space: TargetSpace) -> dict[str, float]:
-    """How far parts have turned, in degrees, after the chest was pushed sideways for a second."""
+    """Return by how many degrees the parts turned after a sideways push on the chest for 1 s."""
     body, pose = avatar(), identity(len(JOINT_INDEX))
     follower = Follower(body, target_angles(model()), target_space=target_space)
     follower.start(HIPS_M, pose)
@@ -31,7 +31,7 @@ def _pushed(target_space: TargetSpace) -> dict[str, float]:
 
 
 def test_a_pushed_trunk_drags_hands_and_head_only_in_joint_space() -> None:
-    """In the room's space they keep their orientation to a third of what the trunk gives way."""
+    """With targets in world space, head and arms turn less than half as far as a pushed trunk."""
     local, world = _pushed("local"), _pushed("world")
     assert local["UpperChest"] > 2.0
     assert world["UpperChest"] == pytest.approx(local["UpperChest"], rel=0.2)
@@ -43,7 +43,7 @@ def test_a_pushed_trunk_drags_hands_and_head_only_in_joint_space() -> None:
 
 @pytest.mark.parametrize("target_space", ["local", "world"])
 def test_latency_delays_the_limbs_in_both_spaces(target_space: TargetSpace) -> None:
-    """An elbow that bends at once has not moved after 0.1 s of 0.2, and has after half a second."""
+    """With a delay of 0.2 s an elbow has not moved after 0.1 s and has after half a second."""
     body = avatar()
     built = model()
     follower = Follower(body, target_angles(built), target_space=target_space, delay_s=0.2)
@@ -61,8 +61,8 @@ def test_latency_delays_the_limbs_in_both_spaces(target_space: TargetSpace) -> N
     assert seen[-1] == pytest.approx(1.0, abs=0.03)
 
 
-def test_the_pose_to_start_from_is_there_at_once() -> None:
-    """A body that starts in a pose neither moves there nor swings."""
+def test_a_body_starts_in_its_start_pose_without_moving() -> None:
+    """A body that starts in a pose is in that pose in its first frame."""
     body = avatar()
     pose = identity(len(JOINT_INDEX))
     pose[JOINT_INDEX["RightLowerArm"]] = (math.cos(0.4), 0.0, math.sin(0.4), 0.0)

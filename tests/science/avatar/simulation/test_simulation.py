@@ -1,4 +1,4 @@
-"""The avatar under forces: it follows, it touches, and nothing throws it off."""
+"""The simulated avatar: it follows, it touches, and it stays stable."""
 
 import math
 from pathlib import Path
@@ -23,7 +23,7 @@ FRAME_S = 1.0 / RATE_HZ
 
 
 def test_the_t_pose_stays() -> None:
-    """Two seconds after the start nothing has sunk by a degree under its own weight."""
+    """After two seconds in the T-pose no joint has sunk by a degree under the body's weight."""
     body = avatar()
     run(body, angles(), 180)
     assert np.degrees(np.nanmax(np.abs(body.state().angles_rad))) < 1.0
@@ -43,7 +43,7 @@ def test_a_step_is_reached(name: str) -> None:
 
 @pytest.mark.parametrize("capture", [WALK, REACH, TURN, LONG])
 def test_real_movements_are_followed(shared_data: Path, capture: str) -> None:
-    """At 90 Hz the driven axes are 1.5 deg from the clamped command on average, 5 at the p95."""
+    """At 90 Hz the error from the clamped command is 1.5 deg on average, 5 deg at the p95."""
     followed = follow(model(), captured(shared_data, capture))
     errors = followed.errors_deg()
     assert errors.mean() < 1.5
@@ -53,7 +53,7 @@ def test_real_movements_are_followed(shared_data: Path, capture: str) -> None:
 
 @pytest.mark.parametrize("ordered_s", [0.0, 0.125, 0.350])
 def test_added_latency_is_achieved_within_a_frame(shared_data: Path, ordered_s: float) -> None:
-    """What is measured from the two streams is the ordered delay to 11.1 ms."""
+    """The latency measured between the two streams is the set delay to within 11.1 ms."""
     movement = captured(shared_data, LONG)
     followed = follow(model(), movement, delay_s=ordered_s)
     command = joint_rotations(followed.targets.angles_rad, movement.rotations[:, 0])
@@ -72,7 +72,7 @@ def test_the_hips_are_never_late(shared_data: Path) -> None:
 
 
 def test_a_hand_does_not_enter_a_wall() -> None:
-    """At 2 m/s it enters by at most 5 mm, is told as a contact, and never comes out behind."""
+    """A hand at 2 m/s enters a wall by at most 5 mm, reported as a contact, and never passes."""
     found = driven_into_a_wall()
     assert found.speed_m_s > 1.7
     assert found.touched == {"wall"}
@@ -92,20 +92,20 @@ def _thrown_about(hips: Hips, jumps: int, every: int) -> None:
 
 
 @pytest.mark.parametrize("hips", ["carried", "welded"])
-def test_nothing_throws_it_off(hips: Hips) -> None:
-    """500 random poses and 50 teleports into walls: no failure, no reset, the clock exact."""
+def test_random_poses_and_teleports_cause_no_failure(hips: Hips) -> None:
+    """500 random poses and 50 teleports into walls cause no failure and no reset."""
     _thrown_about(hips, 500, 10)
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("hips", ["carried", "welded"])
-def test_nothing_ever_throws_it_off(hips: Hips) -> None:
-    """10,000 random poses and 1,000 teleports up to 10 m, likewise."""
+def test_many_random_poses_and_teleports_cause_no_failure(hips: Hips) -> None:
+    """10,000 random poses and 1,000 teleports of up to 10 m cause no failure and no reset."""
     _thrown_about(hips, 10_000, 10)
 
 
-def test_a_state_that_is_not_finite_is_put_back() -> None:
-    """The failure is counted, the pose before it is kept, and the clock goes on."""
+def test_a_state_that_is_not_finite_is_restored() -> None:
+    """After a non-finite state the previous pose is restored, counted, and the clock goes on."""
     body = avatar()
     bent = angles(LeftLowerArmY=0.5)
     run(body, bent, 90)
@@ -120,8 +120,8 @@ def test_a_state_that_is_not_finite_is_put_back() -> None:
     assert body.health.restored == 1
 
 
-def test_values_that_are_not_finite_are_not_taken_over() -> None:
-    """A NaN among targets or hips is counted, and the body stays as it is."""
+def test_targets_that_are_not_finite_are_ignored() -> None:
+    """A NaN among targets or hips is counted, and the body stays unchanged."""
     body = avatar()
     body.set_hips(np.array([np.nan, 1.0, 0.0]), identity())
     run(body, np.full(len(AXES), np.nan), 10)
@@ -130,7 +130,7 @@ def test_values_that_are_not_finite_are_not_taken_over() -> None:
 
 
 def test_targets_move_at_most_at_the_greatest_speed() -> None:
-    """A jump of 90 degrees takes longer than a frame, and is told."""
+    """A target that jumps by 90 degrees is limited in speed, and the limiting is reported."""
     body = avatar()
     body.set_targets(angles(LeftLowerArmY=math.pi / 2))
     body.step_to(FRAME_S)
@@ -140,7 +140,7 @@ def test_targets_move_at_most_at_the_greatest_speed() -> None:
 
 
 def test_hips_that_jump_are_teleported_and_others_are_not() -> None:
-    """Two metres are a teleport; a step of a tenth is the way of a frame."""
+    """A jump of the hips by two metres is a teleport; a step of 0.1 m is a movement."""
     body = avatar(hips="welded")
     body.set_hips(HIPS_M + 2.0 * TO_THE_RIGHT, identity())
     body.step_to(FRAME_S)
@@ -150,8 +150,8 @@ def test_hips_that_jump_are_teleported_and_others_are_not() -> None:
     assert body.health.teleports == 1
 
 
-def test_what_cannot_be_is_told() -> None:
-    """Texts that are no model, delays and times out of range, and hinges that are not there."""
+def test_invalid_models_delays_times_and_hinges_are_rejected() -> None:
+    """Invalid models, delays, times and unknown hinges raise errors that name them."""
     with pytest.raises(SimulationError, match="cannot load"):
         PhysicsAvatar("<mujoco><nonsense/></mujoco>")
     with pytest.raises(SimulationError, match="no hips"):

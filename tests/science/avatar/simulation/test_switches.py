@@ -1,4 +1,4 @@
-"""What can be changed about an avatar while it runs."""
+"""Settings of an avatar that can be changed while it runs."""
 
 import math
 
@@ -13,8 +13,8 @@ from tests.science.avatar.captured import RATE_HZ
 from tests.science.avatar.simulated import angle_of, angles, avatar, run
 
 
-def test_a_cast_holds_an_arm_while_the_rest_moves() -> None:
-    """Held axes stay within a degree, and move again when they are released."""
+def test_a_locked_arm_is_held_while_the_rest_moves() -> None:
+    """Locked axes stay within a degree and move again when they are unlocked."""
     body = avatar()
     arm = [name for name in axes_of("left_arm") if name in body.axis_names]
     body.switches.hold(arm)
@@ -31,7 +31,7 @@ def test_a_cast_holds_an_arm_while_the_rest_moves() -> None:
 
 
 def test_colliders_are_switched_while_it_runs() -> None:
-    """An arm in a wall's way passes through it without its colliders."""
+    """An arm passes through a wall while its colliders are switched off."""
     wall = Scene((SceneBox("wall", (-0.8, 1.4, -0.31), (0.5, 0.6, 0.01)),), floor=False)
     body = avatar(wall)
     for part in ("LeftHand", "LeftLowerArm", "LeftUpperArm"):
@@ -44,7 +44,7 @@ def test_colliders_are_switched_while_it_runs() -> None:
 
 
 def test_self_collision_is_a_switch() -> None:
-    """A hand on its way into the thigh stays on it only while the body collides with itself."""
+    """A hand stops at the thigh only while self-collision is on."""
     into_the_thigh = angles(
         RightUpperArmZ=-1.9, RightUpperArmX=-0.5, RightUpperArmY=0.0, RightLowerArmY=0.2
     )
@@ -58,7 +58,7 @@ def test_self_collision_is_a_switch() -> None:
 
 
 def test_gravity_is_a_switch() -> None:
-    """Without it an outstretched arm does not sag at all."""
+    """Without gravity an outstretched arm does not sag."""
     body = avatar()
     body.switches.set_gravity(on=False)
     run(body, angles(), 90)

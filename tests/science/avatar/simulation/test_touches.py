@@ -1,4 +1,4 @@
-"""Boxes that come and go, and what of them the avatar touches."""
+"""Boxes that are shown and hidden, and which of their surfaces the avatar touches."""
 
 import numpy as np
 import pytest
@@ -23,13 +23,13 @@ MARGIN_M = 0.005
 
 
 def standing() -> tuple[PhysicsAvatar, SurfaceTouches]:
-    """In the T-pose, the right hand a little way off the wall, both feet on the mark."""
+    """Return a body in the T-pose, the right hand near the wall and both feet on the mark."""
     body = avatar(SCENE, fingers=True)
     return body, SurfaceTouches(body, (WALL, MARK), MARGIN_M)
 
 
 def go(body: PhysicsAvatar, metres: float, speed_m_s: float = 0.5) -> None:
-    """Carry the hips to the right."""
+    """Carry the hips to the right by this many metres."""
     start, begun_s = body.state().root_position_m, body.time_s
     count = max(1, round(abs(metres) / speed_m_s * RATE_HZ))
     for frame in range(1, count + 1):
@@ -38,22 +38,22 @@ def go(body: PhysicsAvatar, metres: float, speed_m_s: float = 0.5) -> None:
 
 
 def touched(touches: SurfaceTouches, surface: int) -> set[str]:
-    """The joints that touch a surface now."""
+    """Return the joints that touch a surface now."""
     now, near = touches.read()
     assert not (now & ~near).any()
     return {name for name, row in JOINT_INDEX.items() if now[surface, row]}
 
 
-def test_a_hand_touches_the_wall_that_holds_it_up() -> None:
-    """With a finger, which counts as the hand; before that nothing touches."""
+def test_a_hand_touches_the_wall_that_stops_it() -> None:
+    """A finger at the wall counts as the hand touching it; before that nothing touches."""
     body, touches = standing()
     assert touched(touches, 0) == set()
     go(body, 0.1)
     assert touched(touches, 0) == {"RightHand"}
 
 
-def test_what_is_not_shown_is_passed_through() -> None:
-    """The same walk without the wall touches nothing; shown again, it pushes the hand out."""
+def test_a_hidden_wall_is_passed_through() -> None:
+    """A hidden wall is not touched; a wall shown inside the hand pushes it out."""
     body, touches = standing()
     body.boxes.show((MARK,))
     go(body, 0.1)
@@ -64,8 +64,8 @@ def test_what_is_not_shown_is_passed_through() -> None:
     assert body.health.restored == 0
 
 
-def test_feet_stand_on_a_mark_that_holds_nothing_up() -> None:
-    """Both feet at first, none a metre away."""
+def test_feet_touch_the_floor_mark_they_stand_on() -> None:
+    """Both feet touch the floor mark they stand on, and neither does a metre away."""
     body, touches = standing()
     go(body, 0.0)
     assert {"LeftFoot", "RightFoot"} <= touched(touches, 1) <= {
@@ -75,8 +75,8 @@ def test_feet_stand_on_a_mark_that_holds_nothing_up() -> None:
     assert touched(touches, 1) == set()
 
 
-def test_a_touch_is_held_until_the_hand_is_a_little_way_off() -> None:
-    """Within the margin it is near, though no contact; beyond it is over."""
+def test_a_touch_ends_beyond_the_release_margin() -> None:
+    """Within the margin a hand is near though not in contact; beyond it the touch ends."""
     body, touches = standing()
     go(body, 0.1)
     hand = JOINT_INDEX["RightHand"]
@@ -91,8 +91,8 @@ def test_a_touch_is_held_until_the_hand_is_a_little_way_off() -> None:
     assert (False, True) not in seen[seen.index((False, False)) :]
 
 
-def test_a_box_that_is_not_there_cannot_be_shown() -> None:
-    """The error names those that are."""
+def test_an_unknown_box_cannot_be_shown() -> None:
+    """Showing an unknown box raises an error that names the existing ones."""
     body, _ = standing()
     with pytest.raises(SimulationError, match=f"no 'hand/9/panel': name one of {WALL}, {MARK}"):
         body.boxes.show(("hand/9/panel",))

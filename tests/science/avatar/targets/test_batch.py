@@ -1,4 +1,4 @@
-"""A recording is followed as its frames are, one by one."""
+"""Converting a whole recording to angles gives the same as converting frame by frame."""
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ FRAMES = 1300
 
 
 def wild_movement(frames: int = FRAMES, seed: int = 1) -> FloatArray:
-    """Every joint turns at random, all the way round and through every lock."""
+    """Return a movement in which every joint turns at random, through every gimbal lock."""
     rng = np.random.default_rng(seed)
     turns = from_rotation_vector(rng.normal(scale=0.15, size=(frames, JOINT_COUNT, 3)))
     poses = np.empty((frames, JOINT_COUNT, 4))
@@ -39,8 +39,8 @@ def _one_by_one(poses: FloatArray, fingers: dict[str, FloatArray], restarts: set
 
 
 @pytest.mark.parametrize("restarts", [set(), {0, 1, 511, 512, 700, 1024}])
-def test_a_recording_is_the_same_to_the_bit(restarts: set[int]) -> None:
-    """With fingers, through blocks, and with new beginnings within and at the edges of them."""
+def test_a_recording_equals_its_frames_to_the_bit(restarts: set[int]) -> None:
+    """A recording gives the same angles as its frames, also with fingers and with restarts."""
     poses = wild_movement()
     fingers = {"LeftIndexProximal": wild_movement(seed=2)[:, 3]}
     begins = np.isin(np.arange(FRAMES), list(restarts))
@@ -51,8 +51,8 @@ def test_a_recording_is_the_same_to_the_bit(restarts: set[int]) -> None:
     np.testing.assert_array_equal(together.residual_rad, alone.residual_rad)
 
 
-def test_beginning_anew_gives_what_a_new_follower_gives() -> None:
-    """Nothing of the frames before is left, and without it something would be."""
+def test_a_restart_gives_what_a_new_converter_gives() -> None:
+    """After a restart the angles do not depend on the frames before it."""
     poses = wild_movement()
     begins = np.arange(FRAMES) == 700
     joined = TargetAngles(ANATOMIC).batch(poses, restarts=begins).unclamped_rad
@@ -64,12 +64,12 @@ def test_beginning_anew_gives_what_a_new_follower_gives() -> None:
 
 
 def test_a_rotation_that_is_not_finite_costs_its_frame_only() -> None:
-    """What follows from it is unknown there, and followed from the frame before in the next."""
+    """A non-finite rotation makes its angles NaN in its own frame only."""
     poses = wild_movement(40)
     broken = poses.copy()
     broken[20, JOINT_INDEX["LeftLowerArm"]] = np.nan
     found = TargetAngles(ANATOMIC).batch(broken)
-    # The bone above an elbow is turned until the hinge fits.
+    # The upper arm takes over part of the rotation so that the elbow's hinge fits.
     lost = np.array([axis.part in {"LeftUpperArm", "LeftLowerArm"} for axis in AXES])
     np.testing.assert_array_equal(np.isnan(found.unclamped_rad[20]), lost)
     np.testing.assert_array_equal(np.isnan(found.angles_rad[20]), lost)
@@ -85,8 +85,8 @@ def test_a_rotation_that_is_not_finite_costs_its_frame_only() -> None:
     )
 
 
-def test_what_rounding_takes_is_not_clipped() -> None:
-    """An elbow held straight, at its limit, to the digits that a pose travels with."""
+def test_rounding_at_a_limit_is_not_clipping() -> None:
+    """An elbow at its limit, rounded as in transmission, does not count as clipped."""
     straight = np.zeros((1, len(AXIS_NAMES)))
     noise = np.full_like(straight, -1e-7)
     assert not Targets(straight, noise, straight).clipped.any()

@@ -1,4 +1,4 @@
-"""What an avatar moved by physics is asked for."""
+"""The reference motion of a physics avatar: what its hinges can do of the participant's pose."""
 
 import math
 from pathlib import Path
@@ -35,7 +35,7 @@ def _clipped(asked: ReferenceMotion) -> npt.NDArray[np.bool_]:
 
 
 def _shrugging() -> FloatArray:
-    """Two seconds: shoulders rise by 20 deg, elbows and knees bend 30 deg askew."""
+    """Return two seconds in which shoulders rise by 20 deg and elbows and knees bend askew."""
     poses = identity(180, JOINT_COUNT)
     swing = np.sin(np.linspace(0.0, math.pi, 180))
     for joint, axis, size in (
@@ -48,8 +48,8 @@ def _shrugging() -> FloatArray:
     return poses
 
 
-def test_an_avatar_that_does_as_it_is_told_has_no_error() -> None:
-    """Though its own rotations are not the participant's: these would blame it by 20 deg."""
+def test_an_avatar_that_follows_its_command_has_no_error() -> None:
+    """An avatar exactly at its command has no error, though raw rotations differ by 20 deg."""
     poses = _shrugging()
     told = TargetAngles(ANATOMIC).batch(poses)
     actual = joint_rotations(told.unclamped_rad, poses[:, 0])
@@ -62,7 +62,7 @@ def test_an_avatar_that_does_as_it_is_told_has_no_error() -> None:
 
 
 def test_a_joint_without_a_hinge_has_no_figures() -> None:
-    """Neither an error nor a sample nor one that was left out: it is not asked for anything."""
+    """A joint without a hinge has no error and no samples, and none count as left out."""
     poses = wild_movement(50)
     parts = [part for part in PART_NAMES if part != "Chest"]
     asked = HingeReference(ANATOMIC, parts).recording(_times_s(50), poses)
@@ -75,8 +75,8 @@ def test_a_joint_without_a_hinge_has_no_figures() -> None:
     assert not summary.left_out.any()
 
 
-def test_shares_are_of_hinges_that_turn() -> None:
-    """A knee has two, an elbow as many as its limits leave, a toe one, a cast none."""
+def test_clipped_shares_exist_only_for_free_hinges() -> None:
+    """Only free hinges have a clipped share: two of a knee, one of a toe, none of a locked leg."""
     poses = wild_movement(50)
     cast = lock(default_configuration(), "left_leg")
 
@@ -96,8 +96,8 @@ def test_shares_are_of_hinges_that_turn() -> None:
         assert shares(HingeReference(limits), joint) == expected, joint
 
 
-def test_a_limb_in_a_cast_has_the_error_of_what_it_cannot_do() -> None:
-    """A knee held straight while the participant bends theirs by 40 deg is 40 deg wrong."""
+def test_a_locked_limb_has_the_error_of_the_movement_it_misses() -> None:
+    """A locked straight knee has an error of 40 deg while the participant bends theirs by 40."""
     cast = lock(default_configuration(), "left_leg")
     angles = np.zeros((20, len(AXIS_NAMES)))
     angles[:, AXIS_NAMES.index("LeftLowerLegX")] = math.radians(40.0)
@@ -109,8 +109,8 @@ def test_a_limb_in_a_cast_has_the_error_of_what_it_cannot_do() -> None:
 
 
 @pytest.mark.parametrize("broken", [np.nan, 0.0, 0.7])
-def test_what_follows_from_a_rotation_that_is_none_is_unknown(broken: float) -> None:
-    """A hand's also at the forearm, which turns for it; every other joint and frame counts."""
+def test_an_invalid_rotation_makes_only_dependent_joints_unknown(broken: float) -> None:
+    """An invalid hand rotation makes hand and forearm unknown in that frame, and nothing else."""
     poses = wild_movement(30)
     poses[10, JOINT_INDEX["RightHand"]] = broken
     asked = HingeReference(ANATOMIC).recording(_times_s(30), poses)
@@ -122,8 +122,8 @@ def test_what_follows_from_a_rotation_that_is_none_is_unknown(broken: float) -> 
 
 
 @pytest.mark.parametrize("jump_s", [2.0 * GAP_S, -1.0])
-def test_after_a_gap_hinges_are_followed_anew(jump_s: float) -> None:
-    """As after a time that goes back: the frames before say nothing any more."""
+def test_hinges_restart_after_a_gap(jump_s: float) -> None:
+    """After a gap or a time that goes back, the hinge angles do not depend on earlier frames."""
     poses, times_s, gap = wild_movement(), _times_s(FRAMES), 700
     late_s = np.where(np.arange(FRAMES) < gap, times_s, times_s + jump_s)
     reference = HingeReference(ANATOMIC)
@@ -133,8 +133,8 @@ def test_after_a_gap_hinges_are_followed_anew(jump_s: float) -> None:
     assert not np.array_equal(_clipped(cut), _clipped(together))
 
 
-def test_one_pose_is_asked_for_as_a_recording_of_it() -> None:
-    """What is shown live is what is stored, and joints without a hinge show nothing."""
+def test_one_pose_has_the_reference_of_a_recording_of_it() -> None:
+    """A live pose has the same reference as a recording of it; joints without a hinge have none."""
     poses = wild_movement(20)
     reference = HingeReference(ANATOMIC)
     for pose in poses:
@@ -146,8 +146,8 @@ def test_one_pose_is_asked_for_as_a_recording_of_it() -> None:
         assert geodesic_angle(live[0], pose[0]) < 1e-12
 
 
-def test_a_real_walk_is_followed_by_what_hinges_can_do(shared_data: Path) -> None:
-    """At 125 ms the motors are a degree behind their command; raw rotations say five times that."""
+def test_a_real_walk_has_a_small_error_against_its_command(shared_data: Path) -> None:
+    """At 125 ms the error is below 1.5 deg against the command, above 5 against raw rotations."""
     movement = captured(shared_data, WALK)
     built = model()
     followed = follow(built, movement, delay_s=0.125)
@@ -163,15 +163,15 @@ def test_a_real_walk_is_followed_by_what_hinges_can_do(shared_data: Path) -> Non
     assert mean_deg(ReferenceMotion(movement.rotations)) > 5.0
 
 
-def test_a_recording_without_frames_asks_for_nothing() -> None:
-    """As a run of which every target frame was lost."""
+def test_a_recording_without_frames_has_an_empty_reference() -> None:
+    """A run of which every target frame was lost has an empty reference."""
     asked = HingeReference(ANATOMIC).recording(np.zeros(0), np.zeros((0, JOINT_COUNT, 4)))
     assert asked.rotations.shape == (0, JOINT_COUNT, 4)
     assert _clipped(asked).shape == (0, len(ERROR_JOINTS), 3)
 
 
 def test_limits_may_be_settings() -> None:
-    """A configuration's axes in force are limits too."""
+    """The limits may be given as the axis settings of a configuration."""
     settings = default_configuration().in_force
     assert all(isinstance(one, AxisSettings) for one in settings.values())
     poses = wild_movement(5)

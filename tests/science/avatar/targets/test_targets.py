@@ -1,4 +1,4 @@
-"""From poses to angles of the hinges and back: laws, gimbal lock, real captures."""
+"""Converting poses to hinge angles and back: properties, gimbal lock, real captures."""
 
 import math
 from dataclasses import dataclass
@@ -56,7 +56,7 @@ def _column(name: str) -> int:
 
 
 def test_angles_within_the_limits_come_back() -> None:
-    """Angles to rotations to angles is the identity to 1e-10, fingers included."""
+    """Angles converted to rotations and back are the same to 1e-10, fingers included."""
     rng = np.random.default_rng(1)
     follower = TargetAngles(ANATOMIC)
     for _ in range(200):
@@ -71,7 +71,7 @@ def test_angles_within_the_limits_come_back() -> None:
 
 
 def test_three_axes_make_every_rotation() -> None:
-    """With unbounded axes any pose comes back to 1e-10, the collar bone's turn in the upper arm."""
+    """Unbounded axes reproduce any pose to 1e-10, with the collar bone's turn in the arm."""
     rng = np.random.default_rng(2)
     follower = TargetAngles(ANYWHERE)
     joints = [name for name in JOINT_NAMES if len(AXES_OF[name]) == 3 and "UpperLeg" not in name]
@@ -88,7 +88,7 @@ def test_three_axes_make_every_rotation() -> None:
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_gimbal_lock_is_passed_with_the_least_change(side: float) -> None:
-    """Exactly at the lock the pose is still made, and no angle moves more than the pose does."""
+    """At a gimbal lock the pose is still met and no angle moves more than the pose does."""
     axes = [axis.name for axis in AXES_OF["LeftUpperArm"]]
     columns = [_column(name) for name in axes]
     follower = TargetAngles(ANYWHERE)
@@ -104,7 +104,7 @@ def test_gimbal_lock_is_passed_with_the_least_change(side: float) -> None:
 
 
 def test_whole_turns_do_not_add_up() -> None:
-    """A head that is turned round and round is never asked to be more than 225 deg round."""
+    """A head that keeps turning round never has a target beyond 225 deg."""
     follower = TargetAngles(ANYWHERE)
     angles = np.zeros(len(AXIS_NAMES))
     for turned in np.linspace(0.0, 6.0 * math.pi, 600):
@@ -114,7 +114,7 @@ def test_whole_turns_do_not_add_up() -> None:
 
 
 def test_a_knee_and_an_elbow_that_bend_askew_keep_all_below_them_in_place() -> None:
-    """Forearm, shank, hand and foot keep their orientation, the bones above their direction."""
+    """Where knees and elbows bend askew, the parts below them keep their orientation."""
     rng = np.random.default_rng(3)
     follower = TargetAngles(ANATOMIC)
     for _ in range(100):
@@ -149,7 +149,7 @@ def test_a_knee_and_an_elbow_that_bend_askew_keep_all_below_them_in_place() -> N
 
 
 def test_a_forearm_takes_over_what_a_wrist_cannot_turn() -> None:
-    """A hand turned by 40 deg about the forearm ends up where it was asked to be."""
+    """A hand turned by 40 deg about the forearm is reached by turning the forearm."""
     pose = identity(len(JOINT_NAMES))
     hand = JOINT_INDEX["LeftHand"]
     pose[hand] = from_rotation_vector(np.array([-math.radians(40.0), 0.0, 0.0]))
@@ -160,7 +160,7 @@ def test_a_forearm_takes_over_what_a_wrist_cannot_turn() -> None:
 
 
 def test_two_axes_come_as_near_as_they_can() -> None:
-    """No other angles of a proximal finger miss a rotation by less."""
+    """The two angles of a proximal finger come as near to any rotation as possible."""
     rng = np.random.default_rng(4)
     part = "LeftIndexProximal"
     columns = [_column(axis.name) for axis in AXES_OF[part]]
@@ -178,7 +178,7 @@ def test_two_axes_come_as_near_as_they_can() -> None:
         assert np.all(geodesic_angle(rotations_of(tried)[part], asked) >= missed - 1e-9)
 
 
-def test_parts_that_a_model_lacks_hand_their_turn_down() -> None:
+def test_the_turn_of_a_missing_part_goes_to_its_children() -> None:
     """Without chest, upper chest and neck, head and arms keep their orientation in the world."""
     rng = np.random.default_rng(5)
     parts = [part for part in PART_NAMES if part not in {"Chest", "UpperChest", "Neck"}]
@@ -191,7 +191,7 @@ def test_parts_that_a_model_lacks_hand_their_turn_down() -> None:
 
 
 def test_what_is_beyond_the_limits_is_clamped_and_counted() -> None:
-    """A knee bent backwards in one frame of two is clamped there, and its share is a half."""
+    """A knee bent backwards in one frame of two is clamped there, and its share is one half."""
     poses = identity(2, len(JOINT_NAMES))
     angles = np.zeros(len(AXIS_NAMES))
     angles[_column("LeftLowerLegX")] = -0.04
@@ -206,7 +206,7 @@ def test_what_is_beyond_the_limits_is_clamped_and_counted() -> None:
 
 @pytest.mark.parametrize("name", [*WALKS, REACH])
 def test_real_movements_have_no_jumps(shared_data: Path, name: str) -> None:
-    """No axis moves faster than a foot that swings does: 20 rad/s."""
+    """In real movements no axis turns faster than a swinging foot, 20 rad/s."""
     movement = captured(shared_data, name)
     found = TargetAngles(ANATOMIC).batch(movement.rotations)
     steps = np.abs(np.diff(found.unclamped_rad, axis=0)) * movement.rate_hz
@@ -214,8 +214,8 @@ def test_real_movements_have_no_jumps(shared_data: Path, name: str) -> None:
     np.testing.assert_array_less(np.abs(found.velocities_rad_s(movement.rate_hz)), 20.0)
 
 
-def test_wrong_shapes_and_missing_limits_are_told() -> None:
-    """The errors name what was given."""
+def test_wrong_shapes_and_missing_limits_are_rejected() -> None:
+    """Errors about wrong shapes and missing limits name what was given."""
     with pytest.raises(TargetError, match=r"\(21, 4\)"):
         TargetAngles(ANATOMIC).follow(identity(21))
     with pytest.raises(TargetError, match="SpineX"):

@@ -1,4 +1,4 @@
-"""What a tuned avatar shows on real people: how near it follows, and how late it is."""
+"""How closely and how late a tuned avatar follows captured movements of real people."""
 
 import time
 from collections.abc import Callable
@@ -45,7 +45,7 @@ def _tuned() -> Configuration:
 
 
 def test_every_axis_of_the_whole_body_is_tuned() -> None:
-    """None is flagged; a step of 30 degrees overshoots by 3 % in the median, by 10 % at worst."""
+    """No axis is flagged; 30 degree steps overshoot by 3 % in the median and 10 % at worst."""
     free = [one for one in _report().axes if one.status != "locked"]
     assert len(free) == 89
     assert {one.status for one in free} <= {"tuned", "retried"}
@@ -62,7 +62,7 @@ def test_every_axis_of_the_whole_body_is_tuned() -> None:
 def test_a_tuned_body_follows_real_people(
     shared_data: Path, read: Callable[[Path, str], Movement], name: str, hips: Hips
 ) -> None:
-    """At 90 Hz: 1.5 deg from the clamped command on average, 5 at the 95th percentile."""
+    """At 90 Hz the error from the clamped command is 1.5 deg on average, 5 deg at the p95."""
     found = track(replace(_tuned(), hips=hips), STATURE_M, read(shared_data, name))
     assert found.clamped.mean_deg <= 1.5
     assert found.clamped.p95_deg <= 5.0
@@ -70,8 +70,8 @@ def test_a_tuned_body_follows_real_people(
     assert 0.0 < found.clipped_share < 0.5
 
 
-def test_a_floor_does_no_harm_where_the_capture_knows_it(shared_data: Path) -> None:
-    """A person who stands at tables keeps the limits on the floor, feet and toes included."""
+def test_a_floor_does_no_harm_to_a_person_who_stands(shared_data: Path) -> None:
+    """A person standing at tables is followed within the same limits on a floor, feet included."""
     found = track(_tuned(), STATURE_M, captured(shared_data, REACH), scene=FLOOR_ONLY)
     assert found.touching.samples > 0
     assert found.free.samples + found.touching.samples == found.clamped.samples
@@ -79,7 +79,7 @@ def test_a_floor_does_no_harm_where_the_capture_knows_it(shared_data: Path) -> N
     assert found.clamped.p95_deg <= 5.0
 
 
-def test_the_turn_is_one(shared_data: Path) -> None:
+def test_the_turning_capture_turns(shared_data: Path) -> None:
     """The dancer's pelvis turns round four times over four metres."""
     movement = travelling(shared_data, TURN)
     right = rotate(movement.rotations[:, 0], np.array([1.0, 0.0, 0.0]))
@@ -91,10 +91,10 @@ def test_the_turn_is_one(shared_data: Path) -> None:
 
 @pytest.mark.parametrize("ordered_s", [0.125, 0.350])
 @pytest.mark.parametrize(("name", "scene"), [(LONG, EMPTY_SPACE), (REACH, FLOOR_ONLY)])
-def test_a_tuned_body_is_as_late_as_ordered(
+def test_a_tuned_body_is_as_late_as_set(
     shared_data: Path, name: str, scene: Scene, ordered_s: float
 ) -> None:
-    """What is measured from the two streams is the ordered delay to 11.1 ms, fingers included."""
+    """The latency measured between the two streams is the set delay to 11.1 ms, with fingers."""
     movement = captured(shared_data, name)
     built = avatar_model(_tuned(), STATURE_M, scene=scene)
     followed = follow(built, movement, delay_s=ordered_s)

@@ -1,4 +1,4 @@
-"""The tuning of a body: what it reaches, what it skips, and how it ends."""
+"""The tuning of a body: its results, the axes it skips, and how it ends."""
 
 import time
 from dataclasses import replace
@@ -45,7 +45,7 @@ def _overshoots(report: TuningReport) -> list[float]:
 
 @pytest.fixture(scope="module")
 def left_arm() -> TuningReport:
-    """The left arm of a body of which everything else is held."""
+    """Return the tuning of a body of which only the left arm is free."""
     return _tuned(_held(_ALL_BUT_LEFT_ARM))
 
 
@@ -62,8 +62,8 @@ def test_an_arm_is_tuned(left_arm: TuningReport) -> None:
         assert abs(one.step.steady_error_deg) <= 1.0
 
 
-def test_gains_that_are_there_are_tried_as_a_tuning_tries_its_own(left_arm: TuningReport) -> None:
-    """The same steps to the bit, nothing changed, and by hand an arm is accepted, too."""
+def test_existing_gains_are_assessed_with_the_steps_of_a_tuning(left_arm: TuningReport) -> None:
+    """Assessing gains gives the tuning's own steps to the bit and changes nothing."""
     again = assess(left_arm.configuration, 1.75, wall_s=time.monotonic)
     assert again.configuration is left_arm.configuration
     assert [one.step for one in again.axes] == [one.step for one in left_arm.axes]
@@ -76,28 +76,28 @@ def test_gains_that_are_there_are_tried_as_a_tuning_tries_its_own(left_arm: Tuni
     assert "overshoots" in found["LeftLowerArmY"].status
 
 
-def test_each_result_has_the_experiment_behind_it(left_arm: TuningReport) -> None:
-    """Torque, damping, hysteresis and cycles are on record; the inertia is the limb's."""
+def test_each_result_records_its_experiment(left_arm: TuningReport) -> None:
+    """Each result records torque, damping and cycles of its relay experiment, and the inertia."""
     one = _by_name(left_arm)["LeftLowerArmY"]
     assert one.experiment is not None
     assert one.experiment.relay.torque_nm > 0.0
     assert one.experiment.relay.damping_nm_s > 0.0
     assert one.experiment.relay.warm_up_cycles == 8
-    # Forearm and hand of de Leva's average adult of 72 kg, with the hinge's armature of 15 %.
+    # Forearm and hand of de Leva's average adult of 72 kg, plus the hinge's armature of 15 %.
     assert 0.05 <= one.experiment.found.inertia_kg_m2 <= 0.15
 
 
 def test_an_upper_arm_is_tuned_with_what_a_bent_elbow_makes_it_carry(
     left_arm: TuningReport,
 ) -> None:
-    """About its own axis a straight arm weighs nothing; the forearm of a bent one does."""
+    """The twist axis of the upper arm is tuned with the inertia of a bent forearm."""
     one = _by_name(left_arm)["LeftUpperArmX"]
     assert one.experiment is not None
     assert one.experiment.pose == "bent"
 
 
-def test_what_is_locked_is_skipped_and_keeps_its_gains(left_arm: TuningReport) -> None:
-    """A held group, and an axis without a range: each with its reason."""
+def test_locked_axes_are_skipped_and_keep_their_gains(left_arm: TuningReport) -> None:
+    """Axes of a locked group and axes without a range are skipped, each with its reason."""
     before, found = default_configuration().axes, _by_name(left_arm)
     assert found["SpineX"].status == found["LeftLowerArmZ"].status == "locked"
     assert "locked group" in found["SpineX"].note
@@ -118,14 +118,14 @@ def test_limits_torques_and_locks_stay_as_they_were(left_arm: TuningReport) -> N
 
 
 def test_the_same_input_gives_the_same_gains(left_arm: TuningReport) -> None:
-    """To the bit, with one thread or two."""
+    """The same input gives exactly the same gains, with one thread or two."""
     again = _tuned(_held(_ALL_BUT_LEFT_ARM), workers=1)
     assert again.axes == left_arm.axes
     assert again.configuration == left_arm.configuration
 
 
 def test_ziegler_nichols_overshoots_and_is_flagged(left_arm: TuningReport) -> None:
-    """More than the usual rule on every axis that turns a limb sideways; every attempt was made."""
+    """Ziegler and Nichols's rule overshoots more than ours and is flagged after every attempt."""
     report = _tuned(_held(_ALL_BUT_LEFT_ARM), heuristic="ziegler-nichols-pd", attempts=2)
     assert median(_overshoots(report)) > 5.0 > max(_overshoots(left_arm))
     one = _by_name(report)["LeftLowerArmY"]
@@ -134,8 +134,8 @@ def test_ziegler_nichols_overshoots_and_is_flagged(left_arm: TuningReport) -> No
     assert one.attempts == 2
 
 
-def test_what_does_not_oscillate_in_time_is_flagged_and_keeps_its_gains() -> None:
-    """A time-out ends each experiment; the reason stands in the status."""
+def test_an_axis_that_does_not_oscillate_in_time_keeps_its_gains() -> None:
+    """An axis whose experiment times out is flagged with the reason and keeps its gains."""
     report = _tuned(_held(_ALL_BUT_LEFT_ARM), longest_s=0.05, attempts=2)
     before = default_configuration().axes
     for name in _LEFT_ARM:
@@ -146,7 +146,7 @@ def test_what_does_not_oscillate_in_time_is_flagged_and_keeps_its_gains() -> Non
 
 
 def test_a_motor_without_torque_is_flagged() -> None:
-    """It oscillates under the relay, but its own motor cannot move it."""
+    """An axis whose motor has no torque is flagged although its relay experiment succeeds."""
     held = _held((*_ALL_BUT_LEFT_ARM, "LeftLowerArm", "LeftHand"))
     axes = dict(held.axes)
     axes["LeftUpperArmY"] = replace(axes["LeftUpperArmY"], max_torque_nm=0.0)
@@ -156,7 +156,7 @@ def test_a_motor_without_torque_is_flagged() -> None:
 
 
 def test_mirror_copies_the_left_side_to_the_right(left_arm: TuningReport) -> None:
-    """The right arm gets the left one's gains, says so, and is tried itself."""
+    """With mirroring the right arm gets the left one's gains, is marked so, and is assessed."""
     seen: list[TuningProgress] = []
     report = tune(
         _held(_ALL_BUT_ARMS),
@@ -182,15 +182,15 @@ def test_mirror_copies_the_left_side_to_the_right(left_arm: TuningReport) -> Non
 
 
 def test_with_mirror_an_axis_without_a_left_counterpart_is_tuned_itself() -> None:
-    """The left arm is in a cast: the right one is not left out."""
+    """With mirroring the right arm is tuned itself if the left one is locked."""
     report = _tuned(_held((*_ALL_BUT_ARMS, "left_arm", "RightUpperArm", "RightHand")), mirror=True)
     one = _by_name(report)["RightLowerArmY"]
     assert one.status == "tuned"
     assert one.mirrored_from is None
 
 
-def test_it_can_be_cancelled() -> None:
-    """Nothing comes of it but the word."""
+def test_a_tuning_can_be_cancelled() -> None:
+    """A cancelled tuning raises an error and gives no report."""
     seen: list[TuningProgress] = []
     with pytest.raises(TuningCancelled):
         tune(
@@ -203,8 +203,8 @@ def test_it_can_be_cancelled() -> None:
     assert len(seen) == 2
 
 
-def test_a_body_that_is_held_altogether_has_nothing_to_tune() -> None:
-    """Every axis is reported as locked."""
+def test_a_fully_locked_body_has_nothing_to_tune() -> None:
+    """In a fully locked body every axis is reported as locked."""
     report = _tuned(_held(("all",)))
     assert {one.status for one in report.axes} == {"locked"}
     assert report.configuration == _held(("all",))
@@ -214,8 +214,8 @@ def test_a_body_that_is_held_altogether_has_nothing_to_tune() -> None:
     "options",
     [{"heuristic": "guess"}, {"attempts": 0}, {"workers": 0}, {"longest_s": float("nan")}],
 )
-def test_options_that_cannot_be_are_refused(options: dict[str, object]) -> None:
-    """With what is valid."""
+def test_invalid_options_are_rejected(options: dict[str, object]) -> None:
+    """Invalid tuning options are rejected with what is valid."""
     with pytest.raises(TuningError, match="valid"):
         TuningOptions(**options)  # type: ignore[arg-type]  # that is the test
 
@@ -224,7 +224,7 @@ def test_options_that_cannot_be_are_refused(options: dict[str, object]) -> None:
 @pytest.mark.parametrize(("stature_m", "mass_kg"), [(1.5, 45.0), (1.75, 72.0), (2.0, 120.0)])
 @pytest.mark.parametrize("heuristic", ["critical", "inertia"])
 def test_all_axes_of_all_bodies(stature_m: float, mass_kg: float, heuristic: str) -> None:
-    """Median overshoot of a 30 degree step 3 % at most, the worst 10 %; no axis is flagged."""
+    """30 degree steps overshoot by 3 % in the median, 10 % at worst, and no axis is flagged."""
     configuration = replace(default_configuration(limits="free"), total_mass_kg=mass_kg)
     report = tune(
         configuration, stature_m, TuningOptions(heuristic=heuristic), wall_s=time.monotonic
@@ -237,7 +237,7 @@ def test_all_axes_of_all_bodies(stature_m: float, mass_kg: float, heuristic: str
 
 @pytest.mark.long
 def test_classical_rules_overshoot_on_the_whole_body() -> None:
-    """Every axis gets an answer by every rule, and the classical ones are worse than ours."""
+    """Every rule gives a result for every axis, and the classical ones overshoot more than ours."""
     medians = {
         key: median(_overshoots(_tuned(default_configuration(), heuristic=key, mirror=True)))
         for key in HEURISTICS

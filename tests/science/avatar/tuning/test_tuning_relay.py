@@ -1,4 +1,4 @@
-"""The relay experiment, on hinges of which everything is known."""
+"""The relay experiment, on single hinges of known inertia and damping."""
 
 from dataclasses import replace
 from itertools import count
@@ -20,7 +20,7 @@ from app.science.avatar.tuning.relay import (
 
 
 def _plant(inertia_kg_m2: float) -> AxisPlant:
-    """A wheel on a hinge."""
+    """Return a wheel on a hinge."""
     inertia = f"{inertia_kg_m2} {inertia_kg_m2} {inertia_kg_m2}"
     return AxisPlant(
         mujoco.MjModel.from_xml_string(f"""
@@ -35,7 +35,7 @@ def _plant(inertia_kg_m2: float) -> AxisPlant:
 
 
 def _stopped() -> float:
-    """A clock that stands still."""
+    """Return a clock that always shows the same time."""
     return 0.0
 
 
@@ -50,7 +50,7 @@ def _found(inertia_kg_m2: float, settings: RelaySettings) -> Oscillation:
 def test_the_limit_cycle_is_the_one_of_the_describing_function(
     inertia_kg_m2: float, frequency_hz: float
 ) -> None:
-    """Amplitude, period and ultimate gain within 5 %, inertia within 6 %."""
+    """The limit cycle matches the describing function: within 5 %, the inertia within 6 %."""
     settings = relay_for(inertia_kg_m2, frequency_hz)
     found = _found(inertia_kg_m2, settings)
     amplitude = radians(8.0)
@@ -63,7 +63,7 @@ def test_the_limit_cycle_is_the_one_of_the_describing_function(
 
 @pytest.mark.parametrize("amplitude_hystereses", [3.0, 8.0])
 def test_inertia_does_not_depend_on_how_it_is_measured(amplitude_hystereses: float) -> None:
-    """With other damping and four times the torque Ku and Pu change, the inertia does not."""
+    """Other damping and four times the torque change Ku and Pu but not the inertia."""
     usual = relay_for(1.0, 5.0)
     omega = 10.0 * pi
     damping = omega * tan(asin(1.0 / amplitude_hystereses))
@@ -73,7 +73,7 @@ def test_inertia_does_not_depend_on_how_it_is_measured(amplitude_hystereses: flo
 
 
 def test_a_relay_of_twice_the_torque_is_faster_by_the_cube_root() -> None:
-    """With the damping kept, w^3 is proportional to the torque."""
+    """At the same damping, w^3 is proportional to the relay's torque."""
     one = relay_for(1.0, 5.0)
     two = replace(one, torque_nm=2.0 * one.torque_nm)
     ratio = _found(1.0, one).period_s / _found(1.0, two).period_s
@@ -81,7 +81,7 @@ def test_a_relay_of_twice_the_torque_is_faster_by_the_cube_root() -> None:
 
 
 def test_an_undamped_hinge_has_no_limit_cycle() -> None:
-    """Each swing is larger than the last; the experiment says so and ends."""
+    """The experiment on an undamped hinge, whose swings keep growing, ends with that reason."""
     settings = replace(relay_for(1.0, 5.0), damping_nm_s=0.0, longest_s=30.0)
     found = run_relay(_plant(1.0), settings, wall_s=_stopped)
     assert isinstance(found, NoOscillation)
@@ -89,7 +89,7 @@ def test_an_undamped_hinge_has_no_limit_cycle() -> None:
 
 
 def test_a_relay_that_is_too_weak_is_given_up_after_the_simulated_time() -> None:
-    """A torque that the damping swallows never reaches the edge."""
+    """A relay that is too weak to reach the switching angle ends after its simulated time."""
     settings = replace(relay_for(1.0, 5.0), torque_nm=1e-4, longest_s=2.0)
     found = run_relay(_plant(1.0), settings, wall_s=_stopped)
     assert isinstance(found, NoOscillation)
@@ -97,8 +97,8 @@ def test_a_relay_that_is_too_weak_is_given_up_after_the_simulated_time() -> None
     assert "did not complete a single cycle" in found.reason
 
 
-def test_it_is_given_up_after_the_time_by_the_clock() -> None:
-    """The clock that is given decides, here one that is a second later each time."""
+def test_an_experiment_ends_after_its_time_on_the_wall_clock() -> None:
+    """An experiment ends when its wall-clock time is over, by the clock that is passed in."""
     clock = count()
     settings = replace(relay_for(1.0, 5.0), longest_wall_s=2.0)
     found = run_relay(_plant(1.0), settings, wall_s=lambda: float(next(clock)))
@@ -106,14 +106,14 @@ def test_it_is_given_up_after_the_time_by_the_clock() -> None:
     assert "within 2 s by the clock" in found.reason
 
 
-def test_it_can_be_cancelled() -> None:
-    """It then has no result."""
+def test_a_relay_experiment_can_be_cancelled() -> None:
+    """A cancelled relay experiment has no result."""
     found = run_relay(_plant(1.0), relay_for(1.0, 5.0), wall_s=_stopped, cancelled=lambda: True)
     assert found == NoOscillation("the tuning was cancelled")
 
 
 def test_the_usual_rule_damps_a_double_integrator_critically() -> None:
-    """kp = .8 Ku with Td = .356 Pu: a damping ratio from .95 to 1.1 and nearly the relay's rate."""
+    """kp = .8 Ku with Td = .356 Pu gives a damping ratio from .95 to 1.1."""
     inertia, relay_hz = 0.3, 8.0
     gains = HEURISTICS["critical"].gains(_found(inertia, relay_for(inertia, relay_hz)), inf)
     omega = sqrt(gains.kp / inertia)
@@ -122,7 +122,7 @@ def test_the_usual_rule_damps_a_double_integrator_critically() -> None:
 
 
 def test_the_rule_by_inertia_has_the_frequency_it_is_given() -> None:
-    """kp = I w^2 and kd = 2 I w, with the inertia that was measured."""
+    """The rule by inertia sets kp = I w^2 and kd = 2 I w, with the measured inertia."""
     found = _found(0.3, relay_for(0.3, 8.0))
     gains = HEURISTICS["inertia"].gains(found, 6.0)
     assert sqrt(gains.kp / found.inertia_kg_m2) / (2.0 * pi) == pytest.approx(6.0, rel=1e-4)
@@ -130,5 +130,5 @@ def test_the_rule_by_inertia_has_the_frequency_it_is_given() -> None:
 
 
 def test_the_hysteresis_is_two_degrees() -> None:
-    """It belongs to the record of every experiment."""
+    """The record of every relay experiment states its hysteresis of two degrees."""
     assert degrees(relay_for(1.0, 1.0).hysteresis_rad) == pytest.approx(2.0)

@@ -1,4 +1,4 @@
-"""What the tuning does when the first gains of an axis do not do."""
+"""What the tuning does when the first gains of an axis are not accepted."""
 
 import time
 from dataclasses import replace
@@ -17,7 +17,7 @@ _OTHERS = (
 
 
 def _shoulder(max_torque_nm: float) -> Configuration:
-    """A body of which only the left upper arm moves, with a motor of this torque."""
+    """Return a body of which only the left upper arm moves, with a motor of this torque."""
     held = replace(default_configuration(), locked_groups=_OTHERS)
     axes = {**held.axes, _AXIS: replace(held.axes[_AXIS], max_torque_nm=max_torque_nm)}
     return replace(held, axes=axes)
@@ -31,7 +31,7 @@ def _tuned(max_torque_nm: float, **options: object) -> AxisTuning:
 
 @pytest.mark.parametrize("max_torque_nm", [40.0, 20.0])
 def test_a_motor_that_is_too_weak_to_brake_gets_lower_gains(max_torque_nm: float) -> None:
-    """The first gains overshoot as the motor is at its greatest torque; slower ones do not."""
+    """An axis that overshoots because its motor saturates is retried with lower gains."""
     once, more = _tuned(max_torque_nm, attempts=1), _tuned(max_torque_nm, attempts=4)
     assert once.flagged
     assert "overshoots" in once.status
@@ -42,8 +42,8 @@ def test_a_motor_that_is_too_weak_to_brake_gets_lower_gains(max_torque_nm: float
     assert more.kp == pytest.approx(once.kp * 0.64 ** (more.attempts - 1), rel=0.05)
 
 
-def test_what_no_attempt_mends_is_flagged_with_the_best_gains() -> None:
-    """The reason stands in the status, and the best is better than the first."""
+def test_an_axis_that_no_attempt_tunes_gets_the_best_gains() -> None:
+    """An axis that no attempt tunes is flagged and gets the gains with the least overshoot."""
     once, more = _tuned(12.0, attempts=1), _tuned(12.0, attempts=3)
     assert more.flagged
     assert more.attempts == 3
@@ -53,7 +53,7 @@ def test_what_no_attempt_mends_is_flagged_with_the_best_gains() -> None:
 
 
 def test_a_rule_that_always_overshoots_is_tried_to_the_end() -> None:
-    """Ziegler and Nichols without an integral part, with a motor that is strong enough."""
+    """Ziegler and Nichols's PD rule uses up all attempts, since it always overshoots."""
     one = _tuned(150.0, heuristic="ziegler-nichols-pd", attempts=2)
     assert one.flagged
     assert one.attempts == 2

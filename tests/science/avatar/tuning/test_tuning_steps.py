@@ -1,4 +1,4 @@
-"""What is read off a step, which step an axis gets, and what is objected to."""
+"""Figures of a step response, the step of each axis, and the reasons to reject gains."""
 
 from math import degrees, exp, log, pi, radians, sqrt
 
@@ -18,7 +18,7 @@ _STEP_S = 0.001
 
 
 def _second_order(damping: float, omega: float = 30.0) -> FloatArray:
-    """The unit step response of an underdamped oscillator, in closed form."""
+    """Return the unit step response of an underdamped oscillator, in closed form."""
     t = (np.arange(2000) + 1) * _STEP_S
     root = sqrt(1.0 - damping**2)
     phase = omega * root * t
@@ -30,7 +30,7 @@ def _second_order(damping: float, omega: float = 30.0) -> FloatArray:
 @pytest.mark.parametrize("damping", [0.3, 0.5, 0.7])
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_overshoot_of_an_oscillator(damping: float, sign: float) -> None:
-    """exp(-pi zeta / sqrt(1 - zeta^2)), to either side and from anywhere."""
+    """An oscillator's overshoot is exp(-pi zeta / sqrt(1 - zeta^2)), for any step."""
     angles = 0.2 + sign * _second_order(damping)
     figures = step_figures(angles, 0.2, 0.2 + sign, _STEP_S)
     expected = 100.0 * exp(-pi * damping / sqrt(1.0 - damping**2))
@@ -40,7 +40,7 @@ def test_overshoot_of_an_oscillator(damping: float, sign: float) -> None:
 
 
 def test_settling_and_rise_of_a_first_order_lag() -> None:
-    """ln 50 and ln 9 time constants."""
+    """A first-order lag settles in ln 50 and rises in ln 9 time constants."""
     t = (np.arange(3000) + 1) * _STEP_S
     figures = step_figures(1.0 - np.exp(-t / 0.1), 0.0, 1.0, _STEP_S)
     assert figures.settling_s == pytest.approx(0.1 * log(50.0), abs=2 * _STEP_S)
@@ -49,28 +49,28 @@ def test_settling_and_rise_of_a_first_order_lag() -> None:
 
 
 def test_a_steady_error_is_no_overshoot() -> None:
-    """A limb that sags by a tenth: overshoot counts from where it comes to rest."""
+    """The overshoot of a limb that sags is counted from where it comes to rest."""
     figures = step_figures(0.9 * _second_order(0.5), 0.0, 1.0, _STEP_S)
     assert figures.overshoot_percent == pytest.approx(16.3, abs=0.1)
     assert figures.steady_error_deg == pytest.approx(degrees(0.1), abs=1e-3)
 
 
-def test_what_goes_on_swinging_does_not_settle() -> None:
-    """No settling time, whatever the record's end happens to be."""
+def test_a_response_that_keeps_swinging_does_not_settle() -> None:
+    """A response that keeps swinging has no settling time, wherever its record ends."""
     t = np.arange(2000) * _STEP_S
     figures = step_figures(1.0 + 0.2 * np.sin(60.0 * t), 0.0, 1.0, _STEP_S)
     assert figures.settling_s is None
 
 
-def test_what_is_not_finite_is_the_worst() -> None:
-    """A body that exploded gets figures that nobody accepts."""
+def test_a_response_that_is_not_finite_is_never_accepted() -> None:
+    """A non-finite step response gets figures that are never accepted."""
     figures = step_figures(np.full(100, np.nan), 0.0, 1.0, _STEP_S)
     assert figures.settling_s is None
     assert objection(figures, 9.0, accepted_overshoot_percent=5.0) is not None
 
 
 def test_every_axis_of_a_body_gets_a_step_that_its_limits_do_not_cut() -> None:
-    """30 degrees, or eight tenths of a smaller range; the target lies off the limit."""
+    """Each step is 30 degrees or eight tenths of a smaller range, and ends off the limit."""
     settings = settings_of(build_body(1.75))
     for name, own in settings.items():
         if own.locked:
@@ -84,7 +84,7 @@ def test_every_axis_of_a_body_gets_a_step_that_its_limits_do_not_cut() -> None:
 
 
 def test_the_dampers_that_come_with_the_product_stay_clear_of_chatter() -> None:
-    """2 J / (kd h) above 1.25 in every axis, and a damper three times as strong does not."""
+    """2 J / (kd h) exceeds 1.25 for every axis; three times the damping would not."""
     body = build_body(1.75)
     settings = settings_of(body)
     trial = Trial(without_shapes(body), body_masses(body, 72.0), settings)
@@ -108,6 +108,6 @@ def test_the_dampers_that_come_with_the_product_stay_clear_of_chatter() -> None:
 def test_an_objection_names_its_reason(
     figures: StepFigures, clearance: float, words: str | None
 ) -> None:
-    """Each of the four reasons, and none."""
+    """Each of the four reasons to reject gains is named, and acceptable gains have none."""
     said = objection(figures, clearance, accepted_overshoot_percent=5.0)
     assert said is None if words is None else words in (said or "")

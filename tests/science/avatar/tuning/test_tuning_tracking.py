@@ -1,4 +1,4 @@
-"""How a body follows a movement, by its gains."""
+"""How closely a body follows a movement, depending on its gains."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -27,7 +27,7 @@ def _standing(frames: int) -> Movement:
 
 
 def test_a_weightless_body_that_stands_has_no_error() -> None:
-    """Nothing pulls at it; every driven axis has a figure, locked ones have none."""
+    """A weightless standing body has no error; every driven axis has a figure, locked ones none."""
     configuration = replace(default_configuration(), gravity=False)
     found = track(configuration, STATURE_M, _standing(90))
     assert found.frames == 90 - 1 - 45
@@ -35,8 +35,8 @@ def test_a_weightless_body_that_stands_has_no_error() -> None:
     assert max(found.rms_deg.values()) < 0.05
 
 
-def test_feet_that_the_floor_holds_up_are_told_apart() -> None:
-    """Hips 5 cm too low press the feet on the floor: legs touch and miss, all else is free."""
+def test_axes_of_legs_that_touch_the_floor_are_reported_separately() -> None:
+    """Errors of legs pressed into the floor are reported separately from all others."""
     standing = _standing(90)
     standing.root_positions_m[:, 1] -= 0.05
     found = follow_capture(default_configuration(), STATURE_M, standing).on_floor
@@ -51,8 +51,8 @@ def test_feet_that_the_floor_holds_up_are_told_apart() -> None:
     assert without.free == without.clamped
 
 
-def test_what_the_limits_take_away_is_told() -> None:
-    """A head that nods by 40 degrees in one joint gets 22.5; the unclamped error tells the rest."""
+def test_the_error_that_the_limits_cause_is_reported() -> None:
+    """A head that nods by 40 degrees gets 22.5; only the unclamped error includes the rest."""
     bent = _standing(90)
     half = np.radians(20.0)
     bent.rotations[:, JOINT_INDEX["Head"]] = (np.cos(half), -np.sin(half), 0.0, 0.0)
@@ -64,7 +64,7 @@ def test_what_the_limits_take_away_is_told() -> None:
 
 
 def test_weaker_gains_follow_a_walk_worse(shared_data: Path) -> None:
-    """A quarter of the springs and half of the dampers: slower by two, and more error."""
+    """A quarter of kp and half of kd at least raise a walk's mean error by half."""
     usual = default_configuration()
     weak = {
         name: own.with_values(kp=own.kp / 4.0, kd=own.kd / 2.0) for name, own in usual.axes.items()
@@ -77,7 +77,7 @@ def test_weaker_gains_follow_a_walk_worse(shared_data: Path) -> None:
     assert worse.mean_deg > 1.5 * found.mean_deg
 
 
-def test_a_movement_that_is_too_short_is_refused() -> None:
-    """Half a second passes before anything is compared."""
+def test_a_movement_that_is_too_short_is_rejected() -> None:
+    """A movement that is shorter than the half second to settle is rejected."""
     with pytest.raises(TuningError, match="46"):
         track(default_configuration(), STATURE_M, _standing(20))

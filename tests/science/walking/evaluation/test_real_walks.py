@@ -1,4 +1,4 @@
-"""Fitted on a few real people, tested on others."""
+"""Walking models fitted to a few real people and tested on others."""
 
 from pathlib import Path
 
@@ -9,7 +9,7 @@ from tests.benchmarks.walking_real import real_walks
 
 @pytest.mark.long
 def test_others_are_as_fast_as_predicted(shared_data: Path) -> None:
-    """Peak speed of eight people within one between-subject deviation at each of ten distances."""
+    """Peak speeds of eight other people are within one between-subject SD at ten distances."""
     found = real_walks(shared_data)
     assert len(found.distances) == 10
     assert not set(found.fit.database.subjects) & {one.walk.subject for one in found.captured}

@@ -1,4 +1,4 @@
-"""Scores of predicted travel times, and leaving out."""
+"""Scores of predicted travel times, and leave-one-out errors."""
 
 import numpy as np
 import pytest
@@ -26,7 +26,7 @@ from tests.science.walking.spaces import made_up_database, made_up_space
 
 
 def test_crps_is_its_definition() -> None:
-    """E|T - t| - E|T - T'| / 2 by all pairs; of one draw |dt|; of a normal by its closed form."""
+    """CRPS equals E|T - t| - E|T - T'| / 2, |dt| for one draw, and a normal's closed form."""
     draws = np.random.default_rng(1).gamma(4.0, 0.5, 60)
     pairs = np.abs(draws[:, None] - draws[None, :]).mean()
     assert crps_s(draws, 1.7) == pytest.approx(np.abs(draws - 1.7).mean() - pairs / 2.0)
@@ -37,7 +37,7 @@ def test_crps_is_its_definition() -> None:
 
 
 def test_a_draw_from_the_truth_errs_by_sqrt_2_of_its_median() -> None:
-    """Why single draws order models wrongly, and CRPS does not."""
+    """A single draw from the truth errs by sqrt(2) of the median's error; CRPS avoids that."""
     rng = np.random.default_rng(2)
     truth, draws = rng.standard_normal(40_000), rng.standard_normal(40_000)
     ratio = np.median(np.abs(draws - truth)) / np.median(np.abs(truth))
@@ -48,7 +48,7 @@ def test_a_draw_from_the_truth_errs_by_sqrt_2_of_its_median() -> None:
 
 
 def test_percentiles_and_tests_are_those_of_scipy() -> None:
-    """The paper's five percentiles, Shapiro-Wilk, and the direction of Wilcoxon's test."""
+    """Percentiles, Shapiro and Wilk's test and Wilcoxon's direction agree with scipy."""
     rng = np.random.default_rng(3)
     truth = rng.uniform(1.0, 3.0, 200)
     predicted = truth + rng.normal(0.3, 0.2, 200)
@@ -66,14 +66,14 @@ def test_percentiles_and_tests_are_those_of_scipy() -> None:
 
 
 def test_power_grows_from_alpha_to_one() -> None:
-    """Without an effect it is alpha; 50 pairs with d = .5 have .92 (a paired t test has .93)."""
+    """Power is alpha without an effect, .93 at 58 pairs with d = .5, and 1 at 2000 pairs."""
     assert signed_rank_power(50, 0.0) == pytest.approx(0.05, abs=1e-3)
     assert signed_rank_power(58, 0.5) == pytest.approx(0.93, abs=0.02)
     assert signed_rank_power(2000, 0.5) == pytest.approx(1.0)
 
 
-def test_intervals_hold_their_share() -> None:
-    """Of values drawn as the prediction, half lie within its central half."""
+def test_central_intervals_have_their_stated_coverage() -> None:
+    """Of values drawn from the prediction, half lie within its central half."""
     rng = np.random.default_rng(4)
     draws = rng.standard_normal(4000)
     inside = [covers(draws, float(value), 0.5) for value in rng.standard_normal(4000)]
@@ -81,7 +81,7 @@ def test_intervals_hold_their_share() -> None:
 
 
 def test_leaving_out_stays_within_the_limits_on_smooth_maps() -> None:
-    """Neighbours to .5 % (5.5 % sd), radial bases to .05 % (.17 % sd) on maps with wide peaks."""
+    """Leave-one-out errors of smooth maps: neighbours .5 % (sd 5.5 %), bases .05 % (.17 %)."""
     space = made_up_space(regular_grid(PAPER_PARAMETERS, 8))
     by_neighbours = neighbours_left_out(space)
     assert abs(by_neighbours.mean) <= 0.5
@@ -92,7 +92,7 @@ def test_leaving_out_stays_within_the_limits_on_smooth_maps() -> None:
 
 
 def test_people_left_out_are_harder_than_entries() -> None:
-    """An entry's own blends stay in the space; other people know less of a map."""
+    """Leaving people out gives larger errors than leaving out single entries of the space."""
     database = made_up_database()
     rng = np.random.default_rng(1)
     easy = neighbours_left_out(space_of(database, PAPER, rng, entries=400, k=20))
@@ -102,7 +102,7 @@ def test_people_left_out_are_harder_than_entries() -> None:
 
 
 def test_a_population_is_predicted_from_others_of_it() -> None:
-    """End to end on a few synthetic people: proper scores order the models; walks are labelled."""
+    """Other people of a synthetic population are predicted best by the probabilistic model."""
     maker = MapMaker(grid=regular_grid(PAPER_PARAMETERS, 7))
     scenes = [straight_scene(length) for length in (1.0, 2.0, 3.0)]
     population = POPULATIONS[3]
@@ -132,7 +132,7 @@ def test_a_population_is_predicted_from_others_of_it() -> None:
     ]
 
 
-def test_nothing_to_evaluate_is_refused() -> None:
-    """Rather than a mean of no walks."""
+def test_an_evaluation_without_walks_is_rejected() -> None:
+    """An evaluation without walks raises an error."""
     with pytest.raises(WalkingError, match="no walk"):
         evaluate([], SteeringFollower(), [], np.random.default_rng(1))

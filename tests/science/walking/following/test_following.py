@@ -1,4 +1,4 @@
-"""The agent: laws of motion it keeps, and two programs of it that agree."""
+"""The path-following agent: its limits of motion, and two implementations that agree."""
 
 import numpy as np
 import pytest
@@ -27,7 +27,7 @@ def _random_path(rng: np.random.Generator) -> PlannedPath:
 
 
 def test_compiled_and_plain_agents_agree() -> None:
-    """On paths by chance with sharp bends, all combinations of the grid, to 1e-9."""
+    """The compiled and the plain agent agree to 1e-9 on random paths, for the whole grid."""
     rng = np.random.default_rng(8)
     for at in range(6):
         course = Course(_random_path(rng), 90, 2.5, 0.3 * (at % 2), at % 3 > 0)
@@ -41,7 +41,7 @@ def test_compiled_and_plain_agents_agree() -> None:
 
 @pytest.mark.parametrize(("v", "a"), [(0.5, 0.5), (1.2, 1.0), (2.0, 0.4)])
 def test_a_straight_walk_takes_as_long_as_physics_says(v: float, a: float) -> None:
-    """Speed up from the floor, go, slow down up to the arrival radius: a trapezoid, to a step."""
+    """A straight walk takes the time of a trapezoidal speed profile, to one step."""
     distance, radius, floor = 4.0, FollowingRules().radius_m, FollowingRules().floor_m_s
     peak = min(v, np.sqrt(a * distance))
     whole_s = distance / peak + peak / a
@@ -52,7 +52,7 @@ def test_a_straight_walk_takes_as_long_as_physics_says(v: float, a: float) -> No
 
 
 def test_speed_acceleration_and_curvature_keep_their_limits() -> None:
-    """At every step, for every combination, on a bent path."""
+    """Speed, acceleration and curvature keep their limits at every step of a bent path."""
     result = FOLLOWER.follow(Course(BENT, 300, 20.0), PAPER_GRID.nodes)
     steps = np.diff(result.xy_m, axis=1)
     lengths = np.linalg.norm(steps, axis=-1)
@@ -65,35 +65,35 @@ def test_speed_acceleration_and_curvature_keep_their_limits() -> None:
     cross = steps[:, :-1, 0] * steps[:, 1:, 1] - steps[:, :-1, 1] * steps[:, 1:, 0]
     dots = (steps[:, :-1] * steps[:, 1:]).sum(axis=-1)
     turned = np.abs(np.arctan2(cross, dots))
-    # It turns by the speed it has between two steps, whose mean speeds are seen here.
+    # It turns by its speed between two steps, and the mean speeds of steps are known here.
     most = omega * (np.maximum(lengths[:, :-1], floor * DT) + 0.5 * a * DT * DT)
     assert (turned[moving] <= most[moving] * (1.0 + 1e-6) + 1e-9).all()
 
 
 def test_an_agent_that_cannot_turn_enough_does_not_arrive() -> None:
-    """With a radius of 10 m nobody comes round a corner; with half a metre one does."""
+    """With a turning radius of 10 m the agent misses a corner; with half a metre it arrives."""
     vectors = np.array([[1.0, 1.0, 0.1], [1.0, 1.0, 2.0]])
     result = FOLLOWER.follow(Course(BENT, 10, 12.0), vectors)
     assert result.arrived.tolist() == [False, True]
     assert np.isnan(result.arrival_s[0])
 
 
-def test_time_is_over_at_the_limit() -> None:
-    """Four metres at a tenth of a metre a second take forty seconds, not ten."""
+def test_a_walk_ends_at_the_time_limit() -> None:
+    """An agent that is too slow has not arrived when the time limit is over."""
     slow = np.array([[0.1, 1.0, 1.0]])
     assert not FOLLOWER.follow(Course(STRAIGHT, 10, 10.0), slow).arrived[0]
     assert FOLLOWER.follow(Course(STRAIGHT, 10, 45.0), slow).arrived[0]
 
 
-def test_who_has_arrived_stays() -> None:
-    """All samples after the arrival are the same place."""
+def test_an_agent_that_has_arrived_stays() -> None:
+    """All samples after the arrival are at the same place."""
     result = FOLLOWER.follow(Course(STRAIGHT, 600, 20.0), np.array([[1.0, 1.0, 1.0]]))
     after = int(result.arrival_s[0] / DT) + 2
     assert (result.xy_m[0, after:] == result.xy_m[0, after]).all()
 
 
 def test_omega_does_not_matter_on_a_straight_path() -> None:
-    """Agents of equal v and a walk alike to the bit, computed one by one."""
+    """On a straight path agents of equal v and a move identically to the bit for any omega."""
     vectors = np.array([[1.1, 0.7, omega] for omega in (0.1, 0.5, 2.0)])
     bent_by_nothing = PlannedPath(np.array([[0.0, 0.0], [0.0, 1.5], [0.0, 4.0]]))
     each = FOLLOWER.follow(Course(bent_by_nothing, 200, 20.0), vectors)
@@ -103,7 +103,7 @@ def test_omega_does_not_matter_on_a_straight_path() -> None:
 
 
 def test_a_walk_that_a_recording_cuts_begins_and_ends_at_speed() -> None:
-    """Its agent starts with the walk's speed and passes the goal without braking."""
+    """For a walk that is cut off, the agent starts at its speed and passes the goal unbraked."""
     times = np.arange(121) / 60.0
     places = np.stack([np.zeros(121), 1.2 * times], axis=-1)
     walk = Walk(times, places, "1", "cut", begins_still=False, ends_still=False)
@@ -114,7 +114,7 @@ def test_a_walk_that_a_recording_cuts_begins_and_ends_at_speed() -> None:
 
 
 def test_a_real_scene_is_walked_without_touching_walls() -> None:
-    """Agents that turn well stay off the pole's wall on all planned paths."""
+    """Agents that turn well do not touch the pole's wall on any planned path."""
     scene = pole_scene(180.0, 3.0)
     path = LazyThetaPlanner(scene).plan(scene.places["start"], scene.places["goal"])
     vectors = PAPER_GRID.nodes[PAPER_GRID.nodes[:, 2] > 1.9]
@@ -123,8 +123,8 @@ def test_a_real_scene_is_walked_without_touching_walls() -> None:
         assert not contains(obstacle.corners_m, result.xy_m).any()
 
 
-def test_what_cannot_be_followed_is_refused() -> None:
-    """Vectors of another shape, not positive, a course without time, rules of nothing."""
+def test_invalid_vectors_courses_and_rules_are_rejected() -> None:
+    """Invalid parameter vectors, courses without time and invalid rules are rejected."""
     course = Course(STRAIGHT, 10, 10.0)
     for vectors in (np.ones((2, 2)), np.array([[1.0, 0.0, 1.0]]), np.array([[1.0, np.nan, 1.0]])):
         with pytest.raises(WalkingError):
@@ -136,7 +136,7 @@ def test_what_cannot_be_followed_is_refused() -> None:
 
 
 def test_random_scenes_are_walked_to_their_goals() -> None:
-    """A slow agent that turns on half a metre comes to the goal of scenes by chance."""
+    """A slow agent with a turning radius of half a metre reaches the goals of random scenes."""
     arrived = 0
     for seed in range(12):
         scene, start, goal = random_scene(np.random.default_rng(seed))
@@ -147,7 +147,7 @@ def test_random_scenes_are_walked_to_their_goals() -> None:
 
 
 def test_a_made_walker_has_the_length_of_its_path() -> None:
-    """The walkers that other tests use go from start to goal, at rest at both."""
+    """The synthetic walkers of other tests go from start to goal and rest at both."""
     walk = walker(BENT, sway_m=0.0)
     assert walk.xy_m[[0, -1]] == pytest.approx(BENT.points_m[[0, -1]])
     assert walk.length_m == pytest.approx(4.0, rel=0.05)

@@ -1,4 +1,4 @@
-"""The dependency blending space: scales, blends, neighbours, weights."""
+"""The dependency blending space: scaling, blends, neighbours and weights."""
 
 from collections.abc import Mapping
 
@@ -14,7 +14,7 @@ from tests.science.walking.spaces import GRID, NAMES, dependency_rows, made_up_s
 
 
 def test_dependencies_count_by_their_own_spread() -> None:
-    """z-scores have mean 0 and sd 1; what is the same for all walks weighs nothing."""
+    """Dependencies are scaled to z-scores; one that is constant over all walks has no weight."""
     rows = np.column_stack([[1.0, 2.0, 3.0], [50.0, 70.0, 90.0], [1.8, 1.8, 1.8]])
     scaling = scaling_of(("length_m", "load_kg", "stature_m"), rows)
     z = scaling.z(rows)
@@ -29,22 +29,22 @@ def test_dependencies_count_by_their_own_spread() -> None:
     ("asked", "told"), [({"length_m": 1.0}, "stature_m is missing"),
                         ({"length_m": 1.0, "stature_m": np.nan}, "finite")],
 )  # fmt: skip
-def test_a_question_without_a_dependency_is_refused(asked: Mapping[str, float], told: str) -> None:
-    """The message names what is missing."""
+def test_a_query_without_a_dependency_is_rejected(asked: Mapping[str, float], told: str) -> None:
+    """A query that lacks a dependency is rejected with its name."""
     scaling = scaling_of(NAMES, dependency_rows(np.random.default_rng(1)))
     with pytest.raises(WalkingError, match=told):
         scaling.vector(asked)
 
 
 def test_a_walk_without_a_dependency_is_named() -> None:
-    """Fitting says which recording lacks the stature."""
+    """Fitting a walk that lacks the stature raises an error that names the recording."""
     walks = [{"length_m": 1.0, "stature_m": 1.7}, {"length_m": 2.0}]
     with pytest.raises(WalkingError, match=r"walk from b\.csv has no stature_m"):
         dependency_vectors(NAMES, walks, ["a.csv", "b.csv"])
 
 
 def test_weights_of_blends_are_those_of_kovar_and_gleicher() -> None:
-    """Each from -.1 to 1.1, a blend's sum to 1, and both sides of 0 and 1 occur."""
+    """Weights of a blend are from -.1 to 1.1, beyond 0 and 1 at times, and sum to 1."""
     weights = drawn_weights(4000, 4, np.random.default_rng(1))
     assert weights.sum(axis=1) == pytest.approx(np.ones(4000))
     assert weights.min() >= -0.1
@@ -54,7 +54,7 @@ def test_weights_of_blends_are_those_of_kovar_and_gleicher() -> None:
 
 
 def test_blends_have_the_dependencies_and_maps_of_their_weights() -> None:
-    """A blend's place and map come from the same weights; maps stay within [0, 1]."""
+    """A blend's dependencies and map have the same weights; maps stay within [0, 1]."""
     rng = np.random.default_rng(3)
     rows = dependency_rows(rng, 40)
     maps = rng.random((40, 25)).astype(np.float32)
@@ -64,13 +64,13 @@ def test_blends_have_the_dependencies_and_maps_of_their_weights() -> None:
     assert blends.of_maps(maps) == pytest.approx(np.clip(matrix @ maps, 0.0, 1.0), abs=1e-6)
 
 
-def test_blends_never_reach_people_who_are_left_out() -> None:
-    """A fold is densified among its own walks: every entry is one of them, or a blend of them."""
+def test_blends_never_include_people_who_are_left_out() -> None:
+    """All entries of a fold are walks of the fold, or blends of them."""
     rng = np.random.default_rng(4)
     rows = dependency_rows(rng, 60)
     person = np.arange(60) % 6
     own = np.flatnonzero(person != 5)
-    # Each walk marks one node: a map shows which walks are in it.
+    # Each walk marks one node, so that a map shows which walks it contains.
     marks = np.zeros((60, GRID.size), dtype=np.float32)
     marks[np.arange(60), np.arange(60)] = 1.0
     scaling = scaling_of(NAMES, rows[own])
@@ -81,7 +81,7 @@ def test_blends_never_reach_people_who_are_left_out() -> None:
 
 
 def test_neighbours_are_the_nearest_and_weigh_by_distance() -> None:
-    """As by sorting all distances: w = 1 - d / d_k, and the farthest weighs nothing."""
+    """Neighbours are the nearest by sorting all distances, with weights w = 1 - d / d_k."""
     rng = np.random.default_rng(5)
     points = np.round(rng.standard_normal((50 * LEAF, 3)), 1)
     tree = tree_of(points)
@@ -96,7 +96,7 @@ def test_neighbours_are_the_nearest_and_weigh_by_distance() -> None:
 
 
 def test_equal_walks_weigh_the_same() -> None:
-    """Where all neighbours are as far, or all are the question itself, none is preferred."""
+    """Neighbours at equal distances have equal weights, also at zero distance."""
     ring = np.array([[np.cos(angle), np.sin(angle)] for angle in np.linspace(0.0, 6.0, 8)])
     for points in (np.ones((8, 2)), 1.0 + ring):
         _, weights = neighbours(tree_of(points), np.ones(2), 8)
@@ -106,7 +106,7 @@ def test_equal_walks_weigh_the_same() -> None:
 
 
 def test_an_answer_traced_to_its_walks_is_the_blended_map() -> None:
-    """Blends traced to their parents give the map of the answer, but for their clipping."""
+    """A blended map equals the weighted maps of the walks behind its blends, but for clipping."""
     space = made_up_space()
     walks = space.values[: space.walks].astype(np.float64)
     for z in space.z[5:60:11]:
@@ -117,7 +117,7 @@ def test_an_answer_traced_to_its_walks_is_the_blended_map() -> None:
 
 
 @pytest.mark.parametrize("k", [0, 401])
-def test_as_many_neighbours_as_there_are(k: int) -> None:
-    """More, or none, cannot be taken."""
+def test_the_number_of_neighbours_is_limited_by_the_entries(k: int) -> None:
+    """More neighbours than entries, or none, are rejected."""
     with pytest.raises(WalkingError, match="1 to 400"):
         neighbours(made_up_space().tree, np.zeros(2), k)

@@ -1,4 +1,4 @@
-"""Suitability maps: planted parameters are found, readings mean what they say, runs go on."""
+"""Suitability maps: known parameters are recovered, readings follow their formulas, runs resume."""
 
 from collections.abc import Callable
 from functools import partial
@@ -37,7 +37,7 @@ def _entry(scene: Scene, vigour: float = 1.0) -> PlannedWalk:
 
 
 def _walked_by(vector: np.ndarray[tuple[int], np.dtype[np.float64]]) -> PlannedWalk:
-    """A walk that the follower itself made, round the pole."""
+    """Return a walk round the pole that the follower itself made."""
     path = LazyThetaPlanner(POLE).plan(POLE.places["start"], POLE.places["goal"])
     follower = SteeringFollower()
     result = follower.follow(Course(path, 2000, 33.0), vector[None])
@@ -49,8 +49,8 @@ def _walked_by(vector: np.ndarray[tuple[int], np.dtype[np.float64]]) -> PlannedW
 
 @pytest.mark.parametrize("index", [22, 42, 63])
 @pytest.mark.parametrize("metric", [EuclideanMetric(), PaceMetric()])
-def test_parameters_that_were_planted_are_found(index: int, metric: Metric) -> None:
-    """A walk made with a combination of the grid deviates by nothing there, and only there least.
+def test_known_parameters_are_recovered(index: int, metric: Metric) -> None:
+    """A walk made with a combination of the grid deviates least, by nothing, at that combination.
 
     Both metrics go through the same protocol.
     """
@@ -62,7 +62,7 @@ def test_parameters_that_were_planted_are_found(index: int, metric: Metric) -> N
 
 
 def test_the_metric_is_equation_five() -> None:
-    """Sum of distances over the reference's samples by its length, written out."""
+    """The metric is the sum of distances over the reference's samples by its length."""
     entry = _entry(POLE)
     reference = reference_of(entry.walk, 1.0 / 60.0)
     places = reference.xy_m[None] + np.array([0.03, 0.04])
@@ -73,7 +73,7 @@ def test_the_metric_is_equation_five() -> None:
 
 
 def test_compiled_and_plain_maps_agree() -> None:
-    """Deviations and travel times of both programs, straight and round the pole, to 1e-9."""
+    """Compiled and plain deviations and travel times agree to 1e-9, straight and round the pole."""
     plain = MapMaker(GRID, PlainFollower(), PlainMetric())
     for scene in (LINE, POLE):
         entry = _entry(scene)
@@ -85,7 +85,7 @@ def test_compiled_and_plain_maps_agree() -> None:
 
 
 def test_readings_are_the_formulas() -> None:
-    """1 - m / max, min-max, time-aware with 0 for who did not arrive, power, threshold."""
+    """Each reading of a map follows its formula: 1 - m / max, min-max, time-aware, threshold."""
     one = ParameterGrid((SteeringParameter("p", "", 0.0, 3.0),), ((0.0, 1.0, 2.0, 3.0),))
     arrival = np.array([2.0, 2.1, 3.0, np.nan])
     made = DeviationMap(one, "euclidean", np.array([1.0, 2.0, 4.0, 1.0]), arrival, 2.0)
@@ -98,8 +98,8 @@ def test_readings_are_the_formulas() -> None:
     assert squared.values == pytest.approx([0.5625, 0.0, 0.0, 0.5625])
 
 
-def test_where_all_deviate_alike_none_is_better() -> None:
-    """A flat map is suitable everywhere by min-max, and the tie goes to the last combination."""
+def test_in_a_flat_map_the_last_combination_wins() -> None:
+    """A flat map is suitable everywhere by min-max, and its best is the last combination."""
     one = ParameterGrid((SteeringParameter("p", "", 0.0, 3.0),), ((0.0, 1.0, 3.0),))
     made = DeviationMap(one, "euclidean", np.ones(3), np.full(3, np.nan), 2.0)
     assert made.read(SuitabilityOptions("min-max")).values.tolist() == [1.0, 1.0, 1.0]
@@ -107,7 +107,7 @@ def test_where_all_deviate_alike_none_is_better() -> None:
 
 
 def test_on_a_straight_walk_the_largest_omega_wins_the_tie() -> None:
-    """All omegas do alike there."""
+    """On a straight walk all omegas deviate equally, and the largest is the best."""
     made = MAKER.map_of(_entry(LINE))
     assert (made.deviations == made.deviations[:, :, :1]).all()
     assert made.read(TIME_AWARE).best[2] == pytest.approx(2.0)
@@ -123,14 +123,14 @@ def test_on_a_straight_walk_the_largest_omega_wins_the_tie() -> None:
         partial(SuitabilityOptions, time_constant_s=0.0),
     ],
 )
-def test_readings_that_mean_nothing_are_refused(options: Callable[[], SuitabilityOptions]) -> None:
-    """Power, threshold and time constant have ranges."""
+def test_invalid_readings_are_rejected(options: Callable[[], SuitabilityOptions]) -> None:
+    """Power, threshold and time constant out of range are rejected."""
     with pytest.raises(WalkingError):
         options()
 
 
 def test_maps_are_the_same_in_threads_after_a_stop_and_a_resume() -> None:
-    """Stopped after two of five maps and resumed, the maps are those of one run, in order."""
+    """A run of five maps that was stopped after two and resumed gives the same maps in order."""
     entries = [_entry(LINE, vigour) for vigour in (0.8, 0.9, 1.0, 1.1, 1.2)]
     whole = dict(maps_of(entries, MAKER, threads=2))
     told: list[tuple[int, int]] = []
@@ -152,7 +152,7 @@ def test_maps_are_the_same_in_threads_after_a_stop_and_a_resume() -> None:
 
 
 def test_an_entry_that_fails_ends_the_run_with_its_error() -> None:
-    """Maps before it were given; nothing is left running."""
+    """An invalid entry raises its error after the maps before it were returned."""
     good = _entry(LINE)
     walk = Walk(np.array([0.0, 1.0]), np.zeros((2, 2)), "1", "stands")
     run = maps_of([good, PlannedWalk(walk, good.path)], MAKER, threads=1)
@@ -161,18 +161,18 @@ def test_an_entry_that_fails_ends_the_run_with_its_error() -> None:
         next(run)
 
 
-def test_a_grid_over_other_parameters_is_refused() -> None:
-    """The follower's parameters are named beside the grid's."""
+def test_a_grid_over_other_parameters_is_rejected() -> None:
+    """A grid of other parameters is rejected with the follower's and its own names."""
     other = regular_grid((SteeringParameter("sway", "m", 0.0, 1.0),), 3)
     with pytest.raises(WalkingError, match="sway"):
         MapMaker(other)
 
 
-def test_a_follower_of_other_parameters_goes_the_same_way() -> None:
-    """One parameter of one's own, the planner's path, both metrics: nothing knows v, a, omega."""
+def test_a_follower_of_other_parameters_is_supported() -> None:
+    """A follower with one parameter of its own works with planner, metrics and maps."""
 
     class Sliding:
-        """Goes at one constant speed along the straight line between the path's ends."""
+        """A follower that moves at constant speed along the line between the path's ends."""
 
         parameters = (SteeringParameter("pace", "m/s", 0.2, 2.0),)
         dt_s = 0.02
@@ -180,7 +180,7 @@ def test_a_follower_of_other_parameters_goes_the_same_way() -> None:
         def follow(
             self, course: Course, vectors: np.ndarray[tuple[int, ...], np.dtype[np.float64]]
         ) -> Trajectories:
-            """Slide."""
+            """Move along the line."""
             ends = course.path.points_m
             share = vectors * np.arange(course.samples) * self.dt_s / course.path.length_m
             share = np.minimum(share, 1.0)[..., None]

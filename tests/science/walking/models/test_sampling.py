@@ -1,4 +1,4 @@
-"""Draws from blended maps: the mixture is the blended density, and so is rejection."""
+"""Draws from blended maps: the mixture and rejection sampling have the same density."""
 
 import numpy as np
 import pytest
@@ -25,7 +25,7 @@ def _largest_gap(first: FloatArray, second: FloatArray) -> float:
 
 
 def test_the_stated_power_is_the_tests() -> None:
-    """A real gap of `DETECTABLE` crosses the limit that chance crosses in .1 % of cases.
+    """A gap of `DETECTABLE` exceeds the limit, which chance exceeds in .1 % of cases, with `POWER`.
 
     The deviation of a difference of two empirical functions at one point is at most sqrt(1 / 2n).
     """
@@ -35,12 +35,12 @@ def test_the_stated_power_is_the_tests() -> None:
 
 
 def _limit() -> float:
-    """Critical KS distance of two samples at `ALPHA`, for each of three axes."""
+    """Return the critical KS distance of two samples at `ALPHA`, for each of three axes."""
     return float(np.sqrt(-np.log(ALPHA / 3 / 2) / DRAWS))
 
 
 def test_mixture_prepared_and_rejection_agree() -> None:
-    """Three ways to one density: neighbour by neighbour, blended, and by rejection of it."""
+    """Drawing by neighbour, from the blended map and by rejection gives the same density."""
     space, rng = made_up_space(), np.random.default_rng(1)
     mixture = MixtureSampler(space)
     drawn = np.stack([mixture.draw_one(Z, rng) for _ in range(DRAWS)])
@@ -52,8 +52,8 @@ def test_mixture_prepared_and_rejection_agree() -> None:
     assert apart < 5.0 / np.sqrt(DRAWS)
 
 
-def test_another_question_is_told_apart() -> None:
-    """The same test finds the density of a question a tenth of an sd beside it."""
+def test_another_query_has_a_detectably_different_density() -> None:
+    """The same test distinguishes the densities of two queries at a small distance."""
     space, rng = made_up_space(), np.random.default_rng(2)
     here = density_of(space, Z).draw(DRAWS, rng)
     there = density_of(space, Z + np.array([0.2, 0.0])).draw(DRAWS, rng)
@@ -61,7 +61,7 @@ def test_another_question_is_told_apart() -> None:
 
 
 def test_draws_have_the_density_of_the_map() -> None:
-    """The mean of any function of the draws is its integral against the map."""
+    """The mean of a function over the draws equals its integral against the map."""
     space, rng = made_up_space(), np.random.default_rng(3)
     density = density_of(space, Z)
     fine = regular_grid(space.grid.parameters, 29)
@@ -75,7 +75,7 @@ def test_draws_have_the_density_of_the_map() -> None:
 
 
 def test_the_papers_radial_rejection_is_near_the_mixture() -> None:
-    """The interpolations differ between nodes; their draws differ by a few percent at most."""
+    """Draws by the paper's radial rejection differ from the mixture by a few percent at most."""
     space, rng = made_up_space(), np.random.default_rng(4)
     radial = density_of(space, Z, "radial").draw_by_rejection(DRAWS, rng)
     assert _largest_gap(radial, density_of(space, Z).draw(DRAWS, rng)) < 0.1
@@ -84,14 +84,14 @@ def test_the_papers_radial_rejection_is_near_the_mixture() -> None:
 
 
 def test_the_same_seed_draws_the_same() -> None:
-    """Chance is an argument."""
+    """Draws are determined by the random generator that is passed in."""
     space = made_up_space()
     one, two = (MixtureSampler(space).draw_one(Z, np.random.default_rng(5)) for _ in range(2))
     assert (one == two).all()
 
 
-def test_maps_without_anything_suitable_are_refused() -> None:
-    """A threshold too high leaves nothing to draw from: said, not drawn evenly."""
+def test_maps_without_anything_suitable_are_rejected() -> None:
+    """Drawing from a map that a high threshold leaves empty raises an error."""
     space = made_up_space()
     space.values[:] = 0.0
     for draw in (lambda: MixtureSampler(space).draw_one(Z, np.random.default_rng(1)),
@@ -101,7 +101,7 @@ def test_maps_without_anything_suitable_are_refused() -> None:
 
 
 def test_any_bounded_parameter_can_be_drawn() -> None:
-    """Two parameters, one held at its only value: nothing here knows velocity."""
+    """Any bounded parameters can be drawn, here two, one of them fixed."""
     parameters = (SteeringParameter("a", "", -5.0, 5.0), SteeringParameter("b", "", 0.0, 1.0))
     space = made_up_space()
     grid = regular_grid((*parameters, SteeringParameter("c", "", 3.0, 4.0)), 5)

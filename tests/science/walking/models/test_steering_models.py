@@ -1,4 +1,4 @@
-"""The three models, how they are fitted, and the choice of a reading."""
+"""The three steering models, their fitting, and the choice of a reading."""
 
 import numpy as np
 import pytest
@@ -13,14 +13,14 @@ from app.science.walking.models.steering_models import AdaptiveModel, Probabilis
 from app.science.walking.records.model import LENGTH, STATURE, PlannedPath, WalkingError
 from app.science.walking.synthetic.synthetic_walks import straight_path
 from tests.science.walking.spaces import GRID, PEOPLE, made_up_database, made_up_space
-from tests.science.walking.submodels import holding, without_dependency
+from tests.science.walking.submodels import with_fixed_parameter, without_dependency
 
 ASKED = {LENGTH: 2.0, STATURE: 1.75}
 QUICK = FitOptions(seed=3, k=20, entries=400, reading=TIME_AWARE)
 
 
 def test_annealing_finds_the_lowest_of_several_valleys() -> None:
-    """Of two valleys, one a little deeper, both far from the start of most runs."""
+    """Annealing finds the deeper of two valleys that are far from most starting points."""
 
     def valleys(vector: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> float:
         one, two = np.array([0.4, 0.5, 1.7]), np.array([1.6, 1.2, 0.3])
@@ -33,7 +33,7 @@ def test_annealing_finds_the_lowest_of_several_valleys() -> None:
 
 
 def test_the_static_model_is_never_worse_than_the_grid() -> None:
-    """Annealing between nodes is checked against all nodes."""
+    """The static model, annealed between nodes, is no worse than the best node."""
     database = made_up_database()
     found = static_fit(database, np.random.default_rng(1))
     at_nodes = database.deviations.astype(np.float64).mean(axis=0)
@@ -44,7 +44,7 @@ def test_the_static_model_is_never_worse_than_the_grid() -> None:
 
 
 def test_models_differ_as_they_should() -> None:
-    """Static for all, adaptive by the question, drawn ones each time anew; by seed the same."""
+    """The static model is constant, the adaptive depends on the query, the probabilistic varies."""
     fit, rng = fitted(made_up_database(), QUICK), np.random.default_rng(1)
     other = {LENGTH: 2.0, STATURE: 1.6}
     assert (fit.stat.vectors(ASKED, 3, rng) == fit.stat.vectors(other, 3, rng)).all()
@@ -60,7 +60,7 @@ def test_models_differ_as_they_should() -> None:
 
 
 def test_the_adaptive_model_is_at_the_top_of_its_map() -> None:
-    """No random place of the map is higher; of equal ones the largest last parameter is taken."""
+    """The adaptive model is at its map's maximum; ties go to the largest last parameter."""
     from app.science.walking.maps.interpolation import radial_basis
     from app.science.walking.models.sampling import density_of
 
@@ -76,7 +76,7 @@ def test_the_adaptive_model_is_at_the_top_of_its_map() -> None:
 
 
 def test_both_samplers_serve_the_probabilistic_model() -> None:
-    """The paper's rejection is an option, with about the mixture's mean."""
+    """The probabilistic model can use the paper's rejection, with about the mixture's mean."""
     space, rng = made_up_space(), np.random.default_rng(2)
     mixture = ProbabilisticModel(space).vectors(ASKED, 4000, rng).mean(axis=0)
     paper = ProbabilisticModel(space, "rejection").vectors(ASKED, 4000, rng).mean(axis=0)
@@ -85,7 +85,7 @@ def test_both_samplers_serve_the_probabilistic_model() -> None:
 
 
 def test_a_reading_is_chosen_on_people_left_out() -> None:
-    """The time-aware reading knows travel times better than the paper's; folds part people."""
+    """The time-aware reading predicts people who are left out better than the paper's."""
     database = made_up_database()
     scores = ranked_readings(
         database, np.random.default_rng(1), readings=(PAPER, TIME_AWARE), entries=400, k=20
@@ -96,15 +96,15 @@ def test_a_reading_is_chosen_on_people_left_out() -> None:
     assert sorted(name for fold in folds for name in fold) == list(database.persons)
 
 
-def test_one_person_alone_is_refused() -> None:
-    """How people differ cannot be learnt from one."""
+def test_one_person_alone_is_rejected() -> None:
+    """Walks of one person are rejected, since differences between people cannot be learnt."""
     database = made_up_database()
     with pytest.raises(WalkingError, match="one subject, 'person 2'"):
         fitted(database.select(database.walked_by(["person 2"])), QUICK)
 
 
 def test_a_model_restored_is_the_model() -> None:
-    """Blends are drawn anew by the seed, so draws are the same to the bit."""
+    """A stored and restored model gives the same draws to the bit."""
     fit = fitted(made_up_database(), QUICK)
     again = restored(fit.database, fit.options, fit.reading, fit.scores, fit.static)
     one, two = (m.prob.vectors(ASKED, 50, np.random.default_rng(1)) for m in (fit, again))
@@ -112,21 +112,21 @@ def test_a_model_restored_is_the_model() -> None:
 
 
 def test_submodels_lack_one_parameter() -> None:
-    """Without a dependency it is no longer asked for; a parameter that is held does not vary."""
+    """A submodel does not ask for its missing dependency, and its fixed parameter does not vary."""
     database = made_up_database()
     rng = np.random.default_rng(1)
     fit = fitted(without_dependency(database, STATURE), QUICK)
     assert fit.prob.vectors({LENGTH: 2.0}, 10, rng).shape == (10, 3)
-    held = fitted(holding(database, "velocity", 1.0), QUICK)
+    held = fitted(with_fixed_parameter(database, "velocity", 1.0), QUICK)
     drawn = held.prob.vectors(ASKED, 100, rng)
     assert (drawn[:, 0] == 1.05).all()
     assert np.ptp(drawn[:, 1]) > 0.1
     with pytest.raises(WalkingError, match="velocity, acceleration, angular"):
-        holding(database, "speed", 1.0)
+        with_fixed_parameter(database, "speed", 1.0)
 
 
-def test_agents_that_do_not_arrive_are_drawn_again() -> None:
-    """On a path of sharp turns wide-turning agents circle; predictions are of those that arrive."""
+def test_agents_that_do_not_arrive_are_redrawn() -> None:
+    """Agents that do not arrive on a path of sharp turns are replaced by new draws."""
     fit = fitted(made_up_database(), QUICK)
     follower, rng = SteeringFollower(), np.random.default_rng(1)
     sharp = PlannedPath(np.array([[0.0, 0.0], [0.0, 1.5], [1.5, 1.5]]))

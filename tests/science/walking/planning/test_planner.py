@@ -1,4 +1,4 @@
-"""The planner: short, free of obstacles, deterministic, and plain about what is impossible."""
+"""The planner: short collision-free paths, deterministic, with clear errors."""
 
 import math
 
@@ -27,7 +27,7 @@ def _is_free(path: PlannedPath, scene: Scene) -> bool:
 
 
 def _excess(seed: int) -> float:
-    """How much longer than the shortest, 0 where both planners find the scene closed."""
+    """Return the excess over the shortest path as a share; 0 if both planners find none."""
     scene, start, goal = random_scene(np.random.default_rng(seed))
     try:
         shortest = VisibilityPlanner(scene).plan(start, goal)
@@ -43,7 +43,7 @@ def _excess(seed: int) -> float:
 
 
 def test_paths_are_at_most_one_percent_longer_than_the_shortest() -> None:
-    """On sixty scenes by chance, beside the optimum of the full visibility graph."""
+    """On sixty random scenes paths are at most 1 % longer than the visibility graph's optimum."""
     excess = np.array([_excess(seed) for seed in range(60)])
     assert excess.max() <= 0.01
     assert excess.min() >= -1e-9
@@ -51,12 +51,12 @@ def test_paths_are_at_most_one_percent_longer_than_the_shortest() -> None:
 
 @pytest.mark.long
 def test_paths_are_at_most_one_percent_longer_on_a_thousand_scenes() -> None:
-    """The same on a thousand."""
+    """On a thousand random scenes paths are at most 1 % longer than the optimum."""
     assert max(_excess(seed) for seed in range(1000)) <= 0.01
 
 
 def test_the_shortest_way_round_a_box_is_known() -> None:
-    """Round one corner of a box without clearance: two straight legs to the corner and on."""
+    """Round a corner of a box without clearance the path has two straight legs."""
     scene = Scene("box", FLOOR, (box("box", (0.0, 0.0), (1.0, 1.0)),), clearance_m=0.0)
     expected = math.dist((-1.5, 0.2), (-0.5, 0.5)) + 1.0 + math.dist((0.5, 0.5), (1.5, 0.2))
     for planner in (LazyThetaPlanner(scene), VisibilityPlanner(scene)):
@@ -65,14 +65,14 @@ def test_the_shortest_way_round_a_box_is_known() -> None:
 
 
 def test_a_free_line_of_sight_is_the_path() -> None:
-    """Start and goal are exactly where they are, off the lattice too."""
+    """With a free line of sight the path is that line, with exact ends off the lattice."""
     start, goal = (0.1234567, -0.7654321), (1.0101010, 3.0303030)
     path = LazyThetaPlanner(open_scene(start, goal)).plan(start, goal)
     assert path.points_m.tolist() == [list(start), list(goal)]
 
 
 def test_planning_again_gives_the_same() -> None:
-    """Also by another planner object, and after other paths."""
+    """Planning again gives the same path, by any planner object and after other paths."""
     scene, start, goal = random_scene(np.random.default_rng(5))
     planner = LazyThetaPlanner(scene)
     first = planner.plan(start, goal)
@@ -82,7 +82,7 @@ def test_planning_again_gives_the_same() -> None:
 
 
 def test_a_gap_narrower_than_a_cell_is_walked_through() -> None:
-    """Four millimetres between two walls, off the lattice: the way is there, so it is found."""
+    """A gap of four millimetres off the lattice is found."""
     walls = (
         box("left", (-1.0015, 0.0), (1.996, 0.1)),
         box("right", (1.0015, 0.0), (1.992, 0.1)),
@@ -93,8 +93,8 @@ def test_a_gap_narrower_than_a_cell_is_walked_through() -> None:
     assert path.length_m == pytest.approx(shortest.length_m, rel=0.01)
 
 
-def test_a_closed_scene_is_said_to_be_closed() -> None:
-    """A wall from bound to bound; with clearance, a gap may be none."""
+def test_a_closed_scene_has_no_path() -> None:
+    """If a wall or a gap narrower than the clearance separates start and goal, none is found."""
     wall = box("wall", (0.0, 0.0), (5.0, 0.1))
     narrow = (box("left", (-1.1, 0.0), (1.9, 0.1)), box("right", (1.1, 0.0), (1.9, 0.1)))
     for obstacles in ((wall,), narrow):
@@ -113,21 +113,21 @@ def test_a_closed_scene_is_said_to_be_closed() -> None:
         ((-1.0, -1.0), "same place"),
     ],
 )
-def test_a_goal_nobody_can_reach_is_refused(goal: tuple[float, float], said: str) -> None:
-    """Before anything is searched."""
+def test_a_goal_inside_an_obstacle_is_rejected(goal: tuple[float, float], said: str) -> None:
+    """A goal that cannot be reached is rejected before the search."""
     scene = Scene("box", FLOOR, (box("box", (0.0, 0.0), (1.0, 1.0)),))
     with pytest.raises(SceneError, match=said):
         LazyThetaPlanner(scene).plan((-1.0, -1.0), goal)
 
 
-def test_a_lattice_too_large_is_refused() -> None:
-    """Cells of a millimetre over a kilometre would not fit into memory."""
+def test_a_lattice_too_large_is_rejected() -> None:
+    """A lattice that would not fit into memory, a kilometre in millimetres, is rejected."""
     with pytest.raises(SceneError, match="at most"):
         LazyThetaPlanner(Scene("vast", (0.0, 0.0, 900.0, 900.0)), cell_m=0.001)
 
 
-def test_turning_tells_the_poles_angles_apart() -> None:
-    """Planned turning per metre grows with the angle walked round the pole, from 0 on a line."""
+def test_turning_grows_with_the_angle_round_the_pole() -> None:
+    """Turning per metre is 0 on a line and grows with the angle walked round the pole."""
     line = straight_scene(3.0)
     turnings = [_turning(line, "start", "goal")]
     turnings += [_turning(pole_scene(turn, 3.0), "start", "goal") for turn in POLE_DEG]
@@ -142,7 +142,7 @@ def _turning(scene: Scene, start: str, goal: str) -> float:
 
 @pytest.mark.parametrize("key", ["car-and-three-racks", "car-between-two-racks"])
 def test_the_papers_workplaces_have_its_distances(key: str) -> None:
-    """Racks at .7, 2.2 and 2.9 m with 11 paths; at 2.0 and 2.4 m with 6, planned to 1 %."""
+    """The paper's workplaces have its 11 and 6 paths with its distances to the racks, to 1 %."""
     scene = load_shipped(key)
     expected = {
         "car-and-three-racks": (11, {"rack-3": 0.7, "rack-1": 2.2, "rack-2": 2.9}),

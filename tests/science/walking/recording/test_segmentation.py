@@ -1,4 +1,4 @@
-"""Tracks are cut where the person stands still."""
+"""Tracks are cut into walks where the person stands still."""
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ RATE_HZ = 120.0
 
 
 def _walked(*parts: tuple[float, float]) -> Track:
-    """Parts (seconds, metres ahead), each at minimum jerk; no metres is standing."""
+    """Return a track of parts (seconds, metres ahead) at minimum jerk; 0 m is standing."""
     ahead, at = [np.zeros(1)], 0.0
     for seconds, metres in parts:
         share = np.arange(1, round(seconds * RATE_HZ) + 1) / round(seconds * RATE_HZ)
@@ -24,7 +24,7 @@ def _walked(*parts: tuple[float, float]) -> Track:
 
 
 def test_there_and_back_are_two_walks() -> None:
-    """Two walks of 3 m with 5 s of standing between, as in the paper's first experiment."""
+    """Walking 3 m there and back with 5 s of standing between gives two walks, as in the paper."""
     walks = walks_of(_walked((2.0, 0.0), (4.0, 3.0), (5.0, 0.0), (4.0, -3.0), (2.0, 0.0)))
     assert [round(walk.length_m, 1) for walk in walks] == [3.0, 3.0]
     for walk in walks:
@@ -36,15 +36,15 @@ def test_there_and_back_are_two_walks() -> None:
 
 
 def test_a_short_pause_belongs_to_the_walk() -> None:
-    """Coming to rest and going on takes about .8 s below .1 m/s: the rule decides."""
+    """A pause of about .8 s below .1 m/s is part of the walk unless the rules are shorter."""
     assert len(walks_of(_walked((1.0, 0.0), (3.0, 2.0), (0.2, 0.0), (3.0, 2.0), (1.0, 0.0)))) == 2
     rules = SegmentationRules(still_s=1.5)
     walks = walks_of(_walked((2.0, 0.0), (3.0, 2.0), (0.2, 0.0), (3.0, 2.0), (2.0, 0.0)), rules)
     assert [round(walk.length_m, 1) for walk in walks] == [4.0]
 
 
-def test_a_recording_that_cuts_a_walk_says_so() -> None:
-    """A track that begins and ends amid a walk has one walk that does not begin or end still."""
+def test_a_walk_cut_by_the_recording_is_marked() -> None:
+    """A walk cut by the recording's begin and end is marked as not beginning or ending still."""
     track = _walked((4.0, 4.0))
     middle = slice(120, 360)
     cut = Track(track.times_s[middle], track.xy_m[middle], "7", "made")
@@ -55,13 +55,13 @@ def test_a_recording_that_cuts_a_walk_says_so() -> None:
 
 
 def test_standing_is_no_walk_and_neither_is_a_step() -> None:
-    """Nobody walked, or nowhere far."""
+    """A track of standing, or of a single step, has no walk."""
     assert walks_of(_walked((3.0, 0.0))) == []
     assert walks_of(_walked((1.0, 0.0), (0.8, 0.2), (1.0, 0.0))) == []
 
 
 def test_places_are_smoothed_as_in_the_paper() -> None:
-    """At 120 Hz with sigma = 2 samples; at 60 Hz over the same time."""
+    """Positions are smoothed with sigma = 2 samples at 120 Hz, the same time at 60 Hz."""
     noise: FloatArray = np.random.default_rng(3).normal(size=(50, 2))
     for rate_hz, sigma in ((120.0, 2.0), (60.0, 1.0)):
         expected = gaussian_filter1d(noise, sigma, axis=0)
@@ -69,12 +69,12 @@ def test_places_are_smoothed_as_in_the_paper() -> None:
 
 
 def test_smoothing_keeps_place_and_speed_at_the_ends() -> None:
-    """Who is filmed amid a steady walk is as quick at the first frame as later."""
+    """Smoothing a steady walk keeps its position and speed in the first and the last frame."""
     steady = np.stack([np.zeros(40), np.arange(40) * 0.01], axis=-1)
     assert smoothed(steady, 120.0) == pytest.approx(steady, abs=1e-12)
 
 
-def test_rules_that_are_none_are_refused() -> None:
-    """A negative threshold is named."""
+def test_invalid_rules_are_rejected() -> None:
+    """A negative threshold is rejected by name."""
     with pytest.raises(WalkingError, match="still_m_s"):
         SegmentationRules(still_m_s=-0.1)

@@ -1,4 +1,4 @@
-"""Tracks out of captures: skeletons, trackers on a belt, markers."""
+"""Floor tracks from captures of skeletons, belt trackers and markers."""
 
 from pathlib import Path
 
@@ -29,21 +29,24 @@ def _standing(frames: int = 3) -> RigMotion:
 
 
 def test_ahead_in_the_world_is_ahead_on_the_floor() -> None:
-    """A body that faces and moves along -z goes along the floor's y."""
+    """A body that moves along -z moves along the floor's y."""
     track = track_of_rig(_standing(), SAME, WALKER)
     assert np.diff(track.xy_m, axis=0) == pytest.approx(np.array([[0.0, 0.1]] * 2))
     assert track.times_s == pytest.approx([0.0, 0.01, 0.02])
 
 
 def test_the_centre_of_mass_of_a_t_pose_is_where_people_have_it() -> None:
-    """In the middle, and at .55 to .60 of the stature (arms held out raise it a little)."""
+    """The T-pose's centre of mass is in the middle, at .55 to .60 of the stature.
+
+    Arms held out raise it a little.
+    """
     centre = centre_of_mass(_standing(), SAME)[0]
     assert centre[0] == pytest.approx(0.0, abs=1e-9)
     assert 0.55 < centre[1] / 1.75 < 0.61
 
 
 def test_a_leg_moves_the_centre_by_its_share() -> None:
-    """Thigh, shank and foot are a fifth of the body: bending the hip moves the centre forward."""
+    """Bending a hip moves the centre of mass forward by the share of the leg, a fifth."""
     motion = _standing(1)
     bent = motion.rotations.copy()
     bent[0, JOINT_INDEX["LeftUpperLeg"]] = from_rotation_vector(np.array([np.pi / 2, 0.0, 0.0]))
@@ -53,7 +56,7 @@ def test_a_leg_moves_the_centre_by_its_share() -> None:
 
 
 def test_without_legs_the_hips_are_followed() -> None:
-    """The centre of mass says which joints it needs; the door falls back to the hips."""
+    """Without legs the centre of mass raises an error, and the hips are followed instead."""
     without = {joint: name for joint, name in SAME.items() if "Leg" not in joint}
     with pytest.raises(WalkingError, match=r"LeftUpperLeg.*hips"):
         centre_of_mass(_standing(), without)
@@ -63,7 +66,7 @@ def test_without_legs_the_hips_are_followed() -> None:
 
 
 def test_a_belt_tracker_reaches_into_the_body_along_its_z() -> None:
-    """Half the torso's depth and the way to the skin, wherever the tracker faces."""
+    """A belt tracker's position is moved into the torso along its z axis, at any facing."""
     quarter = from_rotation_vector(np.array([0.0, np.pi / 2, 0.0]))
     motion = BodyMotion(
         ("head", "belt"),
@@ -80,7 +83,7 @@ def test_a_belt_tracker_reaches_into_the_body_along_its_z() -> None:
 
 
 def test_markers_are_followed_by_their_middle() -> None:
-    """The pelvis is found by its marker names."""
+    """Markers of the pelvis are found by name and followed by their middle."""
     names = ("RPSI", "LASI", "RASI", "LPSI", "HEAD")
     places = np.zeros((2, 5, 3))
     places[:, :4] = [[0.1, 1.0, 0.1], [-0.1, 1.0, -0.1], [0.1, 1.0, -0.1], [-0.1, 1.0, 0.1]]
@@ -91,8 +94,8 @@ def test_markers_are_followed_by_their_middle() -> None:
         track_of_motion(MarkerMotion(names[4:], 100.0, places[:, 4:]), WALKER)
 
 
-def test_short_gaps_are_bridged_and_long_ones_refused() -> None:
-    """A tenth of a second is filled straight; a second is where the recording must be cut."""
+def test_short_gaps_are_bridged_and_long_ones_rejected() -> None:
+    """Gaps of a tenth of a second are filled linearly; a gap of a second is rejected."""
     times_s = np.arange(200) / 100.0
     places = np.stack([times_s, np.zeros(200)], axis=-1)
     places[:3] = places[50:55] = np.nan
@@ -108,7 +111,10 @@ def test_short_gaps_are_bridged_and_long_ones_refused() -> None:
 
 
 def test_a_real_walk_is_as_long_as_its_root_says(shared_data: Path) -> None:
-    """CMU 06_01 walks 4.27 m; its centre of mass does so too, and the recording cuts the walk."""
+    """The centre of mass of CMU 06_01 travels 4.27 m, as its root does.
+
+    The recording cuts the walk at both ends.
+    """
     path = shared_data / "motion" / "cmu_bvh" / "06_01.bvh"
     capture = read_capture(
         path.read_bytes(), name=path.name, reading=Reading(metres_per_unit=0.056444)
@@ -122,7 +128,7 @@ def test_a_real_walk_is_as_long_as_its_root_says(shared_data: Path) -> None:
 
 
 def _without_t_pose(motion: RigMotion) -> RigMotion:
-    """The converter puts a T-pose before the first frame."""
+    """Return the motion without its first frame, a T-pose that the converter added."""
     rig: Rig = motion.rig
     return RigMotion(
         rig,

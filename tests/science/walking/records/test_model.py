@@ -1,4 +1,4 @@
-"""Tracks, walks and paths refuse what cannot be, and say what they are."""
+"""Tracks, walks and paths: validation and derived values."""
 
 import numpy as np
 import pytest
@@ -15,37 +15,37 @@ TIMES = np.arange(5) / 10.0
 LINE = np.stack([np.zeros(5), np.arange(5) * 0.1], axis=-1)
 
 
-def test_a_walk_of_one_point_is_refused() -> None:
-    """One sample is no walk, and the message says how many it needs."""
+def test_a_walk_of_one_point_is_rejected() -> None:
+    """A walk of one sample is rejected with the number of samples that it needs."""
     with pytest.raises(WalkingError, match=r"1 point.*at least two"):
         Track(TIMES[:1], LINE[:1], "7", "a.csv")
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf])
-def test_places_that_are_not_finite_are_refused(bad: float) -> None:
-    """The message counts the samples and names the first."""
+def test_positions_that_are_not_finite_are_rejected(bad: float) -> None:
+    """Non-finite positions are rejected with their number and the index of the first."""
     places = LINE.copy()
     places[2, 1] = bad
     with pytest.raises(WalkingError, match=r"1 sample.*index 2"):
         Track(TIMES, places, "7", "a.csv")
 
 
-def test_times_that_do_not_grow_are_refused() -> None:
-    """A repeated time is named by its index."""
+def test_times_that_do_not_increase_are_rejected() -> None:
+    """A repeated time is rejected with its index."""
     times = TIMES.copy()
     times[3] = times[2]
     with pytest.raises(WalkingError, match="index 3"):
         Track(times, LINE, "7", "a.csv")
 
 
-def test_a_stature_in_centimetres_is_refused() -> None:
-    """178 is no height in metres."""
+def test_a_stature_in_centimetres_is_rejected() -> None:
+    """A stature of 178 is rejected, since statures are in metres."""
     with pytest.raises(WalkingError, match="give metres"):
         Track(TIMES, LINE, "7", "a.csv", stature_m=178.0)
 
 
-def test_a_walk_knows_length_speed_and_places() -> None:
-    """A steady walk of .4 m in .4 s goes at 1 m/s, and stands before and after."""
+def test_a_walk_derives_length_speed_and_positions() -> None:
+    """A steady walk of .4 m in .4 s has a speed of 1 m/s and constant positions around it."""
     walk = Walk(TIMES, LINE, "7", "a.csv")
     assert walk.length_m == pytest.approx(0.4)
     assert walk.duration_s == pytest.approx(0.4)
@@ -56,21 +56,21 @@ def test_a_walk_knows_length_speed_and_places() -> None:
 @pytest.mark.parametrize(
     "points", [[[0.0, 0.0]], [[0.0, 0.0], [0.0, 0.0]], [[0.0, 0.0], [np.nan, 1.0]]]
 )
-def test_a_path_that_is_none_is_refused(points: list[list[float]]) -> None:
-    """A path needs two points that differ and are finite."""
+def test_an_invalid_path_is_rejected(points: list[list[float]]) -> None:
+    """A path without two different finite points is rejected."""
     with pytest.raises(WalkingError):
         PlannedPath(np.array(points))
 
 
-def test_a_dependency_that_is_no_number_is_refused() -> None:
-    """It is named."""
+def test_a_dependency_that_is_not_a_number_is_rejected() -> None:
+    """A dependency that is not a number is rejected by name."""
     walk = Walk(TIMES, LINE, "7", "a.csv")
     with pytest.raises(WalkingError, match="load_kg"):
         PlannedWalk(walk, PlannedPath(LINE[[0, -1]]), {"load_kg": np.nan})
 
 
 def test_the_papers_grid_is_the_papers() -> None:
-    """Ten values from .1 to 2: the paper's static optimum (.94, 1.58, 1.79) is a node of it."""
+    """The paper's grid has ten values from .1 to 2, with its static optimum (.94, 1.58, 1.79)."""
     assert PAPER_GRID.shape == (10, 10, 10)
     assert PAPER_GRID.nodes[0] == pytest.approx([0.1, 0.1, 0.1])
     assert PAPER_GRID.nodes[-1] == pytest.approx([2.0, 2.0, 2.0])
@@ -78,8 +78,8 @@ def test_the_papers_grid_is_the_papers() -> None:
     assert np.round(node, 2) == pytest.approx([0.94, 1.58, 1.79])
 
 
-def test_a_grid_takes_any_parameters_and_refuses_what_is_out_of_bounds() -> None:
-    """One value fixes a parameter; values beyond its bounds or out of order are refused."""
+def test_a_grid_rejects_values_out_of_bounds_or_order() -> None:
+    """A single value fixes a parameter; values out of bounds or out of order are rejected."""
     sway = SteeringParameter("sway", "m", 0.0, 0.1)
     grid = ParameterGrid((VELOCITY, sway), ((0.5, 1.0), (0.02,)))
     assert grid.nodes.tolist() == [[0.5, 0.02], [1.0, 0.02]]

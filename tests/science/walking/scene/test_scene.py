@@ -1,4 +1,4 @@
-"""Scenes: outlines, clearance, and what is refused."""
+"""Scenes: outlines, clearance and validation."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ TABLE = box("table", (0.0, 0.0), (1.0, 1.0))
 
 
 def test_a_widened_outline_keeps_the_clearance_everywhere() -> None:
-    """Never less than the clearance, at most 2 % more, at corners too."""
+    """A widened outline keeps at least the clearance and at most 2 % more, at corners too."""
     outline = widened(TABLE.corners_m, 0.2)
     away = [distance_m(TABLE.corners_m, (float(x), float(y))) for x, y in outline]
     assert min(away) >= 0.2 - 1e-9
@@ -21,15 +21,15 @@ def test_a_widened_outline_keeps_the_clearance_everywhere() -> None:
     assert area_m2(outline) == pytest.approx(1.0 + 4 * 0.2 + np.pi * 0.04, rel=0.01)
 
 
-def test_a_disc_is_never_smaller_than_it_is() -> None:
-    """Every point of the circle lies within its polygon."""
+def test_the_polygon_of_a_disc_contains_the_disc() -> None:
+    """Every point of a disc's circle lies within its polygon."""
     angles = np.linspace(0.0, 2.0 * np.pi, 100)
     circle = 0.999999 * np.stack([np.cos(angles), np.sin(angles)], axis=-1)
     assert contains(disc_corners((0.0, 0.0), 1.0), circle).all()
 
 
-def test_who_stands_near_an_obstacle_keeps_that_distance() -> None:
-    """A start .1 m off a rack is possible although the clearance is .2 m; others keep theirs."""
+def test_a_start_near_an_obstacle_reduces_its_clearance() -> None:
+    """A start closer than the clearance reduces the clearance of that obstacle only."""
     scene = Scene("near", BOUNDS, (TABLE, box("rack", (1.7, 1.7), (0.2, 0.2))))
     assert scene.is_near_obstacle((0.0, 0.6))
     outlines = scene.widened_obstacles((0.0, 0.6), (0.0, 1.5))
@@ -49,8 +49,8 @@ def test_who_stands_near_an_obstacle_keeps_that_distance() -> None:
         ([[0, 0], [2, 2], [0, 2], [2, 0], [1, 3]], "not convex"),
     ],
 )
-def test_an_outline_that_is_none_is_refused(corners: list[list[float]], said: str) -> None:
-    """By name, with what is wrong."""
+def test_an_invalid_outline_is_rejected(corners: list[list[float]], said: str) -> None:
+    """An invalid outline is rejected with its name and the reason."""
     with pytest.raises(SceneError, match=f"'thing'.*{said}"):
         Obstacle("thing", np.array(corners, dtype=np.float64))
 
@@ -63,14 +63,14 @@ def test_an_outline_that_is_none_is_refused(corners: list[list[float]], said: st
         ((float("nan"), 0.0), "finite"),
     ],
 )
-def test_a_place_where_nobody_can_stand_is_refused(place: tuple[float, float], said: str) -> None:
-    """By name, with where it is."""
+def test_a_place_inside_an_obstacle_is_rejected(place: tuple[float, float], said: str) -> None:
+    """A place inside of an obstacle is rejected with its name and position."""
     with pytest.raises(SceneError, match=f"'goal'.*{said}"):
         Scene("bad", BOUNDS, (TABLE,), {"goal": place})
 
 
 def test_bounds_paths_and_clearance_are_checked() -> None:
-    """Bounds the wrong way round, a path to nowhere, a negative clearance."""
+    """Reversed bounds, a path to an unknown place and a negative clearance are rejected."""
     with pytest.raises(SceneError, match="left < right"):
         Scene("bad", (2.0, 0.0, -2.0, 1.0))
     with pytest.raises(SceneError, match="'goal'; places are start"):
@@ -81,15 +81,15 @@ def test_bounds_paths_and_clearance_are_checked() -> None:
 
 @pytest.mark.parametrize("turn", POLE_DEG)
 def test_the_poles_scenes_have_places_for_start_and_goal(turn: float) -> None:
-    """Both are free at the clearance, and half the distance from the pole along the way."""
+    """Start and goal of the pole scenes are free, and half the walk away from the pole."""
     scene = pole_scene(turn, 3.0)
     for place in scene.places.values():
         assert not scene.is_near_obstacle(place)
         assert np.hypot(*place) == pytest.approx(np.hypot(1.5, 0.3), abs=1e-9)
 
 
-def test_a_laboratory_that_cannot_be_is_refused() -> None:
-    """A walk of no length, a turn beyond half."""
+def test_impossible_laboratory_scenes_are_rejected() -> None:
+    """A walk without length and a turn beyond half a circle are rejected."""
     with pytest.raises(WalkingError):
         straight_scene(0.0)
     with pytest.raises(WalkingError):

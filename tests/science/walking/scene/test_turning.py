@@ -1,4 +1,4 @@
-"""Turning per metre: what a path's shape says, whatever its sampling."""
+"""Turning per metre: it depends on a path's shape, not on its sampling."""
 
 import numpy as np
 import pytest
@@ -14,13 +14,13 @@ def _arc(angle: float, radius_m: float, samples: int) -> FloatArray:
 
 
 def test_a_straight_path_does_not_turn() -> None:
-    """Not even by rounding."""
+    """A straight path has a turning of exactly zero."""
     assert turning_per_m(np.array([[0.0, 0.0], [1.3, 2.9]])) == pytest.approx(0.0, abs=1e-9)
 
 
 @pytest.mark.parametrize("degrees", [45.0, 90.0, 135.0])
 def test_a_bend_turns_by_its_angle(degrees: float) -> None:
-    """A polyline with one bend turns by it, smoothed or not, over its whole length."""
+    """A polyline with one bend turns by the bend's angle over its length, smoothed or not."""
     turn = np.radians(degrees)
     path = np.array([[0.0, 0.0], [0.0, 2.0], [2.0 * np.sin(turn), 2.0 + 2.0 * np.cos(turn)]])
     assert total_turning(path) == pytest.approx(turn, rel=1e-3)
@@ -28,24 +28,24 @@ def test_a_bend_turns_by_its_angle(degrees: float) -> None:
 
 
 def test_a_circle_has_its_curvature() -> None:
-    """A circle of radius 2 m turns by half a radian a metre, but for the ends left out."""
+    """A circle of radius 2 m turns by half a radian a metre, except for the excluded ends."""
     assert turning_per_m(_arc(np.pi, 2.0, 400)) == pytest.approx(0.5, rel=0.03)
 
 
 def test_the_rate_of_sampling_does_not_matter() -> None:
-    """60 or 6000 samples of the same curve turn alike; the paper's sum over samples would not."""
+    """60 and 6000 samples of a curve give the same turning, unlike the paper's sum."""
     few, many = (turning_per_m(_arc(2.0, 1.0, samples)) for samples in (60, 6000))
     assert few == pytest.approx(many, rel=2e-3)
 
 
 def test_turns_to_both_sides_add_up() -> None:
-    """A step aside and back counts twice."""
+    """Turns to the left and to the right add up."""
     path = np.array([[0.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, 2.0]])
     assert total_turning(path) == pytest.approx(np.pi, rel=1e-3)
 
 
 def test_samples_are_equally_far_apart() -> None:
-    """By the path's own length, both ends kept."""
+    """Samples are equidistant along the path, with both ends kept."""
     line = by_length(np.array([[0.0, 0.0], [0.3, 0.4], [0.3, 1.0]]))
     assert len(line) == 111
     assert line[[0, -1]] == pytest.approx(np.array([[0.0, 0.0], [0.3, 1.0]]))

@@ -1,4 +1,4 @@
-"""Made-up walkers: what was promised of them."""
+"""Synthetic walkers have the properties that their populations describe."""
 
 from dataclasses import replace
 
@@ -13,7 +13,7 @@ from app.science.walking.synthetic.synthetic_walks import Sample, straight_path,
 
 
 def test_there_are_five_populations_or_more_and_each_says_how_it_differs() -> None:
-    """Names and descriptions are their own."""
+    """There are at least five populations with names and descriptions of their own."""
     assert len(POPULATIONS) >= 5
     assert len({one.name for one in POPULATIONS}) == len(POPULATIONS)
     assert len({one.about for one in POPULATIONS}) == len(POPULATIONS)
@@ -37,7 +37,7 @@ def test_people_walk_short_ways_slower() -> None:
 
 
 def test_turns_cost_time() -> None:
-    """The same people without the one-third power of curvature are faster round a pole."""
+    """People without the one-third power law of curvature are faster round a pole."""
     scene = [pole_scene(180.0, 3.0)]
     slowed = replace(POPULATIONS[2], turn_exponent=1.0 / 3.0)
     times = [
@@ -48,7 +48,7 @@ def test_turns_cost_time() -> None:
 
 
 def test_people_differ_from_each_other_and_from_walk_to_walk() -> None:
-    """Intra- and inter-subject variance are both there, the latter larger, and people sway."""
+    """Walks vary within people and more between people, and people sway."""
     entries = list(synthetic_walks(POPULATIONS[2], [straight_scene(4.0)], Sample(8, 3)))
     times = np.array([entry.walk.duration_s for entry in entries]).reshape(8, 3)
     assert 0.0 < times.std(axis=1).mean() < times.mean(axis=1).std()
@@ -57,7 +57,7 @@ def test_people_differ_from_each_other_and_from_walk_to_walk() -> None:
 
 
 def test_the_same_seed_makes_the_same_people() -> None:
-    """And another seed others."""
+    """The same seed gives the same people, another seed others."""
     scene = [straight_scene(2.0)]
     one, again, other = (
         [e.walk.duration_s for e in synthetic_walks(POPULATIONS[0], scene, Sample(3, 1, seed))]
@@ -67,7 +67,7 @@ def test_the_same_seed_makes_the_same_people() -> None:
     assert one != other
 
 
-def test_nobody_makes_no_walks() -> None:
-    """A sample needs people and paths."""
+def test_a_sample_needs_people_and_paths() -> None:
+    """A sample without people or without paths is rejected."""
     with pytest.raises(WalkingError, match="people"):
         list(synthetic_walks(POPULATIONS[0], [straight_scene(1.0)], Sample(0)))
