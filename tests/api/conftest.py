@@ -1,4 +1,4 @@
-"""The application of the feature tests, for tests of what stands around all routes."""
+"""The applications of the features' tests, for tests that concern all routes."""
 
 from tests.features.conftest import fresh_lab, lab
 

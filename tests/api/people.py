@@ -1,4 +1,4 @@
-"""People of every role, each with one study of their own and one that is none of their business."""
+"""People of every role, with access to one study and not to another."""
 
 from dataclasses import dataclass
 
@@ -20,7 +20,7 @@ class Place:
 
 
 def sign_in(lab: Lab, role: str, *, studies: list[str] | None = None, name: str = "") -> TestClient:
-    """A client of a new person with that role, for these studies or all."""
+    """Create a person with that role, for these studies or all, and return their client."""
     now = lab.context.clock.utc_now()
     with lab.database.writing() as db:
         name = name or f"{role}-{len(ok(lab.operator.get('/api/accounts')))}"
@@ -33,7 +33,7 @@ def sign_in(lab: Lab, role: str, *, studies: list[str] | None = None, name: str 
 
 
 def foreign_study(lab: Lab) -> Place:
-    """A second study with a session, which people of the first must not learn of."""
+    """Create a second study with a session, which people of the first must not learn of."""
     wish = {"key": FOREIGN}
     ok(lab.operator.post(f"/api/studies/{STUDY}/duplicate", json=wish))
     view: Json = ok(lab.operator.post(f"/api/studies/{FOREIGN}/sessions", json={}))

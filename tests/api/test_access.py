@@ -1,4 +1,4 @@
-"""Who gets in: every route is closed unless it is meant to be open."""
+"""Tests of access: every route is closed unless it is meant to be public."""
 
 import re
 
@@ -16,14 +16,14 @@ PUBLIC = {
 
 
 def routes(lab: Lab) -> list[tuple[str, str]]:
-    """Every documented (method, path)."""
+    """Return every documented (method, path)."""
     paths = lab.app.openapi()["paths"]
     return sorted((method, path) for path, methods in paths.items() for method in methods)
 
 
 @pytest.mark.one_engine
-def test_every_route_but_the_public_ones_asks_who_is_there(lab: Lab) -> None:
-    """Without login, pairing or token each one answers 401 in the common shape."""
+def test_every_route_but_the_public_ones_needs_authentication(lab: Lab) -> None:
+    """Every route but the public ones answers 401 in the common shape without authentication."""
     closed = [route for route in routes(lab) if route not in PUBLIC]
     assert len(closed) >= 24
     stranger = lab.stranger()
@@ -34,12 +34,12 @@ def test_every_route_but_the_public_ones_asks_who_is_there(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_what_is_meant_to_be_public_exists(lab: Lab) -> None:
-    """The list of open routes has no name that went away."""
+def test_every_public_route_exists(lab: Lab) -> None:
+    """Every route that the policy lists as public exists."""
     assert set(routes(lab)) >= PUBLIC
 
 
-def test_a_tablet_is_no_operator(lab: Lab) -> None:
+def test_a_tablet_opens_no_route_of_the_console(lab: Lab) -> None:
     """A tablet's cookie opens the tablet's routes and none of the console's."""
     session_id = lab.join()["id"]
     tablet = lab.tablet(session_id)
@@ -53,7 +53,7 @@ def test_a_tablet_is_no_operator(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_headset_is_neither_operator_nor_tablet(lab: Lab) -> None:
+def test_a_headset_opens_only_its_own_route(lab: Lab) -> None:
     """A headset's token opens the headset's route and no other."""
     session_id = lab.join()["id"]
     headset = lab.stranger()
@@ -68,8 +68,8 @@ def test_a_headset_is_neither_operator_nor_tablet(lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_an_operator_is_no_tablet(lab: Lab) -> None:
-    """A login does not answer a participant's form."""
+def test_an_operator_opens_no_route_of_the_tablet(lab: Lab) -> None:
+    """An operator's login does not open the tablet's routes."""
     error(lab.operator.get("/api/tablet/state"), 401, "not_signed_in")
 
 
@@ -90,7 +90,7 @@ def test_an_operator_is_no_tablet(lab: Lab) -> None:
 def test_another_sites_page_cannot_change_anything(
     lab: Lab, method: str, headers: dict[str, str]
 ) -> None:
-    """A request that another site made is refused, signed in or not."""
+    """A changing request from another site is refused, even with a valid login."""
     answer = lab.operator.request(method, "/api/studies", json={}, headers=headers)
     refusal = error(answer, 403, "not_allowed")
     assert refusal["message"] == "this request comes from another site"
@@ -105,15 +105,15 @@ def test_another_sites_page_cannot_change_anything(
         {},
     ],
 )
-def test_our_own_pages_and_scripts_get_through(lab: Lab, headers: dict[str, str]) -> None:
-    """The same request from our origin, or without a browser, is looked at."""
+def test_our_own_pages_and_scripts_are_accepted(lab: Lab, headers: dict[str, str]) -> None:
+    """A request from our own origin, or without a browser, is accepted."""
     answer = lab.operator.post("/api/studies/check", json={"yaml": "a: 1"}, headers=headers)
     assert answer.status_code == 200
 
 
 @pytest.mark.one_engine
-def test_reading_is_left_to_the_browsers_own_rules(lab: Lab) -> None:
-    """A link from another site may open a page; it changes nothing."""
+def test_a_cross_site_read_is_accepted(lab: Lab) -> None:
+    """A reading request from another site is accepted, as it changes nothing."""
     answer = lab.operator.get("/api/health", headers={"sec-fetch-site": "cross-site"})
     assert answer.status_code == 200
 
@@ -135,14 +135,14 @@ def test_reading_is_left_to_the_browsers_own_rules(lab: Lab) -> None:
         ("evil.notlocal", 403),
     ],
 )
-def test_a_name_of_the_internet_does_not_lead_here(lab: Lab, host: str, status: int) -> None:
-    """A hostile page that makes its name lead to this address gets nothing (DNS rebinding)."""
+def test_a_public_host_name_is_refused(lab: Lab, host: str, status: int) -> None:
+    """A request under a public host name is refused, against DNS rebinding."""
     assert lab.stranger().get("/api/health", headers={"host": host}).status_code == status
 
 
 @pytest.mark.one_engine
-def test_no_foreign_page_gets_anything_changed_anywhere(lab: Lab) -> None:
-    """Every changing route, with an operator's login, asked by three kinds of foreign pages."""
+def test_no_changing_route_accepts_a_foreign_page(lab: Lab) -> None:
+    """No changing route accepts an operator's request from any of three kinds of foreign pages."""
     foreign = (
         {"origin": "https://elsewhere.example"},
         {"origin": "null"},
@@ -166,7 +166,7 @@ def test_no_foreign_page_gets_anything_changed_anywhere(lab: Lab) -> None:
 @pytest.mark.one_engine
 @pytest.mark.parametrize("origin", ["https://elsewhere.example", "null", "http://testserver:99"])
 def test_a_foreign_page_opens_no_socket(lab: Lab, origin: str) -> None:
-    """A WebSocket's handshake from another origin is refused, whatever token it brings."""
+    """A WebSocket from another origin is refused, even with a valid token."""
     token = lab.headset_token(lab.join()["id"])
     headers = {"origin": origin, "host": "testserver"}
     offered = [SUBPROTOCOL, f"bearer.{token}"]

@@ -1,4 +1,4 @@
-"""What browsers are sent for the pages' scripts and styles."""
+"""Tests of how scripts and styles are sent to browsers."""
 
 import gzip
 from pathlib import Path
@@ -14,7 +14,7 @@ SCRIPT = "export const words = 'a script of some length';\n" * 100
 
 @pytest.fixture
 def client(tmp_path: Path) -> TestClient:
-    """An application that serves a script, a tiny one, and a picture."""
+    """Return a client of an application that serves a script, a tiny one and a picture."""
     (tmp_path / "page.js").write_text(SCRIPT)
     (tmp_path / "tiny.js").write_text("export {};\n")
     (tmp_path / "picture.png").write_bytes(bytes(4000))
@@ -23,8 +23,8 @@ def client(tmp_path: Path) -> TestClient:
     return TestClient(app)
 
 
-def test_a_script_is_sent_compressed_and_may_be_kept(client: TestClient) -> None:
-    """The bytes on the wire are gzip of the file, and caches know what they depend on."""
+def test_a_script_is_sent_compressed_and_cacheable(client: TestClient) -> None:
+    """A script is sent compressed with gzip and may be cached, depending on the encoding."""
     with client.stream("GET", "/assets/page.js", headers={"accept-encoding": "gzip"}) as answer:
         wire = b"".join(answer.iter_raw())
     assert gzip.decompress(wire).decode() == SCRIPT
@@ -36,8 +36,8 @@ def test_a_script_is_sent_compressed_and_may_be_kept(client: TestClient) -> None
 
 
 @pytest.mark.parametrize("accepted", ["identity", "br", "gzip;q=0"])
-def test_who_takes_no_gzip_gets_the_file(client: TestClient, accepted: str) -> None:
-    """The file as it is, and a cache between does not give it to others as theirs."""
+def test_a_client_without_gzip_gets_the_plain_file(client: TestClient, accepted: str) -> None:
+    """A client that does not accept gzip gets the plain file, with the right `Vary`."""
     answer = client.get("/assets/page.js", headers={"accept-encoding": accepted})
     assert "content-encoding" not in answer.headers
     assert answer.text == SCRIPT
@@ -45,8 +45,8 @@ def test_who_takes_no_gzip_gets_the_file(client: TestClient, accepted: str) -> N
 
 
 @pytest.mark.parametrize("name", ["tiny.js", "picture.png"])
-def test_what_gains_nothing_is_left_as_it_is(client: TestClient, name: str) -> None:
-    """Small files, and those that are compressed already."""
+def test_small_and_compressed_files_are_not_compressed(client: TestClient, name: str) -> None:
+    """Small files and those that are compressed already are sent unchanged."""
     answer = client.get(f"/assets/{name}", headers={"accept-encoding": "gzip"})
     assert answer.status_code == 200
     assert "content-encoding" not in answer.headers

@@ -1,7 +1,7 @@
-"""Every route x everybody x own and foreign objects, made from the policy table (fault 33).
+"""Tests of every route for every role, on own and foreign objects (fault 33).
 
-A leak is an answer that is not refused where the table refuses it, or a foreign object that is
-answered differently from one that was never there.
+A leak is an answer that is not refused although the table refuses it, or a foreign object that is
+answered differently from one that does not exist.
 """
 
 import re
@@ -26,7 +26,7 @@ OTHER_IDS = "f" * 32
 
 @dataclass(frozen=True)
 class Bench:
-    """The people, and where they are at home or not."""
+    """People and devices, and the studies that they may or may not access."""
 
     lab: Lab
     people: dict[str, TestClient]
@@ -38,7 +38,7 @@ class Bench:
 
 @pytest.fixture(scope="module")
 def bench(lab: Lab) -> Bench:
-    """One person of each role for one study, and a tablet and a headset of its session."""
+    """Return one person of each role for one study, and a tablet and a headset of its session."""
     own = Place(STUDY, lab.join()["id"])
     foreign = foreign_study(lab)
     headset = lab.stranger()
@@ -53,7 +53,7 @@ def bench(lab: Lab) -> Bench:
     )
 
 
-def ask(client: TestClient, route: str, place: Place) -> Response:
+def call(client: TestClient, route: str, place: Place) -> Response:
     """Call a route on the objects of a place, with an empty body."""
     method, template = route.split()
     path = template.replace("{session_id}", place.session_id)
@@ -64,12 +64,12 @@ def ask(client: TestClient, route: str, place: Place) -> Response:
 
 
 def of_a_study(route: str) -> bool:
-    """Whether the route is about a study's object that its path names."""
+    """Return whether the route's path names an object of a study."""
     return "/api/studies/{key}" in route or "{session_id}" in route
 
 
 def outsiders(bench: Bench, route: str) -> Iterator[tuple[str, TestClient]]:
-    """Nobody, and the devices that the route is not for."""
+    """Yield an anonymous client, and the devices that may not call the route."""
     yield "nobody", bench.nobody
     for name, client in bench.devices.items():
         if POLICY[route] != {name}:
@@ -77,8 +77,8 @@ def outsiders(bench: Bench, route: str) -> Iterator[tuple[str, TestClient]]:
 
 
 @pytest.mark.one_engine
-def test_nobody_gets_more_than_the_table_gives(bench: Bench) -> None:
-    """Refusals are 401 for strangers, 403 for the wrong role; foreign objects do not exist."""
+def test_every_route_follows_the_policy_table(bench: Bench) -> None:
+    """Every route refuses strangers with 401, wrong roles with 403 and foreign objects with 404."""
     leaks: list[str] = []
     asked: Counter[str] = Counter()
     for route in ROUTES:
@@ -86,7 +86,7 @@ def test_nobody_gets_more_than_the_table_gives(bench: Bench) -> None:
             continue
         for name, client in outsiders(bench, route):
             asked["stranger"] += 1
-            if ask(client, route, bench.own).status_code != 401:
+            if call(client, route, bench.own).status_code != 401:
                 leaks.append(f"{name}: {route}")
         for role, client in bench.people.items():
             leaks += [f"{role}: {leak}" for leak in leaks_of(bench, role, client, route, asked)]
@@ -100,29 +100,29 @@ def test_nobody_gets_more_than_the_table_gives(bench: Bench) -> None:
 def leaks_of(
     bench: Bench, role: str, client: TestClient, route: str, asked: Counter[str]
 ) -> Iterator[str]:
-    """What one person gets by one route that they should not."""
+    """Yield what a person gets from a route against the policy table."""
     if role not in POLICY[route]:
         asked["wrong role"] += 1
         expected = 401 if POLICY[route] in (TABLET, HEADSET) else 403
-        if ask(client, route, bench.own).status_code != expected:
+        if call(client, route, bench.own).status_code != expected:
             yield f"{route} in spite of the role"
         return
     if not of_a_study(route):
         return
     asked["foreign object"] += 1
-    there, never = ask(client, route, bench.foreign), ask(client, route, NOWHERE)
+    there, never = call(client, route, bench.foreign), call(client, route, NOWHERE)
     told = there.text.replace(bench.foreign.session_id, "?").replace(bench.foreign.key, "?")
     untold = never.text.replace(NOWHERE.session_id, "?").replace(NOWHERE.key, "?")
     if there.status_code != 404 or told != untold:
         yield f"{route} of a foreign study: {there.status_code}"
     if not route.endswith(ENDLESS):
         asked["own object"] += 1
-        if ask(client, route, bench.own).status_code in (401, 403):
+        if call(client, route, bench.own).status_code in (401, 403):
             yield f"{route} is refused although the table allows it"
 
 
-def test_lists_hold_own_studies_only(bench: Bench) -> None:
-    """No list names what is not theirs."""
+def test_the_list_of_studies_has_own_studies_only(bench: Bench) -> None:
+    """A person's list of studies has only those they may access."""
     for role, client in bench.people.items():
         listed = client.get("/api/studies").json()
         assert [study["key"] for study in listed] == [STUDY], role
@@ -130,6 +130,6 @@ def test_lists_hold_own_studies_only(bench: Bench) -> None:
 
 @pytest.mark.one_engine
 def test_an_unlisted_route_is_closed(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What is not in the table is refused for everybody, admins included."""
+    """A route that is not in the policy table is refused to everyone, even admins."""
     monkeypatch.delitem(POLICY, "GET /api/studies")
     assert bench.lab.operator.get("/api/studies").status_code == 403

@@ -1,6 +1,6 @@
-"""The whole OpenAPI document against the real server: made-up requests to every operation.
+"""Generated requests to every operation of the OpenAPI document, on the real server.
 
-Whatever comes, no operation breaks, and every answer is of the kind that the document promises.
+No request may cause a server error, and every answer must fit the document.
 """
 
 from collections import Counter
@@ -37,12 +37,12 @@ CHECKS = (
 )
 EXAMPLES, MANY_EXAMPLES = usually(3, at_length=5), 400
 NOT_CALLED = ("/live", "/api/logout", "/api/me/password", "/logins")
-"""Endless streams, and what would end the login that asks."""
+"""Endless streams, and operations that would end the login in use."""
 
 
 @dataclass(frozen=True)
 class Bench:
-    """A running server with a session, and somebody who may do everything."""
+    """A running server with objects to request, and an admin's token."""
 
     server: LiveServer
     token: str
@@ -53,7 +53,7 @@ class Bench:
 
 @pytest.fixture(scope="module")
 def bench(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Bench]:
-    """An admin's token, and a session that can be found."""
+    """Yield a server with a session, a capture, a humanoid model and an admin's token."""
     with LiveServer(tmp_path_factory.mktemp("openapi")) as server, server.client() as client:
         credentials = {"username": "admin", "password": ADMIN_PASSWORD}
         client.post("/api/login", json=credentials).raise_for_status()
@@ -68,7 +68,7 @@ def bench(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Bench]:
 
 
 def operations(bench: Bench) -> Iterator[Any]:
-    """Every operation that can be called without an end."""
+    """Yield every operation that ends by itself."""
     schema = schemathesis.openapi.from_url(f"{bench.server.url}/api/openapi.json")
     for result in schema.get_all_operations():
         assert isinstance(result, Ok)
@@ -77,8 +77,8 @@ def operations(bench: Bench) -> Iterator[Any]:
             yield operation
 
 
-def known_objects(case: Any, bench: Bench, count: int) -> None:
-    """Two times in three ask for what is there, or hardly anything behind an id would be met."""
+def use_existing_objects(case: Any, bench: Bench, count: int) -> None:
+    """Use ids of existing objects in two of three requests, so that they are found."""
     if count % 3 and case.path_parameters:
         known = {"key": STUDY, "session_id": bench.session_id, "number": 1}
         known["content_hash"] = bench.humanoid
@@ -95,7 +95,10 @@ def known_objects(case: Any, bench: Bench, count: int) -> None:
 
 
 def run(bench: Bench, examples: int) -> Counter[str]:
-    """Call every operation so often; what was counted. Raises where an answer breaks a promise."""
+    """Call every operation with generated requests; return the counts of requests and answers.
+
+    Raises if an answer does not fit the document.
+    """
     counted: Counter[str] = Counter()
     headers = {"authorization": f"Bearer {bench.token}"}
     for operation in operations(bench):
@@ -112,7 +115,7 @@ def run(bench: Bench, examples: int) -> Counter[str]:
         @given(case=operation.as_strategy())
         def called(case: Any) -> None:
             counted["requests"] += 1
-            known_objects(case, bench, counted["requests"])
+            use_existing_objects(case, bench, counted["requests"])
             answer = case.call_and_validate(headers=headers, checks=CHECKS, timeout=30.0)
             counted[f"answers {answer.status_code // 100}XX"] += 1
 
@@ -120,24 +123,24 @@ def run(bench: Bench, examples: int) -> Counter[str]:
     return counted
 
 
-def tell(counted: Counter[str]) -> None:
-    """Into the table of figures."""
+def note_counts(counted: Counter[str]) -> None:
+    """Note the counts in the table of figures."""
     for what, count in sorted(counted.items()):
         note(21, "made-up requests to every operation", what, count)
 
 
-def test_no_request_breaks_the_server_or_its_promises(bench: Bench) -> None:
-    """No answer is a server error, and each fits its schema, status, headers and content type."""
+def test_generated_requests_get_documented_answers(bench: Bench) -> None:
+    """No generated request causes a server error, and every answer fits the OpenAPI document."""
     counted = run(bench, EXAMPLES)
-    tell(counted)
+    note_counts(counted)
     assert counted["answers 5XX"] == 0
     assert counted["answers 2XX"] > counted["operations"] / 2
 
 
 @pytest.mark.long
 @pytest.mark.timeout(3600)
-def test_many_requests_break_nothing(bench: Bench, tmp_path: Path) -> None:
-    """The same with many more."""
+def test_many_generated_requests_get_documented_answers(bench: Bench, tmp_path: Path) -> None:
+    """None of many generated requests causes a server error or an undocumented answer."""
     counted = run(bench, MANY_EXAMPLES)
-    tell(counted)
+    note_counts(counted)
     assert counted["answers 5XX"] == 0

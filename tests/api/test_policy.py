@@ -1,4 +1,4 @@
-"""The policy table and the routes are the same list."""
+"""Tests that the policy table and the routes agree."""
 
 import pytest
 
@@ -10,7 +10,7 @@ NOT_OVER_HTTP = {"WEBSOCKET /api/vr/stream", "WEBSOCKET /api/sessions/{session_i
 
 @pytest.mark.one_engine
 def test_the_table_lists_every_route_and_nothing_else(lab: Lab) -> None:
-    """Whoever adds a route must say who may call it."""
+    """The policy table lists exactly the routes that exist."""
     documented = {
         f"{method.upper()} {path}"
         for path, methods in lab.app.openapi()["paths"].items()
@@ -20,13 +20,13 @@ def test_the_table_lists_every_route_and_nothing_else(lab: Lab) -> None:
 
 
 def test_a_route_is_for_people_or_for_one_kind_of_device() -> None:
-    """Nobody is let in twice by one table row."""
+    """Every route is for anyone, for people of the lab, or for one kind of device."""
     for route, who in POLICY.items():
         assert who in (ANYONE, TABLET, HEADSET) or who <= LAB, route
 
 
-def test_what_changes_something_is_closed_to_analysts() -> None:
-    """Analysts read: by no method but GET, and where they only try something out."""
+def test_analysts_cannot_change_anything() -> None:
+    """Analysts can call only routes that read, check, compute, export or set their own password."""
     trying = {
         "POST /api/studies/check",
         "POST /api/studies/edit",
@@ -40,7 +40,7 @@ def test_what_changes_something_is_closed_to_analysts() -> None:
         "POST /api/walking/models/{model_id}/slice",
     }
     watching = {"WEBSOCKET /api/sessions/{session_id}/pose"}
-    # A file of their own to take away, which the server makes and removes.
+    # A file for their own download, which the server creates and deletes.
     taking = {"POST /api/studies/{key}/exports", "DELETE /api/exports/{export_id}"}
     changing = (
         {route for route, who in POLICY.items() if "analyst" in who and not route.startswith("GET")}
@@ -51,7 +51,7 @@ def test_what_changes_something_is_closed_to_analysts() -> None:
 
 
 @pytest.mark.one_engine
-def test_no_two_shapes_share_a_name(lab: Lab) -> None:
-    """A second one would rename the first for every generated client."""
+def test_schema_names_are_unique(lab: Lab) -> None:
+    """No two schemas share a name, as a duplicate would rename both in generated clients."""
     shapes = lab.app.openapi()["components"]["schemas"]
     assert [name for name in shapes if "__" in name] == []

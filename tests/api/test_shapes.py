@@ -1,4 +1,4 @@
-"""Answers of every kind: one shape of errors, the same headers, limits on size."""
+"""Tests of properties of all answers: the shape of errors, headers and size limits."""
 
 import threading
 from collections.abc import Iterator
@@ -29,14 +29,14 @@ SHAPE = {"code", "message", "value", "valid", "remedy", "details"}
 def test_every_error_has_the_same_shape(
     lab: Lab, method: str, path: str, status: int, code: str
 ) -> None:
-    """Ours, validation's and the framework's errors carry the same six fields."""
+    """Errors of the product, of validation and of the framework have the same six fields."""
     assert set(error(lab.operator.request(method, path), status, code)) == SHAPE
 
 
 @pytest.mark.one_engine
 @pytest.mark.parametrize("body", [b"{", b"\xff\xfe", b'"text"', b"[" * 5000, b"", b"NaN"])
-def test_a_body_that_is_no_json_is_refused(lab: Lab, body: bytes) -> None:
-    """Broken JSON is the sender's fault and is told so."""
+def test_an_invalid_json_body_is_refused(lab: Lab, body: bytes) -> None:
+    """A body that is not valid JSON is refused in the common shape."""
     headers = {"content-type": "application/json"}
     answer = lab.operator.post("/api/studies/check", content=body, headers=headers)
     assert answer.status_code in (400, 422)
@@ -44,8 +44,8 @@ def test_a_body_that_is_no_json_is_refused(lab: Lab, body: bytes) -> None:
 
 
 @pytest.mark.parametrize("name", ["%00", "a%00b", "%F0%9F%92%A9", "..", "' OR 1=1 --"])
-def test_odd_names_are_not_found(lab: Lab, name: str) -> None:
-    """A name that no database could hold is just not there."""
+def test_unusual_names_in_a_path_are_refused(lab: Lab, name: str) -> None:
+    """An unusual name in a path is answered with 404 or 422 in the common shape."""
     answer = lab.operator.get(f"/api/studies/{name}/ledger")
     assert answer.status_code in (404, 422)
     assert set(answer.json()["error"]) == SHAPE
@@ -65,22 +65,22 @@ def test_odd_names_are_not_found(lab: Lab, name: str) -> None:
         (ReembodyError("nan and bytes", value=[float("nan"), b"x"]), 500, "error"),
     ],
 )
-def test_what_breaks_inside_is_told_in_the_same_shape(
+def test_internal_errors_have_the_same_shape(
     lab: Lab, raised: Exception, status: int, code: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The answer is JSON with a remedy's place, and tells nothing of the inside."""
+    """An internal error is answered in the common shape without internal details."""
 
     reading = Database.reading
 
     def fail(database: Database) -> AbstractContextManager[Session]:
-        # Only for the request: what runs in the background would count as failed from then on.
+        # Only for the request: a failing background task would be reported from then on.
         if threading.current_thread().name.startswith("AnyIO"):
             raise raised
         return reading(database)
 
     monkeypatch.setattr(Database, "reading", fail)
     client = lab.stranger()
-    # The test client would raise what a server answers with a 500.
+    # The test client would otherwise raise what a server answers with a 500.
     client._transport.raise_server_exceptions = False  # type: ignore[attr-defined]  # Starlette's own
     answer = client.get("/api/health")
     refusal = error(answer, status, code)
@@ -90,15 +90,15 @@ def test_what_breaks_inside_is_told_in_the_same_shape(
 
 
 @pytest.mark.one_engine
-def test_a_body_that_says_it_is_too_large_is_refused(lab: Lab) -> None:
-    """More than 2 MiB are not even read."""
+def test_a_body_declared_as_too_large_is_refused(lab: Lab) -> None:
+    """A body with a declared length above 2 MiB is refused."""
     answer = lab.operator.post("/api/studies/check", json={"yaml": "x" * (2 * 1024 * 1024)})
     assert error(answer, 413, "too_large")["valid"] == "at most 2097152 bytes"
 
 
 @pytest.mark.one_engine
-def test_a_body_that_does_not_say_its_length_is_counted(lab: Lab) -> None:
-    """A stream is cut off at the same limit with the same answer."""
+def test_a_streamed_body_is_limited(lab: Lab) -> None:
+    """A streamed body without a declared length is refused at the same limit."""
 
     def endless() -> Iterator[bytes]:
         for _ in range(64):
@@ -125,7 +125,7 @@ def test_a_body_that_does_not_say_its_length_is_counted(lab: Lab) -> None:
 def test_every_answer_carries_the_security_headers(
     lab: Lab, method: str, path: str, headers: dict[str, str]
 ) -> None:
-    """Pages, data and refusals alike, also those that no route has seen."""
+    """Every answer has the security headers, including refusals outside of any route."""
     answer = lab.stranger().request(method, path, headers=headers)
     assert "default-src 'self'" in answer.headers["content-security-policy"]
     assert "frame-ancestors 'none'" in answer.headers["content-security-policy"]
@@ -134,12 +134,12 @@ def test_every_answer_carries_the_security_headers(
 
 
 @pytest.mark.one_engine
-def test_nothing_of_the_interface_is_kept_by_caches(lab: Lab) -> None:
-    """Answers under /api are no-store."""
+def test_answers_of_the_interface_are_not_cached(lab: Lab) -> None:
+    """Answers under /api are marked `no-store`."""
     assert lab.operator.get("/api/studies").headers["cache-control"] == "no-store"
 
 
 def test_health_names_the_engine(lab: Lab) -> None:
-    """A monitor sees that the database answers, and which one it is."""
+    """The health check reports the database engine."""
     health = lab.stranger().get("/api/health").json()
     assert (health["status"], health["database"]) == ("ok", lab.database.engine.dialect.name)

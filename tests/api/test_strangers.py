@@ -1,4 +1,4 @@
-"""Those who are nobody: what they may send, how often, and what an answer repeats to them."""
+"""Tests of anonymous requests: their size, their rate, and what answers repeat."""
 
 import json
 import re
@@ -29,7 +29,7 @@ WITH_A_BODY = [
 
 
 def in_pieces(size: int, taken: list[int] | None = None) -> Iterator[bytes]:
-    """A body that does not say its length, in pieces; notes how many were taken."""
+    """Yield a body in pieces without a declared length, recording how many were read."""
     for at in range(0, size, 1024):
         if taken is not None:
             taken.append(at)
@@ -37,14 +37,14 @@ def in_pieces(size: int, taken: list[int] | None = None) -> Iterator[bytes]:
 
 
 def few_requests(lab: Lab) -> None:
-    """A budget of a hundred: what happens when it is gone does not depend on how large it was."""
+    """Lower the budget to a hundred requests; behaviour beyond it does not depend on its size."""
     lab.context.limits.strangers.capacity = 100.0
 
 
 def spend_all(lab: Lab, client: TestClient | None = None) -> Response:
-    """Ask as a stranger until the budget of the address is gone; the last answer."""
+    """Send anonymous requests until the address's budget is used up; return the last answer."""
     client = client or lab.stranger()
-    # It would come back while the test looks at what is left.
+    # The budget would refill during the test.
     lab.context.limits.strangers.per_s = 1e-6
     for _ in range(2000):
         answer = client.get("/nothing-here")
@@ -56,8 +56,10 @@ def spend_all(lab: Lab, client: TestClient | None = None) -> Response:
 @pytest.mark.one_engine
 @pytest.mark.parametrize(("method", "path"), WITH_A_BODY)
 @pytest.mark.parametrize("sent", ["declared", "in chunks"])
-def test_a_stranger_may_send_little(lab: Lab, method: str, path: str, sent: str) -> None:
-    """Above 16 KiB it is 413, whether the length was said or the body comes in chunks."""
+def test_an_anonymous_body_is_limited_to_16_kib(
+    lab: Lab, method: str, path: str, sent: str
+) -> None:
+    """An anonymous body above 16 KiB is refused with 413, declared or in chunks."""
     size = STRANGERS_BODY_BYTES + 1024
     content: Any = b" " * size if sent == "declared" else in_pieces(size)
     answer = lab.stranger().request(method, path, content=content, headers=JSON)
@@ -66,8 +68,8 @@ def test_a_stranger_may_send_little(lab: Lab, method: str, path: str, sent: str)
 
 
 @pytest.mark.one_engine
-def test_too_much_is_refused_while_it_comes(lab: Lab) -> None:
-    """The rest of a body that is too large is not waited for."""
+def test_a_too_large_body_is_refused_while_it_arrives(lab: Lab) -> None:
+    """A body that is too large is refused without reading the rest."""
     taken: list[int] = []
     answer = lab.stranger().post("/api/login", content=in_pieces(2**20, taken), headers=JSON)
     error(answer, 413, "too_large")
@@ -75,8 +77,8 @@ def test_too_much_is_refused_while_it_comes(lab: Lab) -> None:
 
 @pytest.mark.one_engine
 @pytest.mark.parametrize("path", ["/api/studies", "/api/captures?name=a.bvh"])
-def test_a_closed_route_takes_no_more_from_a_stranger(lab: Lab, path: str) -> None:
-    """The larger limits are for those who are in."""
+def test_larger_bodies_need_a_login(lab: Lab, path: str) -> None:
+    """The larger size limit of a closed route applies only to authenticated requests."""
     answer = lab.stranger().post(path, content=b" " * 100_000, headers=JSON)
     error(answer, 413, "too_large")
     tablet = lab.tablet(lab.join()["id"])
@@ -85,8 +87,8 @@ def test_a_closed_route_takes_no_more_from_a_stranger(lab: Lab, path: str) -> No
 
 
 @pytest.mark.one_engine
-def test_an_ended_login_hears_that_it_has_ended(lab: Lab) -> None:
-    """Whoever saves a large study after their login has ended is asked to log in."""
+def test_a_large_request_with_an_expired_login_gets_401(lab: Lab) -> None:
+    """A large request with an expired login is answered with 401, not with a size error."""
     client = lab.stranger()
     client.headers["authorization"] = f"Bearer {'x' * 43}"
     answer = client.post("/api/studies/check", json={"yaml": "a" * 100_000})
@@ -111,16 +113,14 @@ def test_an_ended_login_hears_that_it_has_ended(lab: Lab) -> None:
 )
 @pytest.mark.parametrize(("method", "path"), [*WITH_A_BODY, ("PUT", "/api/me/password")])
 def test_no_answer_repeats_a_secret(lab: Lab, method: str, path: str, body: object) -> None:
-    """Whatever field it was typed into: an answer about it leaves it out."""
+    """No answer repeats a secret, in whatever field of the request it was."""
     assert SECRET not in lab.operator.request(method, path, json=body).text
 
 
 @pytest.mark.one_engine
 @pytest.mark.parametrize(("method", "path"), [*WITH_A_BODY, ("PUT", "/api/me/password")])
-def test_no_answer_to_a_secret_repeats_the_name_of_a_field(
-    lab: Lab, method: str, path: str
-) -> None:
-    """A password that was pasted into the place of a name is not shown; our own names are."""
+def test_no_answer_repeats_an_unknown_field_name(lab: Lab, method: str, path: str) -> None:
+    """An answer does not repeat unknown field names, which may be a pasted password."""
     told = error(lab.operator.request(method, path, json={SECRET: 1}), 422, "invalid_input")
     assert SECRET not in json.dumps(told)
     paths = [one["path"] for one in told["details"]]
@@ -130,10 +130,8 @@ def test_no_answer_to_a_secret_repeats_the_name_of_a_field(
 
 @pytest.mark.one_engine
 @pytest.mark.parametrize("body", [b"9" * 9000, b"[" * 8000 + b"]" * 8000, b'{"a":' * 2500])
-def test_json_beyond_what_can_be_read_is_refused_in_words(lab: Lab, body: bytes) -> None:
-    """A number of thousands of digits, or thousands of lists inside each other: to a stranger, and
-    to whoever is signed in.
-    """
+def test_excessive_json_is_refused_with_a_remedy(lab: Lab, body: bytes) -> None:
+    """JSON with huge numbers or deep nesting is refused with a remedy, signed in or not."""
     for client, path in ((lab.stranger(), "/api/login"), (lab.operator, "/api/studies/check")):
         answer = client.post(path, content=body, headers=JSON)
         told = error(answer, 422, "invalid_input")
@@ -143,8 +141,8 @@ def test_json_beyond_what_can_be_read_is_refused_in_words(lab: Lab, body: bytes)
 
 @pytest.mark.one_engine
 @pytest.mark.parametrize("filling", ["\x01", "é", '"', "x"])
-def test_an_answer_is_small_however_much_was_sent(lab: Lab, filling: str) -> None:
-    """No route gives back what it did not understand, neither values nor names of fields."""
+def test_an_answer_is_small_whatever_was_sent(lab: Lab, filling: str) -> None:
+    """An answer to a large invalid request is small, as it does not repeat the content."""
     large = filling * 250_000
     bodies: list[Any] = [large, [large], {large: large}, {"yaml": [large]}, [filling] * 200_000]
     for method, path in routes(lab):
@@ -163,7 +161,7 @@ BAD_TEXTS = (b"\\ud800", b"\\uDFFF", b"\\u0000", b"a\\udc00\\ud800b", b"\xed\xa0
 
 @pytest.mark.parametrize("bad", BAD_TEXTS)
 def test_text_that_cannot_be_stored_is_refused_everywhere(lab: Lab, bad: bytes) -> None:
-    """Half a surrogate pair and NUL in any text of any route's body, as a value or as a name."""
+    """Every route refuses text with a lone surrogate or NUL, as a value or as a key."""
     for method, path in routes(lab):
         if method == "get" or path in BINARY:
             continue
@@ -176,16 +174,16 @@ def test_text_that_cannot_be_stored_is_refused_everywhere(lab: Lab, bad: bytes) 
 BINARY = ("/api/captures", "/api/humanoids", "/api/walking/walk-sets/tracks")
 
 
-def test_text_outside_of_the_first_plane_is_text(lab: Lab) -> None:
-    """A whole pair, and a backslash before a u, are what people write."""
+def test_surrogate_pairs_and_escaped_backslashes_are_accepted(lab: Lab) -> None:
+    """Complete surrogate pairs and escaped backslashes in a text are accepted."""
     for text in (rb"\ud83d\ude00", rb"\\u0000", rb"\\ud800", "😀".encode()):
         body = b'{"yaml": "key: %s"}' % text
         ok(lab.operator.post("/api/studies/check", content=body, headers=JSON))
 
 
 @pytest.mark.parametrize("bad", ["%00", "%ED%A0%80", "%ff", "a%00b"])
-def test_an_address_that_is_no_text_is_refused(lab: Lab, bad: str) -> None:
-    """In the path and in the query string of every route, also as the name of a file."""
+def test_an_address_with_invalid_text_is_refused(lab: Lab, bad: str) -> None:
+    """A NUL or invalid UTF-8 in the path or query of any route is refused."""
     for method, path in routes(lab):
         asked = [f"{re.sub(r'[{][a-z_]+[}]', 'x', path)}?name={bad}&{bad}=1"]
         if "{" in path:
@@ -197,8 +195,8 @@ def test_an_address_that_is_no_text_is_refused(lab: Lab, bad: str) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_header_that_is_no_text_is_refused(lab: Lab) -> None:
-    """Whichever it is; Latin-1 is what old clients write."""
+def test_a_header_with_invalid_text_is_refused(lab: Lab) -> None:
+    """A NUL or a surrogate in any header is refused; Latin-1 and UTF-8 are accepted."""
     for name in (b"authorization", b"cookie", b"user-agent", b"accept-language", b"x-any"):
         answer = lab.stranger().get("/api/me", headers=[(name, b"x a\x00b")])
         error(answer, 422, "invalid_input")
@@ -210,7 +208,7 @@ def test_a_header_that_is_no_text_is_refused(lab: Lab) -> None:
 @pytest.mark.one_engine
 @pytest.mark.parametrize("name", ["host", "origin"])
 def test_a_broken_address_in_a_header_is_refused(lab: Lab, name: str) -> None:
-    """Half an IPv6 address is nobody's name, and no trouble of the server's."""
+    """A malformed IPv6 address in `Host` or `Origin` is refused without a server error."""
     answer = lab.stranger().post(
         "/api/logout", headers={name: "http://[::1" if name == "origin" else "[::1"}
     )
@@ -218,8 +216,8 @@ def test_a_broken_address_in_a_header_is_refused(lab: Lab, name: str) -> None:
 
 
 @pytest.mark.parametrize("bad", ["\\u0000", "\\ud800"])
-def test_a_message_that_is_no_text_is_refused(lab: Lab, bad: str) -> None:
-    """A headset's message with such a character ends its connection, with the reason."""
+def test_a_headset_message_with_invalid_text_is_refused(lab: Lab, bad: str) -> None:
+    """A headset's message with NUL or a lone surrogate closes its socket with the reason."""
     token = lab.headset_token(lab.join()["id"])
     with lab.stranger().websocket_connect(
         "/api/vr/stream", subprotocols=[SUBPROTOCOL, f"bearer.{token}"]
@@ -232,10 +230,10 @@ def test_a_message_that_is_no_text_is_refused(lab: Lab, bad: str) -> None:
 
 @pytest.mark.one_engine
 class TestBudget:
-    """What one address may ask for in a while."""
+    """The budget of requests of one address."""
 
-    def test_every_open_address_has_one(self, fresh_lab: Lab) -> None:
-        """Pages, routes, what is not there, and sockets: 429 with Retry-After."""
+    def test_every_public_route_is_rate_limited(self, fresh_lab: Lab) -> None:
+        """Pages, public routes, missing paths and sockets answer 429 once the budget is used up."""
         refused = spend_all(fresh_lab)
         assert int(refused.headers["retry-after"]) >= 1
         stranger = fresh_lab.stranger()
@@ -252,8 +250,8 @@ class TestBudget:
                 pass
             assert denied.value.status_code == 429
 
-    def test_a_flood_refuses_nobody_who_is_in(self, fresh_lab: Lab) -> None:
-        """Everybody has one address: the login, the tablet and the headset go on, new ones too."""
+    def test_a_flood_does_not_affect_authenticated_clients(self, fresh_lab: Lab) -> None:
+        """When an address has used up its budget, its signed-in and paired clients still work."""
         few_requests(fresh_lab)
         session_id = fresh_lab.join()["id"]
         tablet, token = fresh_lab.tablet(session_id), fresh_lab.headset_token(session_id)
@@ -269,8 +267,8 @@ class TestBudget:
             assert socket.receive_json()["type"] == "welcome"
         assert spend_all(fresh_lab).status_code == 429
 
-    def test_an_invented_token_is_no_way_around(self, fresh_lab: Lab) -> None:
-        """What opens nothing counts like nothing, a new one each time."""
+    def test_invalid_tokens_count_as_anonymous(self, fresh_lab: Lab) -> None:
+        """Requests with ever new invalid tokens use up the anonymous budget."""
         few_requests(fresh_lab)
         stranger = fresh_lab.stranger()
         for at in range(2000):
@@ -279,8 +277,8 @@ class TestBudget:
                 return
         raise AssertionError("an invented token opens the budget")
 
-    def test_an_unpaired_tablet_is_a_stranger_soon(self, fresh_lab: Lab) -> None:
-        """A token that was good counts as known for a minute at most; it opens nothing at once."""
+    def test_an_unpaired_tablet_is_refused_immediately(self, fresh_lab: Lab) -> None:
+        """An unpaired tablet's token is refused immediately."""
         session_id = fresh_lab.join()["id"]
         tablet = fresh_lab.tablet(session_id)
         device = ok(tablet.get("/api/tablet/state"))
@@ -289,8 +287,8 @@ class TestBudget:
         error(tablet.get("/api/tablet/state"), 401, "not_signed_in")
         assert device
 
-    def test_many_names_from_one_address_are_stopped(self, fresh_lab: Lab) -> None:
-        """Beside ten for each name there are thirty for the address; a right one costs nothing."""
+    def test_failed_logins_are_limited_per_address(self, fresh_lab: Lab) -> None:
+        """After thirty failed logins under different names an address is refused."""
         stranger = fresh_lab.stranger()
         found = []
         for at in range(40):
@@ -299,14 +297,14 @@ class TestBudget:
         assert [one.status_code for one in found] == [401] * 30 + [429] * 10
         assert int(found[-1].headers["retry-after"]) >= 1
 
-    def test_right_sign_ins_use_nothing_up(self, fresh_lab: Lab) -> None:
-        """A lab behind one address signs in as often as it likes."""
+    def test_successful_logins_are_not_limited(self, fresh_lab: Lab) -> None:
+        """Successful logins from one address are not limited."""
         for _ in range(40):
             body = {"username": "admin", "password": PASSWORD}
             ok(fresh_lab.stranger().post("/api/login", json=body))
 
-    def test_guessing_codes_takes_no_turn_at_writing(self, fresh_lab: Lab) -> None:
-        """While somebody writes, wrong codes and logouts of nobody are answered all the same."""
+    def test_wrong_codes_do_not_wait_for_the_write_lock(self, fresh_lab: Lab) -> None:
+        """Wrong pairing codes and anonymous logouts are answered while the write lock is taken."""
         with fresh_lab.database.writing():
             stranger = fresh_lab.stranger()
             error(stranger.post("/api/devices/pair", json={"code": "XXX-XXX"}), 404, "not_found")

@@ -1,4 +1,4 @@
-"""The tablet's service worker is served so that browsers take it, and notice a new one."""
+"""Tests of how the tablet's service worker is served."""
 
 from pathlib import Path
 
@@ -10,8 +10,8 @@ from app.api.pages import install_pages
 
 
 @pytest.mark.parametrize("built", [True, False])
-def test_the_worker_is_a_script_that_is_asked_for_anew(tmp_path: Path, *, built: bool) -> None:
-    """At the root, so that it may look after the page beside it; without a build there is none."""
+def test_the_service_worker_is_served_without_caching(tmp_path: Path, *, built: bool) -> None:
+    """The service worker is an uncached script at the root, and missing without a build."""
     if built:
         (tmp_path / "tablet-worker.js").write_text("self.BUILD={};")
     app = FastAPI()

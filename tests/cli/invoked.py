@@ -1,4 +1,4 @@
-"""One command of `reembody`, run in this process as from a shell."""
+"""Run one command of `reembody` in this process as from a shell."""
 
 import json
 from dataclasses import dataclass
@@ -12,16 +12,16 @@ from app.cli.errors import UNUSABLE
 
 @dataclass(frozen=True)
 class Invoked:
-    """The command `name`; arguments are given as they would be typed."""
+    """The command `name`, which is run with arguments as they would be typed."""
 
     name: str
 
     def run(self, *arguments: object) -> Result:
-        """What it says and how it ends."""
+        """Run the command and return its output and exit code."""
         return CliRunner().invoke(app, [self.name, *(str(argument) for argument in arguments)])
 
     def figures(self, *arguments: object) -> dict[str, Any]:
-        """What it tells as JSON; it must end well."""
+        """Run the command with `--json` and return its output; it must succeed."""
         result = self.run(*arguments, "--json")
         assert result.exit_code == 0, result.output
         figures = json.loads(result.stdout)
@@ -29,7 +29,7 @@ class Invoked:
         return figures
 
     def refusal(self, *arguments: object) -> str:
-        """Why it refuses, with nothing on standard output."""
+        """Run the command, which must refuse without standard output, and return its error."""
         result = self.run(*arguments)
         assert result.exit_code == UNUSABLE
         assert result.stdout == ""

@@ -1,4 +1,4 @@
-"""`reembody analyse`: figures, tables, what is left out, and what it refuses."""
+"""Tests of `reembody analyse`: figures, tables, missing data and refusals."""
 
 from pathlib import Path
 
@@ -19,7 +19,7 @@ def _written(folder: Path, lines: list[str], name: str = "data.csv") -> Path:
 
 
 def _lines(separator: str = ",") -> list[str]:
-    """One row for each person and latency, the latencies out of order."""
+    """Return one row for each person and latency, with latencies out of order."""
     rows = [separator.join(("person", "latency", "score", "remark"))]
     for person, scores in _SCORES.items():
         by_latency = dict(zip((0, 125, 350), scores, strict=True))
@@ -31,7 +31,7 @@ def _lines(separator: str = ",") -> list[str]:
 
 
 def test_json_has_every_test_of_one_factor(tmp_path: Path) -> None:
-    """The keys that scripts rely on, with levels in order of number."""
+    """The JSON of one factor has every test with its keys, and levels sorted by number."""
     figures = _COMMAND.figures(_written(tmp_path, _lines()), *_FACTOR)
     assert {"n", "design", "means", "friedman", "pairwise", "page", "rm_anova"} <= set(figures)
     assert figures["n"] == 5
@@ -54,8 +54,8 @@ def test_json_has_every_test_of_one_factor(tmp_path: Path) -> None:
     assert figures["warnings"] == []
 
 
-def test_two_factors_give_jamovis_anova_and_a_family_for_each_limb(tmp_path: Path) -> None:
-    """Pingouin's `rm_anova2`: F 33.852, 26.959, 12.632; Metric also at Pre and at Post."""
+def test_two_factors_give_the_published_anova_and_families(tmp_path: Path) -> None:
+    """Pingouin's `rm_anova2` gives F of 33.852, 26.959 and 12.632, and four families of tests."""
     table = in_pingouin("rm_anova2")
     path = _written(tmp_path, [",".join(table[0]), *(",".join(row.values()) for row in table)])
     names = ("--subject", "Subject", "--within", "Metric", "--within", "Time")
@@ -75,8 +75,8 @@ def test_two_factors_give_jamovis_anova_and_a_family_for_each_limb(tmp_path: Pat
     assert "contested" in figures["aligned_ranks"]["caution"]
 
 
-def test_each_latency_against_none(tmp_path: Path) -> None:
-    """Two comparisons adjusted for two, and the first that differs; an unknown level is refused."""
+def test_each_level_is_compared_with_the_reference(tmp_path: Path) -> None:
+    """Each level is compared with the reference, adjusted for two; an unknown level is refused."""
     rows = [
         f"P{who},{level},{who % 3 - level // 200}" for who in range(9) for level in (0, 125, 350)
     ]
@@ -90,8 +90,8 @@ def test_each_latency_against_none(tmp_path: Path) -> None:
     assert "there are: 0, 125, 350" in _COMMAND.refusal(path, *_FACTOR, "--reference", "90")
 
 
-def test_the_table_is_for_people(tmp_path: Path) -> None:
-    """Means with intervals, each test on its line, and how p was found."""
+def test_the_text_output_has_means_tests_and_methods(tmp_path: Path) -> None:
+    """The text output has means, each test on a line, and how p was computed."""
     result = _COMMAND.run(_written(tmp_path, _lines()), *_FACTOR, "--art")
     assert result.exit_code == 0, result.output
     assert "score by latency (0, 125, 350): 5 of 5 subjects complete." in result.stdout
@@ -104,7 +104,7 @@ def test_the_table_is_for_people(tmp_path: Path) -> None:
 
 
 def test_the_same_seed_gives_the_same_intervals(tmp_path: Path) -> None:
-    """And another seed others; nothing else changes."""
+    """The seed determines the bootstrap intervals and nothing else."""
     path = _written(tmp_path, _lines())
     one, again = (_COMMAND.figures(path, *_FACTOR) for _ in range(2))
     other = _COMMAND.figures(path, *_FACTOR, "--seed", 2)
@@ -114,7 +114,7 @@ def test_the_same_seed_gives_the_same_intervals(tmp_path: Path) -> None:
 
 
 def test_the_order_of_rows_and_the_separator_do_not_matter(tmp_path: Path) -> None:
-    """Rows the other way round, semicolons, decimal commas, a byte order mark: one result."""
+    """The result does not depend on row order, separator, decimal commas or a byte order mark."""
     head, *rows = _lines()
     plain = _COMMAND.figures(_written(tmp_path, [head, *rows]), *_FACTOR)
     turned = _COMMAND.figures(_written(tmp_path, [head, *rows[::-1]]), *_FACTOR)
@@ -136,8 +136,8 @@ def test_the_order_of_rows_and_the_separator_do_not_matter(tmp_path: Path) -> No
 
 
 @pytest.mark.parametrize("gone", ["P5,350,3,ok", "P5,350,NA,ok", "P5,350,,ok"])
-def test_a_missing_value_leaves_its_subject_out_by_the_rule(tmp_path: Path, gone: str) -> None:
-    """No row, NA or empty: listwise for Friedman, pairwise for Wilcoxon, and said."""
+def test_a_missing_value_excludes_its_subject(tmp_path: Path, gone: str) -> None:
+    """A missing value excludes its subject listwise (Friedman) and pairwise (Wilcoxon)."""
     lines = [line for line in _lines() if line != "P5,350,3,ok"]
     if "3" not in gone.split(",")[2]:
         lines.append(gone)
@@ -150,8 +150,8 @@ def test_a_missing_value_leaves_its_subject_out_by_the_rule(tmp_path: Path, gone
     assert any("P5 lacks latency 350" in warning for warning in figures["warnings"])
 
 
-def test_several_rows_of_a_cell_are_averaged_and_said(tmp_path: Path) -> None:
-    """Two trials each; equal trials are replicates there."""
+def test_several_rows_of_a_cell_are_averaged_with_a_warning(tmp_path: Path) -> None:
+    """Several rows of one cell are averaged, with a warning."""
     figures = _COMMAND.figures(_written(tmp_path, [*_lines(), *_lines()[1:]]), *_FACTOR)
     assert figures["n"] == 5
     assert [one["mean"] for one in figures["means"]] == pytest.approx([6.2, 5.2, 2.2])
@@ -159,8 +159,8 @@ def test_several_rows_of_a_cell_are_averaged_and_said(tmp_path: Path) -> None:
     assert any("15 of 15 cells have several values" in one for one in figures["warnings"])
 
 
-def test_differences_without_error_leave_the_ranks(tmp_path: Path) -> None:
-    """All people alike: no F, but Friedman's test, and a warning says why."""
+def test_data_without_error_variance_have_no_f(tmp_path: Path) -> None:
+    """Data without error variance have no F but Friedman's test, with a warning."""
     lines = ["person,latency,score"]
     lines += [f"P{who},{level},{who + level}" for who in range(4) for level in (0, 1, 3)]
     figures = _COMMAND.figures(_written(tmp_path, lines), *_FACTOR)
@@ -181,10 +181,10 @@ def test_differences_without_error_leave_the_ranks(tmp_path: Path) -> None:
         (("remark", "score"), ("'score' occurs 2 times", "rename")),
     ],
 )
-def test_a_row_that_cannot_be_used_is_refused_by_its_line(
+def test_an_invalid_row_is_refused_by_its_line(
     tmp_path: Path, change: tuple[str, str], words: tuple[str, ...]
 ) -> None:
-    """Line, column and value, and exit code 2 with nothing on standard output."""
+    """An invalid row is refused with its line, column and value, and exit code 2."""
     text = "\n".join(_lines())
     assert change[0] in text
     said = _COMMAND.refusal(_written(tmp_path, [text.replace(*change)]), *_FACTOR)
@@ -206,13 +206,13 @@ def test_a_row_that_cannot_be_used_is_refused_by_its_line(
         ),
     ],
 )
-def test_a_table_with_too_little_is_refused(tmp_path: Path, lines: list[str], words: str) -> None:
-    """Each says what is needed."""
+def test_a_table_with_too_few_data_is_refused(tmp_path: Path, lines: list[str], words: str) -> None:
+    """A table with too few data is refused with what is needed."""
     assert words in _COMMAND.refusal(_written(tmp_path, lines), *_FACTOR)
 
 
-def test_files_and_factors_that_cannot_be_are_refused(tmp_path: Path) -> None:
-    """A file that is not there or no text, three factors, one column twice."""
+def test_invalid_files_and_factors_are_refused(tmp_path: Path) -> None:
+    """A missing or binary file, three factors or a repeated column are refused."""
     assert "nowhere.csv" in _COMMAND.refusal(tmp_path / "nowhere.csv", *_FACTOR)
     binary = tmp_path / "binary.csv"
     binary.write_bytes(b"\xff\xfe\x00")

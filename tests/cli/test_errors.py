@@ -1,4 +1,4 @@
-"""How a command says that it cannot go on."""
+"""Tests of how commands report errors."""
 
 import pytest
 
@@ -15,18 +15,18 @@ def _said(capsys: pytest.CaptureFixture[str], error: Exception, *, with_valid: b
     return said
 
 
-def test_an_error_of_the_product_is_told_with_its_remedy(
+def test_an_error_is_reported_with_its_remedy(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """On standard error, with the exit code for what cannot be used."""
+    """An error is reported on standard error with its remedy and an exit code."""
     error = NotFound("there is no study 'x'", valid=["a", "b"], remedy="Name another.")
     assert _said(capsys, error) == "reembody: there is no study 'x'. Name another.\n"
 
 
-def test_what_is_valid_is_listed_where_a_command_wants_it(
+def test_valid_values_are_listed_on_request(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """The list stands between what happened and what to do."""
+    """Valid values are listed between message and remedy if the command wants it."""
     error = NotFound("there is no avatar 'x'", valid=["a", "b"], remedy="Name another.")
     assert _said(capsys, error, with_valid=True) == (
         "reembody: there is no avatar 'x'; valid: a, b. Name another.\n"
@@ -36,25 +36,25 @@ def test_what_is_valid_is_listed_where_a_command_wants_it(
 def test_an_error_without_a_remedy_ends_with_its_message(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """No blank is left where the remedy would stand."""
+    """An error without a remedy ends after its message."""
     assert _said(capsys, NotFound("it is gone")) == "reembody: it is gone.\n"
 
 
 @pytest.mark.parametrize("end", ["", ".", "!", "?"])
-def test_a_message_and_its_remedy_have_one_stop_each(
+def test_message_and_remedy_each_end_with_one_full_stop(
     capsys: pytest.CaptureFixture[str], end: str
 ) -> None:
-    """Whether or not whoever wrote them put one."""
+    """Message and remedy each end with one full stop, whether or not they were written with one."""
     said = _said(capsys, NotFound(f"it is gone{end}", remedy="Bring it back"))
     assert said == f"reembody: it is gone{end or '.'} Bring it back.\n"
 
 
-def test_an_expected_error_is_told_in_its_own_words(capsys: pytest.CaptureFixture[str]) -> None:
-    """As the operating system puts it."""
+def test_an_expected_error_is_reported_by_its_message(capsys: pytest.CaptureFixture[str]) -> None:
+    """An expected error of the system is reported by its own message."""
     assert _said(capsys, FileNotFoundError("no such file")) == "reembody: no such file\n"
 
 
-def test_a_fault_of_the_program_keeps_its_trace() -> None:
-    """What nobody expected is no input's fault, and is not hidden."""
+def test_an_unexpected_error_keeps_its_traceback() -> None:
+    """An unexpected error is not caught, so that its traceback is shown."""
     with pytest.raises(KeyError), reported(OSError):
         raise KeyError("a")

@@ -1,4 +1,4 @@
-"""A file that is not there is named in a sentence, by every command, before any work."""
+"""Tests that every command reports a missing file in a sentence before it does any work."""
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -35,21 +35,21 @@ READ: dict[str, tuple[str, ...]] = {
     "serve certificate": ("--lan", "--certificate", MISSING, "--key", "key.pem"),
     "serve key": ("--lan", "--certificate", "key.pem", "--key", MISSING),
 }
-"""Arguments of each command with one file that is missing, after `command parameter`."""
+"""By `command parameter`: arguments of the command with one missing file."""
 ALIKE = {
-    # Read by what reads those above, behind files that would have to be whole.
+    # These are read by the same code as those above, but only after files that must be valid.
     "walk evaluate model",
     "walk evaluate walks",
     "walk evaluate people",
     "restore erasures",
 }
 WRITTEN = {"export to", "backup file", "retarget out", "tune out", "walk fit out", "rehearse data"}
-"""Files and folders that a command makes."""
+"""Files and folders that a command creates."""
 
 
 @pytest.fixture(autouse=True)
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Where the command is called: data and files of its own."""
+    """Change to a folder with its own data and files, in which the command is run."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("REEMBODY_DATA_DIR", str(tmp_path / "data"))
     (tmp_path / "key.pem").write_text("no key")
@@ -77,7 +77,7 @@ Frame Time: 0.01
 
 @pytest.mark.parametrize("what", sorted(READ.keys() - ALIKE))
 def test_a_missing_file_is_named_in_a_sentence(what: str, folder: Path) -> None:
-    """With the folder that was looked into, without the system's numbers, ended by one stop."""
+    """A missing file is reported in one sentence with its folder and without an error number."""
     command, arguments = what.split()[:-1], READ[what]
     said = Invoked(command[0]).refusal(*command[1:], *arguments)
     assert f"there is no file {MISSING} in {folder}" in said
@@ -94,15 +94,15 @@ def test_a_missing_file_is_named_in_a_sentence(what: str, folder: Path) -> None:
         ("walk", ("fit", "walks.csv", "--out", "none/out.npz")),
     ],
 )
-def test_a_file_to_write_needs_a_folder_before_the_work(
+def test_a_missing_output_folder_is_reported_before_the_work(
     command: str, arguments: tuple[str, ...], folder: Path
 ) -> None:
-    """A tuning of minutes is not lost to a name that was mistyped."""
+    """A missing output folder is reported before any long work begins."""
     assert f"there is no folder {folder / 'none'}" in Invoked(command).refusal(*arguments)
 
 
-def test_every_file_that_a_command_takes_is_held_to_this() -> None:
-    """A command that gets a file later is found here."""
+def test_every_file_parameter_of_every_command_is_tested() -> None:
+    """Every file parameter of every command is listed in this module."""
     found = {
         f"{name} {parameter}"
         for name, command in _commands(app)
@@ -122,8 +122,8 @@ def _commands(group: typer.Typer, name: str = "") -> Iterator[tuple[str, Callabl
         yield from _commands(below.typer_instance, f"{name} {below.name}".strip())
 
 
-def test_what_else_the_system_refuses_is_said_without_numbers(tmp_path: Path) -> None:
-    """A folder in the place of a file, a file in the place of a folder, and no permission."""
+def test_other_file_errors_are_explained_without_numbers(tmp_path: Path) -> None:
+    """A folder in place of a file, a file in place of a folder and denied access are explained."""
     (tmp_path / "file").touch()
     for path, words in (
         (tmp_path, "is a folder, where a file is needed"),
@@ -138,8 +138,8 @@ def test_what_else_the_system_refuses_is_said_without_numbers(tmp_path: Path) ->
     assert file_problem(denied).startswith("kept.csv cannot be opened")
 
 
-def test_a_command_ends_at_once_where_a_folder_was_named(folder: Path) -> None:
-    """As the words of the system would, without its number."""
+def test_a_folder_in_place_of_a_file_is_refused(folder: Path) -> None:
+    """A folder given in place of a file is refused with a readable error."""
     result = Invoked("score").run(folder, "--instrument", "karas2020")
     assert result.exit_code == UNUSABLE
     assert "is a folder" in result.stderr

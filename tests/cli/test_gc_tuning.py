@@ -1,4 +1,4 @@
-"""When Python looks for garbage."""
+"""A test of the tuning of Python's garbage collector."""
 
 import subprocess
 import sys
@@ -14,7 +14,7 @@ print(while_starting[0] > usual[0], gc.get_threshold() == usual, gc.get_freeze_c
 """
 
 
-def test_seldom_while_starting_and_as_usual_from_then_on() -> None:
-    """A server that has started collects as Python does, apart from what is here to stay."""
+def test_gc_is_relaxed_while_starting_only() -> None:
+    """Garbage is collected rarely while starting, then as usual without the startup objects."""
     said = subprocess.run([sys.executable, "-c", TOLD], capture_output=True, check=True, text=True)
     assert said.stdout.split() == ["True", "True", "True"]

@@ -1,4 +1,4 @@
-"""A long command says what it does, also where nobody sits at a terminal."""
+"""Tests of the progress that long commands report, with and without a terminal."""
 
 import time
 from pathlib import Path
@@ -15,15 +15,15 @@ GENEROUS_S = 60.0
 
 
 @pytest.fixture(autouse=True)
-def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As a big folder would after the first second."""
+def immediately(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Report progress without delay."""
     monkeypatch.setattr(progress, "FIRST_UPDATE_S", 0.0)
     monkeypatch.setattr(progress, "LOG_EVERY_S", 0.01)
     monkeypatch.setattr(progress, "DRAWN_EVERY_S", 0.01)
 
 
 def said_within(capsys: pytest.CaptureFixture[str], words: str) -> str:
-    """What standard error got until it has these words."""
+    """Collect standard error until it contains these words, and return it."""
     said, give_up_s = "", time.monotonic() + GENEROUS_S
     while words not in said:
         assert time.monotonic() < give_up_s, said
@@ -32,10 +32,10 @@ def said_within(capsys: pytest.CaptureFixture[str], words: str) -> str:
     return said
 
 
-def test_news_come_while_the_step_goes_on_and_none_twice(
+def test_progress_is_reported_once_per_step(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """Each on a line of its own; rows add up within their table."""
+    """Each step is reported once on a line of its own, with the rows of its table added up."""
     with Activity("exporting: opening the database") as activity:
         said = said_within(capsys, "opening the database")
         count = activity.rows("restoring")
@@ -47,10 +47,10 @@ def test_news_come_while_the_step_goes_on_and_none_twice(
     assert said.count("opening") == 1
 
 
-def test_on_a_terminal_the_line_is_written_over_and_taken_away(
+def test_on_a_terminal_the_line_is_overwritten_and_erased(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Nothing of it is left beside what the command prints, nor in a question's answer."""
+    """On a terminal the progress line is overwritten, and erased before any other output."""
     monkeypatch.setattr("sys.stderr.isatty", lambda: True)
     with Activity("first") as activity:
         said = said_within(capsys, "first")
@@ -64,10 +64,10 @@ def test_on_a_terminal_the_line_is_written_over_and_taken_away(
     assert capsys.readouterr().err == ERASE_LINE
 
 
-def test_a_command_that_is_done_at_once_says_nothing(
+def test_a_short_command_reports_no_progress(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A script's standard error stays empty."""
+    """A command that ends quickly reports no progress."""
     monkeypatch.setattr(progress, "FIRST_UPDATE_S", GENEROUS_S)
     with Activity("nothing of it"):
         pass
@@ -83,14 +83,14 @@ def test_a_command_that_is_done_at_once_says_nothing(
         ("restore", ("out.reembody",), "restoring out.reembody: opening it"),
     ],
 )
-def test_every_command_over_all_data_says_what_it_does(
+def test_every_long_command_reports_what_it_does(
     command: str,
     arguments: tuple[str, ...],
     words: str,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Before it has opened anything, however it ends."""
+    """Every command that processes all data reports what it does before it opens anything."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("REEMBODY_DATA_DIR", str(tmp_path / "data"))
     assert f"reembody: {words}\n" in Invoked(command).run(*arguments).stderr

@@ -1,4 +1,4 @@
-"""`reembody restore`: what it says, asks for and leaves behind."""
+"""Tests of `reembody restore`: its output, its options and what it leaves behind."""
 
 import json
 import re
@@ -27,14 +27,14 @@ RESTORE = Invoked("restore")
 
 
 @pytest.fixture(autouse=True)
-def soon_done(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What a slow machine says of its progress is no warning."""
+def no_progress(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Turn off the output of progress, which a slow machine would mix with warnings."""
     monkeypatch.setattr(progress, "FIRST_UPDATE_S", 600.0)
 
 
 @dataclass(frozen=True)
 class Earlier:
-    """An installation with a participant who was erased after the backup was made."""
+    """A backup of an installation, one of whose participants was erased after it was made."""
 
     backup: Path
     erasures: Path
@@ -43,7 +43,7 @@ class Earlier:
 
 @contextmanager
 def lab_in(folder: Path) -> Iterator[Lab]:
-    """A running installation with its data in `folder`."""
+    """Run an installation with its data in `folder`."""
     folder.mkdir()
     with running_lab(fresh_sqlite(folder / "reembody.sqlite"), data_dir=folder) as lab:
         yield lab
@@ -51,7 +51,7 @@ def lab_in(folder: Path) -> Iterator[Lab]:
 
 @pytest.fixture
 def earlier(tmp_path: Path) -> Earlier:
-    """Backed up, then erased."""
+    """Return an installation that was backed up and then erased a participant."""
     backup = tmp_path / "all.reembody"
     with lab_in(tmp_path / "earlier") as lab:
         session = lab.join(kind="people", participant_code="CANARY-1")
@@ -70,13 +70,13 @@ def earlier(tmp_path: Path) -> Earlier:
 
 @pytest.fixture
 def data(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The folder of a new installation, which is not there yet."""
+    """Return the missing data folder of a new installation, set in the environment."""
     monkeypatch.setenv("REEMBODY_DATA_DIR", str(tmp_path / "new"))
     return tmp_path / "new"
 
 
 def codes(data: Path) -> list[str]:
-    """Of the participants."""
+    """Return the codes of all participants."""
     database = open_database(f"sqlite:///{data / 'reembody.sqlite'}")
     with database.reading() as db:
         found = list(db.scalars(select(Participant.code)))
@@ -84,8 +84,8 @@ def codes(data: Path) -> list[str]:
     return found
 
 
-def test_a_folder_or_a_device_is_said_to_be_one(data: Path, tmp_path: Path) -> None:
-    """As the backup, and as the list of erasures: they are there, but are no files."""
+def test_a_path_that_is_not_a_file_is_described(data: Path, tmp_path: Path) -> None:
+    """A folder, device or dangling link given as a backup or list of erasures is described."""
     (tmp_path / "away").symlink_to(tmp_path / "gone")
     said = {
         Path("/dev/zero"): "/dev/zero is not a regular file",
@@ -101,10 +101,10 @@ def test_a_folder_or_a_device_is_said_to_be_one(data: Path, tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("head", ["15:zz", "15:ab", "x"])
-def test_a_head_that_is_none_is_refused_before_the_database_is_opened(
+def test_an_invalid_head_is_refused_before_the_database_is_opened(
     head: str, data: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Nothing is said of opening, and no folder is made for a database that is not there."""
+    """An invalid head is refused before the database is opened and without creating a folder."""
     monkeypatch.setattr(progress, "FIRST_UPDATE_S", 0.0)
     said = Invoked("verify").refusal("--head", head)
     assert "is not the head of an audit trail" in said
@@ -112,8 +112,8 @@ def test_a_head_that_is_none_is_refused_before_the_database_is_opened(
     assert not data.exists()
 
 
-def test_without_a_list_of_erasures_it_says_who_may_be_back(earlier: Earlier, data: Path) -> None:
-    """And how to make it good, which then works: with the option, or by the list alone."""
+def test_a_restore_without_a_list_of_erasures_warns(earlier: Earlier, data: Path) -> None:
+    """A restore without a list of erasures warns, and can be repeated with the list."""
     result = RESTORE.run(earlier.backup)
     assert result.exit_code == 0
     assert "has no list of erasures" in result.stderr
@@ -125,8 +125,8 @@ def test_without_a_list_of_erasures_it_says_who_may_be_back(earlier: Earlier, da
     assert (data / "erasures.jsonl").read_text() == earlier.erasures.read_text()
 
 
-def test_with_the_list_it_says_nothing_and_brings_nobody_back(earlier: Earlier, data: Path) -> None:
-    """Given as an option, or copied along before."""
+def test_a_restore_with_a_list_of_erasures_reapplies_them(earlier: Earlier, data: Path) -> None:
+    """A restore with a list of erasures, given or in the data folder, reapplies them silently."""
     result = RESTORE.run(earlier.backup, "--erasures", earlier.erasures, "--json")
     assert (result.exit_code, result.stderr) == (0, "")
     assert earlier.code not in codes(data)
@@ -138,10 +138,10 @@ def test_with_the_list_it_says_nothing_and_brings_nobody_back(earlier: Earlier, 
     assert earlier.code not in codes(data)
 
 
-def test_erasures_that_find_nobody_here_are_kept_for_the_next_backup(
+def test_erasures_of_unknown_participants_are_kept(
     earlier: Earlier, data: Path, tmp_path: Path
 ) -> None:
-    """An older backup may hold them."""
+    """Erasures of participants who are not in a backup are kept for the next restore."""
     with lab_in(tmp_path / "other") as lab:
         lab.join(kind="people", participant_code="P-1")
         back_up(lab.database, tmp_path / "other.reembody", clock=CLOCK)
@@ -154,16 +154,16 @@ def test_erasures_that_find_nobody_here_are_kept_for_the_next_backup(
 
 
 @pytest.mark.parametrize("line", ["{}", "not JSON", '{"erasure_id": "x"}', "\udcff"])
-def test_a_list_that_is_none_is_refused(earlier: Earlier, data: Path, line: str) -> None:
-    """Before anything is touched: an erasure that is left out brings somebody back."""
+def test_an_invalid_list_of_erasures_is_refused(earlier: Earlier, data: Path, line: str) -> None:
+    """An invalid list of erasures is refused before anything is changed."""
     text = earlier.erasures.read_text() + line + "\n"
     earlier.erasures.write_text(text, errors="surrogateescape")
     assert "are not erasures" in RESTORE.refusal(earlier.backup, "--erasures", earlier.erasures)
     assert not data.exists()
 
 
-def test_a_backup_without_people_is_restored_without_a_word(data: Path, tmp_path: Path) -> None:
-    """There is nobody in it who could be back."""
+def test_a_backup_without_people_is_restored_without_a_warning(data: Path, tmp_path: Path) -> None:
+    """A backup without participants is restored without a warning about erasures."""
     with lab_in(tmp_path / "earlier") as lab:
         lab.join(kind="simulated")
         back_up(lab.database, tmp_path / "all.reembody", clock=CLOCK)
@@ -175,7 +175,7 @@ def test_a_backup_without_people_is_restored_without_a_word(data: Path, tmp_path
 def test_a_restore_that_fails_leaves_nothing(
     earlier: Earlier, data: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Neither a database without accounts, nor a mark, nor a folder."""
+    """A restore into a missing data folder that fails leaves nothing behind."""
 
     def fail(*_: object) -> int:
         raise OSError(5, "Input/output error")
@@ -186,10 +186,10 @@ def test_a_restore_that_fails_leaves_nothing(
 
 
 @pytest.mark.parametrize("replace", [(), ("--replace",)])
-def test_a_damaged_database_is_put_away_and_the_restore_goes_on(
+def test_a_restore_quarantines_a_damaged_database(
     earlier: Earlier, data: Path, replace: tuple[str, ...]
 ) -> None:
-    """Whoever restores has decided; even where nothing of the damage can be decoded."""
+    """A restore over a damaged database quarantines it and continues."""
     assert RESTORE.run(earlier.backup, "--erasures", earlier.erasures).exit_code == 0
     file = data / "reembody.sqlite"
     edited(file, UNDECODABLE)
@@ -202,8 +202,8 @@ def test_a_damaged_database_is_put_away_and_the_restore_goes_on(
     assert kept.read_bytes() == damaged
 
 
-def test_what_is_written_is_for_its_owner(earlier: Earlier, data: Path) -> None:
-    """Every file and folder that a command makes."""
+def test_files_made_by_commands_are_private(earlier: Earlier, data: Path) -> None:
+    """Every file and folder that restore, backup and export create is private to its owner."""
     assert RESTORE.run(earlier.backup, "--erasures", earlier.erasures).exit_code == 0
     assert Invoked("backup").run(data.parent / "again.reembody").exit_code == 0
     export = Invoked("export").run("--study", STUDY, "--to", data.parent / "export")

@@ -1,4 +1,4 @@
-"""`reembody retarget`: from a capture file to figures and files, and what it refuses."""
+"""Tests of `reembody retarget`: figures, files and refusals."""
 
 import csv
 import json
@@ -31,14 +31,14 @@ _run, _figures, _refusal = _COMMAND.run, _COMMAND.figures, _COMMAND.refusal
 
 @pytest.fixture
 def clip(tmp_path: Path) -> Path:
-    """A made walk of a person of 1.75 m as a BVH file."""
+    """Return a BVH file of a generated walk of a person of 1.75 m."""
     path = tmp_path / "walk.bvh"
     path.write_text(to_bvh(made_walk(reference_avatar(1.75)).motion))
     return path
 
 
 def test_json_has_exactly_its_keys_and_steps_scale_with_the_legs(clip: Path) -> None:
-    """Step i of source and avatar are the same step, and have the ratio of the legs."""
+    """The JSON has exactly its keys, and each step scales with the ratio of the legs."""
     figures = _figures(clip, "--to", "130cm")
     assert list(figures) == _KEYS
     assert figures["frames"] == made_walk(reference_avatar(1.75)).motion.frame_count
@@ -54,7 +54,7 @@ def test_json_has_exactly_its_keys_and_steps_scale_with_the_legs(clip: Path) -> 
 
 
 def test_another_file_can_be_the_avatar(clip: Path, tmp_path: Path) -> None:
-    """The skeleton of a file is taken, its movement is not."""
+    """The skeleton of another file can be the avatar, without its movement."""
     rig = scaled(reference_avatar(1.75), 0.5)
     still = RigMotion(
         Rig(rig.names, rig.parents, rig.offsets_m, rig.rest_rotations, rig.ends),
@@ -68,8 +68,8 @@ def test_another_file_can_be_the_avatar(clip: Path, tmp_path: Path) -> None:
     assert _figures(clip, "--to", avatar)["leg_ratio"] == pytest.approx(0.5, abs=1e-9)
 
 
-def test_what_is_written_is_the_avatars_movement(clip: Path, tmp_path: Path) -> None:
-    """BVH in centimetres with the avatar's bones; CSV a row a frame; no other file is left."""
+def test_the_output_files_have_the_avatars_movement(clip: Path, tmp_path: Path) -> None:
+    """The output is the avatar's movement as BVH in centimetres or CSV, and no other file."""
     bvh, table = tmp_path / "out.bvh", tmp_path / "out.csv"
     assert _run(clip, "--to", "190cm", "--out", bvh).exit_code == 0
     assert _run(clip, "--to", "190cm", "--out", table).exit_code == 0
@@ -84,8 +84,8 @@ def test_what_is_written_is_the_avatars_movement(clip: Path, tmp_path: Path) -> 
     assert sorted(path.name for path in tmp_path.iterdir()) == ["out.bvh", "out.csv", "walk.bvh"]
 
 
-def test_holding_the_feet_lowers_the_slide(clip: Path) -> None:
-    """The number in JSON is the slide of what is delivered."""
+def test_locking_the_feet_reduces_their_slide(clip: Path) -> None:
+    """Locking the feet reduces their slide, which is reported for the output."""
     free, held = _figures(clip, "--to", "165cm"), _figures(clip, "--to", "165cm", "--lock-feet")
     assert isinstance(free["foot_slide_m_s"], float)
     assert isinstance(held["foot_slide_m_s"], float)
@@ -93,7 +93,7 @@ def test_holding_the_feet_lowers_the_slide(clip: Path) -> None:
 
 
 def test_the_avatar_follows_the_ground(clip: Path, tmp_path: Path) -> None:
-    """Beyond a kerb of 12 cm the hips are 12 cm higher at the end than at the start."""
+    """The avatar's hips rise by the height of a kerb, with and without locked feet."""
     for lock in ((), ("--lock-feet",)):
         out = tmp_path / "up.bvh"
         ground = ("--ground", "kerb:0.12@1.0")
@@ -102,8 +102,8 @@ def test_the_avatar_follows_the_ground(clip: Path, tmp_path: Path) -> None:
         assert hips[-1, 1] - hips[0, 1] == pytest.approx(0.12, abs=2e-3)
 
 
-def test_people_get_a_table_with_units(clip: Path, tmp_path: Path) -> None:
-    """Conventions and who says so, steps one by one, slide, what is unmapped, what was written."""
+def test_the_text_output_is_a_table_with_units(clip: Path, tmp_path: Path) -> None:
+    """The text output has conventions, steps, slide, unmapped joints and the file written."""
     out = tmp_path / "out.bvh"
     said = _run(clip, "--to", "165cm", "--lock-feet", "--out", out).stdout
     for words in ("unit", "guessed", "step length, mean", "m/s", "with feet held", "unmapped"):
@@ -112,7 +112,7 @@ def test_people_get_a_table_with_units(clip: Path, tmp_path: Path) -> None:
 
 
 def test_a_joint_map_can_be_given(clip: Path, tmp_path: Path) -> None:
-    """What it leaves out stays as in the T-pose and is listed."""
+    """A joint map can be given; joints that it leaves out are listed as unmapped."""
     rig = reference_avatar(1.75)
     told = {name: name for name in rig.names if name != "UpperChest"}
     path = tmp_path / "map.json"
@@ -121,8 +121,8 @@ def test_a_joint_map_can_be_given(clip: Path, tmp_path: Path) -> None:
     assert figures["unmapped_joints"] == ["UpperChest"]
 
 
-def test_unit_and_axis_can_be_said(tmp_path: Path) -> None:
-    """A file in inches reads as what it is once that is said; an axis is x, y or z."""
+def test_unit_and_axis_can_be_given(tmp_path: Path) -> None:
+    """The unit of a file can be given, and an invalid axis is refused."""
     motion = made_walk(reference_avatar(1.75)).motion
     path = tmp_path / "inches.bvh"
     path.write_text(to_bvh(motion, metres_per_unit=0.0254))
@@ -149,10 +149,10 @@ def test_unit_and_axis_can_be_said(tmp_path: Path) -> None:
         (("--check", "table2"), "table1 is valid"),
     ],
 )
-def test_what_cannot_be_used_is_refused_with_the_reason(
+def test_invalid_arguments_are_refused_with_the_reason(
     clip: Path, monkeypatch: pytest.MonkeyPatch, arguments: tuple[str, ...], reason: str
 ) -> None:
-    """Status 2, nothing on standard output, and the folder is as it was."""
+    """Invalid arguments are refused with the reason and exit code 2, and no file is changed."""
     monkeypatch.chdir(clip.parent)
     before = clip.read_bytes()
     assert reason in _refusal("walk.bvh", *arguments)
@@ -171,7 +171,7 @@ def test_what_cannot_be_used_is_refused_with_the_reason(
 def test_broken_files_are_refused_and_nothing_is_written(
     tmp_path: Path, content: bytes, reason: str
 ) -> None:
-    """The message names the file and where it breaks."""
+    """A broken file is refused with its name and the position, and nothing is written."""
     path, out = tmp_path / "broken.bvh", tmp_path / "out.bvh"
     path.write_bytes(content)
     said = _refusal(path, "--to", "165cm", "--out", out)
@@ -181,7 +181,7 @@ def test_broken_files_are_refused_and_nothing_is_written(
 
 
 def test_an_invalid_joint_map_is_refused(clip: Path, tmp_path: Path) -> None:
-    """A joint the clip does not have, a body joint that is none, and a map that is no object."""
+    """A joint map with an unknown clip joint or body joint, or not an object, is refused."""
     path = tmp_path / "map.json"
     for told, reason in (
         ({"Hips": "Pelvis"}, "no joint 'Pelvis'"),
@@ -193,8 +193,8 @@ def test_an_invalid_joint_map_is_refused(clip: Path, tmp_path: Path) -> None:
         assert reason in _refusal(clip, "--to", "165cm", "--joint-map", path)
 
 
-def test_a_word_for_the_ground_is_what_it_says() -> None:
-    """The way is from where the hips begin to where they end, whichever direction that is."""
+def test_the_ground_option_is_parsed() -> None:
+    """The ground option gives kerbs and ramps along the way from the hips' start to their end."""
     hips = np.array(((1.0, 0.9, 2.0), (1.0, 0.9, -3.0)))
     kerb, ramp = ground_along("kerb:-0.1@2"), ground_along("ramp:0.5/2@1")
     assert ground_along("flat") is None
@@ -207,8 +207,8 @@ def test_a_word_for_the_ground_is_what_it_says() -> None:
         kerb(hips[:1])
 
 
-def test_table_1_is_computed_again() -> None:
-    """Twenty-two rows; all but the pelvis within 0.01 degrees of what is printed."""
+def test_table_1_is_reproduced() -> None:
+    """All 22 rows of table 1 but the pelvis are reproduced within 0.01 degrees."""
     result = _run("--check", "table1", "--json")
     rows = json.loads(result.stdout)["rows"]
     assert [list(row) for row in rows] == [["joint", "printed", "computed", "difference_deg"]] * 22
@@ -222,8 +222,10 @@ def test_table_1_is_computed_again() -> None:
 @pytest.mark.parametrize(
     ("name", "frames", "steps"), [("cmu_bvh/02_01.bvh", 343, 4), ("cmu_asfamc/02_01.amc", 343, 4)]
 )
-def test_real_captures_come_through(shared_data: Path, name: str, frames: int, steps: int) -> None:
-    """One walk of CMU's as BVH, and as AMC with the ASF that lies beside it."""
+def test_real_captures_are_retargeted(
+    shared_data: Path, name: str, frames: int, steps: int
+) -> None:
+    """A real walk is retargeted from BVH, and from AMC with the ASF next to it."""
     figures = _figures(shared_data / "motion" / name, "--to", "165cm")
     lengths = figures["step_lengths_m"]
     assert figures["frames"] == frames

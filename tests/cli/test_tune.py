@@ -1,4 +1,4 @@
-"""`reembody tune`: gains, figures, files and stored versions, and what it refuses."""
+"""Tests of `reembody tune`: gains, figures, files, stored versions and refusals."""
 
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -29,7 +29,7 @@ _run, _figures, _refusal = _COMMAND.run, _COMMAND.figures, _COMMAND.refusal
 
 @pytest.fixture
 def installation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """An installation with one avatar of which only the left arm moves."""
+    """Return an installation with an avatar of which only the left arm moves."""
     monkeypatch.setenv("REEMBODY_DATA_DIR", str(tmp_path / "data"))
     monkeypatch.delenv("REEMBODY_DATABASE_URL", raising=False)
     (tmp_path / "data").mkdir()
@@ -42,7 +42,7 @@ def installation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.mark.usefixtures("installation")
 def test_json_names_every_axis_with_gains_figures_and_status() -> None:
-    """Progress goes to standard error; standard output is JSON and nothing else."""
+    """The JSON has gains, figures and status of every axis, with progress on standard error."""
     figures = _figures("--avatar", "arm")
     assert [axis["name"] for axis in figures["axes"]] == list(AXIS_NAMES)
     by_name = {axis["name"]: axis for axis in figures["axes"]}
@@ -59,7 +59,7 @@ def test_json_names_every_axis_with_gains_figures_and_status() -> None:
 
 
 def test_a_tuned_configuration_is_written_and_stored_as_versions(installation: Path) -> None:
-    """The file is what is stored; a second tuning by another rule is the next version."""
+    """A tuned configuration is written to a file and stored as the avatar's next version."""
     out = installation / "tuned.json"
     figures = _figures("--avatar", "arm", "--out", out, "--save", "arm-tuned")
     assert figures["saved"] == "arm-tuned, version 1"
@@ -80,8 +80,8 @@ def test_a_tuned_configuration_is_written_and_stored_as_versions(installation: P
 
 
 @pytest.mark.usefixtures("installation")
-def test_the_table_has_units_and_an_end() -> None:
-    """For people: gains with units, a status an axis, a summary; progress apart."""
+def test_the_text_output_has_units_and_a_summary() -> None:
+    """The text output has gains with units, a status per axis and a summary."""
     result = _run("--avatar", "arm", "--mass", "60", "--stature", "1.6")
     assert result.exit_code == 0, result.output
     assert "N m/rad" in result.stdout
@@ -93,7 +93,7 @@ def test_the_table_has_units_and_an_end() -> None:
 
 @pytest.mark.usefixtures("installation")
 def test_a_capture_gives_each_axis_an_angular_error(shared_data: Path) -> None:
-    """On a real walk an arm follows within a degree and a half, on average over its axes."""
+    """With a captured walk each free axis has an error, for an arm at most 1.5 deg on average."""
     clip = shared_data / "motion" / "cmu_bvh" / "02_01.bvh"
     figures = _figures("--avatar", "arm", "--capture", clip)
     errors = {axis["name"]: axis["rms_error_deg"] for axis in figures["axes"]}
@@ -104,8 +104,8 @@ def test_a_capture_gives_each_axis_an_angular_error(shared_data: Path) -> None:
 
 
 @pytest.mark.usefixtures("installation")
-def test_gains_that_are_there_are_evaluated_and_kept(shared_data: Path) -> None:
-    """The same figures as of a tuning, with the errors apart, and no experiment."""
+def test_existing_gains_are_evaluated_unchanged(shared_data: Path) -> None:
+    """`--evaluate` reports the figures of existing gains without tuning them."""
     clip = shared_data / "motion" / "cmu_bvh" / "02_01.bvh"
     figures = _figures("--avatar", "arm", "--evaluate", "--capture", clip)
     assert figures["summary"]["accepted"] + figures["summary"]["flagged"] == 8
@@ -122,8 +122,8 @@ def test_gains_that_are_there_are_evaluated_and_kept(shared_data: Path) -> None:
 
 
 @pytest.mark.usefixtures("installation")
-def test_the_body_of_a_model_is_tuned_without_what_it_lacks() -> None:
-    """An avatar with a skin and four fingers: its own axes, and the model stays its model."""
+def test_an_avatar_with_a_humanoid_model_is_tuned() -> None:
+    """An avatar with a humanoid model is tuned on the model's axes and keeps its model."""
     with opened_database("test") as database, database.writing() as db:
         db.add(CaptureContent(hash=HASH, size=1))
         db.flush()
@@ -152,8 +152,8 @@ def test_the_body_of_a_model_is_tuned_without_what_it_lacks() -> None:
 
 
 @pytest.mark.usefixtures("installation")
-def test_an_unknown_avatar_is_refused_with_those_there_are() -> None:
-    """The product's own is among them although no server has started yet."""
+def test_an_unknown_avatar_is_refused_with_the_existing_ones() -> None:
+    """An unknown avatar is refused with the existing ones, including the shipped one."""
     said = _refusal("--avatar", "nobody")
     assert "nobody" in said
     assert "arm, standard" in said
@@ -171,14 +171,16 @@ def test_an_unknown_avatar_is_refused_with_those_there_are() -> None:
         (["--evaluate", "--save", "arm"], "changes nothing"),
     ],
 )
-def test_what_cannot_be_is_refused_at_once(arguments: list[str], words: str) -> None:
-    """Before any experiment, saying what is valid."""
+def test_invalid_options_are_refused_before_any_experiment(
+    arguments: list[str], words: str
+) -> None:
+    """Invalid options are refused before any experiment, with what is valid."""
     assert words in _refusal(*arguments)
 
 
 @pytest.mark.long
-def test_the_body_that_comes_with_the_product_is_tuned_without_a_database() -> None:
-    """All of its free axes, the worst overshoot 10 % at most."""
+def test_the_shipped_avatar_is_tuned_without_a_database() -> None:
+    """The shipped avatar is tuned without a database, with at most 10 % overshoot on every axis."""
     figures = _figures("--mirror")
     assert figures["summary"]["worst_overshoot_percent"] <= 10.0
     assert figures["summary"]["flagged"] == 0

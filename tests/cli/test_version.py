@@ -1,4 +1,4 @@
-"""The command tells its version."""
+"""A test of the command's version."""
 
 from typer.testing import CliRunner
 
@@ -6,7 +6,7 @@ from app import __version__
 from app.cli.commands import app
 
 
-def test_the_version_is_told_and_nothing_else() -> None:
-    """`reembody --version`, which `./run --version` hands over; no command is needed."""
+def test_the_version_is_printed() -> None:
+    """`reembody --version` prints only the version."""
     told = CliRunner().invoke(app, ["--version"])
     assert (told.exit_code, told.output) == (0, f"reembody {__version__}\n")

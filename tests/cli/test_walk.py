@@ -1,4 +1,4 @@
-"""`reembody walk`: fit, sample and evaluate from files, and what they refuse."""
+"""Tests of `reembody walk`: fitting, sampling and evaluating from files, and refusals."""
 
 import json
 from pathlib import Path
@@ -43,7 +43,7 @@ def _refusal(*arguments: object) -> str:
 
 
 def _write_walks(folder: Path, people: range) -> list[Path]:
-    """A file for each person: three straight walks, one after the other, as one track each."""
+    """Write three straight walks for each person, one file per walk."""
     files = []
     for number in people:
         rng = np.random.default_rng((4, number))
@@ -60,7 +60,7 @@ def _write_walks(folder: Path, people: range) -> list[Path]:
 
 @pytest.fixture(scope="module")
 def lab(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with walks of four people, their statures, a scene, and a model of three of them."""
+    """Return a folder with walks of four people, statures, scenes, and a model of three of them."""
     folder = tmp_path_factory.mktemp("walks")
     walks = _write_walks(folder, range(4))
     rows = [f"{number},{1.7 + 0.05 * number}" for number in range(4)]
@@ -76,7 +76,7 @@ def lab(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_the_same_walks_and_seed_fit_the_same_model(lab: Path) -> None:
-    """The content hash is of the content, and a model read is the model written."""
+    """The same walks and seed fit the same model."""
     walks = sorted(lab.glob("walker-[0-2]-*.csv"))
     out, people = lab / "again.npz", lab / "people.csv"
     again = _figures("fit", *walks, "--out", out, "--people", people, *QUICK)
@@ -89,7 +89,7 @@ def test_the_same_walks_and_seed_fit_the_same_model(lab: Path) -> None:
 
 
 def test_samples_are_draws_with_travel_times(lab: Path) -> None:
-    """Vectors within bounds, durations near people's, longer for a longer way; seeded."""
+    """Samples depend only on the seed, lie within bounds, and take longer for longer paths."""
     ask = ("sample", lab / "model.npz", "--stature", 1.75, "--count", 80)
     short, long = _figures(*ask, "--length", 1.0), _figures(*ask, "--length", 3.0)
     assert len(short["vectors"]) == 80
@@ -102,7 +102,7 @@ def test_samples_are_draws_with_travel_times(lab: Path) -> None:
 
 
 def test_a_path_in_a_scene_leads_round_its_obstacles(lab: Path) -> None:
-    """From place to place, and from any point; longer than straight on."""
+    """A path between places or points of a scene leads round its obstacles."""
     ask = ("sample", lab / "model.npz", "--stature", 1.75, "--scene", lab / "hall.yaml")
     named = _figures(*ask, "--from", "door", "--to", "desk")
     assert named["length_m"] > 2.1
@@ -114,7 +114,7 @@ def test_a_path_in_a_scene_leads_round_its_obstacles(lab: Path) -> None:
 
 
 def test_other_people_are_predicted(lab: Path) -> None:
-    """All three models' scores; those the model was fitted on are refused unless asked for."""
+    """A model is evaluated on other people; walks that it was fitted on are refused by default."""
     others, people = sorted(lab.glob("walker-3-*.csv")), lab / "people.csv"
     scores = _figures("evaluate", lab / "model.npz", *others, "--people", people, "--draws", 50)
     assert scores["walks"] == 3
@@ -135,8 +135,8 @@ def _fit(lab: Path, *arguments: object) -> str:
     return said
 
 
-def test_walks_that_are_none_are_refused(lab: Path) -> None:
-    """One point, NaN, one subject, nobody walking: each said, and nothing is written."""
+def test_invalid_walks_are_refused(lab: Path) -> None:
+    """Invalid walks, or walks of only one subject, are refused and nothing is written."""
     bad = lab / "bad.csv"
     bad.write_text("subject,time_s,x_m,y_m\n7,0,0,0\n")
     assert "two" in _fit(lab, bad)
@@ -148,8 +148,8 @@ def test_walks_that_are_none_are_refused(lab: Path) -> None:
     assert "gone.csv" in _fit(lab, lab / "gone.csv")
 
 
-def test_scenes_that_cannot_be_are_refused(lab: Path) -> None:
-    """A closed scene, a goal inside an obstacle, an unknown place or file."""
+def test_invalid_scenes_and_places_are_refused(lab: Path) -> None:
+    """A scene without a way, a goal inside an obstacle and unknown places or scenes are refused."""
     walks = sorted(lab.glob("walker-[0-1]-1.csv"))
     assert "no way" in _fit(lab, *walks, "--scene", lab / "closed.yaml")
     ask = ("sample", lab / "model.npz", "--stature", 1.75, "--scene", lab / "hall.yaml")
@@ -158,8 +158,8 @@ def test_scenes_that_cannot_be_are_refused(lab: Path) -> None:
     assert "car-and-three-racks" in _fit(lab, *walks, "--scene", "kitchen")
 
 
-def test_questions_that_cannot_be_are_refused(lab: Path) -> None:
-    """No path or two, no stature, nobody's stature, a file that is no model, a damaged one."""
+def test_invalid_requests_for_samples_are_refused(lab: Path) -> None:
+    """Sampling without a path or stature, or from a damaged or foreign file, is refused."""
     model = lab / "model.npz"
     assert "one of --length" in _refusal("sample", model)
     assert "stature" in _refusal("sample", model, "--length", 2)
@@ -173,7 +173,7 @@ def test_questions_that_cannot_be_are_refused(lab: Path) -> None:
 
 
 def test_a_model_is_replaced_whole_or_not_at_all(lab: Path) -> None:
-    """A fit that fails leaves the model that was there."""
+    """A fit that fails leaves the existing model file unchanged."""
     out = lab / "kept.npz"
     out.write_bytes((lab / "model.npz").read_bytes())
     before = out.read_bytes()

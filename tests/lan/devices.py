@@ -1,4 +1,4 @@
-"""An operator and a headset that come over the network."""
+"""An operator and a headset that connect over the network."""
 
 import json
 
@@ -13,7 +13,7 @@ CREDENTIALS = {"username": "admin", "password": ADMIN_PASSWORD}
 
 
 def pair_headset(client: httpx2.Client) -> tuple[str, str]:
-    """A session's id, and the token of the headset that is paired with it."""
+    """Pair a headset with a new session; return the session's id and the headset's token."""
     session = ok(client.post(f"/api/studies/{STUDY}/sessions", json={"kind": "test"}))
     shown = ok(client.post(f"/api/sessions/{session['id']}/pairings", json={"device": "headset"}))
     paired = ok(client.post("/api/devices/pair", json={"code": shown["code"]}))
@@ -21,7 +21,7 @@ def pair_headset(client: httpx2.Client) -> tuple[str, str]:
 
 
 async def greeted(url: str, token: str, **options: object) -> dict[str, object]:
-    """Connect as a headset and take the welcome."""
+    """Connect as a headset and return the server's welcome."""
     async with connect(
         f"{url.replace('http', 'ws', 1)}/api/vr/stream",
         subprotocols=[SUBPROTOCOL, f"bearer.{token}"],  # type: ignore[list-item]  # a token is a plain str

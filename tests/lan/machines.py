@@ -1,4 +1,4 @@
-"""Machines and moments for certificates."""
+"""Machines and times for tests of certificates."""
 
 from datetime import UTC, datetime
 from ipaddress import ip_address

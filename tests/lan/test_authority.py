@@ -1,4 +1,4 @@
-"""What the lab's authority may vouch for, and that nobody believes more of it."""
+"""Tests of the hosts for which the lab's authority can issue certificates that clients accept."""
 
 import hashlib
 import ssl
@@ -20,14 +20,14 @@ from tests.lan.machines import LAB_PC, NOW
 
 @pytest.fixture(scope="module")
 def authority() -> Authority:
-    """An authority made on the lab's computer."""
+    """Return an authority created on the lab's computer."""
     return new_authority(LAB_PC, datetime.now(UTC))
 
 
 def client_accepts(authority: Authority, hosts: tuple[Host, ...], asked: Host) -> bool:
-    """Whether a TLS client that trusts the authority goes on when it asks for `asked`.
+    """Return whether a TLS client that trusts the authority accepts a server as `asked`.
 
-    A whole handshake in memory, between Python's own (OpenSSL's) client and a server that shows a
+    Performs a whole handshake in memory between Python's own (OpenSSL's) client and a server with a
     certificate for `hosts`.
     """
     server, client = tls_context(), ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
@@ -54,7 +54,7 @@ def client_accepts(authority: Authority, hosts: tuple[Host, ...], asked: Host) -
 
 
 def library_accepts(authority: Authority, hosts: tuple[Host, ...], asked: Host) -> bool:
-    """The same by the verifier of `cryptography`, written independently after RFC 5280."""
+    """Return whether `cryptography`'s own verifier (RFC 5280) accepts a server as `asked`."""
     leaf = new_leaf(authority, hosts, datetime.now(UTC)).certificate
     subject = x509.DNSName(asked) if isinstance(asked, str) else x509.IPAddress(asked)
     builder = PolicyBuilder().store(Store([authority.certificate])).time(datetime.now(UTC))
@@ -74,7 +74,7 @@ def library_accepts(authority: Authority, hosts: tuple[Host, ...], asked: Host) 
     ],
 )
 def test_the_labs_own_hosts_are_accepted(authority: Authority, host: Host) -> None:
-    """Private addresses, local names and the machine's own name, in a real handshake."""
+    """A client accepts the lab's private addresses, local names and own name."""
     assert authority.permits(host)
     assert client_accepts(authority, (host,), host)
 
@@ -87,22 +87,22 @@ def test_the_labs_own_hosts_are_accepted(authority: Authority, host: Host) -> No
         ip_address("2001:4860:4860::8888"),
     ],
 )
-def test_a_stolen_key_cannot_pretend_to_be_anybody_else(authority: Authority, host: Host) -> None:
-    """Signing is not enough: devices refuse what the authority's certificate rules out."""
+def test_a_certificate_for_a_foreign_host_is_not_accepted(authority: Authority, host: Host) -> None:
+    """A client rejects a certificate that the authority signed for a host outside the lab."""
     assert not authority.permits(host)
     assert not client_accepts(authority, (host,), host)
 
 
 def test_two_independent_verifiers_agree_on_names(authority: Authority) -> None:
-    """`cryptography` judges names as OpenSSL does: the lab's own yes, anybody else's no."""
+    """`cryptography` accepts and rejects the same host names as OpenSSL."""
     assert library_accepts(authority, ("labpc.local",), "labpc.local")
     assert not library_accepts(authority, ("bank.example",), "bank.example")
-    # One foreign name spoils the whole certificate.
+    # One foreign name invalidates the whole certificate.
     assert not library_accepts(authority, ("labpc.local", "bank.example"), "labpc.local")
 
 
-def test_it_cannot_make_another_authority(authority: Authority) -> None:
-    """Path length 0, critical: what it signs are servers, valid for no longer than itself."""
+def test_the_authority_cannot_sign_another_authority(authority: Authority) -> None:
+    """The authority's certificate allows no further authorities, and its servers expire with it."""
     basic = authority.certificate.extensions.get_extension_for_class(x509.BasicConstraints)
     limits = authority.certificate.extensions.get_extension_for_class(x509.NameConstraints)
     usage = authority.certificate.extensions.get_extension_for_class(x509.KeyUsage)
@@ -115,8 +115,8 @@ def test_it_cannot_make_another_authority(authority: Authority) -> None:
     assert late.expires_at == authority.certificate.not_valid_after_utc
 
 
-def test_it_lasts_ten_years_also_from_a_leap_day() -> None:
-    """Ten years to the day; from 29 February to 28 February."""
+def test_the_authority_is_valid_for_ten_years() -> None:
+    """The authority is valid for ten years; from 29 February to 28 February."""
     assert new_authority(LAB_PC, NOW).certificate.not_valid_after_utc == NOW.replace(year=2036)
     leap_day = NOW.replace(year=2028, month=2, day=29)
     ends = new_authority(LAB_PC, leap_day).certificate.not_valid_after_utc
@@ -136,12 +136,12 @@ def test_it_lasts_ten_years_also_from_a_leap_day() -> None:
     ],
 )
 def test_a_bare_host_name_never_becomes_a_domain(host: str, expected: tuple[str, ...]) -> None:
-    """Only names with a place in them are vouched for."""
+    """A bare host name becomes a `.local` name, never a whole domain."""
     assert host_names(host) == expected
 
 
-def test_a_public_address_is_permitted_alone() -> None:
-    """A university gives its machines public addresses: that one counts, its neighbour does not."""
+def test_only_the_machines_own_public_address_is_permitted() -> None:
+    """The authority permits the machine's own public address but not its neighbour."""
     own: Address = ip_address("203.0.113.9")
     authority = new_authority(Machine(("labpc.local",), (own,)), NOW)
     assert authority.permits(own)
@@ -149,8 +149,8 @@ def test_a_public_address_is_permitted_alone() -> None:
     assert own in permitted_hosts(Machine(("labpc.local",), (own,)), authority)
 
 
-def test_reading_gives_back_what_was_written(authority: Authority) -> None:
-    """One file holds key and certificate; a key of another certificate is refused."""
+def test_an_authority_survives_being_stored(authority: Authority) -> None:
+    """An authority read back from its PEM is the same; a key of another certificate is refused."""
     again = authority_from_pem(authority.as_pem())
     assert fingerprint(again.certificate) == fingerprint(authority.certificate)
     other = new_authority(LAB_PC, NOW)
@@ -161,8 +161,8 @@ def test_reading_gives_back_what_was_written(authority: Authority) -> None:
         authority_from_pem(mixed)
 
 
-def test_the_fingerprint_is_the_one_that_other_programs_show(authority: Authority) -> None:
-    """Compared with Python's own SSL module and hashlib over the DER bytes."""
+def test_the_fingerprint_is_the_sha256_of_the_certificate(authority: Authority) -> None:
+    """The fingerprint is the SHA-256 of the certificate's DER bytes, as other programs show it."""
     der = ssl.PEM_cert_to_DER_cert(authority.certificate.public_bytes(Encoding.PEM).decode("ascii"))
     assert fingerprint(authority.certificate).replace(":", "").lower() == (
         hashlib.sha256(der).hexdigest()

@@ -1,4 +1,4 @@
-"""The certificate in the data folder: kept, renewed, and never shown to others on the machine."""
+"""Tests of the certificate in the data folder: stored, renewed and private."""
 
 from dataclasses import replace
 from datetime import datetime, timedelta
@@ -21,12 +21,12 @@ ELSEWHERE = replace(LAB_PC, addresses=(ip_address("10.0.0.5"),))
 
 
 def at(now: datetime, folder: Path) -> LabAuthority:
-    """The lab's authority in `folder`, asked at `now`."""
+    """Return the lab's authority in `folder` with its clock at `now`."""
     return LabAuthority(folder, Clock(utc_now=lambda: now))
 
 
 def test_only_the_owner_can_read_the_keys(tmp_path: Path) -> None:
-    """0600 in a 0700 folder, and no half-written file is left beside them."""
+    """The key files are private to their owner, and no partial file remains."""
     at(NOW, tmp_path).current(LAB_PC)
     folder = tmp_path / "tls"
     assert folder.stat().st_mode & 0o777 == 0o700
@@ -37,7 +37,7 @@ def test_only_the_owner_can_read_the_keys(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["authority.pem", "server.pem"])
 @pytest.mark.parametrize("mode", [0o640, 0o604, 0o660])
 def test_a_key_that_others_could_read_is_refused(tmp_path: Path, name: str, mode: int) -> None:
-    """It may be known to anybody by now; the refusal says what to do."""
+    """A key that others could read is refused with the advice to use chmod."""
     source = at(NOW, tmp_path)
     source.current(LAB_PC)
     (tmp_path / "tls" / name).chmod(mode)
@@ -46,15 +46,15 @@ def test_a_key_that_others_could_read_is_refused(tmp_path: Path, name: str, mode
     assert "chmod 600" in refused.value.remedy
 
 
-def test_the_certificate_is_kept_over_starts(tmp_path: Path) -> None:
-    """As long as nothing changes nobody gets another one."""
+def test_the_certificate_is_reused_at_later_starts(tmp_path: Path) -> None:
+    """The certificate is reused at later starts as long as nothing changes."""
     first = at(NOW, tmp_path).current(LAB_PC)
     later = at(NOW + timedelta(days=300), tmp_path).current(LAB_PC)
     assert later == first
 
 
-def test_it_is_valid_for_everything_the_machine_is_called(tmp_path: Path) -> None:
-    """Names, addresses and the loopback, for at most 397 days, for servers only."""
+def test_the_certificate_has_all_names_and_addresses(tmp_path: Path) -> None:
+    """The certificate has all names and addresses of the machine, for at most 397 days."""
     identity = at(NOW, tmp_path).current(LAB_PC)
     assert set(identity.hosts) == {"localhost", *LAB_PC.names, *LOOPBACK, *LAB_PC.addresses}
     assert identity.uncovered == ()
@@ -66,7 +66,7 @@ def test_it_is_valid_for_everything_the_machine_is_called(tmp_path: Path) -> Non
 
 
 def test_a_new_address_brings_a_new_certificate_of_the_same_authority(tmp_path: Path) -> None:
-    """A laptop on another network: devices trust it as before."""
+    """A new address of the machine leads to a new certificate of the same authority."""
     before = at(NOW, tmp_path).current(LAB_PC)
     after = at(NOW, tmp_path).current(ELSEWHERE)
     assert ip_address("10.0.0.5") in after.hosts
@@ -74,14 +74,14 @@ def test_a_new_address_brings_a_new_certificate_of_the_same_authority(tmp_path: 
     assert after.authority_fingerprint == before.authority_fingerprint
 
 
-def test_a_lost_address_is_no_reason_for_a_new_one(tmp_path: Path) -> None:
-    """A cable that is out for a minute must not change anything."""
+def test_a_lost_address_keeps_the_certificate(tmp_path: Path) -> None:
+    """Losing an address does not change the certificate."""
     before = at(NOW, tmp_path).current(LAB_PC)
     assert at(NOW, tmp_path).current(Machine(LAB_PC.names, ())) == before
 
 
-def test_it_is_renewed_in_its_last_month(tmp_path: Path) -> None:
-    """31 days before its end it stays, 29 days before it is made anew; the authority stays."""
+def test_the_certificate_is_renewed_in_its_last_month(tmp_path: Path) -> None:
+    """The certificate is renewed in its last 30 days, by the same authority."""
     first = at(NOW, tmp_path).current(LAB_PC)
     assert at(first.expires_at - timedelta(days=31), tmp_path).current(LAB_PC) == first
     renewed = at(first.expires_at - timedelta(days=29), tmp_path).current(LAB_PC)
@@ -89,8 +89,8 @@ def test_it_is_renewed_in_its_last_month(tmp_path: Path) -> None:
     assert renewed.authority_fingerprint == first.authority_fingerprint
 
 
-def test_a_certificate_of_another_authority_is_not_taken_over(tmp_path: Path) -> None:
-    """Devices trust the authority that is there, so its own certificate is shown."""
+def test_a_certificate_of_a_replaced_authority_is_not_reused(tmp_path: Path) -> None:
+    """After the authority is replaced, a certificate of the former one is not reused."""
     source = at(NOW, tmp_path)
     first = source.current(LAB_PC)
     source.replace_authority(LAB_PC)
@@ -99,8 +99,8 @@ def test_a_certificate_of_another_authority_is_not_taken_over(tmp_path: Path) ->
     assert second.server_fingerprint != first.server_fingerprint
 
 
-def test_a_public_address_gained_later_is_said(tmp_path: Path) -> None:
-    """The authority may not vouch for it: it is named, not silently left out."""
+def test_a_later_public_address_is_reported_as_uncovered(tmp_path: Path) -> None:
+    """A public address that the authority may not certify is reported as uncovered."""
     at(NOW, tmp_path).current(LAB_PC)
     public = ip_address("198.51.100.4")
     identity = at(NOW, tmp_path).current(replace(LAB_PC, addresses=(public,)))
@@ -108,8 +108,8 @@ def test_a_public_address_gained_later_is_said(tmp_path: Path) -> None:
     assert public not in identity.hosts
 
 
-def test_a_broken_authority_file_is_not_replaced_in_silence(tmp_path: Path) -> None:
-    """Every device trusts the old one: a person decides."""
+def test_a_broken_authority_file_is_not_replaced(tmp_path: Path) -> None:
+    """A broken authority file is reported with the option to replace it, and not replaced."""
     source = at(NOW, tmp_path)
     source.current(LAB_PC)
     source.authority_file.write_bytes(b"not a key")
@@ -119,11 +119,11 @@ def test_a_broken_authority_file_is_not_replaced_in_silence(tmp_path: Path) -> N
 
 
 class TestOwnFiles:
-    """The lab's own certificate."""
+    """A certificate that the lab provides itself."""
 
     @pytest.fixture
     def files(self, tmp_path: Path) -> OwnFiles:
-        """A certificate for one name, as an institution would issue it."""
+        """Return a certificate for one name, as an institution would issue it."""
         authority = at(NOW, tmp_path).authority(LAB_PC)
         leaf = new_leaf(authority, ("labpc.psy.example",), NOW)
         key, _, chain = leaf.pem.partition(b"-----BEGIN CERTIFICATE")
@@ -131,8 +131,8 @@ class TestOwnFiles:
         (tmp_path / "chain.pem").write_bytes(b"-----BEGIN CERTIFICATE" + chain)
         return OwnFiles(tmp_path / "chain.pem", tmp_path / "key.pem", Clock(utc_now=lambda: NOW))
 
-    def test_it_is_shown_as_it_is(self, files: OwnFiles) -> None:
-        """Its own names, nothing for devices to install, addresses it does not know are named."""
+    def test_the_labs_own_certificate_is_used_unchanged(self, files: OwnFiles) -> None:
+        """The lab's own certificate is used unchanged, and addresses it lacks are reported."""
         identity = files.current(LAB_PC)
         assert identity.hosts == ("labpc.psy.example",)
         assert identity.authority is None
@@ -140,20 +140,20 @@ class TestOwnFiles:
         files.load_into(tls_context())
 
     def test_files_that_do_not_belong_together_are_refused(self, files: OwnFiles) -> None:
-        """Said at the start, not at the first tablet."""
+        """A certificate and a key that do not belong together are refused."""
         swapped = replace(files, key_file=files.certificate_file)
         with pytest.raises(InvalidInput):
             swapped.current(LAB_PC)
 
-    def test_an_ended_certificate_is_refused(self, files: OwnFiles) -> None:
-        """With the day it ended."""
+    def test_an_expired_certificate_is_refused(self, files: OwnFiles) -> None:
+        """An expired certificate is refused with its date."""
         late = replace(files, clock=Clock(utc_now=lambda: NOW + timedelta(days=400)))
         with pytest.raises(InvalidInput, match="expired on 2027-04"):
             late.current(LAB_PC)
 
 
-def test_a_certificate_without_names_has_none() -> None:
-    """The authority's own certificate names no host."""
+def test_a_certificate_without_names_has_no_hosts() -> None:
+    """A certificate without names has no hosts."""
     from app.lan.serving.authority import new_authority
 
     assert hosts_of(new_authority(LAB_PC, NOW).certificate) == ()

@@ -1,4 +1,4 @@
-"""The plain-http port: what a device needs to trust the lab, and nothing else."""
+"""Tests of the plain-HTTP help port, which serves only what devices need to trust the lab."""
 
 import plistlib
 import re
@@ -23,13 +23,13 @@ REACH = Reach(
 
 @pytest.fixture(scope="module")
 def authority() -> Authority:
-    """The lab's authority."""
+    """Return the lab's authority."""
     return new_authority(LAB_PC, NOW)
 
 
 @pytest.fixture
 def client(authority: Authority) -> TestClient:
-    """A device that asks the help port."""
+    """Return a client of the help port."""
     site = HelpSite(Network(REACH), lambda: authority.certificate)
     return TestClient(site, base_url="http://192.168.7.20:8080", follow_redirects=False)
 
@@ -42,8 +42,8 @@ def client(authority: Authority) -> TestClient:
         *("/reembody-ca.crt/", "/reembody-ca.key", "/index.html", "/favicon.ico"),
     ],
 )
-def test_everything_else_is_not_there(client: TestClient, path: str) -> None:
-    """404 without a redirect: credentials must not follow one in the clear."""
+def test_other_paths_are_not_found(client: TestClient, path: str) -> None:
+    """Any other path is answered with 404, without a redirect or a cookie."""
     answer = client.get(path, headers={"cookie": "reembody_login=secret"})
     assert answer.status_code == 404
     assert "location" not in answer.headers
@@ -51,13 +51,15 @@ def test_everything_else_is_not_there(client: TestClient, path: str) -> None:
 
 
 @pytest.mark.parametrize("method", ["POST", "PUT", "DELETE", "PATCH", "OPTIONS"])
-def test_nothing_can_be_sent(client: TestClient, method: str) -> None:
-    """Whatever is posted, also to the page itself."""
+def test_other_methods_are_not_found(client: TestClient, method: str) -> None:
+    """A request that would send data is answered with 404."""
     assert client.request(method, "/", content=b"password=x").status_code == 404
 
 
-def test_the_certificate_comes_as_devices_want_it(client: TestClient, authority: Authority) -> None:
-    """DER for Android and Windows, PEM for programs, a profile for Apple: all the same one."""
+def test_the_certificate_is_served_in_every_format(
+    client: TestClient, authority: Authority
+) -> None:
+    """The authority's certificate is served as DER, as PEM and as an Apple profile."""
     der = client.get("/reembody-ca.crt")
     assert der.headers["content-type"] == "application/x-x509-ca-cert"
     assert x509.load_der_x509_certificate(der.content) == authority.certificate
@@ -71,8 +73,8 @@ def test_the_certificate_comes_as_devices_want_it(client: TestClient, authority:
 
 
 @pytest.mark.parametrize("path", ["/", "/reembody-ca.crt", "/nothing"])
-def test_no_key_and_no_script_leaves(client: TestClient, path: str) -> None:
-    """Not a private key, not a line of JavaScript, and no browser may run one."""
+def test_no_page_contains_a_key_or_a_script(client: TestClient, path: str) -> None:
+    """No answer of the help port contains a private key or a script."""
     answer = client.get(path)
     assert b"PRIVATE" not in answer.content
     assert b"<script" not in answer.content.lower()
@@ -81,10 +83,10 @@ def test_no_key_and_no_script_leaves(client: TestClient, path: str) -> None:
     assert "strict-transport-security" not in answer.headers
 
 
-def test_the_page_shows_the_fingerprint_and_the_way_on(
+def test_the_page_shows_the_fingerprint_and_the_https_address(
     client: TestClient, authority: Authority
 ) -> None:
-    """All 64 digits in order, and the https address by which the device came."""
+    """The page shows the whole fingerprint and the https address of the requested host."""
     page = client.get("/").text
     shown = re.search(r'class="fingerprint">(.*?)</p>', page)
     assert shown is not None
@@ -95,8 +97,8 @@ def test_the_page_shows_the_fingerprint_and_the_way_on(
     assert 'href="https://labpc.local:8443/tablet"' in by_name
 
 
-def test_a_foreign_host_header_gets_nowhere(client: TestClient) -> None:
-    """The page leads to the lab's own address, whatever the request calls the host."""
+def test_a_foreign_host_header_is_ignored(client: TestClient) -> None:
+    """The page links to the lab's own address, whatever the `Host` header."""
     page = client.get("/", headers={"host": "evil.example"}).text
     assert "evil" not in page
     assert 'href="https://192.168.7.20:8443/"' in page
@@ -117,7 +119,7 @@ def test_a_foreign_host_header_gets_nowhere(client: TestClient) -> None:
 def test_the_page_speaks_the_devices_language(
     client: TestClient, accepted: str, query: str, heading: str
 ) -> None:
-    """The browser's wish, and a switch that overrides it."""
+    """The page is in the browser's language unless the address has another."""
     page = client.get(f"/{query}", headers={"accept-language": accepted}).text
     assert f"<h1>{heading}</h1>" in page
 
@@ -133,17 +135,17 @@ def test_the_page_speaks_the_devices_language(
         ("Mozilla/5.0 (X11; Linux x86_64; rv:130.0) Firefox/130.0", "Firefox on a computer"),
     ],
 )
-def test_the_likely_device_stands_first_and_open(
+def test_the_likely_device_comes_first_and_is_open(
     client: TestClient, agent: str, first: str
 ) -> None:
-    """Its steps are unfolded; all the others are there too."""
+    """The instructions for the requesting device come first and open; the others follow."""
     page = client.get("/", headers={"user-agent": agent}).text
     assert page.index(f"<details open><summary>{first}") == page.index("<details")
     assert page.count("<details") == len(ENGLISH.devices)
 
 
 def test_both_languages_help_with_the_same_devices() -> None:
-    """As many steps for each."""
+    """Both languages have the same devices with the same number of steps."""
     steps = [
         [(one.key, len(one.steps), one.marks) for one in texts.devices]
         for texts in (ENGLISH, GERMAN)

@@ -1,4 +1,4 @@
-"""What the terminal says before the server listens."""
+"""Tests of what the terminal prints before the server listens."""
 
 from pathlib import Path
 
@@ -13,7 +13,7 @@ from tests.lan.machines import LAB_PC
 
 
 def test_this_machine_alone_needs_three_lines() -> None:
-    """Where to go, the tablet's page, where the data are."""
+    """A server for this machine alone prints its address, a note on tablets and the data folder."""
     assert addresses(Reach(), "data").splitlines() == [
         "Reembody   http://127.0.0.1:8321",
         "Tablet     only this computer can reach the server; for tablets start it with --lan",
@@ -21,18 +21,18 @@ def test_this_machine_alone_needs_three_lines() -> None:
     ]
 
 
-def test_a_server_without_encryption_says_so_loudly() -> None:
-    """In capitals, with the way out."""
+def test_a_server_without_encryption_warns() -> None:
+    """A server without encryption prints a warning in capitals with the option to use."""
     told = addresses(Reach(mode="without_tls", urls=("http://192.168.7.20:8321",)), "data")
     assert "WITHOUT ENCRYPTION" in told
     assert "--lan" in told
 
 
 @pytest.mark.parametrize("at_terminal", [True, False])
-def test_the_network_is_told_with_its_fingerprint(
+def test_the_network_is_printed_with_its_fingerprint(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *, at_terminal: bool
 ) -> None:
-    """All of the fingerprint and the help page; a code to scan only where a person looks."""
+    """The whole fingerprint and the help page are printed, with a QR code only on a terminal."""
     plan = make_plan(Settings(data_dir=tmp_path, lan=True), Clock())
     assert plan.certificates is not None
     identity = plan.certificates.current(LAB_PC)

@@ -1,4 +1,4 @@
-"""Which doors are opened, and which are refused."""
+"""Tests of which addresses the server opens, and which it refuses."""
 
 from pathlib import Path
 from typing import Any
@@ -15,28 +15,28 @@ from tests.lan.machines import LAB_PC
 
 
 def plan_for(tmp_path: Path, **given: Any) -> Plan:
-    """The plan for these settings."""
+    """Return the plan for these settings."""
     return make_plan(Settings(data_dir=tmp_path, **given), Clock())
 
 
 @pytest.mark.parametrize("host", ["127.0.0.1", "localhost", "::1", "127.0.0.2"])
 def test_this_machine_alone_needs_nothing(tmp_path: Path, host: str) -> None:
-    """Plain http on the loopback."""
+    """A loopback address is served over plain HTTP without certificates."""
     plan = plan_for(tmp_path, host=host)
     assert (plan.mode, plan.lan_hosts, plan.certificates) == ("loopback", (), None)
 
 
 @pytest.mark.parametrize("host", ["0.0.0.0", "::", "192.168.1.5", "labpc.local"])  # noqa: S104 - as text
-def test_others_are_not_let_in_without_encryption(tmp_path: Path, host: str) -> None:
-    """Refused with three ways out and the name of the flag that insists."""
+def test_a_network_address_without_encryption_is_refused(tmp_path: Path, host: str) -> None:
+    """A network address without encryption is refused with all alternatives."""
     with pytest.raises(NotAllowed) as refused:
         plan_for(tmp_path, host=host)
     for way in ("--certificate", "--lan ", "USB", "--without-tls"):
         assert way in refused.value.remedy
 
 
-def test_who_insists_gets_plain_http(tmp_path: Path) -> None:
-    """And the reach says so."""
+def test_without_tls_allows_plain_http(tmp_path: Path) -> None:
+    """With `without_tls` a network address is served over plain HTTP, and the reach states it."""
     plan = plan_for(tmp_path, host="192.168.7.20", without_tls=True)
     assert plan.reach(LAB_PC, None) == Reach(
         mode="without_tls",
@@ -49,7 +49,7 @@ def test_who_insists_gets_plain_http(tmp_path: Path) -> None:
 
 
 def test_the_network_gets_https_and_a_help_page(tmp_path: Path) -> None:
-    """With the built-in authority; plain http stays on this machine."""
+    """With `lan` the network gets HTTPS and a help page; plain HTTP stays on this machine."""
     plan = plan_for(tmp_path, lan=True)
     source = plan.certificates
     assert isinstance(source, LabAuthority)
@@ -65,7 +65,7 @@ def test_the_network_gets_https_and_a_help_page(tmp_path: Path) -> None:
 
 
 def test_own_certificates_need_no_help_page(tmp_path: Path) -> None:
-    """Nothing is to be installed, so no plain port is opened."""
+    """With the lab's own certificate no help port is opened."""
     plan = plan_for(tmp_path, lan=True, certificate=tmp_path / "a", key=tmp_path / "b")
     assert isinstance(plan.certificates, OwnFiles)
     assert plan.help_port is None
@@ -81,8 +81,10 @@ def test_own_certificates_need_no_help_page(tmp_path: Path) -> None:
         {"host": "labpc", "without_tls": True},
     ],
 )
-def test_half_a_wish_is_refused_with_the_other_half(tmp_path: Path, given: dict[str, Any]) -> None:
-    """Each says what is missing or contradicts."""
+def test_incomplete_or_contradicting_options_are_refused(
+    tmp_path: Path, given: dict[str, Any]
+) -> None:
+    """Incomplete or contradicting network options are refused with a remedy."""
     with pytest.raises(InvalidInput) as refused:
         plan_for(tmp_path, **given)
     assert refused.value.remedy
@@ -96,8 +98,8 @@ def test_half_a_wish_is_refused_with_the_other_half(tmp_path: Path, given: dict[
         ({"port": 8443, "lan_port": 8443}, "--port and --lan-port are both 8443"),
     ],
 )
-def test_each_door_has_a_port_of_its_own(tmp_path: Path, given: dict[str, int], named: str) -> None:
-    """Two doors on one port would start, and one of them would answer nobody."""
+def test_equal_ports_are_refused(tmp_path: Path, given: dict[str, int], named: str) -> None:
+    """Two options with the same port are refused with both names."""
     with pytest.raises(InvalidInput, match=named):
         plan_for(tmp_path, lan=True, **given)
 
@@ -112,7 +114,7 @@ def test_each_door_has_a_port_of_its_own(tmp_path: Path, given: dict[str, int], 
     ],
 )
 def test_a_device_is_never_sent_to_its_own_localhost(asked_at: str, given: str) -> None:
-    """Whoever pairs from this machine hands out the network's address, others their own."""
+    """A device gets the network's address, or the name by which the console was opened."""
     reach = Reach(mode="lan", urls=("https://192.168.7.20:8443",))
     assert reach.for_devices(asked_at) == given
 
@@ -125,7 +127,7 @@ def test_a_device_is_never_sent_to_its_own_localhost(asked_at: str, given: str) 
     ],
 )
 def test_without_a_network_no_device_gets_an_address(host: str) -> None:
-    """This machine's own names mean another machine everywhere else, so there is none to give."""
+    """Without a network there is no address for devices, whatever local name was requested."""
     assert Reach().for_devices(f"http://{host}:8321/") is None
     assert Reach().for_tablets is None
     beyond = Reach(mode="lan", urls=("https://192.168.7.20:8443",))
@@ -133,6 +135,6 @@ def test_without_a_network_no_device_gets_an_address(host: str) -> None:
     assert beyond.for_tablets == "https://192.168.7.20:8443/tablet"
 
 
-def test_a_name_that_the_lab_gave_is_an_address_for_devices() -> None:
-    """Behind a proxy of the lab's own, what the console was asked at works elsewhere too."""
+def test_a_proxys_name_is_an_address_for_devices() -> None:
+    """The name of a proxy under which the console was opened is an address for devices."""
     assert Reach().for_devices("https://vr.example.org/") == "https://vr.example.org"

@@ -1,4 +1,4 @@
-"""The real server on the lab's network: three doors, one application."""
+"""Tests of the real server on the lab's network: one application on three ports."""
 
 import asyncio
 import logging
@@ -26,13 +26,13 @@ UPGRADE = (
 
 @pytest.fixture(scope="module")
 def lan(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LanServer]:
-    """A server with the built-in authority."""
+    """Yield a server with the built-in authority."""
     with LanServer(tmp_path_factory.mktemp("lan")) as server:
         yield server
 
 
 def raw(port: int, request: bytes) -> bytes:
-    """Exactly these bytes over plain TCP, and all that comes back."""
+    """Send exactly these bytes over plain TCP and return the whole answer."""
     with socket.create_connection(("127.0.0.1", port), timeout=20) as connection:
         connection.sendall(request)
         answer = b""
@@ -41,8 +41,8 @@ def raw(port: int, request: bytes) -> bytes:
     return answer
 
 
-def test_all_doors_lead_to_one_application(lan: LanServer) -> None:
-    """A session made over plain http on this machine is there over https."""
+def test_all_ports_serve_one_application(lan: LanServer) -> None:
+    """A session created over HTTP on this machine is available over HTTPS."""
     with lan.client() as here, lan.secure_client() as there:
         ok(here.post("/api/login", json=CREDENTIALS))
         ok(there.post("/api/login", json=CREDENTIALS))
@@ -51,7 +51,7 @@ def test_all_doors_lead_to_one_application(lan: LanServer) -> None:
 
 
 def test_cookies_over_https_are_bound_to_the_host(lan: LanServer) -> None:
-    """`__Host-`, Secure, every path; over http plain; each is read on its own door only."""
+    """HTTPS cookies are `__Host-` and Secure; each kind is accepted only on its own port."""
     with lan.client() as here, lan.secure_client() as there:
         plain = here.post("/api/login", json=CREDENTIALS).headers["set-cookie"]
         bound = there.post("/api/login", json=CREDENTIALS).headers["set-cookie"]
@@ -74,8 +74,8 @@ def test_cookies_over_https_are_bound_to_the_host(lan: LanServer) -> None:
         )
 
 
-def test_signing_out_over_https_takes_the_cookie_away(lan: LanServer) -> None:
-    """The browser obeys only if the deletion carries the same attributes."""
+def test_signing_out_over_https_deletes_the_cookie(lan: LanServer) -> None:
+    """Signing out over HTTPS deletes the cookie with the attributes that browsers require."""
     with lan.secure_client() as client:
         ok(client.post("/api/login", json=CREDENTIALS))
         gone = client.post("/api/logout").headers["set-cookie"].lower()
@@ -86,7 +86,7 @@ def test_signing_out_over_https_takes_the_cookie_away(lan: LanServer) -> None:
 
 
 def test_a_refused_socket_writes_nothing_in_the_log(caplog: pytest.LogCaptureFixture) -> None:
-    """Whoever may ask for nothing any more could fill a disk with such lines."""
+    """A refused socket writes nothing to the log, so that refusals cannot fill the disk."""
     paths = ("/a-body", "/no-body")
 
     async def refusing(scope: Scope, _receive: Receive, send: Send) -> None:
@@ -124,7 +124,7 @@ def test_a_refused_socket_writes_nothing_in_the_log(caplog: pytest.LogCaptureFix
 
 
 def test_headsets_are_served_over_wss(lan: LanServer) -> None:
-    """The same handshake as over ws, with the page's own origin; a foreign one is refused."""
+    """A headset connects over wss and ws from our own origin, and is refused from a foreign one."""
     with lan.secure_client() as client:
         ok(client.post("/api/login", json=CREDENTIALS))
         _, token = pair_headset(client)
@@ -138,7 +138,7 @@ def test_headsets_are_served_over_wss(lan: LanServer) -> None:
 
 
 def test_old_tls_is_refused(lan: LanServer) -> None:
-    """1.2 and 1.3 work; 1.1 gets no handshake."""
+    """TLS 1.2 and 1.3 are accepted, TLS 1.1 is refused."""
     for version, works in (
         (ssl.TLSVersion.TLSv1_1, False),
         (ssl.TLSVersion.TLSv1_2, True),
@@ -150,13 +150,13 @@ def test_old_tls_is_refused(lan: LanServer) -> None:
         assert _handshake(lan, context) is works
 
 
-def test_who_does_not_trust_the_authority_is_not_let_in(lan: LanServer) -> None:
-    """The system's own trust knows nothing of the lab."""
+def test_a_client_that_does_not_trust_the_authority_fails(lan: LanServer) -> None:
+    """A client that does not trust the lab's authority fails the handshake."""
     assert not _handshake(lan, ssl.create_default_context())
 
 
-def test_nothing_promises_https_for_ever(lan: LanServer) -> None:
-    """No Strict-Transport-Security on any door: it would lock devices out of the help page."""
+def test_no_port_sends_strict_transport_security(lan: LanServer) -> None:
+    """No port sends Strict-Transport-Security, which would block the help page."""
     with lan.client() as here, lan.secure_client() as there:
         answers = [here.get("/api/health"), there.get("/api/health"), httpx2.get(lan.help_url)]
     for answer in answers:
@@ -172,7 +172,7 @@ def test_nothing_promises_https_for_ever(lan: LanServer) -> None:
     ],
 )
 def test_the_help_port_serves_nothing_else(lan: LanServer, path: str) -> None:
-    """Asked by exact bytes, so that no client tidies the path up: 404, no redirect."""
+    """The help port answers other paths, sent as exact bytes, with an error and no redirect."""
     answer = raw(
         lan.help_port,
         f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n".encode(),
@@ -183,14 +183,14 @@ def test_the_help_port_serves_nothing_else(lan: LanServer, path: str) -> None:
     assert b"PRIVATE" not in answer
 
 
-def test_the_help_port_takes_no_websocket(lan: LanServer) -> None:
-    """The headset's socket is on the other doors."""
+def test_the_help_port_refuses_websockets(lan: LanServer) -> None:
+    """The help port refuses WebSockets."""
     with pytest.raises(InvalidStatus):
         asyncio.run(greeted(lan.help_url, "token"))
 
 
-def test_the_terminal_and_the_console_tell_the_same(lan: LanServer) -> None:
-    """Addresses, fingerprint and help page: what a person compares is equal everywhere."""
+def test_terminal_console_and_help_page_show_the_same_network(lan: LanServer) -> None:
+    """Terminal, console and help page show the same addresses and fingerprint."""
     with lan.client() as client:
         ok(client.post("/api/login", json=CREDENTIALS))
         told = ok(client.get("/api/network"))
@@ -210,7 +210,7 @@ def test_the_terminal_and_the_console_tell_the_same(lan: LanServer) -> None:
         "command": f"adb reverse tcp:{lan.port} tcp:{lan.port}",
         "url": f"http://localhost:{lan.port}",
     }
-    # The console was open at localhost; the tablet must not be sent to its own.
+    # The console was opened at localhost; the tablet must not be sent to its own localhost.
     assert shown["url"] == f"{lan.secure_url}/tablet?code={shown['code']}"
     assert shown["help_url"] == lan.help_url
 

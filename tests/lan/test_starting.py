@@ -1,4 +1,4 @@
-"""Starting, refusing to start, and starting again with another certificate."""
+"""Tests of starting, of refusing to start, and of restarting with another certificate."""
 
 import asyncio
 import socket
@@ -15,7 +15,7 @@ from tests.support.server import REEMBODY, free_port
 
 
 def test_a_restart_and_a_renewal_leave_devices_paired(tmp_path: Path) -> None:
-    """Token, authority and fingerprint stay; only the server's own certificate is another."""
+    """A restart with a renewed certificate keeps devices paired and the authority's fingerprint."""
     with LanServer(tmp_path) as server:
         trust = server.trusting()
         with server.secure_client() as client:
@@ -36,8 +36,8 @@ def test_a_restart_and_a_renewal_leave_devices_paired(tmp_path: Path) -> None:
     assert after["server_fingerprint"] != before["server_fingerprint"]
 
 
-def test_an_open_address_without_tls_is_refused(tmp_path: Path) -> None:
-    """It ends before it listens or touches the data, and says three ways out."""
+def test_a_network_address_without_tls_is_refused(tmp_path: Path) -> None:
+    """A network address without TLS is refused before the server listens or creates a folder."""
     result = subprocess.run(
         [*REEMBODY, "serve", "--host", "0.0.0.0", "--port", str(free_port())],  # noqa: S104 - refused
         env={"REEMBODY_DATA_DIR": str(tmp_path / "data")},
@@ -52,8 +52,8 @@ def test_an_open_address_without_tls_is_refused(tmp_path: Path) -> None:
     assert not (tmp_path / "data").exists()
 
 
-def test_a_taken_port_is_named(tmp_path: Path) -> None:
-    """With the option that chooses another one, before the data are touched."""
+def test_a_port_in_use_is_reported(tmp_path: Path) -> None:
+    """A port in use is reported with the option to change it, before the data are touched."""
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         taken.listen()

@@ -1,4 +1,4 @@
-"""The certificate changes while the server runs, and nobody is cut off."""
+"""Tests that the certificate changes while the server runs, without breaking connections."""
 
 import asyncio
 import ssl
@@ -25,7 +25,7 @@ OTHER_NETWORK = replace(LAB_PC, addresses=(ip_address("10.8.0.3"),))
 
 
 class Lab:
-    """A machine that moves, a clock that is set, and a watch over its certificate."""
+    """A machine that changes networks, a clock that is set by hand, and a certificate watch."""
 
     def __init__(self, folder: Path) -> None:
         self.machine, self.now = LAB_PC, datetime.now(UTC)
@@ -45,12 +45,12 @@ class Lab:
 
 @pytest.fixture
 def lab(tmp_path: Path) -> Lab:
-    """A lab with its certificate made."""
+    """Return a lab with its first certificate."""
     return Lab(tmp_path)
 
 
 def trust(lab: Lab) -> ssl.SSLContext:
-    """A device that installed the authority's certificate at this moment."""
+    """Return the TLS context of a device that installs the current authority's certificate."""
     context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
     pem = lab.watch.authority().public_bytes(Encoding.PEM)
     context.load_verify_locations(cadata=pem.decode("ascii"))
@@ -70,7 +70,7 @@ async def _connected(
 
 
 async def _change_under_open_connection(lab: Lab) -> tuple[bytes, tuple[object, ...]]:
-    """What an open connection still answers, and for whom the next one's certificate is valid."""
+    """Return an open connection's answer after the change, and the next certificate's hosts."""
     device = trust(lab)
     server = await asyncio.start_server(_echo, "127.0.0.1", 0, ssl=lab.tls)
     port = server.sockets[0].getsockname()[1]
@@ -87,8 +87,8 @@ async def _change_under_open_connection(lab: Lab) -> tuple[bytes, tuple[object, 
     return answered, hosts_of(x509.load_der_x509_certificate(shown))
 
 
-def test_another_network_brings_another_certificate_without_a_restart(lab: Lab) -> None:
-    """An open connection goes on; the next one is shown the new address, and trusts it."""
+def test_a_network_change_renews_the_certificate_without_a_restart(lab: Lab) -> None:
+    """After a network change open connections continue and new ones get a new certificate."""
     answered, hosts = asyncio.run(_change_under_open_connection(lab))
     assert answered == b"still here\n"
     assert ip_address("10.8.0.3") in hosts
@@ -97,7 +97,7 @@ def test_another_network_brings_another_certificate_without_a_restart(lab: Lab) 
 
 
 def test_a_certificate_near_its_end_is_renewed(lab: Lab) -> None:
-    """The server that runs for a year needs nobody."""
+    """A running server renews its certificate before it expires."""
     first = lab.watch.network.reach.certificate
     assert first is not None
     lab.now = first.expires_at - timedelta(days=20)
@@ -109,22 +109,22 @@ def test_a_certificate_near_its_end_is_renewed(lab: Lab) -> None:
 
 
 def test_a_new_authority_reaches_the_help_page(lab: Lab) -> None:
-    """What devices install is the authority of the moment, not that of the start."""
+    """The help page serves the current authority, not that of the start."""
     before = lab.watch.authority()
     lab.authority.replace_authority(LAB_PC)
     lab.watch.refresh()
     assert lab.watch.authority() != before
 
 
-def test_nothing_is_written_where_nothing_changed(lab: Lab) -> None:
-    """A look every minute leaves the files alone."""
+def test_an_unchanged_certificate_is_not_rewritten(lab: Lab) -> None:
+    """Refreshing without a change does not rewrite the certificate file."""
     before = lab.authority.server_file.stat().st_mtime_ns
     lab.watch.refresh()
     assert lab.authority.server_file.stat().st_mtime_ns == before
 
 
 def test_a_machine_without_a_network_still_serves_itself(lab: Lab) -> None:
-    """No address, but its names, and the local address as before."""
+    """A machine without a network is still reachable at its local address."""
     lab.machine = replace(LAB_PC, addresses=())
     lab.watch.refresh()
     reach = lab.watch.network.reach

@@ -1,1 +1,1 @@
-"""Tests of the platform that every feature stands on."""
+"""Tests of `app/platform`."""

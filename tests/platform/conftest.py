@@ -1,4 +1,4 @@
-"""Tests over HTTP use the laboratory of the features' tests."""
+"""Fixtures with the running applications of the features' tests."""
 
 from tests.features.conftest import fresh_lab, lab
 

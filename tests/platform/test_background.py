@@ -1,4 +1,4 @@
-"""What runs beside the requests: an error is noticed, named by health, and mostly mended."""
+"""Tests of background work: errors are detected, named in the health check and recovered from."""
 
 import os
 import signal
@@ -27,19 +27,19 @@ PATIENCE_S = 20.0
 
 @pytest.fixture
 def small_lab(tmp_path: Path) -> Iterator[Lab]:
-    """An application on SQLite."""
+    """Yield an application on SQLite."""
     with running_lab(fresh_sqlite(tmp_path / "reembody.sqlite"), data_dir=tmp_path) as lab:
         yield lab
 
 
 @pytest.fixture
 def background() -> Background:
-    """Nothing runs yet."""
+    """Return a background without any work."""
     return Background(Clock())
 
 
-def test_a_thread_that_ends_by_an_error_is_named_and_begun_again(background: Background) -> None:
-    """And is well once it says so; what it does not foresee is noticed all the same."""
+def test_a_thread_that_fails_is_reported_and_restarted(background: Background) -> None:
+    """A thread that ends with an error is reported as failing and restarted."""
     runs, stop = [], threading.Event()
 
     def work() -> None:
@@ -65,8 +65,8 @@ def test_a_thread_that_ends_by_an_error_is_named_and_begun_again(background: Bac
 
 
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
-def test_a_thread_that_is_gone_for_good_is_named_for_good(background: Background) -> None:
-    """As when the interpreter itself gives up in it."""
+def test_a_thread_that_exits_is_reported_as_stopped(background: Background) -> None:
+    """A thread that ended by `SystemExit` is reported as stopped."""
 
     def work() -> None:
         raise SystemExit(1)
@@ -75,8 +75,8 @@ def test_a_thread_that_is_gone_for_good_is_named_for_good(background: Background
     assert [(one.name, one.state) for one in background.failing()] == [("work", "stopped")]
 
 
-def test_what_nothing_proves_to_be_over_is_forgotten_after_a_while() -> None:
-    """A queue may have no next task that could show it."""
+def test_a_failure_without_later_work_is_forgotten_after_a_while() -> None:
+    """A failure that no later success clears is forgotten after a while."""
     passed = [0]
     background = Background(Clock(monotonic_ns=lambda: passed[0]))
     with ThreadPoolExecutor(1) as pool:
@@ -87,8 +87,8 @@ def test_what_nothing_proves_to_be_over_is_forgotten_after_a_while() -> None:
     assert background.failing() == ()
 
 
-def test_a_process_that_dies_is_named_until_the_next_one_works(background: Background) -> None:
-    """One that is ended on purpose is not."""
+def test_a_dead_process_is_reported_until_the_next_one_works(background: Background) -> None:
+    """A process that dies is reported until the next one works; one ended on purpose is not."""
     worker = Worker().watched_by(background, "figures")
     try:
         pid = worker.submit(os.getpid).result()
@@ -104,29 +104,30 @@ def test_a_process_that_dies_is_named_until_the_next_one_works(background: Backg
         worker.end()
 
 
-class _Ended:
-    """A sender that counts what became of its messages."""
+class _CountingSender:
+    """A sender that counts its stored and refused messages."""
 
     def __init__(self) -> None:
         self.stored, self.refused = 0, 0
         self.last: object = None
 
     def deliver(self, outcome: object) -> None:
-        """It is on disk."""
+        """Count a message as stored."""
         self.stored, self.last = self.stored + 1, outcome
 
     def fail(self, error: Exception) -> None:
-        """It cannot be stored."""
+        """Count a message as refused."""
         self.refused, self.last = self.refused + 1, error
 
 
-def test_a_writer_that_dies_is_named_begun_again_and_loses_nothing(
+def test_a_failed_writer_is_restarted_and_loses_nothing(
     small_lab: Lab, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Health says degraded with its name; what waited is stored by its successor; a session with a
-    headset has the alarm on record.
+    """A telemetry writer that fails is reported and restarted, and stores what was waiting.
+
+    The session with a connected headset has the alarm in its record.
     """
-    lab, sender = small_lab, _Ended()
+    lab, sender = small_lab, _CountingSender()
     view = lab.join(kind="test")
     writer = lab.context.part(TelemetryWriter)
     store, failures = writer._store, [OSError("the first"), OSError("the second")]
@@ -151,11 +152,11 @@ def test_a_writer_that_dies_is_named_begun_again_and_loses_nothing(
     wait_for(lambda: alarms(lab, view["id"]) == {"gap", "writer_failed"})
 
 
-def test_messages_that_end_the_writer_again_and_again_are_refused(
+def test_a_message_that_keeps_failing_the_writer_is_refused(
     small_lab: Lab, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Else nobody's movement would ever be stored again."""
-    lab, poisoned, sound = small_lab, _Ended(), _Ended()
+    """A message that makes the writer fail repeatedly is refused, so that others are stored."""
+    lab, poisoned, sound = small_lab, _CountingSender(), _CountingSender()
     view = lab.join(kind="test")
     writer = lab.context.part(TelemetryWriter)
     store = writer._store
@@ -174,10 +175,10 @@ def test_messages_that_end_the_writer_again_and_again_are_refused(
     wait_for(lambda: health(lab)["status"] == "ok")
 
 
-def test_an_export_that_breaks_its_queue_fails_and_the_next_is_made(
+def test_an_export_that_breaks_its_queue_fails(
     small_lab: Lab, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Nobody waits for ever for one that will not come."""
+    """An export that breaks its queue is marked as failed, and the next one is made."""
     desk = small_lab.context.part(ExportQueue)
 
     def breaks(job: Job) -> None:
@@ -196,20 +197,20 @@ def test_an_export_that_breaks_its_queue_fails_and_the_next_is_made(
 
 
 def health(lab: Lab) -> dict[str, Any]:
-    """What anybody is told of the server."""
+    """Return the public health check."""
     told: dict[str, Any] = lab.stranger().get("/api/health").json()
     return told
 
 
 def alarms(lab: Lab, session_id: str) -> set[str]:
-    """The kinds of alarms that a session has had."""
+    """Return the codes of all alarms that a session has had."""
     return {
         str(one["code"]) for one in lab.operator.get(f"/api/sessions/{session_id}/alarms").json()
     }
 
 
 def wait_for(is_so: Callable[[], bool]) -> None:
-    """Until it is; fails after a while."""
+    """Wait until a condition holds, or fail."""
     give_up_s = time.monotonic() + PATIENCE_S
     while not is_so():
         assert time.monotonic() < give_up_s

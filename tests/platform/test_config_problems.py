@@ -1,4 +1,4 @@
-"""Stored study and instrument files that are not what they were."""
+"""A test of stored study and instrument files that were damaged."""
 
 import json
 
@@ -11,8 +11,8 @@ from app.protocol import sha256_of
 STORED, DAMAGED = '{"key":"pilot"}', '{"key":"pil~t'
 
 
-def test_a_text_that_was_damaged_is_reported_as_a_damaged_database() -> None:
-    """With the way out; a text that cannot be read although nobody touched it is our fault."""
+def test_a_stored_text_with_a_wrong_hash_is_reported_as_damage() -> None:
+    """An unreadable stored text is reported as damage if its hash differs, else as our error."""
     with unpacking(STORED, sha256_of(STORED)):
         json.loads(STORED)
     with (

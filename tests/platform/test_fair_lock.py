@@ -1,4 +1,4 @@
-"""The lock of writers: first come, first served, and whoever gave up is passed over."""
+"""Tests of the writers' lock: first come, first served, skipping those that gave up."""
 
 import threading
 import time
@@ -6,8 +6,8 @@ import time
 from app.database import FairLock
 
 
-def test_turns_go_to_whoever_waits_longest() -> None:
-    """Five threads that came one after the other are served in that order."""
+def test_the_lock_goes_to_the_longest_waiting_thread() -> None:
+    """Waiting threads get the lock in the order in which they came."""
     lock, served = FairLock(), []
 
     def serve(number: int) -> None:
@@ -26,8 +26,8 @@ def test_turns_go_to_whoever_waits_longest() -> None:
     assert served == [0, 1, 2, 3, 4]
 
 
-def test_whoever_gave_up_does_not_get_it() -> None:
-    """A wait that ends without the lock leaves it to the others."""
+def test_a_wait_that_timed_out_does_not_get_the_lock() -> None:
+    """A wait that timed out does not take the lock when it is released."""
     lock = FairLock()
     lock.acquire()
     assert not lock.acquire(timeout=0.01)

@@ -1,4 +1,4 @@
-"""The data folder is for its owner, and what lies in it tells of an earlier database."""
+"""Tests of the data folder's permissions, and of its traces of an earlier database."""
 
 import os
 import stat
@@ -11,13 +11,13 @@ from app.settings import Settings
 
 
 def mode(path: Path) -> int:
-    """Who may do what, as chmod has it."""
+    """Return the permission bits of a path."""
     return stat.S_IMODE(os.lstat(path).st_mode)
 
 
 @pytest.fixture
 def data(tmp_path: Path) -> Path:
-    """A data folder as an earlier version left it: everybody could read it."""
+    """Return a data folder as an earlier version left it, readable by everyone."""
     data = tmp_path / "data"
     for name in ("reembody.sqlite", "reembody.sqlite-wal", "backups/1.reembody", "tls/key.pem"):
         (data / name).parent.mkdir(parents=True, exist_ok=True)
@@ -28,8 +28,8 @@ def data(tmp_path: Path) -> Path:
     return data
 
 
-def test_others_lose_what_they_could_do(data: Path) -> None:
-    """Folders and files, whatever they were; a second time nothing is left to do."""
+def test_protecting_removes_access_for_others(data: Path) -> None:
+    """Protecting the data folder makes its files and folders private to their owner."""
     settings = Settings(data_dir=data)
     for _ in range(2):
         assert protect(settings) == []
@@ -37,11 +37,11 @@ def test_others_lose_what_they_could_do(data: Path) -> None:
         assert {mode(path) for path in (data, data / "backups", data / "tls")} == {0o700}
 
 
-def test_links_lead_nobody_out(data: Path, tmp_path: Path) -> None:
-    """What they point to keeps its mode, file or folder."""
+def test_protecting_does_not_follow_links(data: Path, tmp_path: Path) -> None:
+    """Protecting the data folder does not change what its links point to."""
     outside = tmp_path / "outside"
     outside.mkdir()
-    outside.chmod(0o755)  # whatever umask a command before has left
+    outside.chmod(0o755)  # independent of the umask of an earlier command
     (outside / "mine.txt").write_text("mine")
     (outside / "mine.txt").chmod(0o644)
     (data / "backups" / "link.txt").symlink_to(outside / "mine.txt")
@@ -50,16 +50,16 @@ def test_links_lead_nobody_out(data: Path, tmp_path: Path) -> None:
     assert (mode(outside), mode(outside / "mine.txt")) == (0o755, 0o644)
 
 
-def test_a_folder_that_is_everybodys_stays_so(data: Path) -> None:
-    """The database's own files are closed all the same."""
+def test_a_world_writable_data_folder_keeps_its_mode(data: Path) -> None:
+    """A world-writable data folder keeps its mode, but the database's files become private."""
     data.chmod(0o1777)
     protect(Settings(data_dir=data))
     assert mode(data) == 0o1777
     assert mode(data / "reembody.sqlite") == 0o600
 
 
-def test_other_things_in_a_shared_folder_stay_as_they_are(data: Path, tmp_path: Path) -> None:
-    """A database may stand in a folder that is used for more."""
+def test_other_files_in_a_shared_folder_are_unchanged(data: Path, tmp_path: Path) -> None:
+    """If the database is in a shared folder, only its own file becomes private."""
     file = tmp_path / "shared" / "lab.sqlite"
     file.parent.mkdir()
     file.parent.chmod(0o755)
@@ -71,7 +71,7 @@ def test_other_things_in_a_shared_folder_stay_as_they_are(data: Path, tmp_path: 
 
 
 def test_a_new_folder_has_no_traces(tmp_path: Path) -> None:
-    """Neither one that is missing, nor one with a certificate, a lock or a lost+found."""
+    """A missing or new data folder has no traces of a database."""
     settings = Settings(data_dir=tmp_path / "data")
     assert traces_of_a_database(settings) == []
     for name in ("tls/authority.pem", "lost+found/x", ".lock", "server.log", "scratch/uploads/x"):
@@ -95,15 +95,15 @@ def test_a_new_folder_has_no_traces(tmp_path: Path) -> None:
         "reembody.sqlite-wal",
     ],
 )
-def test_what_belongs_to_a_database_is_a_trace_of_it(tmp_path: Path, name: str) -> None:
-    """Backups, exports, erasures, fits, tuned avatars, a log."""
+def test_files_of_a_database_are_traces_of_it(tmp_path: Path, name: str) -> None:
+    """Backups, exports, erasures, fits, tuned avatars and logs are traces of a database."""
     (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
     (tmp_path / name).touch()
     assert traces_of_a_database(Settings(data_dir=tmp_path)) == [name]
 
 
-def test_a_link_into_a_disk_that_is_not_there_is_a_database(tmp_path: Path) -> None:
-    """It is no place to begin a new one."""
+def test_a_dangling_link_counts_as_a_database(tmp_path: Path) -> None:
+    """A dangling link in place of the database counts as an existing database."""
     file = tmp_path / "reembody.sqlite"
     assert not is_there(file)
     file.symlink_to(tmp_path / "unplugged" / "reembody.sqlite")

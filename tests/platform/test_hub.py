@@ -1,4 +1,4 @@
-"""Who is told what: news reach those who asked for them, and need not be made for nobody."""
+"""Tests of the live hub: news reach those that subscribed to them."""
 
 import asyncio
 from typing import Any
@@ -7,7 +7,7 @@ from app.platform.hub import Hub
 
 
 async def heard_by(hub: Hub, *more: str) -> dict[str, Any]:
-    """What a reader of session `a` hears of a change, of figures, and of another session."""
+    """Return the news that a subscriber of session `a` gets of it and of session `b`."""
     with hub.subscribe("a", *more) as subscription:
         hub.publish("a", "telemetry", {"fps": 90})
         hub.publish("a", "session")
@@ -16,8 +16,8 @@ async def heard_by(hub: Hub, *more: str) -> dict[str, Any]:
         return await subscription.next(1.0)
 
 
-def test_everybody_hears_of_changes_and_only_the_console_of_figures() -> None:
-    """Headset and tablet follow the session; a page that shows figures asks for them."""
+def test_figures_reach_only_those_that_subscribed_to_them() -> None:
+    """All subscribers of a session get its changes, but figures only if they asked for them."""
     assert asyncio.run(heard_by(Hub())) == {"session": None}
     assert asyncio.run(heard_by(Hub(), "telemetry")) == {
         "session": None,
@@ -25,8 +25,8 @@ def test_everybody_hears_of_changes_and_only_the_console_of_figures() -> None:
     }
 
 
-def test_figures_have_listeners_while_somebody_asked_for_them() -> None:
-    """A headset that follows its own session is none."""
+def test_figures_have_listeners_while_someone_is_subscribed() -> None:
+    """Figures have listeners only while someone is subscribed to them."""
 
     async def look() -> list[bool]:
         hub = Hub()
@@ -41,7 +41,7 @@ def test_figures_have_listeners_while_somebody_asked_for_them() -> None:
 
 
 def test_frames_of_any_socket_of_a_session_are_its_frames() -> None:
-    """They are forgotten with the last of its headsets."""
+    """The time of a session's last frame is kept until the last of its headsets leaves."""
     hub = Hub()
     hub.headset_joined("a")
     hub.headset_joined("a")

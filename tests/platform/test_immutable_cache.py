@@ -1,4 +1,4 @@
-"""What is kept between requests: read once; the longest unwanted goes; failures never stay."""
+"""Tests of the cache of immutable values: read once, least recently used evicted first."""
 
 import pytest
 from sqlalchemy import create_engine
@@ -7,11 +7,11 @@ from sqlalchemy.orm import Session
 from app.platform.immutable_cache import ImmutableCache
 
 HERE, THERE = (Session(create_engine(f"sqlite:///{name}.sqlite")) for name in ("here", "there"))
-"""Two databases that nobody connects to."""
+"""Two databases that are never connected to."""
 
 
-def test_a_value_is_read_once_and_the_longest_unwanted_goes() -> None:
-    """Of two places the one that was asked for last keeps its value."""
+def test_the_least_recently_used_value_is_evicted() -> None:
+    """A value is read once, and the least recently used one is evicted."""
     kept: ImmutableCache[str, str] = ImmutableCache(2)
     read: list[str] = []
 
@@ -26,14 +26,14 @@ def test_a_value_is_read_once_and_the_longest_unwanted_goes() -> None:
     assert read == ["a", "b", "c", "b"]
 
 
-def test_databases_share_nothing() -> None:
-    """The same name may mean something else elsewhere."""
+def test_databases_do_not_share_values() -> None:
+    """Databases do not share cached values under the same key."""
     kept: ImmutableCache[str, str] = ImmutableCache(2)
     assert (kept.get(HERE, "a", lambda: "h"), kept.get(THERE, "a", lambda: "t")) == ("h", "t")
 
 
-def test_what_failed_is_read_again() -> None:
-    """A row that is not there yet may come."""
+def test_a_failed_read_is_not_cached() -> None:
+    """A failed read is not cached."""
     kept: ImmutableCache[str, int] = ImmutableCache(2)
     with pytest.raises(ZeroDivisionError):
         kept.get(HERE, "a", lambda: 1 // 0)

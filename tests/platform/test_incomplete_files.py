@@ -1,4 +1,4 @@
-"""What is made outside of the database is known as long as it is not whole."""
+"""Tests of notes about incomplete files outside of the database."""
 
 import signal
 import subprocess
@@ -36,20 +36,20 @@ with partial_folder("export", to, now=now, notes=notes, study_key=study) as fold
 
 @pytest.fixture
 def settings(tmp_path: Path) -> Settings:
-    """An installation in a folder of its own."""
+    """Return the settings of an installation in its own folder."""
     (tmp_path / "data").mkdir()
     (tmp_path / "out").mkdir()
     return Settings(data_dir=tmp_path / "data")
 
 
 def killed(settings: Settings, to: Path) -> None:
-    """Let a process die while it makes an export."""
+    """Kill a process while it makes an export."""
     arguments = [sys.executable, "-c", KILLED, str(settings.data_dir), str(to), "pilot"]
     assert subprocess.run(arguments, check=False).returncode == -signal.SIGKILL
 
 
-def test_what_is_going_on_is_listed_and_left_alone(settings: Settings, tmp_path: Path) -> None:
-    """Also by whoever sweeps meanwhile; afterwards nothing of it is there."""
+def test_a_file_in_progress_is_listed_and_not_removed(settings: Settings, tmp_path: Path) -> None:
+    """A file that is being made is listed and not removed; afterwards nothing remains of it."""
     to = tmp_path / "out" / "export"
     notes = Notes.of(settings)
     with partial_folder("export", to, now=NOW, notes=notes, study_key="pilot") as folder:
@@ -63,10 +63,10 @@ def test_what_is_going_on_is_listed_and_left_alone(settings: Settings, tmp_path:
     assert list((tmp_path / "out").iterdir()) == []
 
 
-def test_what_a_killed_process_left_is_listed_and_removed(
+def test_files_of_a_killed_process_are_listed_and_removed(
     settings: Settings, tmp_path: Path
 ) -> None:
-    """Wherever it lies."""
+    """Incomplete files of a killed process are listed and removed."""
     killed(settings, tmp_path / "out" / "export")
     (one,) = incomplete_files(settings)
     assert not one.going_on
@@ -77,8 +77,10 @@ def test_what_a_killed_process_left_is_listed_and_removed(
     assert incomplete_files(settings) == []
 
 
-def test_an_export_that_was_being_replaced_comes_back(settings: Settings, tmp_path: Path) -> None:
-    """Killed between the two steps of the exchange, its place was empty."""
+def test_an_interrupted_replacement_restores_the_earlier_export(
+    settings: Settings, tmp_path: Path
+) -> None:
+    """An export whose replacement was interrupted between two renames is put back."""
     to = tmp_path / "out" / "export"
     killed(settings, to)
     (one,) = incomplete_files(settings)
@@ -89,10 +91,8 @@ def test_an_export_that_was_being_replaced_comes_back(settings: Settings, tmp_pa
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["export"]
 
 
-def test_what_lies_on_a_disk_that_is_not_there_stays_listed(
-    settings: Settings, tmp_path: Path
-) -> None:
-    """Nobody knows that it is gone."""
+def test_files_on_a_missing_disk_stay_listed(settings: Settings, tmp_path: Path) -> None:
+    """Incomplete files on a disk that is not mounted stay listed until they can be removed."""
     killed(settings, tmp_path / "out" / "export")
     (tmp_path / "out").rename(tmp_path / "unplugged")
     assert remove_leftovers(settings, starting=True) == []
@@ -101,10 +101,8 @@ def test_what_lies_on_a_disk_that_is_not_there_stays_listed(
     assert len(remove_leftovers(settings)) == 1
 
 
-def test_a_note_that_names_something_else_removes_nothing(
-    settings: Settings, tmp_path: Path
-) -> None:
-    """Only folders that are named as we name them."""
+def test_a_note_with_a_foreign_path_removes_nothing(settings: Settings, tmp_path: Path) -> None:
+    """A note whose path is not named like our incomplete files removes nothing."""
     killed(settings, tmp_path / "out" / "export")
     (one,) = incomplete_files(settings)
     assert one.note is not None
@@ -115,8 +113,8 @@ def test_a_note_that_names_something_else_removes_nothing(
     assert mine.is_dir()
 
 
-def test_what_a_server_left_goes_when_the_next_one_starts(settings: Settings) -> None:
-    """Uploads, exports to fetch, databases that were begun, copies that were migrated."""
+def test_leftovers_of_a_server_are_removed_at_the_next_start(settings: Settings) -> None:
+    """Temporary files that a server left are removed when the next one starts; backups stay."""
     left = [
         uploads_of(settings) / "tmpabc" / "capture",
         settings.data_dir / "scratch" / "exports" / "1.part",
@@ -134,8 +132,8 @@ def test_what_a_server_left_goes_when_the_next_one_starts(settings: Settings) ->
     assert [path for path in settings.data_dir.rglob("*") if path.is_file()] == [kept]
 
 
-def test_a_note_that_was_cut_off_goes_at_a_start(settings: Settings) -> None:
-    """Nothing was begun yet when it was written."""
+def test_a_truncated_note_is_removed_at_a_start(settings: Settings) -> None:
+    """A truncated note is removed at the next start."""
     folder = Notes.of(settings).folder
     folder.mkdir()
     (folder / "cut.json").write_text('{"kind": "exp')
@@ -144,10 +142,10 @@ def test_a_note_that_was_cut_off_goes_at_a_start(settings: Settings) -> None:
     assert list(folder.iterdir()) == []
 
 
-def test_a_note_that_cannot_be_removed_fails_nothing(
+def test_a_note_that_cannot_be_removed_is_tolerated(
     settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """What was made is whole and stays; the note goes at the next start."""
+    """A note that cannot be removed raises no error and is removed at the next start."""
     to = tmp_path / "out" / "made.reembody"
     notes = Notes.of(settings)
 
@@ -165,8 +163,8 @@ def test_a_note_that_cannot_be_removed_fails_nothing(
     assert list(notes.folder.iterdir()) == []
 
 
-def test_notes_are_for_their_owner(settings: Settings, tmp_path: Path) -> None:
-    """They name studies and places; so are the folders they speak of."""
+def test_notes_and_incomplete_files_are_private(settings: Settings, tmp_path: Path) -> None:
+    """Notes and the folders of incomplete files are private to their owner."""
     to = tmp_path / "out" / "export"
     with partial_folder("export", to, now=NOW, notes=Notes.of(settings)) as folder:
         assert folder.stat().st_mode & 0o077 == 0

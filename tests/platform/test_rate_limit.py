@@ -1,4 +1,4 @@
-"""Attempts and budgets: who is slowed down, for how long, and in how much memory."""
+"""Tests of rate limits: who is limited, for how long, and in how much memory."""
 
 import pytest
 
@@ -8,14 +8,14 @@ from app.platform.rate_limit import Budget, RateLimiter, network_of
 MILLION = 1_000_000
 
 
-class Watch:
-    """A clock that is moved by hand."""
+class ManualClock:
+    """A clock that is set by hand."""
 
     def __init__(self) -> None:
         self.now_s = 0.0
 
     def monotonic_ns(self) -> int:
-        """The time."""
+        """Return the time in nanoseconds."""
         return int(self.now_s * 1e9)
 
 
@@ -32,13 +32,13 @@ class Watch:
     ],
 )
 def test_an_address_counts_for_its_network(address: str | None, network: str) -> None:
-    """IPv4 by address, IPv6 by its /64: whoever has one has 2^64 of them."""
+    """IPv4 is limited by address and IPv6 by its /64, as its owner has 2^64 addresses."""
     assert network_of(address) == network
 
 
 def test_a_full_window_says_how_long_to_wait() -> None:
-    """After `limit` attempts the next is refused until the first is old enough."""
-    watch = Watch()
+    """After `limit` attempts the next is refused until the first leaves the window."""
+    watch = ManualClock()
     limiter = RateLimiter(2, 60.0, watch.monotonic_ns)
     limiter.attempt("a")
     watch.now_s = 20.0
@@ -52,8 +52,8 @@ def test_a_full_window_says_how_long_to_wait() -> None:
 
 
 def test_an_attempt_can_be_taken_back() -> None:
-    """What was right, or was never looked at, does not count."""
-    limiter = RateLimiter(1, 60.0, Watch().monotonic_ns)
+    """An attempt that is taken back does not count."""
+    limiter = RateLimiter(1, 60.0, ManualClock().monotonic_ns)
     for _ in range(5):
         limiter.attempt("a")
         limiter.take_back("a")
@@ -61,9 +61,9 @@ def test_an_attempt_can_be_taken_back() -> None:
 
 
 @pytest.mark.parametrize("step_s", [0.0, 0.001])
-def test_a_million_names_take_no_more_memory_than_some(step_s: float) -> None:
-    """Those that were quiet for longest go, at once and as their windows end."""
-    watch = Watch()
+def test_memory_is_bounded_for_any_number_of_names(step_s: float) -> None:
+    """Limits keep at most `most_keys` names in memory, evicting the longest idle."""
+    watch = ManualClock()
     limiter = RateLimiter(10, 1.0, watch.monotonic_ns, most_keys=500)
     budget = Budget(10.0, 1.0, watch.monotonic_ns, most_keys=500)
     most = 0
@@ -75,9 +75,9 @@ def test_a_million_names_take_no_more_memory_than_some(step_s: float) -> None:
     assert most == 500
 
 
-def test_names_of_the_past_are_forgotten() -> None:
-    """A window that has ended takes no memory once anybody else tries."""
-    watch = Watch()
+def test_expired_names_are_forgotten() -> None:
+    """Names whose window has ended are forgotten at the next attempt."""
+    watch = ManualClock()
     limiter = RateLimiter(10, 60.0, watch.monotonic_ns)
     for at in range(100):
         limiter.attempt(f"name {at}")
@@ -86,9 +86,9 @@ def test_names_of_the_past_are_forgotten() -> None:
     assert len(limiter) == 1
 
 
-def test_a_name_that_is_under_attack_is_not_forgotten_first() -> None:
-    """Who is refused again and again stays counted while others come and go."""
-    limiter = RateLimiter(1, 60.0, Watch().monotonic_ns, most_keys=50)
+def test_a_refused_name_is_not_evicted() -> None:
+    """A name that is refused repeatedly is not evicted by many others."""
+    limiter = RateLimiter(1, 60.0, ManualClock().monotonic_ns, most_keys=50)
     limiter.attempt("admin")
     for at in range(1000):
         limiter.attempt(f"name {at}")
@@ -97,8 +97,8 @@ def test_a_name_that_is_under_attack_is_not_forgotten_first() -> None:
 
 
 def test_a_budget_is_refilled() -> None:
-    """What was spent comes back by and by, never more than there was."""
-    watch = Watch()
+    """A budget refills over time, up to its capacity."""
+    watch = ManualClock()
     budget = Budget(3.0, 0.5, watch.monotonic_ns)
     for _ in range(3):
         budget.spend("a")
@@ -115,9 +115,9 @@ def test_a_budget_is_refilled() -> None:
         budget.spend("a")
 
 
-def test_what_turned_out_dear_takes_what_is_left() -> None:
-    """A charge is never refused and leaves no debt."""
-    watch = Watch()
+def test_a_charge_takes_at_most_what_is_left() -> None:
+    """A charge above the budget empties it and leaves no debt."""
+    watch = ManualClock()
     budget = Budget(3.0, 1.0, watch.monotonic_ns)
     budget.charge("a", 10.0)
     with pytest.raises(TooManyAttempts):

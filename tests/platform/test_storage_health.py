@@ -1,4 +1,4 @@
-"""While the record cannot be written everybody can see it, and nothing new is started."""
+"""Tests of storage health: failing writes are reported and new work is refused."""
 
 import sqlite3
 from collections.abc import Iterator
@@ -23,14 +23,14 @@ START = datetime(2026, 11, 21, 12, 0, tzinfo=UTC)
 
 @dataclass
 class Stage:
-    """A clock to move by hand, a disk to fill, and a count of what was announced."""
+    """A clock that is set by hand, a disk with a given free space, and recorded announcements."""
 
     passed_s: float = 0.0
     free: int = 10**12
     announced: list[str] = field(default_factory=list)
 
     def health(self) -> StorageHealth:
-        """A storage health on this stage."""
+        """Return a storage health with this clock and disk."""
         clock = Clock(
             utc_now=lambda: START + timedelta(seconds=self.passed_s),
             monotonic_ns=lambda: int(self.passed_s * 1e9),
@@ -45,14 +45,14 @@ class Stage:
 
 
 def refusal(code: int) -> OperationalError:
-    """What SQLAlchemy makes of a result code of SQLite."""
+    """Return the error that SQLAlchemy raises for an SQLite result code."""
     origin = sqlite3.OperationalError("in SQLite's words")
     origin.sqlite_errorcode = code
     return OperationalError("INSERT", {}, origin)
 
 
 def test_a_failure_is_announced_once_and_ends_with_the_next_commit() -> None:
-    """`since` is that of the first failure; the outage is handed over once."""
+    """A failure is announced once, lasts until the next commit, and is one outage."""
     stage = Stage()
     health = stage.health()
     assert (health.state().status, health.take_outages()) == ("ok", ())
@@ -72,8 +72,8 @@ def test_a_failure_is_announced_once_and_ends_with_the_next_commit() -> None:
     assert health.take_outages() == ()
 
 
-def test_nothing_starts_while_commits_fail_but_somebody_must_try() -> None:
-    """Refused with reason and remedy; when nobody has tried for 5 s, the next one may."""
+def test_work_is_refused_while_commits_fail_but_retried() -> None:
+    """While commits fail new work is refused, except for one attempt after 5 s without any."""
     stage = Stage()
     health = stage.health()
     health.require_storage()
@@ -88,8 +88,8 @@ def test_nothing_starts_while_commits_fail_but_somebody_must_try() -> None:
     assert health.state().status == "failing"
 
 
-def test_little_space_is_told_before_it_is_none() -> None:
-    """The disk is looked at again after 5 s; a folder elsewhere is no concern."""
+def test_low_disk_space_is_reported_before_the_disk_is_full() -> None:
+    """Low disk space is reported before the disk is full, and measured again after 5 s."""
     stage = Stage()
     health = stage.health()
     assert not health.state().low_disk
@@ -115,8 +115,8 @@ def test_little_space_is_told_before_it_is_none() -> None:
         (sqlite3.SQLITE_CONSTRAINT, None),
     ],
 )
-def test_sqlite_codes_are_told_in_words(code: int, trouble: Trouble | None) -> None:
-    """Extended codes (in the upper bits) mean what their primary code means."""
+def test_sqlite_result_codes_are_explained(code: int, trouble: Trouble | None) -> None:
+    """SQLite result codes, also extended ones, are explained by the right message."""
     assert explain(refusal(code)) == trouble
 
 
@@ -124,14 +124,14 @@ def test_sqlite_codes_are_told_in_words(code: int, trouble: Trouble | None) -> N
     ("state", "trouble"),
     [("53100", FULL), ("57P01", REFUSED), ("08006", REFUSED), ("40P01", None), ("55P03", None)],
 )
-def test_postgresql_states_are_told_in_words(state: str, trouble: Trouble | None) -> None:
-    """A full disk and a lost server are trouble; a deadlock or a lock's time-out is not."""
+def test_postgresql_states_are_explained(state: str, trouble: Trouble | None) -> None:
+    """A full disk or a lost server is explained as trouble; a deadlock or timeout is not."""
     origin = type("Refusal", (Exception,), {"sqlstate": state})()
     assert explain(OperationalError("INSERT", {}, origin)) == trouble
 
 
-def test_an_error_without_a_code_is_trouble_only_where_the_connection_is() -> None:
-    """A constraint never is."""
+def test_only_connection_errors_without_a_code_are_trouble() -> None:
+    """An error without a code is trouble if it concerns the connection, not a constraint."""
     assert explain(OperationalError("BEGIN", {}, Exception("gone"))) == REFUSED
     assert explain(IntegrityError("INSERT", {}, Exception("unique"))) is None
     assert explain(RuntimeError("a bug")) is None
@@ -139,16 +139,16 @@ def test_an_error_without_a_code_is_trouble_only_where_the_connection_is() -> No
 
 @pytest.fixture
 def small_lab(tmp_path: Path) -> Iterator[tuple[Lab, Path]]:
-    """An application on SQLite, and where its file is."""
+    """Yield an application on SQLite and the path of its database."""
     file = tmp_path / "reembody.sqlite"
     with running_lab(fresh_sqlite(file)) as lab:
         yield lab, file
 
 
-def test_what_would_start_something_is_refused_and_the_rest_goes_on(
+def test_new_work_is_refused_while_storage_fails(
     small_lab: tuple[Lab, Path],
 ) -> None:
-    """Joining, starting, pairing: 503 with a remedy. Reading works; health tells; it passes."""
+    """While storage fails, sessions, starts and pairings are refused, and reading still works."""
     lab, _ = small_lab
     view = lab.join(kind="test")
     code = lab.show_code(view["id"], "headset")
@@ -168,14 +168,14 @@ def test_what_would_start_something_is_refused_and_the_rest_goes_on(
     health = lab.stranger().get("/api/health").json()
     assert (health["status"], health["storage"]) == ("ok", "failing")
     assert (health["storage_reason"], health["low_disk"]) == (FULL.message, False)
-    # Words are taken if they can be stored, and that they were shows that storing works.
+    # A note is accepted if it can be stored, which shows that storage works again.
     lab.command(view, "note", text="the disk was full")
     assert lab.stranger().get("/api/health").json()["storage"] == "ok"
     lab.command(lab.view(view["id"]), "start")
 
 
-def test_a_lock_of_another_program_is_told_and_passes(small_lab: tuple[Lab, Path]) -> None:
-    """Those who write are refused, at first after a while, then at once; all by itself it ends."""
+def test_a_lock_of_another_program_is_reported_until_released(small_lab: tuple[Lab, Path]) -> None:
+    """While another program locks the database, writes are refused with that reason."""
     lab, file = small_lab
     view = lab.join(kind="test")
     with closing(sqlite3.connect(file, isolation_level=None)) as other:
@@ -195,7 +195,7 @@ def test_a_lock_of_another_program_is_told_and_passes(small_lab: tuple[Lab, Path
 def test_a_commit_that_changes_nothing_does_not_count_as_success(
     small_lab: tuple[Lab, Path],
 ) -> None:
-    """Nothing was asked of the disk, so nothing is known of it."""
+    """A commit without changes does not end a storage failure."""
     lab, _ = small_lab
     lab.context.storage.failed(refusal(sqlite3.SQLITE_FULL))
     with lab.database.writing() as db:
@@ -208,8 +208,8 @@ def test_a_commit_that_changes_nothing_does_not_count_as_success(
     assert lab.context.storage.state().status == "ok"
 
 
-def test_a_damaged_database_is_told_as_such(lab: Lab, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Not "something went wrong": the way out is a backup."""
+def test_a_damaged_database_is_reported_as_such(lab: Lab, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A damaged database is reported as such, not as an unknown error."""
     origin: Any = sqlite3.DatabaseError("database disk image is malformed")
     origin.sqlite_errorcode = sqlite3.SQLITE_CORRUPT
 

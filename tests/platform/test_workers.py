@@ -1,4 +1,4 @@
-"""A process beside the server: it is replaced when it dies, and ends with the server."""
+"""Tests of worker processes: replaced when they die, ended with the server."""
 
 import os
 import signal
@@ -25,29 +25,29 @@ if __name__ == "__main__":
 
 @pytest.fixture
 def worker() -> Iterator[Worker]:
-    """A worker that is ended afterwards."""
+    """Yield a worker and end it afterwards."""
     worker = Worker()
     yield worker
     worker.end()
 
 
-def test_one_process_does_one_task_after_the_other(worker: Worker) -> None:
-    """Never the server's own, and behind whatever wants the processor."""
+def test_tasks_run_one_after_the_other_in_one_process(worker: Worker) -> None:
+    """All tasks run one after the other in one separate process of low priority."""
     first, second = worker.submit(os.getpid).result(), worker.submit(os.getpid).result()
     assert first == second != os.getpid()
     assert worker.submit(os.nice, 0).result() == os.nice(0) + NICENESS
 
 
 def test_a_dead_process_is_replaced(worker: Worker) -> None:
-    """Its task fails, the next one is done."""
+    """When the process dies, its task fails and the next one runs in a new process."""
     first = worker.submit(os.getpid).result()
     with pytest.raises(BrokenProcessPool):
         worker.submit(os.kill, first, signal.SIGKILL).result()
     assert worker.submit(os.getpid).result() != first
 
 
-def test_what_was_ended_is_gone_and_can_begin_again(worker: Worker) -> None:
-    """Also in the middle of a task."""
+def test_an_ended_worker_can_start_again(worker: Worker) -> None:
+    """Ending a worker kills its process, even during a task; the next task starts another."""
     first = worker.submit(os.getpid).result()
     endless = worker.submit(time.sleep, 1000)
     worker.end()
@@ -58,7 +58,7 @@ def test_what_was_ended_is_gone_and_can_begin_again(worker: Worker) -> None:
 
 
 def test_no_process_outlives_a_killed_server() -> None:
-    """It notices by itself: nobody is left to end it."""
+    """A worker's process ends by itself when its server is killed."""
     server = subprocess.run(
         [sys.executable, "-c", KILLED_SERVER], capture_output=True, text=True, check=False
     )
