@@ -1,1 +1,1 @@
-"""Tests mirror `app/`; see `support/` for what they stand on."""
+"""Tests mirror `app/`; `support/` contains their infrastructure."""

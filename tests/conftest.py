@@ -1,6 +1,6 @@
-"""Fixtures every test may use: shared data, migrated databases, live servers.
+"""Fixtures for all tests: shared data, migrated databases, live servers.
 
-Nothing is started or migrated before a test asks for it, so a test of pure science stays fast.
+Nothing is started or migrated before a test needs it, so a test of pure science stays fast.
 """
 
 import os
@@ -26,18 +26,18 @@ from tests.support.shipped_studies import delayed_copies
 from tests.support.sqlite import fresh_sqlite
 from tests.support.statement_cache import share_statement_caches
 
-# How long an example takes says something about the machine, nothing about the code.
+# An example's duration depends on the machine, not only on the code.
 settings.register_profile("untimed", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("untimed")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """`--long` also runs the tests marked `long`."""
+    """Add the option `--long`, which also runs the tests marked `long`."""
     parser.addoption("--long", action="store_true", help="also run the tests marked `long`")
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Open what the processes of the run share; xdist's workers find it already there."""
+    """Create the folder that the run's processes share, unless it exists."""
     if config.getoption("--long"):
         repeat_at_length()
     if not _is_worker(config):
@@ -45,7 +45,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_unconfigure(config: pytest.Config) -> None:
-    """Stop and remove what the run made, also after an interruption."""
+    """Stop and remove everything that the run created, also after an interruption."""
     if not _is_worker(config):
         postgres.stop_cluster()
         shared_run.close_run()
@@ -53,9 +53,9 @@ def pytest_unconfigure(config: pytest.Config) -> None:
 
 @pytest.fixture(scope="session", autouse=True)
 def _cheap_passwords() -> None:
-    """A password costs a sixth of a second on purpose; a thousand logins need not pay it.
+    """Hash passwords cheaply: the usual sixth of a second would be spent a thousand times.
 
-    Commands that are not made by the nursery do.
+    Commands that the nursery does not start still use the full cost.
     """
     make_passwords_cheap()
     os.environ[CHEAP_PASSWORDS] = "1"
@@ -63,13 +63,13 @@ def _cheap_passwords() -> None:
 
 @pytest.fixture(scope="session", autouse=True)
 def _compiled_once() -> None:
-    """Each test has a database of its own, and most of what is asked of it is the same."""
+    """Share compiled SQL: each test has its own database, and most statements are the same."""
     share_statement_caches()
 
 
 @pytest.fixture(scope="session", autouse=True)
 def _delayed_copies() -> None:
-    """Studies that need no headset that simulates; see `tests.support.shipped_studies`."""
+    """Ship studies without a physics avatar; see `tests.support.shipped_studies`."""
     folder = delayed_copies()
     ship_studies_from(folder)
     os.environ[STUDIES] = str(folder)
@@ -77,12 +77,12 @@ def _delayed_copies() -> None:
 
 @pytest.fixture(scope="session", autouse=True)
 def _cheap_workers() -> None:
-    """Worker processes of applications in this process are forked instead of spawned."""
+    """Fork the worker processes of applications in this process instead of spawning them."""
     use_fork_server(lambda: nursery().workers)
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Deselect the long tests unless they are asked for: not skipped, since nothing is missing."""
+    """Deselect the long tests unless `--long` is given: not skipped, since nothing is missing."""
     if config.getoption("--long"):
         return
     long = [item for item in items if _is_long(item)]
@@ -102,7 +102,7 @@ def _is_worker(config: pytest.Config) -> bool:
 
 @pytest.fixture(scope="session")
 def shared_data() -> Path:
-    """The published data that tests compare with; they are not part of the repository."""
+    """Provide the published data that tests compare with; they are not in the repository."""
     folder = shared_data_folder()
     if not folder.is_dir():
         pytest.skip(f"no shared data in {folder}; {SHARED_DATA_VARIABLE} can name the folder")
@@ -111,33 +111,33 @@ def shared_data() -> Path:
 
 @pytest.fixture
 def sqlite_url(tmp_path: Path) -> str:
-    """The address of a migrated, empty SQLite file."""
+    """Provide the URL of a migrated, empty SQLite file."""
     return fresh_sqlite(tmp_path / "reembody.sqlite")
 
 
 @pytest.fixture
 def postgres_url() -> Iterator[str]:
-    """The address of a migrated, empty PostgreSQL database."""
+    """Provide the URL of a migrated, empty PostgreSQL database."""
     with postgres.fresh_postgres() as url:
         yield url
 
 
 @pytest.fixture(params=["sqlite", "postgresql"])
 def database_url(request: pytest.FixtureRequest) -> str:
-    """The address of a migrated, empty database: the test runs on both engines."""
+    """Provide the URL of a migrated, empty database: the test runs on both engines."""
     fixture = {"sqlite": "sqlite_url", "postgresql": "postgres_url"}[request.param]
     return str(request.getfixturevalue(fixture))
 
 
 @pytest.fixture
 def live_server(tmp_path: Path) -> Iterator[LiveServer]:
-    """The real server in a process of its own, on an empty data folder, for this test alone."""
+    """Provide a real server in its own process, on an empty data folder, for this test alone."""
     with LiveServer(tmp_path / "live") as server:
         yield server
 
 
 @pytest.fixture(scope="module")
 def shared_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveServer]:
-    """The real server for a whole module: its tests must not depend on what it was before."""
+    """Provide a real server for a whole module: its tests must not depend on its state."""
     with LiveServer(tmp_path_factory.mktemp("live")) as server:
         yield server

@@ -1,4 +1,4 @@
-"""What is wrong with the address of a database: one sentence, exit 2, and nothing of a password."""
+"""Tests that a wrong database URL gives one sentence, exit code 2, and no password."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -55,7 +55,7 @@ SECRET = "tiger-in-the-tank"
     ],
 )
 def test_an_address_that_cannot_be_one_is_refused_without_its_secret(url: str, said: str) -> None:
-    """Whatever is wrong with it, and wherever it is opened."""
+    """An invalid URL is rejected wherever it is opened, without printing its password."""
     for read in (database_address, make_engine, shown_address):
         with pytest.raises(InvalidInput) as refused:
             read(url)
@@ -67,7 +67,7 @@ def test_an_address_that_cannot_be_one_is_refused_without_its_secret(url: str, s
 
 @given(st.text(max_size=60))
 def test_whatever_is_written_there_is_read_or_refused(rest: str) -> None:
-    """Never another error."""
+    """Any text given as a database URL is either parsed or rejected with the same error."""
     for scheme in ("", "postgresql://", "postgresql://u:p@", "sqlite:///", "sqlite://"):
         with suppress(InvalidInput):
             database_address(scheme + rest)
@@ -83,7 +83,7 @@ def test_whatever_is_written_there_is_read_or_refused(rest: str) -> None:
     ],
 )
 def test_an_address_is_shown_without_role_and_password(url: str, shown: str) -> None:
-    """As the terminal and errors name it."""
+    """A URL is printed without role and password."""
     assert shown_address(url) == shown
 
 
@@ -91,7 +91,10 @@ def test_an_address_is_shown_without_role_and_password(url: str, shown: str) -> 
 def test_the_file_that_is_opened_is_the_one_that_is_locked(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Also for a path through a link and back, which the driver and the system read differently."""
+    """The file that is opened is the one that is locked, also through a link and back.
+
+    The driver and the system resolve such a path differently.
+    """
     monkeypatch.chdir(tmp_path)
     (tmp_path / "elsewhere" / "deep").mkdir(parents=True)
     (tmp_path / "link").symlink_to(tmp_path / "elsewhere" / "deep")
@@ -106,7 +109,10 @@ def test_the_file_that_is_opened_is_the_one_that_is_locked(
 
 
 def test_a_folder_with_a_question_mark_is_refused_before_anything_is_made(tmp_path: Path) -> None:
-    """Its path would end there, and the database be begun beside it."""
+    """A folder with a question mark is rejected before anything is created.
+
+    The path in the URL would end there, and the database be created elsewhere.
+    """
     settings = Settings(data_dir=tmp_path / "why?")
     with pytest.raises(InvalidInput, match="question mark") as refused:
         own_data(settings)
@@ -118,7 +124,10 @@ def test_a_folder_with_a_question_mark_is_refused_before_anything_is_made(tmp_pa
 def test_a_variable_that_is_set_but_empty_is_refused(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """It would begin an empty database somewhere else than thought."""
+    """An environment variable that is set but empty is rejected.
+
+    It would create an empty database in an unexpected place.
+    """
     monkeypatch.setenv(name, "")
     with pytest.raises(InvalidInput, match=f"{name} is set, but empty"):
         read_settings()
@@ -127,7 +136,7 @@ def test_a_variable_that_is_set_but_empty_is_refused(
 def test_settings_that_cannot_be_read_name_the_variable_and_no_value(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """A port that is none, a list that is none."""
+    """Invalid settings are reported by variable without their values."""
     monkeypatch.setenv("REEMBODY_PORT", SECRET)
     with pytest.raises(InvalidInput, match="REEMBODY_PORT") as refused:
         read_settings()
@@ -151,7 +160,10 @@ def test_settings_that_cannot_be_read_name_the_variable_and_no_value(
 def test_each_command_says_it_in_a_sentence_and_leaves_with_2(
     command: tuple[str, ...], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    """No trace, no address banner, no secret."""
+    """Each command reports an invalid URL in one sentence and exits with code 2.
+
+    It prints no traceback, no address banner and no password.
+    """
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("REEMBODY_DATA_DIR", str(tmp_path))
     wrong = "" if command[0] == "tls" else f"postgresql://u:p@{SECRET}@host/db"
@@ -164,7 +176,7 @@ def test_each_command_says_it_in_a_sentence_and_leaves_with_2(
 
 @contextmanager
 def database(cluster: Cluster, name: str, *, encoding: str = "UTF8") -> Iterator[str]:
-    """A database of its own with an encoding; its address."""
+    """Create a database with an encoding and return its URL."""
     with psycopg.connect(
         host=str(cluster.folder), user="postgres", dbname="postgres", autocommit=True
     ) as connection:
@@ -194,7 +206,10 @@ def database(cluster: Cluster, name: str, *, encoding: str = "UTF8") -> Iterator
 def test_a_database_that_cannot_hold_the_record_is_refused_before_anything(
     encoding: str, statement: str, said: str, tmp_path: Path
 ) -> None:
-    """With what to do; no banner, no trace, and nothing was made in it."""
+    """A database with an unsuitable encoding is rejected before anything is created in it.
+
+    The message names the remedy.
+    """
     cluster = running_cluster()
     with database(cluster, "unusable", encoding=encoding) as url:
         with psycopg.connect(
@@ -216,7 +231,10 @@ def test_a_database_that_cannot_hold_the_record_is_refused_before_anything(
 
 
 def test_a_server_that_is_not_there_is_said_in_a_sentence(tmp_path: Path) -> None:
-    """With what to check, and without the password."""
+    """An unreachable database server is reported in one sentence, without the password.
+
+    The message names what to check.
+    """
     done = serve(tmp_path, f"postgresql://role:{SECRET}@127.0.0.1:1/db")
     assert (done.code, done.out) == (2, "")
     assert "the database 127.0.0.1:1/db cannot be reached" in done.err
@@ -225,6 +243,6 @@ def test_a_server_that_is_not_there_is_said_in_a_sentence(tmp_path: Path) -> Non
 
 
 def serve(folder: Path, url: str) -> Said:
-    """`reembody serve` until it ends."""
+    """Run `reembody serve` until it ends."""
     environment = {"REEMBODY_DATA_DIR": str(folder), "REEMBODY_DATABASE_URL": url}
     return command(environment, "serve", "--port", "0")

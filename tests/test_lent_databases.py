@@ -1,4 +1,4 @@
-"""A PostgreSQL database that was lent to one test is lent to the next only when it is like new."""
+"""Tests that a PostgreSQL database is reused for the next test only if it is like new."""
 
 import pytest
 
@@ -8,14 +8,14 @@ from tests.support.postgres import fresh_postgres
 
 
 def number_of(database: Database) -> int:
-    """By which PostgreSQL tells a database, whatever its name."""
+    """Return PostgreSQL's number of a database, which does not depend on its name."""
     with database.engine.connect() as connection:
         query = "SELECT oid FROM pg_database WHERE datname = current_database()"
         return int(connection.exec_driver_sql(query).scalar_one())
 
 
 def test_rows_go() -> None:
-    """Whoever comes next finds none, though somebody stayed connected, and a name of its own."""
+    """A reused database has no rows and a new name, even if a connection stayed open."""
     with fresh_postgres() as first:
         stayed = open_database(first)
         fill(stayed.engine)
@@ -40,7 +40,7 @@ def test_rows_go() -> None:
     ],
 )
 def test_a_database_that_differs_is_not_lent_again(change: str) -> None:
-    """Neither another schema, nor another revision, nor anything else that is made."""
+    """A database with another schema, revision or object is not reused."""
     with fresh_postgres() as first:
         database = open_database(first)
         with database.engine.connect() as connection:

@@ -1,4 +1,4 @@
-"""A new database: what the steps of the migrations lead to, without taking them each time."""
+"""Tests that a new database equals the result of all migrations without running them."""
 
 import sqlite3
 from contextlib import closing
@@ -10,7 +10,7 @@ from app.schema_revisions import all_revisions, make_file, migrate_file
 
 
 def contents(file: Path) -> tuple[set[str], list[object]]:
-    """Words of the schema, in whatever order its constraints are, and what is in the file."""
+    """Return a description of the schema, independent of constraint order, and the rows."""
     with closing(sqlite3.connect(file)) as connection:
         schema = connection.execute("SELECT type, name, sql FROM sqlite_master").fetchall()
         asked = ("journal_mode", "page_size", "auto_vacuum", "encoding", "integrity_check")
@@ -36,7 +36,7 @@ def test_a_new_file_is_what_the_steps_lead_to(tmp_path: Path, revision: str) -> 
 
 
 def test_a_new_file_takes_the_place_of_none(tmp_path: Path) -> None:
-    """What is there stays as it is."""
+    """An existing file is not replaced by a new one."""
     there = tmp_path / "reembody.sqlite"
     there.write_bytes(b"somebody's")
     with pytest.raises(FileExistsError):

@@ -1,1 +1,1 @@
-"""Measurements: `./run bench NAME [--json]`; figures come with machine, ratio and peer."""
+"""Benchmarks: `./run bench NAME [--json]`; figures come with the machine, a ratio and a peer."""

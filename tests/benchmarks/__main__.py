@@ -1,7 +1,7 @@
 """`./run bench NAME [--json]` runs a benchmark of this folder and prints its figures.
 
-Those with a load take its duration (`--seconds`, `--minutes`). With `--against COMMIT` it is told
-instead how much processor time this tree takes for one that COMMIT takes (`against`). However a
+Benchmarks with a load accept its duration (`--seconds`, `--minutes`). With `--against COMMIT` the
+result is instead the ratio of this tree's processor time to COMMIT's (`against`). However a
 benchmark ends, its servers end with it.
 """
 
@@ -36,7 +36,7 @@ less processor time (user and system, of all processes of the benchmark).
 
 
 def parser() -> argparse.ArgumentParser:
-    """What may be asked."""
+    """Return the parser of the command line."""
     made = argparse.ArgumentParser(
         prog="./run bench",
         description="Measure.",
@@ -57,9 +57,9 @@ def parser() -> argparse.ArgumentParser:
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Run what was asked for; 2 on an unknown name, part or commit."""
+    """Run the requested benchmark; return 2 for an unknown name, part or commit."""
     asked = parser().parse_args(arguments)
-    # Whoever ends a benchmark ends its servers too.
+    # Interrupting a benchmark ends its servers too.
     for number in (signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, lambda *_: sys.exit(TERMINATED))
     if asked.against is None and not is_warded():

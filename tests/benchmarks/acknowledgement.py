@@ -1,4 +1,4 @@
-"""How long until a frame is safe: durable acknowledgements under load, beside the bare disk."""
+"""Measure durable acknowledgements under load, compared with the bare disk."""
 
 import json
 import os
@@ -18,12 +18,12 @@ from tests.support.server import ADMIN_PASSWORD, LiveServer
 
 SESSIONS, DURATION_S, IDLE_S, FIRST_S = 8, 22.0, 5.0, 2.0
 COMMIT_S = 0.05
-# What 8 sessions send in one commit interval: 2 streams, 90 Hz, 22 joints and a root.
+# The bytes of 8 sessions in one commit interval: 2 streams, 90 Hz, 22 joints and a root.
 BYTES_PER_COMMIT = int(SESSIONS * 2 * 90 * COMMIT_S * (8 + 1 + 4 * 91))
 
 
 def figures(folder: Path) -> list[Figure]:
-    """Latency and CPU with 8 headsets on SQLite (synchronous FULL), and the same bytes bare."""
+    """Measure latency and CPU with 8 headsets on SQLite (synchronous FULL), and the bare disk."""
     with LiveServer(folder) as server:
         tokens = [paired_headset(server) for _ in range(SESSIONS)]
         process = psutil.Process(server.pid)
@@ -50,7 +50,7 @@ def figures(folder: Path) -> list[Figure]:
 
 
 def paired_headset(server: LiveServer) -> str:
-    """The token of a headset paired with a new session that has not begun."""
+    """Return the token of a headset paired with a new session that has not started."""
     with server.client() as client:
         credentials = {"username": "admin", "password": ADMIN_PASSWORD}
         client.post("/api/login", json=credentials).raise_for_status()
@@ -69,7 +69,7 @@ def _post(client: httpx2.Client, path: str, body: dict[str, str]) -> dict[str, s
 def stream(
     server: LiveServer, tokens: list[str], duration_s: float = DURATION_S
 ) -> list[tuple[float, float]]:
-    """Run the headsets in a process of their own; when each message was sent, and its latency."""
+    """Run the headsets in their own process; return each message's send time and latency."""
     url = f"{server.url.replace('http', 'ws', 1)}/api/vr/stream"
     plan = json.dumps({"url": url, "tokens": tokens, "duration_s": duration_s})
     done = subprocess.run(
@@ -87,7 +87,7 @@ def stream(
 
 
 def _cpu_share(process: psutil.Process, work: Callable[[], object]) -> float:
-    """CPU seconds of a process per second while `work()` runs."""
+    """Return the CPU seconds of a process per second while `work()` runs."""
     before, began_s = process.cpu_times(), time.monotonic()
     work()
     after, passed_s = process.cpu_times(), time.monotonic() - began_s
@@ -95,9 +95,10 @@ def _cpu_share(process: psutil.Process, work: Callable[[], object]) -> float:
 
 
 def _bare_disk(path: Path) -> list[float]:
-    """The limit: append what came in an interval, fsync, tell. One latency for every message.
+    """Return the latencies of a writer that appends, fsyncs and acknowledges per interval.
 
-    A message that arrives at a random moment waits for the end of its interval, then for the disk.
+    This is the lower limit. A message that arrives at a random moment waits for the end of its
+    interval, then for the disk.
     """
     rng = np.random.default_rng(1)
     messages = SESSIONS * 2 * int(90 * COMMIT_S / 6 + 1)

@@ -1,14 +1,14 @@
-"""`./run bench NAME --against COMMIT`: how much processor time this tree takes beside COMMIT's.
+"""`./run bench NAME --against COMMIT`: compare this tree's processor time with COMMIT's.
 
-Both trees run their own benchmark file with the same arguments, in turns, first one first and then
-the other: what else the machine does meets both alike. COMMIT lies in a temporary folder and uses
-this tree's environment, or one of its own where its locked dependencies are others. A run's time is
-user and system time of all its processes, servers and loads included; each tree runs once before it
-counts, so that nothing is compiled in a run that does. What starting Python takes is in both sides
-of a ratio: a difference looks a little smaller than it is.
+Both trees run their own benchmark file with the same arguments, alternately and in changing order,
+so that other load on the machine affects both equally. COMMIT is checked out into a temporary
+folder and uses this tree's environment, or one of its own if its locked dependencies differ. A
+run's time is user and system time of all its processes, servers and loads included; each tree runs
+once before measurements start, so that nothing is compiled in a measured run. Both sides of a ratio
+include the start of Python: a difference looks a little smaller than it is.
 
 Some benchmarks take minutes; without `--only` these run in the short form of `SHORT`. Pages are not
-compared: COMMIT's server gives out those of this tree.
+compared: COMMIT's server serves those of this tree.
 """
 
 import argparse
@@ -49,7 +49,7 @@ NOT_WORK = {"__main__.py", "against.py", "report.py"}
 
 @dataclass(frozen=True)
 class Side:
-    """A tree that is measured."""
+    """A source tree that is measured."""
 
     name: str
     folder: Path
@@ -57,7 +57,7 @@ class Side:
     scratch: Path
 
     def run(self, arguments: Sequence[str]) -> "Run":
-        """Run its benchmark once; raises `CannotMeasure` with what it complained about."""
+        """Run its benchmark once; raise `CannotMeasure` with its error output if it fails."""
         self.scratch.mkdir(exist_ok=True)
         with tempfile.TemporaryFile() as output, tempfile.TemporaryFile() as errors:
             ended = run_warded(
@@ -85,7 +85,7 @@ class Side:
 
 @dataclass(frozen=True)
 class Run:
-    """What one run took and told."""
+    """The processor time and the figures of one run."""
 
     processor_s: float
     figures: list[dict[str, Any]]
@@ -123,7 +123,7 @@ def compare(asked: argparse.Namespace) -> Report:
 
 
 def _chosen(asked: argparse.Namespace) -> list[str]:
-    """What both sides are asked for."""
+    """Return the arguments for both sides."""
     seconds = asked.seconds or (60.0 * asked.minutes if asked.minutes else None)
     chosen = [word for part in asked.only or () for word in ("--only", part)]
     chosen += [] if seconds is None else ["--seconds", f"{seconds:g}"]
@@ -147,11 +147,11 @@ def _pairs(
 
 
 def interval(ratios: Sequence[float]) -> Interval:
-    """The median with an interval of order statistics (that of the sign test).
+    """Return the median with an interval of order statistics (that of the sign test).
 
     Of n independent ratios the k-th lowest and k-th highest enclose the true median with the
     probability 1 - 2 P(B(n, 1/2) < k), whatever their distribution. k is the largest for which that
-    is at least 95 %; with fewer than six ratios it is 1, and the confidence is what it is.
+    is at least 95 %; with fewer than six ratios it is 1, and the confidence is lower.
     """
     ordered, count = sorted(ratios), len(ratios)
     missed, depth = 2 * 0.5**count, 0
@@ -208,7 +208,7 @@ def _medians(runs: Sequence[Run]) -> dict[tuple[str, str], float]:
 
 @contextmanager
 def _sides(commit: str, scratch: Path) -> Iterator[tuple[Side, Side]]:
-    """This tree and COMMIT's, which goes away with `scratch`."""
+    """Yield this tree and COMMIT's, which is removed with `scratch`."""
     folder = scratch / "tree"
     name = check_out(REPOSITORY, commit, folder)
     python = Path(sys.executable)
@@ -224,7 +224,7 @@ def _sides(commit: str, scratch: Path) -> Iterator[tuple[Side, Side]]:
 
 
 def check_out(repository: Path, commit: str, folder: Path) -> str:
-    """Write the files of `commit` into `folder`; returns its short hash."""
+    """Write the files of `commit` into `folder` and return its short hash."""
     name = _git(repository, "rev-parse", "--verify", "--quiet", "--short", f"{commit}^{{commit}}")
     if not name:
         raise CannotMeasure(f"git knows no commit {commit}")
@@ -244,7 +244,7 @@ def _git(repository: Path, *arguments: str) -> str:
 
 
 def _set_up(folder: Path) -> Path:
-    """Let a tree set itself up as it would for its tests; returns its interpreter."""
+    """Let a tree set itself up as it would for its tests, and return its interpreter."""
     if (REPOSITORY / ".uv").is_dir():
         (folder / ".uv").symlink_to(REPOSITORY / ".uv")
     with tempfile.TemporaryFile() as output:
@@ -255,13 +255,13 @@ def _set_up(folder: Path) -> Path:
 
 
 def differing_files(ours: Path, theirs: Path) -> list[str]:
-    """The benchmarks' files that do not do the same, imports aside; modules may have moved."""
+    """Return the benchmark files whose code differs, apart from imports; modules may have moved."""
     trees = [_workload(folder / "tests" / "benchmarks") for folder in (ours, theirs)]
     return sorted(n for n in {**trees[0], **trees[1]} if trees[0].get(n) != trees[1].get(n))
 
 
 def _workload(folder: Path) -> dict[str, str]:
-    """Each file's code without its imports, docstrings and comments."""
+    """Return each file's code without its imports, docstrings and comments."""
     files = [file for file in folder.rglob("*.py") if file.name not in NOT_WORK]
     return {str(file.relative_to(folder)): _work_of(file) for file in files}
 

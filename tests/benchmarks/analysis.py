@@ -58,7 +58,7 @@ def measure(parts: frozenset[str], duration_s: float | None = None) -> Report:
 
 
 def _filled(data_dir: Path, sessions: int) -> Database:
-    """A database with so many completed simulated sessions."""
+    """Create a database with the given number of completed simulated sessions."""
     database = shipped_database(data_dir)
     fill_thousand(database, sessions)
     with database.writing() as db:
@@ -80,7 +80,7 @@ def _served(folder: Path) -> Iterator[Figure]:
             client.get(path, params=asked, timeout=300.0).raise_for_status()
 
         def page(**chosen: str) -> tuple[float, ...]:
-            # In the order of the page: each group is asked for when the one above it is there.
+            # In the order of the page: each group is requested when the one above it has arrived.
             return tuple(_took_ms(partial(ask, group, **chosen)) for group in GROUPS)
 
         cold = page()
@@ -105,7 +105,7 @@ def _growth(folder: Path) -> Iterator[Figure]:
     read_s, drawn_s = [], []
     for sessions in SIZES:
         database = _filled(folder / str(sessions), sessions)
-        # The best of a few: whatever else runs here only adds.
+        # The best of a few runs: other load on the machine only adds time.
         read, drawn = partial(_material, database), partial(dashboard_of, _material(database))
         read_s.append(min(_took_ms(read) for _ in range(BEST_OF)) / 1e3)
         drawn_s.append(min(_took_ms(drawn) for _ in range(BEST_OF)) / 1e3)
@@ -151,7 +151,7 @@ def _agency(material: Material) -> pd.DataFrame:
 
 
 def _plain(path: Path, value: str, **rows: str) -> str:
-    """What somebody writes in a notebook: the same lines, means and intervals."""
+    """Compute the same lines, means and intervals as in a notebook with plain pandas."""
     frame = pd.read_csv(path)
     frame = frame[frame["valid"] & frame["limb"].notna()]
     for column, wanted in rows.items():

@@ -1,8 +1,8 @@
-"""What strangers can do to a session: a hundred callers beside eight streaming headsets.
+"""Measure how a hundred anonymous callers affect the sessions of eight streaming headsets.
 
-Half of the callers try to sign in, half send bodies of 2 MB, all as fast as they are answered. The
-peer is the same server with the same headsets while the same callers meet a bare listener that
-answers 413: what is left of a difference is what our own doors cost. Runs of both kinds alternate.
+Half of the callers try to sign in, half send bodies of 2 MB, all as fast as they get responses. The
+peer is the same server with the same headsets while the same callers call a bare listener that
+answers 413: the difference is the cost of our own request handling. Runs of both kinds alternate.
 """
 
 import tempfile
@@ -32,8 +32,10 @@ MOST_RATIO, MOST_GROWTH_MIB = 1.5, 100.0
 
 @dataclass(frozen=True)
 class Run:
-    """`ack_p99_s` of what was sent while the callers called; growth of the server's memory, its
-    processor time per second, and the callers' answers.
+    """The figures of one run.
+
+    `ack_p99_s` of messages sent while the callers were active; growth of the server's memory, its
+    processor time per second, and the responses to the callers.
     """
 
     ack_p50_s: float
@@ -44,7 +46,7 @@ class Run:
 
 
 def measure(parts: frozenset[str], duration_s: float = DURATION_S, runs: int = RUNS) -> Report:
-    """Alternate `runs` of both kinds, callers at the server and at a bare listener."""
+    """Alternate `runs` of both kinds, with callers at the server and at a bare listener."""
     report = Report("anonymous")
     ours: list[Run] = []
     peers: list[Run] = []
@@ -114,7 +116,7 @@ def _run(folder: Path, duration_s: float, *, at_server: bool) -> Run:
         tokens = [paired_headset(server) for _ in range(SESSIONS)]
         streamed_s = duration_s + 2 * SETTLED_S
         headsets = threading.Thread(target=lambda: told.extend(stream(server, tokens, streamed_s)))
-        # Importing takes the headsets a while; the callers come when batches flow.
+        # The headsets import for a while; the callers start when batches flow.
         headsets.start()
         time.sleep(2 * SETTLED_S)
         process = psutil.Process(server.pid)
@@ -142,14 +144,14 @@ def _run(folder: Path, duration_s: float, *, at_server: bool) -> Run:
 
 
 def _memory_and_time(process: psutil.Process) -> tuple[int, float, float]:
-    """A process's memory (bytes) and processor time (s), and the moment (s)."""
+    """Return a process's memory (bytes) and processor time (s), and the current time (s)."""
     times = process.cpu_times()
     return process.memory_info().rss, times.user + times.system, time.monotonic()
 
 
 @contextmanager
 def _door(server: LiveServer, folder: Path, *, at_server: bool) -> Iterator[int]:
-    """The port that the callers call."""
+    """Yield the port that the callers connect to."""
     if at_server:
         yield server.port
         return
@@ -161,7 +163,7 @@ def _door(server: LiveServer, folder: Path, *, at_server: bool) -> Iterator[int]
 
 @contextmanager
 def _peak_memory(process: psutil.Process) -> Iterator[list[int]]:
-    """The server's memory (bytes), every tenth of a second while the block runs."""
+    """Record the server's memory (bytes) every tenth of a second while the block runs."""
     found, ended = [process.memory_info().rss], threading.Event()
 
     def watch() -> None:

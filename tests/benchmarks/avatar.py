@@ -1,19 +1,19 @@
-"""The avatar: how much faster than real time it runs, and what control costs.
+"""Measure how much faster than real time the avatar runs, and what its control costs.
 
-`speed` lets an avatar of the product's own settings swing its limbs beside the eight boxes of a
-study, frame by frame at 90 Hz, with fingers and without: how many seconds it simulates in one
-second, beside bare `mj_step` of the same model on the same inputs in the same run. What is between
-the two is ours: poses to angles, targets at every step, hips, contacts watched, the body read back;
-at least 0.8 of the bare rate must remain. Time is processor time, and the two take turns, so that
-others on the machine count as little as they can. `control` is one frame of it without any
-simulation: a pose turned into angles, and the body told as joints. Rates are those of the fastest
-round.
+`speed` lets an avatar with the product's own settings swing its limbs next to the eight boxes of a
+study, frame by frame at 90 Hz, with fingers and without, and measures the seconds simulated in one
+second, compared with bare `mj_step` of the same model on the same inputs in the same run. The
+difference is our own code: converting poses to angles, setting targets at every step, moving the
+hips, watching contacts, reading the body back; at least 0.8 of the bare rate must remain. Time is
+processor time, and the two alternate, so that other programs on the machine count as little as
+possible. `control` is one frame of it without any simulation: a pose converted to angles, and the
+body converted to joints. Rates are those of the fastest round.
 
-`bullet` is PyBullet with the same body, boxes and inputs (`peers.bullet_body` tells what differs):
-as it comes, with 50 solver iterations and targets at every step as ours, and with 10 and targets
-once a frame; beside it, how near either body comes to its targets. `humanoid` is each engine's own,
-limp: MuJoCo's where the shared data are there. PyBullet is installed on first use, and left out
-where that fails.
+`bullet` is PyBullet with the same body, boxes and inputs (`peers.bullet_body` describes the
+differences): with its defaults, 50 solver iterations and targets at every step as ours, and with 10
+and targets once per frame; the figures also contain the distance of both bodies from their targets.
+`humanoid` is each engine's own, limp: MuJoCo's if the shared data are available. PyBullet is
+installed on first use, and left out if that fails.
 """
 
 import time
@@ -74,7 +74,7 @@ def _followed_s(*, fingers: bool) -> float:
 
 
 def _bare_s(*, fingers: bool) -> float:
-    """The same steps of the same model with the same targets, and nothing else."""
+    """Return the time of bare `mj_step` on the same steps, model and targets."""
     built = model(EIGHT_BOXES, fingers=fingers)
     inputs = _inputs(built, fingers=fingers)
     body = _started(built)[0]
@@ -88,7 +88,7 @@ def _bare_s(*, fingers: bool) -> float:
 
 @cache
 def _recorded(*, fingers: bool) -> FloatArray:
-    """(FRAMES + 1, n) the command at the beginning and at each frame's end."""
+    """Return (FRAMES + 1, n) commands: at the beginning and at each frame's end."""
     built = model(EIGHT_BOXES, fingers=fingers)
     body, follower = _started(built)
     poses = _poses()
@@ -101,7 +101,7 @@ def _recorded(*, fingers: bool) -> FloatArray:
 
 
 def _inputs(built: AvatarModel, *, fingers: bool) -> FloatArray:
-    """(steps, nu) what the motors are told at each step: straight lines between commands."""
+    """Return (steps, nu) motor inputs for each step, interpolated between commands."""
     commands = _recorded(fingers=fingers)
     body = PhysicsAvatar(built.mjcf)
     step_s = body.model.opt.timestep
@@ -121,7 +121,7 @@ def _started(built: AvatarModel) -> tuple[PhysicsAvatar, Follower]:
 
 
 def _poses() -> FloatArray:
-    """(FRAMES, 22, 4): every joint swings about an axis of its own."""
+    """Return (FRAMES, 22, 4) rotations in which every joint swings about an axis of its own."""
     rng = np.random.default_rng(1)
     axes = rng.normal(size=(JOINT_COUNT, 3))
     axes /= np.linalg.norm(axes, axis=1, keepdims=True)
@@ -151,7 +151,7 @@ def _beside_bullet(*, fingers: bool) -> Iterator[Figure]:
 
 
 def _mean_error_deg(body: PhysicsAvatar, controls: FloatArray) -> float:
-    """How far all axes are from their targets after each step, but for the first sixth."""
+    """Return the mean distance of all axes from their targets, without the first sixth."""
     data, errors = body.data, []
     data.qpos[:] = controls[0, 0::2]
     for row in controls:

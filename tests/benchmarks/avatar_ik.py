@@ -1,11 +1,11 @@
-"""Inverse kinematics of the avatar: how long one frame takes, and how near its goals it comes.
+"""Measure the avatar's inverse kinematics: time per frame, and distance from its goals.
 
-`python` and `javascript` time the same frames, those of `tests/vectors/avatar/ik.json` there and
-back again: a quick body with a hand out of reach for some frames, with and without a waist tracker.
-The limit is a millisecond in the median, a tenth of a headset's frame. `captures` follows real
-people where the shared data are there: what is left of the goals' errors at 90 Hz, and how far that
-is from the person of which no tracker tells: the places of the elbows, and the turns of the joints
-between the tracked parts (geodesic angle of each to its parent, mean).
+`python` and `javascript` time the same frames, those of `tests/vectors/avatar/ik.json` forwards and
+backwards: a quickly moving body with a hand out of reach for some frames, with and without a waist
+tracker. The limit is a millisecond in the median, a tenth of a headset's frame. `captures` follows
+real people if the shared data are available and measures the remaining errors of the goals at 90
+Hz, and the distance from the untracked parts of the person: the places of the elbows, and the
+rotations of the joints between the tracked parts (geodesic angle of each to its parent, mean).
 """
 
 import json
@@ -136,7 +136,7 @@ def _followed(name: str, path: Path, *, waist: bool) -> Iterator[Figure]:
 
 
 def _joint_error_rad(chain: Chain, person: FloatArray) -> float:
-    """How far the joints are turned from the person's, (22, 4) parent_from_joint; their mean."""
+    """Return the mean angle of the joints from the person's, (22, 4) parent_from_joint."""
     data = chain.data
     above = [data.body(PARENT_OF[name]).xquat for name in JOINTS]
     local = multiply(conjugate(np.array(above)), np.array([data.body(n).xquat for n in JOINTS]))

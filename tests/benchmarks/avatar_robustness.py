@@ -1,11 +1,11 @@
-"""The avatar: what it endures, and whether the browser computes the same.
+"""Test what the avatar endures, and whether the browser computes the same.
 
-`wall` drives a hand at 2 m/s into a wall of 2 cm and goes on pressing: it may be in it by 5 mm, and
-never comes out behind. `thrown` asks for 10,000 random poses and teleports the hips 1,000 times by
-up to 10 m, beside walls: nothing may be put back, and the clock is exact. `browser` gives the model
-and the inputs of `tests/vectors/avatar` to MuJoCo in Python and, as WebAssembly, under Node: the
-greatest difference of any angle over 10 s with contacts, and of the inverse kinematics, both 1e-9
-at most. Both sides are computed afresh and compared unrounded.
+`wall` drives a hand at 2 m/s into a wall of 2 cm and continues to press: it may penetrate by 5 mm,
+and never comes out on the other side. `thrown` commands 10,000 random poses and teleports the hips
+1,000 times by up to 10 m, next to walls: no reset may occur, and the clock is exact. `browser`
+gives the model and the inputs of `tests/vectors/avatar` to MuJoCo in Python and, as WebAssembly,
+under Node: the greatest difference of any angle over 10 s with contacts, and of the inverse
+kinematics, both 1e-9 at most. Both sides are computed afresh and compared unrounded.
 """
 
 import json
@@ -110,5 +110,5 @@ def _solved_apart(
 
 def _apart(ours: Any, theirs: list[float]) -> float:
     gap = float(np.max(np.abs(np.asarray(ours) - np.array(theirs))))
-    # A maximum would drop what is not a number.
+    # A maximum would ignore NaN.
     return math.inf if math.isnan(gap) else gap

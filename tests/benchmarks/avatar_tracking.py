@@ -1,15 +1,15 @@
-"""The avatar: how near it follows real people, and whether it is as late as it is told to be.
+"""Measure how closely the avatar follows real people, and whether its delay is as set.
 
 `tracking` tunes the product's own body and lets it follow a walk, a reach and a turn at 90 Hz with
-nothing around it: the difference of every driven axis from its clamped target, at most 1.5 deg on
-average and 5 deg at the 95th percentile, beside the same with the gains that come with the product
-and with hips that are welded; the difference from what the person did, with the share that the
-limits took away; and the share of frames that ask some axis for more than 40 rad/s, which no target
-may do. On a floor a body is where that puts it: all samples, then those free of touch, are told
-without a limit. `delay` orders no, 125 and 350 ms and
-measures what came of it, at most one frame off.
+nothing around it. It measures the difference of every driven axis from its clamped target, at most
+1.5 deg on average and 5 deg at the 95th percentile, compared with the gains shipped with the
+product and with welded hips; the difference from the person's movement, with the share caused by
+the limits; and the share of frames that command more than 40 rad/s for some axis, which no target
+may do. On a floor the body rests where contacts put it: figures of all samples, and of those
+without contact, have no limit. `delay` sets 0, 125 and 350 ms and measures the achieved latency, at
+most one frame off.
 
-Needs the shared data; captures that are missing are left out.
+Needs the shared data; missing captures are left out.
 """
 
 import time

@@ -1,10 +1,10 @@
-"""Does anybody who must not know a condition get it, by any way out of a blinded study?
+"""Search every output of a blinded study for a condition that the reader must not know.
 
-A study for each status of a session (`tests/faults/blinded_world.py`), whose conditions have names
-and latencies that occur nowhere else. Every GET of the OpenAPI document is asked by every role for
-every study; archives are unpacked; files are ordered, watched and fetched; errors are provoked; the
-socket of poses and the stream of news are listened to. What is found where it must not be known is
-a leak. Where it may be known it has to be found, or the search would be worth nothing.
+There is a study for each status of a session (`tests/faults/blinded_world.py`), whose conditions
+have names and latencies that occur nowhere else. Every GET of the OpenAPI document is requested by
+every role for every study; archives are unpacked; files are ordered, watched and fetched; errors
+are provoked; the pose socket and the live stream are read. A find where the condition must not be
+known is a leak. Where it may be known it must be found, or the search would prove nothing.
 
 Out of scope: computing a delay from frames. The avatar's frames themselves count as a leak.
 """
@@ -32,7 +32,7 @@ PARTS = ROLES
 
 
 def measure(parts: frozenset[str]) -> Report:
-    """Search what each role can fetch."""
+    """Search everything that each role can fetch."""
     report, search = Report("blinding"), Search()
     with (
         tempfile.TemporaryDirectory(prefix="reembody-blinding-") as folder,

@@ -1,4 +1,4 @@
-"""The real movements that benchmarks follow, where the shared data are there."""
+"""Load the real movements that benchmarks follow, if the shared data are available."""
 
 import sys
 from collections.abc import Iterator
@@ -16,13 +16,13 @@ LONG_WALK = LONG
 
 
 def movement(name: str, *, travels: bool = False) -> Movement | None:
-    """A capture of the shared data on the product's body at 90 Hz; None where it is missing."""
+    """Return a capture of the shared data on the product's body at 90 Hz; None if missing."""
     path = shared_file("motion", name)
     return None if path is None else movement_of(path, travels=travels)
 
 
 def shared_file(kind: str, name: str) -> Path | None:
-    """A file of the shared data; None, with that told, where it is missing."""
+    """Return the path of a shared data file; report it and return None if it is missing."""
     path = shared_data_folder() / kind / name
     if path.is_file():
         return path
@@ -31,7 +31,7 @@ def shared_file(kind: str, name: str) -> Path | None:
 
 
 def movements() -> Iterator[tuple[str, Movement]]:
-    """Those of `CLIPS` that are there."""
+    """Return those of `CLIPS` that are available."""
     for told, (name, travels) in CLIPS.items():
         found = movement(name, travels=travels)
         if found is not None:

@@ -1,7 +1,7 @@
-"""How well the clocks of a headset and the server are brought together, where the truth is known.
+"""Measure how well a headset's clock is fitted to the server's, where the truth is known.
 
-Clocks and networks are simulated, so the figures do not depend on the machine; only the time that
-it takes to fit does.
+Clocks and networks are simulated, so the figures do not depend on the machine; only the fitting
+time does.
 """
 
 import sys
@@ -45,7 +45,7 @@ def measure(parts: frozenset[str]) -> Report:
 
 
 def _figures(part: str, one: Outcome) -> list[Figure]:
-    """The figures of a scenario, beside what is asked of them."""
+    """Return the figures of a scenario with their limits."""
     limit = ("at most", 5.0) if part == "symmetric" else ("", None)
     return [
         Figure(part, f"{one.scenario}: error p50", one.residual_p50_ms, "ms"),
@@ -58,7 +58,7 @@ def _figures(part: str, one: Outcome) -> list[Figure]:
 
 
 def _fit_time() -> Figure:
-    """Fitting three hours of probes, one a second."""
+    """Measure the time to fit three hours of probes, one per second."""
     (three_hours,) = [one for one in SYMMETRIC if one.name == "three hours"]
     probes = simulate(three_hours, np.random.default_rng(SEED)).probes
     began_s = time.perf_counter()

@@ -1,9 +1,9 @@
-"""The cockpit and the tablet: how soon a frame is seen, what pages weigh, how fast forms go.
+"""Measure the cockpit and the tablet: frame latency, page weight and the speed of forms.
 
 Parts: `shown` (from a headset's frame to the console's screen), `memory` (server and page while a
 session streams; ten minutes, `--minutes 30` for longer), `load` (the first load of both pages),
-`tablets` (sixteen send forms, beside oTree) and `form` (until a form can be filled in, beside
-oTree and jsPsych). The peers are installed on first use, into folders of their own.
+`tablets` (sixteen send forms, compared with oTree) and `form` (until a form can be filled in,
+compared with oTree and jsPsych). The peers are installed on first use, into folders of their own.
 """
 
 import tempfile

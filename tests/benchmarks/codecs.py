@@ -1,6 +1,6 @@
-"""Ways to write a chunk that need nothing but numpy and zstd, ours among them.
+"""Chunk encodings that need only numpy and zstd, including ours.
 
-Numbers in the names are zstd's levels. All take and give back any bits.
+Numbers in the names are zstd's levels. All reproduce any bits exactly.
 """
 
 from collections.abc import Callable
@@ -24,7 +24,7 @@ _STEPS = np.uint32(8)
 
 @dataclass(frozen=True)
 class Codec:
-    """`decode(encode(columns), n, w)` gives the columns back."""
+    """A pair of functions: `decode(encode(columns), n, w)` returns the columns."""
 
     name: str
     encode: Callable[[Columns], bytes]
@@ -32,7 +32,7 @@ class Codec:
 
 
 def own_codecs() -> list[Codec]:
-    """From the plainest to the one in use, that at several levels."""
+    """Return the codecs from the simplest to the one in use, that at several levels."""
     return [
         Codec("frames as they are, zstd 3", _encode_plain, _decode_plain),
         Codec(f"{f32_columns.NAME} (before)", encode_columns, f32_columns.decode),
@@ -45,7 +45,7 @@ def own_codecs() -> list[Codec]:
 
 
 def encode_columns(columns: Columns) -> bytes:
-    """Write the encoding that came before, which the application only reads any more."""
+    """Write the previous encoding, which the application can only read."""
     raw = (
         np.ascontiguousarray(columns.times_s, "<f8").tobytes(),
         columns.flags.tobytes(),
@@ -55,22 +55,22 @@ def encode_columns(columns: Columns) -> bytes:
 
 
 def bits_of(columns: Columns) -> Bits:
-    """The bits of the values as rows (w, n)."""
+    """Return the bits of the values as rows (w, n)."""
     return np.ascontiguousarray(columns.values.T).view(np.uint32)
 
 
 def values_of(rows: Bits) -> NDArray[np.float32]:
-    """The values (n, w) of rows of bits."""
+    """Return the values (n, w) of rows of bits."""
     return np.ascontiguousarray(rows.T).view(np.float32)
 
 
 def ordered(bits: Bits) -> Bits:
-    """Bits whose order as numbers is that of the floats; `unordered` undoes it."""
+    """Return bits whose order as integers is that of the floats; `unordered` reverses it."""
     return np.where(bits & SIGN, ~bits, bits | SIGN)
 
 
 def unordered(bits: Bits) -> Bits:
-    """Undo `ordered`."""
+    """Reverse `ordered`."""
     return np.where(bits & SIGN, bits ^ SIGN, ~bits)
 
 
@@ -92,9 +92,9 @@ def _planes(
     forward: Callable[[Bits], tuple[bytes, Bits]],
     backward: Callable[[NDArray[np.uint8], Bits], Bits],
 ) -> Codec:
-    """Rows (w, n) through `forward`, then byte planes and zstd; times as differences.
+    """Apply `forward` to rows (w, n), then byte planes and zstd; store times as differences.
 
-    `forward` gives as many rows, and what `backward` has to know beside them.
+    `forward` returns as many rows, and the side information that `backward` needs.
     """
 
     def encode(columns: Columns) -> bytes:
@@ -126,7 +126,7 @@ def _unxored(_beside: NDArray[np.uint8], rows: Bits) -> Bits:
 
 
 def _differenced(rows: Bits, *, times: int) -> tuple[bytes, Bits]:
-    """Differences of the floats' order, small magnitudes as small numbers."""
+    """Return differences in the floats' order, with small magnitudes as small numbers."""
     current = ordered(rows).view(np.int32)
     for _ in range(times):
         current = np.diff(current, axis=1, prepend=np.int32(0))
@@ -142,10 +142,10 @@ def _summed(_beside: NDArray[np.uint8], rows: Bits, *, times: int) -> Bits:
 
 
 def _three(rows: Bits) -> tuple[bytes, Bits]:
-    """One component of each quaternion from the other three, these as 2nd differences."""
+    """Predict one component of each quaternion from the other three, stored as 2nd differences."""
     left_out = choose(rows)
     kept = rows[left_out.kept_rows]
-    # A few steps off either way are a small number.
+    # A few steps in either direction become a small number.
     unforeseen = rows[left_out.rows] - left_out.expected(kept) + _STEPS
     return left_out.as_bytes(), np.concatenate((_differenced(kept, times=2)[1], unforeseen))
 

@@ -1,7 +1,7 @@
-"""The calls behind every page of the console, at a study of a thousand participants.
+"""Measure the calls of every console page for a study of a thousand participants.
 
-Which calls there are is read from the policy table, so a new one is measured without anybody
-thinking of it. Limits: 100 ms at the 95th percentile for each call, 300 ms for a login.
+The calls are read from the policy table, so a new one is measured automatically. Limits: 100 ms at
+the 95th percentile for each call, 300 ms for a login.
 """
 
 import tempfile
@@ -63,7 +63,7 @@ def _login(client: httpx2.Client) -> Iterator[Figure]:
 def _calls(
     client: httpx2.Client, session_ids: list[str]
 ) -> Iterator[tuple[str, Callable[[], None]]]:
-    """Every reading call, on another session each time, and those of the editor."""
+    """Return every reading call, on another session each time, and those of the editor."""
     turn = iter(range(10**9))
 
     def get(template: str) -> Callable[[], None]:

@@ -1,8 +1,8 @@
-"""An export as a file: memory while it is made and fetched, what it costs others, how soon it ends.
+"""Measure an export file: memory while it is made and fetched, effect on others, duration.
 
 Twelve simulated sessions as long as real ones (9.4 min at 90 Hz), about a gigabyte of CSV. Memory
-is what the system counts as resident; growth is the end beside a quarter of the way, so a process
-that held what it writes would show hundreds of MiB.
+is the resident size reported by the system; growth is the end minus a quarter of the way, so a
+process that kept its output in memory would show hundreds of MiB.
 """
 
 import tempfile
@@ -39,7 +39,7 @@ WRITE_LIMIT_MS = 100.0
 
 @dataclass
 class Looks:
-    """What was seen while a file was made: share that was done, and resident bytes."""
+    """Samples taken while a file was made: the completed share and the resident bytes."""
 
     share: list[float] = field(default_factory=list)
     server: list[int] = field(default_factory=list)
@@ -84,7 +84,7 @@ def _fill(server: LiveServer) -> None:
 
 
 def _copy(database: Database, source: str, code: str) -> None:
-    """A session with the movement of another, copied inside the database."""
+    """Create a session with the movement of another, copied inside the database."""
     with database.writing() as db:
         session = build_session(db, SessionSpec(code, kind="simulated"))
         for name in ("telemetry_streams", "telemetry_chunks"):
@@ -121,7 +121,7 @@ def _cancelling(server: LiveServer, client: httpx2.Client) -> Iterator[Figure]:
 
 
 def _made(server: LiveServer, client: httpx2.Client) -> tuple[Looks, dict[str, Any]]:
-    """Have the file made, looking at memory and storing something now and then."""
+    """Have the file made while sampling memory and sometimes storing something."""
     looks, process = Looks(), psutil.Process(server.pid)
     ordered = view = _order(client, "simulated")
     while view["state"] in ("queued", "making"):
@@ -172,7 +172,7 @@ def _fetching(server: LiveServer, client: httpx2.Client, done: dict[str, Any]) -
 
 
 def _children(server: LiveServer) -> list[psutil.Process]:
-    """The processes that compute for the server; Python's own helper is none of them."""
+    """Return the server's computing processes, without Python's own helper."""
     children = psutil.Process(server.pid).children(recursive=True)
     return [child for child in children if "spawn_main" in " ".join(_command(child))]
 

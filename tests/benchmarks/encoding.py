@@ -1,11 +1,11 @@
-"""How small a minute of a session becomes and what that costs, for every way of writing chunks.
+"""Measure the size and cost of a minute of a session for every chunk encoding.
 
 A session-minute is two streams, target and actual, of 90 frames a second; a chunk is a second of
-one of them. Movement: the captures beside the repository (a mean over them), each with an actual
+one of them. Movement: the captures next to the repository (a mean over them), each with an actual
 stream that follows its target through a critically damped filter of 4 Hz, 125 ms late, with a noise
-of 0.01 degrees and 0.1 mm of its own; and one made up, all joints swinging, tracked with a noise of
-0.05 degrees and 0.5 mm and followed likewise. Times are CPU times of one thread, medians over the
-chunks. Every chunk is compared with what went in, bit by bit.
+of 0.01 degrees and 0.1 mm of its own; and a synthetic one, all joints swinging, tracked with a
+noise of 0.05 degrees and 0.5 mm and followed likewise. Times are CPU times of one thread, medians
+over the chunks. Every decoded chunk is compared with its input, bit by bit.
 """
 
 import sys
@@ -67,7 +67,7 @@ def measure(parts: frozenset[str]) -> Report:
 
 
 def _captured() -> dict[str, Streams]:
-    """Every capture that is there, by its name."""
+    """Return every available capture by its name."""
     files = sorted(CAPTURES.glob("*.bvh"))
     rng = np.random.default_rng(0)
     return {file.stem: followed(captured_movement(file), rng) for file in files}
@@ -93,7 +93,7 @@ def _size(name: str, megabytes: float, part: str = "codecs") -> Figure:
 
 
 def _session_minute_mb(codec: Codec, streams: Streams, frames: int = CHUNK_FRAMES) -> float:
-    """What 60 s of both streams come to, in 10^6 bytes."""
+    """Return the size of 60 s of both streams, in 10^6 bytes."""
     sizes = [len(codec.encode(one)) for pair in streams.chunks(frames) for one in pair]
     seconds = len(sizes) / 2 * frames / RATE_HZ
     return sum(sizes) * 60.0 / seconds / 1e6
@@ -127,7 +127,7 @@ def _require_same(codec: Codec, chunk: Columns, back: Columns) -> None:
 
 
 def _by_noise(ours: Codec) -> Iterator[Figure]:
-    """The made-up movement with the same white noise on both streams, from none to a lot."""
+    """Measure the synthetic movement with equal white noise on both streams, at several levels."""
     for noise_deg in NOISES_DEG:
         megabytes = _session_minute_mb(ours, _made(noise_deg, noise_deg))
         yield _size(f"noise of {noise_deg:g} degrees", megabytes, "noise")
@@ -138,14 +138,14 @@ def _by_noise(ours: Codec) -> Iterator[Figure]:
 
 
 def _in_single(values: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Values (n, 91) whose quaternions went through arithmetic in float32, as engines do it."""
+    """Return values (n, 91) with quaternions computed in float32, as engines do."""
     turns = values[:, 3:].reshape(len(values), 22, 4) * np.float32(1.1)
     turns /= np.sqrt(np.einsum("nji,nji->nj", turns, turns))[..., np.newaxis]
     return np.concatenate((values[:, :3], turns.reshape(len(values), -1)), axis=1)
 
 
 def _by_length(ours: Codec, movements: Movements) -> Iterator[Figure]:
-    """Whether longer chunks, or both streams in one, would be worth it: means over long ones."""
+    """Measure whether longer chunks, or both streams in one, would be smaller."""
     long = [one for one in _all(movements) if len(one.times_s) >= max(LENGTHS)]
     for frames in LENGTHS:
         sizes = [_session_minute_mb(ours, one, frames) for one in long]
@@ -155,11 +155,11 @@ def _by_length(ours: Codec, movements: Movements) -> Iterator[Figure]:
 
 
 def _together_mb(ours: Codec, streams: Streams) -> float:
-    """A session-minute where chunks hold both streams, so that the times are there once."""
+    """Return the size of a session-minute if chunks contain both streams with shared times."""
     sizes = []
     for target, actual in streams.chunks():
         both = np.concatenate((target.values, actual.values[:, 3:]), axis=1)
-        # The second root, which has no place in a chunk: alone, with times that cost nothing.
+        # The second root, which has no place in a chunk: alone, with times at no cost.
         root = Columns(np.zeros(len(both)), actual.flags, actual.values[:, :3])
         sizes.append(sum(len(ours.encode(one)) for one in (_with_values(target, both), root)))
     return sum(sizes) * 60.0 / (len(sizes) * CHUNK_FRAMES / RATE_HZ) / 1e6

@@ -1,14 +1,14 @@
-"""How often every test of the product rejects where nothing is, and how often intervals hold.
+"""Measure how often each test rejects without an effect, and how often intervals hold.
 
 On simulated data sets of the study's design (`tests.benchmarks.null_data`): 12, 18 and 24
 participants in equal parts; participants differ in level, or also in how they react to latency.
-2,004 sets of the first kind and 504 of the second, thrice as many for what is quick to compute.
-Every set has its own seed, so the figures are the same with any number of processes. Two processes,
-about four minutes on two free cores.
+2,004 sets of the first kind and 504 of the second, three times as many for tests that are quick to
+compute. Every set has its own seed, so the figures are the same with any number of processes. Two
+processes, about four minutes on two free cores.
 
-Beside each rate stands what it should be: at most 5 % by three standard errors for exact tests, at
-most 6.5 % for the others, at least 93.5 % for intervals. With `--write` the table that the product
-ships and the page of the documents are made anew; it cannot be had with `--only`.
+Each rate has a limit: at most 5 % plus three standard errors for exact tests, at most 6.5 % for the
+others, at least 93.5 % for intervals. With `--write` the table shipped with the product and the
+page of the documentation are rewritten; it cannot be combined with `--only`.
 """
 
 import json
@@ -71,7 +71,7 @@ MARKS = {
 
 
 class Task(NamedTuple):
-    """A run of data sets of one kind; each has its own seed, whatever the run."""
+    """A run of data sets of one kind; each has its own seed, independent of the run."""
 
     scenario: str
     participants: int
@@ -90,7 +90,7 @@ def measure(
         sys.exit("The table is written whole; leave --only away.")
     counts: Counter[tuple[str, str, int, str]] = Counter()
     tasks = list(_tasks(chosen))
-    # Numerical libraries with threads of their own would fight over two cores.
+    # Threads of numerical libraries would compete for two cores.
     os.environ["OPENBLAS_NUM_THREADS"] = "1"
     with ProcessPoolExecutor(WORKERS, multiprocessing.get_context("spawn")) as pool:
         for done, found in enumerate(pool.map(_work, tasks), 1):
@@ -107,14 +107,14 @@ def measure(
 
 
 def stored(table: ErrorRates) -> str:
-    """The table for machines, one row a line."""
+    """Return the table for machines, one row per line."""
     rows = ",\n".join(json.dumps(asdict(row)) for row in table.rows)
     head = f'"seed": {table.seed},\n"design": {json.dumps(table.design)}'
     return f'{{\n{head},\n"rows": [\n{rows}\n]\n}}\n'
 
 
 def page(table: ErrorRates) -> str:
-    """The table for people, as Markdown."""
+    """Return the table for people, as Markdown."""
     sizes = [str(size) for size in SIZES]
     lines = [HEAD.format(sizes=", ".join(sizes), seed=table.seed)]
     for scenario in SETS:
@@ -154,7 +154,7 @@ def _tasks(parts: tuple[str, ...]) -> Iterator[Task]:
 
 
 def _work(task: Task) -> Counter[tuple[str, str, int, str]]:
-    """How often each test was made, not made, and rejected (or held the truth)."""
+    """Return how often each test could be computed, could not, and rejected (or held the truth)."""
     design = replace(NullDesign(task.participants), reaction=REACTION[task.scenario])
     counts: Counter[tuple[str, str, int, str]] = Counter()
     for number in range(task.first, task.first + task.sets):

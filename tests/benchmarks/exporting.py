@@ -1,4 +1,4 @@
-"""A study of twelve sessions as tidy CSV, beside what `pandas.DataFrame.to_csv` takes."""
+"""Measure the export of twelve sessions as tidy CSV, compared with `pandas.DataFrame.to_csv`."""
 
 import time
 from pathlib import Path
@@ -50,13 +50,13 @@ def figures(folder: Path) -> list[Figure]:
 
 
 def _long_movement() -> NDArray[np.float32]:
-    """Smooth movement as long as a session, (FRAMES, 91)."""
+    """Return smooth movement as long as a session, (FRAMES, 91)."""
     pieces = [movement(seed)[:-FRAMES_PER_BATCH] for seed in range(-(-FRAMES // 900))]
     return np.concatenate(pieces)[:FRAMES]
 
 
 def _build(database: Database, values: NDArray[np.float32]) -> None:
-    """Rows as the server would have stored them; both streams carry the same movement."""
+    """Build rows as the server would store them; both streams carry the same movement."""
     with database.writing() as db:
         build_study(db)
     for number in range(SESSIONS):
@@ -69,7 +69,7 @@ def _build(database: Database, values: NDArray[np.float32]) -> None:
 
 
 def _with_pandas(values: NDArray[np.float32], path: Path) -> float:
-    """Seconds to write one session's samples, already in memory, with pandas."""
+    """Return the seconds that pandas takes to write one session's samples from memory."""
     both = pd.DataFrame(np.concatenate((values, values), axis=1))
     began_s = time.monotonic()
     both.to_csv(path, index=False)

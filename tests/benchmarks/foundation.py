@@ -1,4 +1,4 @@
-"""The first minute, the durable acknowledgement and the export: what everything else stands on."""
+"""Measure the first minute, the durable acknowledgement and the export."""
 
 import tempfile
 from pathlib import Path

@@ -1,11 +1,13 @@
-"""From an empty folder to the first page: `./run`, and oTree by pip, turn about.
+"""Measure from an empty folder to the first page: `./run`, and oTree by pip, alternately.
 
 Each run begins with the tracked files (ours) or an empty folder (oTree's), with empty caches and an
-empty home, and ends when the first page has come with every script and style sheet that it names.
-Both fetch from where pip, uv and npm are set to, so the network counts for both.
+empty home, and ends when the first page has arrived with every script and style sheet that it
+names. Both download from the indexes configured for pip, uv and npm, so the network counts for
+both.
 
-- reembody: `./run --port N`, all that it sets up included. uv is fetched by it, too, where this
-  machine has none.
+- reembody: `./run --port N`, including its whole set-up. It also downloads uv, if this machine has
+  none.
+
 - otree: an environment of its own, `pip install`, one app with one page, `otree devserver`.
 """
 
@@ -46,14 +48,14 @@ exec otree devserver "$3"
 
 @dataclass(frozen=True)
 class Run:
-    """Seconds to the first page, and of the processor until everything had ended."""
+    """Seconds until the first page, and processor seconds until everything had ended."""
 
     duration_s: float
     processor_s: float
 
 
 def measure(parts: frozenset[str], runs: int = RUNS) -> Report:
-    """Run both turn about, `runs` times each."""
+    """Run both alternately, `runs` times each."""
     report = Report("from_nothing")
     begin: dict[str, Callable[[Path], Run]] = {"reembody": our_run, "otree": otree_run}
     seen: dict[str, list[Run]] = {part: [] for part in PARTS if part in parts}
@@ -67,7 +69,7 @@ def measure(parts: frozenset[str], runs: int = RUNS) -> Report:
 
 
 def figures(seen: Mapping[str, list[Run]]) -> list[Figure]:
-    """Ours beside oTree's of the same runs, and beside the limit."""
+    """Return our figures with oTree's from the same runs, and with the limit."""
     made = []
     for name, value_of in (
         ("to first page, median", lambda run: run.duration_s),
@@ -90,14 +92,14 @@ def figures(seen: Mapping[str, list[Run]]) -> list[Figure]:
 
 
 def our_run(scratch: Path) -> Run:
-    """`./run` in a copy of the tracked files."""
+    """Run `./run` in a copy of the tracked files."""
     copy, port = scratch / "reembody", free_port()
     copy_repository(copy)
     return timed(["./run", "--port", str(port)], copy, port, scratch)
 
 
 def otree_run(scratch: Path) -> Run:
-    """What oTree's own documentation tells to type."""
+    """Run the commands that oTree's own documentation gives."""
     port = free_port()
     write_project(scratch / "project", ["I felt as if the body was mine."], rounds=1)
     python = getattr(sys, "_base_executable", sys.executable)
@@ -136,7 +138,7 @@ def timed(command: list[str], folder: Path, port: int, scratch: Path) -> Run:
 
 
 def wait_for_page(port: int, process: "subprocess.Popen[bytes]") -> None:
-    """Until `/` has come, with what it names; raises RuntimeError if it does not."""
+    """Wait until `/` and the files it names have arrived; raise RuntimeError if they do not."""
     give_up_s = time.monotonic() + ANSWERS_WITHIN_S
     with httpx2.Client(base_url=f"http://127.0.0.1:{port}", timeout=5.0) as client:
         while time.monotonic() < give_up_s:
@@ -155,7 +157,7 @@ def wait_for_page(port: int, process: "subprocess.Popen[bytes]") -> None:
 
 
 def end(process: "subprocess.Popen[bytes]") -> None:
-    """Ask the process and all of its group to end; make them if they do not."""
+    """Terminate the process and its group; kill them if they do not end."""
     for request in (signal.SIGTERM, signal.SIGKILL):
         try:
             os.killpg(process.pid, request)
@@ -165,6 +167,6 @@ def end(process: "subprocess.Popen[bytes]") -> None:
 
 
 def processor_s() -> float:
-    """Of all processes that this one has waited for, and theirs."""
+    """Return the processor time of all collected child processes and their descendants."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime

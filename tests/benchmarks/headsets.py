@@ -1,7 +1,7 @@
 """Headsets that only stream, in a process of their own: `python -m tests.benchmarks.headsets`.
 
 Reads the plan as JSON from standard input, streams in real time, and prints for every message when
-it was handed to the client (s since its headset began) and how long until its acknowledgement (s).
+it was passed to the client (s since its headset began) and the time until its acknowledgement (s).
 """
 
 import asyncio
@@ -25,18 +25,18 @@ FRAMES_PER_BATCH = 6
 
 @dataclass
 class TimedJournal(Journal):
-    """A journal that measures how long each message stays."""
+    """A journal that measures how long each message waits in it."""
 
     added_s: dict[int, float] = field(default_factory=dict)
     latencies_s: list[tuple[float, float]] = field(default_factory=list)
 
     def add(self, entry: Entry) -> None:
-        """Keep a message and the time."""
+        """Add a message and record the time."""
         self.added_s[self.end] = time.monotonic()
         super().add(entry)
 
     def acknowledge(self, positions: Iterable[tuple[str, int, int]]) -> None:
-        """Note what leaves."""
+        """Record how long the acknowledged messages waited."""
         before, now_s = self.first, time.monotonic()
         super().acknowledge(positions)
         for at in range(before, self.first):
@@ -45,7 +45,7 @@ class TimedJournal(Journal):
 
 
 async def stream(url: str, token: str, duration_s: float, seed: int) -> list[tuple[float, float]]:
-    """One headset for so long; when each message was sent, and its latency."""
+    """Stream from one headset; return each message's send time and latency."""
     journal, began_s = TimedJournal(), time.monotonic()
     values = movement(seed)
     async with TelemetryClient(
@@ -56,7 +56,7 @@ async def stream(url: str, token: str, duration_s: float, seed: int) -> list[tup
         avatars=AVATARS,
         journal=journal,
     ) as client:
-        # Headsets do not tick together.
+        # Headsets are not synchronised.
         await asyncio.sleep(float(np.random.default_rng(seed).uniform(0, 0.07)))
         start_s = time.monotonic()
         for batch in range(int(duration_s * RATE_HZ / FRAMES_PER_BATCH)):
@@ -73,7 +73,7 @@ async def stream(url: str, token: str, duration_s: float, seed: int) -> list[tup
 def batch_of(
     name: StreamName, epoch: int, seq: int, values: "np.typing.NDArray[np.float32]"
 ) -> bytes:
-    """A batch of `values` (900 and more, 91) beginning at `seq`."""
+    """Return a batch of `values` (900 and more, 91) beginning at `seq`."""
     times_s = (seq + np.arange(FRAMES_PER_BATCH)) / RATE_HZ
     return encode_batch(
         name,
@@ -89,7 +89,7 @@ def batch_of(
 
 
 def movement(seed: int) -> "np.typing.NDArray[np.float32]":
-    """Ten seconds of slow rotations (900 + a batch, 91), unit quaternions."""
+    """Return ten seconds of slow rotations (900 + a batch, 91), unit quaternions."""
     rng = np.random.default_rng(seed)
     count = 900 + FRAMES_PER_BATCH
     angle = np.cumsum(rng.normal(scale=0.01, size=(count, 22)), axis=0)
@@ -100,7 +100,7 @@ def movement(seed: int) -> "np.typing.NDArray[np.float32]":
 
 
 async def main(plan: dict[str, Any]) -> list[tuple[float, float]]:
-    """All headsets side by side."""
+    """Run all headsets in parallel."""
     found = await asyncio.gather(
         *(
             stream(plan["url"], token, plan["duration_s"], seed)

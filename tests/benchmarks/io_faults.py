@@ -1,8 +1,8 @@
-"""What start, restore, backup, export, upload and erasure ask of the disk, each made to fail once.
+"""Make each disk call of start, restore, backup, export, upload and erasure fail once.
 
-Which there are is found by following each operation once; then each is made to fail on a fresh copy
-of a real data folder (`tests/faults/io_faults.py`), the operation is looked at, and a server is
-started. Needs Linux on x86-64 and a system that lets a process trace its own child.
+Each operation is traced once to find its calls; then each call is made to fail on a fresh copy of a
+real data folder (`tests/faults/io_faults.py`), the result is checked, and a server is started.
+Needs Linux on x86-64 and a system that lets a process trace its own child.
 """
 
 import errno
@@ -29,7 +29,7 @@ TOLD = 40
 
 
 def measure(parts: frozenset[str], runs: int = 0) -> Report:
-    """Faults at every site; with `runs` about so many of each operation, spread evenly."""
+    """Inject faults at every call, or about `runs` per operation, spread evenly."""
     with tempfile.TemporaryDirectory() as folder:
         refused = why_not(Path(folder))
     if refused or injecting_machine() is None:
@@ -38,7 +38,7 @@ def measure(parts: frozenset[str], runs: int = 0) -> Report:
     with tempfile.TemporaryDirectory() as folder:
         studies = Path(folder) / "studies"
         write_delayed_copies(studies)
-        # The nursery, which begins with the first server, hands it on.
+        # The nursery, which starts with the first server, passes it on.
         os.environ[STUDIES] = str(studies)
         source = Path(folder) / "source"
         source.write_bytes(pickle.dumps(source_in(Path(folder) / "live")))
@@ -92,5 +92,5 @@ def _count(found: list[dict[str, Any]], what: str) -> int:
 
 
 def _trace(one: dict[str, Any]) -> bool:
-    """Whether a fault of the program was told in the place of a sentence."""
+    """Return whether a program error was reported instead of a message."""
     return bool(one["outcome"]["trace"]) or "Traceback" in one["outcome"]["said"]

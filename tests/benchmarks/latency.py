@@ -1,4 +1,4 @@
-"""How well a phase's latency is found again: known latencies, real flaws, the usual way too."""
+"""Measure how well known latencies are recovered from flawed data, also by the usual method."""
 
 import time
 from collections.abc import Callable
@@ -37,7 +37,7 @@ Make = Callable[[float, int], StreamPair]
 
 @dataclass(frozen=True)
 class Trial:
-    """One recording: what was put in, what was found (s), and the rival's answer."""
+    """One recording: the latency put in, the one found (s), and the usual method's."""
 
     latency_s: float
     found_s: float
@@ -74,7 +74,7 @@ def _made(flaws: Flaws) -> Make:
 
 
 def _captures() -> Make | None:
-    """Captured people through the avatar's own delay buffer; None without the published data."""
+    """Pass captured people through the avatar's delay buffer; None without the published data."""
     folder = shared_data_folder() / "motion" / "cmu_bvh"
     if not folder.is_dir():
         return None
@@ -110,7 +110,7 @@ def rival(run: StreamPair) -> float:
 
 
 def _velocities(times_s: FloatArray, rotations: FloatArray, grid_s: FloatArray) -> FloatArray:
-    """Rates (k, 84) of the joints' quaternions at regular times, low-passed like ours."""
+    """Return rates (k, 84) of the joints' quaternions at regular times, low-passed like ours."""
     order = np.argsort(times_s)
     q = continuous(rotations[order, 1:]).reshape(len(order), -1)
     regular = np.stack([np.interp(grid_s, times_s[order], column) for column in q.T], axis=1)
@@ -139,7 +139,7 @@ def _figures(part: str, trials: list[Trial]) -> list[Figure]:
 
 
 def _cost() -> list[Figure]:
-    """Processor time for a phase of a minute, the first call with its imports left out."""
+    """Measure the processor time for a phase of a minute, without the first call's imports."""
     rng = np.random.default_rng(0)
     run = record(made_movement(rng), 0.125, rng, Flaws(0.5), duration_s=PHASE_S)
     latency_of_runs([run])

@@ -99,12 +99,12 @@ def null_data(design: NullDesign, rng: np.random.Generator) -> NullData:
 
 
 def answers(design: NullDesign, hidden: FloatArray) -> IntArray:
-    """Cut hidden values, of any shape, into answers from 1 on."""
+    """Cut latent values, of any shape, into answers from 1 on."""
     return np.searchsorted(design.thresholds, hidden).astype(np.int64) + 1
 
 
 def population_alpha(design: NullDesign, rng: np.random.Generator) -> float:
-    """Cronbach's alpha of the scale in a population of 400,000: the truth of its interval."""
+    """Return Cronbach's alpha of the scale in a population of 400,000: the true value."""
     covariance = np.cov(_scale(design, _TRUTH_PEOPLE, rng), rowvar=False)
     share = float(np.trace(covariance)) / float(covariance.sum())
     return design.items / (design.items - 1) * (1.0 - share)

@@ -1,7 +1,7 @@
-"""Every test and interval that the product offers, made of one data set without effects.
+"""Compute every test and interval that the product offers on one data set without effects.
 
-A test's outcome is whether it rejects at 5 %, an interval's whether it holds the truth. One that
-could not be made (nothing varies, a model did not converge) is None.
+A test's outcome is whether it rejects at 5 %, an interval's whether it contains the truth. One that
+could not be computed (no variance, a model that did not converge) is None.
 """
 
 from collections.abc import Callable, Iterator
@@ -44,7 +44,7 @@ BOTH = "latency:limb"
 
 @dataclass(frozen=True)
 class About:
-    """What a test is tried on, what is counted, whether it is exact, and its name in print."""
+    """A test's data, what is counted, whether it is exact, and its printed name."""
 
     measure: str
     title: str
@@ -82,7 +82,7 @@ ABOUT = {
 
 
 def ranks(data: NullData, alpha: float, rng: np.random.Generator) -> Outcomes:
-    """Friedman, Wilcoxon and Page over the hand's item."""
+    """Run Friedman, Wilcoxon and Page tests on the hand's item."""
     blocks = data.item[:, :, 0].astype(np.float64)
     found = friedman(blocks)
     if found.method == "exact":
@@ -100,7 +100,7 @@ def ranks(data: NullData, alpha: float, rng: np.random.Generator) -> Outcomes:
 
 
 def means(data: NullData, alpha: float, rng: np.random.Generator) -> Outcomes:
-    """Analysis of variance and aligned ranks over three latencies and two limbs."""
+    """Run an analysis of variance and aligned ranks over three latencies and two limbs."""
     effects = {one.name: one for one in rm_anova(data.measure, FACTORS).effects}
     yield "rm_anova_gg", effects["latency"].p_gg <= LEVEL
     yield "rm_anova_gg_interaction", effects[BOTH].p_gg <= LEVEL
@@ -115,7 +115,7 @@ def means(data: NullData, alpha: float, rng: np.random.Generator) -> Outcomes:
 
 
 def models(data: NullData, alpha: float, rng: np.random.Generator) -> Outcomes:
-    """The linear mixed model latency x limb with period, and diagnostics of order."""
+    """Fit the linear mixed model latency x limb with period, and diagnostics of order."""
     n = len(data.measure)
     cells = list(product(range(n), range(len(NAMES)), range(len(LIMBS))))
     people = [who for who, _, _ in cells]
@@ -141,7 +141,7 @@ def models(data: NullData, alpha: float, rng: np.random.Generator) -> Outcomes:
 
 
 def ordinal(data: NullData, alpha: float, rng: np.random.Generator) -> Outcomes:
-    """The cumulative link mixed model of the item, latency and limb, by Laplace."""
+    """Fit the cumulative link mixed model of the item, latency and limb, by Laplace."""
     cells = list(product(range(len(data.item)), LATENCIES_MS, LIMBS))
     design = build_design(
         [
@@ -155,7 +155,7 @@ def ordinal(data: NullData, alpha: float, rng: np.random.Generator) -> Outcomes:
 
 
 def intervals(data: NullData, alpha: float, rng: np.random.Generator) -> Outcomes:
-    """Whether intervals of 95 % hold the population's alpha, and a difference of zero."""
+    """Return whether 95 % intervals contain the population's alpha, and a difference of zero."""
     found = cronbach_alpha(data.scale)
     yield "alpha_interval", found.low <= alpha <= found.high
     differences = data.measure[:, -1, 0] - data.measure[:, 0, 0]

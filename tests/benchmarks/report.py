@@ -1,4 +1,4 @@
-"""Figures with their units, what they are compared with, and the machine they came from."""
+"""Figures with their units, their peers or limits, and the machine that they were measured on."""
 
 import os
 import platform
@@ -12,12 +12,12 @@ AT_MOST, AT_LEAST = frozenset({"at most", "limit"}), frozenset({"at least"})
 
 
 class CannotMeasure(ValueError):
-    """Something was asked for that there is not; the message says what."""
+    """Raised if the requested measurement does not exist; the message names it."""
 
 
 @dataclass(frozen=True)
 class Figure:
-    """One measured value. `peer` is the limit or rival measured in the same run, in words."""
+    """One measured value. `peer` describes the limit or rival measured in the same run."""
 
     part: str
     name: str
@@ -28,20 +28,20 @@ class Figure:
 
     @property
     def ratio(self) -> float | None:
-        """Ours over the peer's."""
+        """Return our value divided by the peer's."""
         return self.value / self.peer_value if self.peer_value else None
 
     @property
     def limit(self) -> float | None:
-        """The limit, where the peer is one."""
+        """Return the limit, if the peer is one."""
         return self.peer_value if self.peer in AT_MOST | AT_LEAST else None
 
     @property
     def met(self) -> bool | None:
-        """Whether the value keeps to the limit."""
+        """Return whether the value is within the limit."""
         if self.limit is None:
             return None
-        # NumPy's truth values are none of JSON's.
+        # NumPy's booleans cannot be encoded as JSON.
         return bool(self.value <= self.limit if self.peer in AT_MOST else self.value >= self.limit)
 
     def as_json(self) -> dict[str, Any]:
@@ -52,7 +52,7 @@ class Figure:
 
 @dataclass
 class Report:
-    """All figures of a run; `beside` are keys of this benchmark's own, such as `pairs`."""
+    """All figures of a run; `beside` are keys specific to this benchmark, such as `pairs`."""
 
     benchmark: str
     machine: dict[str, Any] = field(default_factory=lambda: machine())
@@ -60,7 +60,7 @@ class Report:
     beside: dict[str, Any] = field(default_factory=dict)
 
     def add(self, *figures: Figure) -> None:
-        """Take figures in, telling each at once: a run takes minutes."""
+        """Add figures and print each immediately: a run takes minutes."""
         for figure in figures:
             print(
                 f"  {figure.part}: {figure.name} {figure.value:.4g} {figure.unit}", file=sys.stderr
@@ -75,7 +75,7 @@ class Report:
 
 
 def machine() -> dict[str, Any]:
-    """Cores, processor, Python and how busy the machine was at the start."""
+    """Return cores, processor, Python and the load of the machine at the start."""
     return {
         "cores": os.cpu_count(),
         "cpu": _cpu_name(),
@@ -86,7 +86,7 @@ def machine() -> dict[str, Any]:
 
 
 def as_table(report: Report) -> str:
-    """For people: one line a figure."""
+    """Format the figures for people, one per line."""
     rows = [["part", "figure", "value", "unit", "beside", "value", "ratio"]]
     rows += [_cells(figure) for figure in report.figures]
     widths = [max(len(row[at]) for row in rows) for at in range(len(rows[0]))]

@@ -1,11 +1,12 @@
-"""Retargeting: how long one live frame takes, and how many frames a second a file's take.
+"""Measure retargeting: the time of one live frame, and the frames per second of a file.
 
 `frame` is a live frame of 22 joints, timed call by call; the budget of a 360 Hz capture is 2.8 ms,
 the limit here 50 microseconds at the 99.9th percentile. Calls during which the system gave the
 processor to another program are in one row and left out of the other. `batch` is a movement of 22
-joints on one core, at least a million frames a second. `peers` is a walk of 31 joints (CMU 02_01
-where the shared data are there, else one made up) beside SciPy's Rotation and PyMotion doing the
-same work. Rates are medians of several rounds, so that others on the machine spoil one and not all.
+joints on one core, at least a million frames a second. `peers` is a walk of 31 joints (CMU 02_01 if
+the shared data are available, else a synthetic one), compared with SciPy's Rotation and PyMotion
+doing the same work. Rates are medians of several rounds, so that other programs on the machine
+affect few of them.
 """
 
 import resource
@@ -66,7 +67,7 @@ def _frame(retargeter: Retargeter, motion: RigMotion) -> Iterator[Figure]:
 def _timed_calls(
     retargeter: Retargeter, motion: RigMotion
 ) -> tuple[FloatArray, npt.NDArray[np.bool_]]:
-    """How long each call took in microseconds, and whether it had the processor to itself."""
+    """Return each call's time in microseconds, and whether it was not interrupted."""
     roots, rotations = list(motion.root_positions_m), list(motion.rotations)
     times_ns, switches = np.empty(CALLS), np.empty(CALLS + 1, dtype=np.int64)
     for at in range(CALLS):
@@ -80,7 +81,7 @@ def _timed_calls(
 
 
 def _switches() -> int:
-    """How often the system has taken the processor away from this thread."""
+    """Return how often the system has preempted this thread."""
     return resource.getrusage(resource.RUSAGE_THREAD).ru_nivcsw
 
 
@@ -140,7 +141,7 @@ def _walk() -> tuple[str, RigMotion]:
 
 
 def _made_up() -> RigMotion:
-    """A movement of the product's body with nine finger joints: 31 joints, 344 frames."""
+    """Return a movement of the product's body with nine finger joints: 31 joints, 344 frames."""
     body = own_body(1.7)
     hands = [body.index("LeftHand"), body.index("RightHand")]
     names = tuple(f"Finger{number}" for number in range(9))

@@ -1,4 +1,4 @@
-"""The same transfer with other libraries' rotations: SciPy and PyMotion.
+"""Do the same transfer with other libraries' rotations: SciPy and PyMotion.
 
 Each does the work that a retargeter does and no other: rotations of the source in the world, the
 constant factor of each joint, back to local. Results are compared before anything is timed.
@@ -33,7 +33,7 @@ class Task:
 
 
 def by_scipy(task: Task, rotations: FloatArray) -> FloatArray:
-    """Rotation objects for one joint at a time: of one frame, (S, 4), or of all, (N, S, 4)."""
+    """Use a Rotation object per joint: for one frame, (S, 4), or for all, (N, S, 4)."""
     locals_ = [
         Rotation.from_quat(rotations[..., joint, :], scalar_first=True)
         for joint in range(len(task.source_parents))
@@ -53,12 +53,12 @@ def by_scipy(task: Task, rotations: FloatArray) -> FloatArray:
 
 
 def by_scipy_frame_by_frame(task: Task, rotations: FloatArray) -> FloatArray:
-    """As it would be done live."""
+    """Transfer one frame at a time, as it would be done live."""
     return np.stack([by_scipy(task, frame) for frame in rotations])
 
 
 def by_pymotion(task: Task, rotations: FloatArray) -> FloatArray:
-    """PyMotion's forward kinematics, products and inverse kinematics of all frames at once."""
+    """Use PyMotion's forward kinematics, products and inverse kinematics of all frames at once."""
     roots = np.zeros((*rotations.shape[:-2], 3))
     parents = np.array(task.source_parents)
     _, source = pymotion_skeleton.fk_quat(rotations, roots, task.source_offsets_m, parents)

@@ -1,6 +1,6 @@
-"""Ways to write a chunk that need other libraries: those that are installed are measured.
+"""Chunk encodings that need other libraries: those that are installed are measured.
 
-To have them: `uv pip install pcodec pyarrow blosc2` into the environment, none of them is needed
+To install them: `uv pip install pcodec pyarrow blosc2` into the environment; none of them is needed
 otherwise.
 """
 
@@ -25,7 +25,7 @@ _GROUPS = 6
 
 
 def rival_codecs() -> tuple[list[Codec], list[str]]:
-    """The codecs that can be tried here, and the libraries that are absent."""
+    """Return the available codecs, and the libraries that are missing."""
     found: list[Codec] = []
     absent = []
     for library, make in (("pcodec", _pcodec), ("pyarrow", _arrow), ("blosc2", _blosc)):
@@ -39,7 +39,7 @@ def rival_codecs() -> tuple[list[Codec], list[str]]:
 
 
 def _framed(*parts: bytes) -> bytes:
-    """Parts behind each other, each with its length before it."""
+    """Concatenate parts, each preceded by its length."""
     return b"".join(len(part).to_bytes(4, "little") + part for part in parts)
 
 
@@ -64,11 +64,11 @@ class _Pcodec:
         )
 
     def squeeze(self, numbers: NDArray[Any], config: Any) -> bytes:
-        """Numbers as a file."""
+        """Compress numbers to a file."""
         return bytes(self._files.simple_compress(np.ascontiguousarray(numbers).ravel(), config))
 
     def expand(self, data: bytes, number: type[Any]) -> NDArray[Any]:
-        """The flat numbers of a file."""
+        """Return the flat numbers of a file."""
         numbers = self._files.simple_decompress(data)
         return np.asarray([] if numbers is None else numbers, number)
 
@@ -100,7 +100,7 @@ def _pcodec() -> list[Codec]:
 
 
 def _predicted(pco: _Pcodec) -> tuple[Any, Any]:
-    """Steps 1 to 3 of f32-predicted-zstd, with pcodec in place of noise bits and zstd."""
+    """Apply steps 1 to 3 of f32-predicted-zstd, with pcodec in place of noise bits and zstd."""
 
     def encode(columns: Columns) -> bytes:
         bits = bits_of(columns)
@@ -109,7 +109,7 @@ def _predicted(pco: _Pcodec) -> tuple[Any, Any]:
         floats = cut(kept)
         unforeseen = (bits[left_out.rows] - left_out.expected(kept)).view(np.int32)
         order, differences = best_differences(np.concatenate((floats.coarse, unforeseen)))
-        # Rows of like size share their bins.
+        # Rows of similar magnitude share their bins.
         by_size = differences.mean(axis=1).argsort().astype(np.uint8)
         return _framed(
             pco.squeeze(columns.times_s, pco.automatic),
@@ -156,7 +156,7 @@ def _arrow() -> list[Codec]:
 
 
 def _arrow_with(compression: str, *, by_column: bool) -> Codec:
-    """A record batch in Arrow's stream format, with a column for each value or a list per frame."""
+    """Encode a record batch in Arrow's stream format, one column per value or a list per frame."""
     arrow: Any = importlib.import_module("pyarrow")
     ipc: Any = importlib.import_module("pyarrow.ipc")
     options = ipc.IpcWriteOptions(compression=compression, use_threads=False)
@@ -194,7 +194,7 @@ def _blosc() -> list[Codec]:
 
 
 def _blosc_with(*filters: str) -> Codec:
-    """The columns through blosc2's filters and its zstd."""
+    """Encode the columns with blosc2's filters and its zstd."""
     blosc: Any = importlib.import_module("blosc2")
     settings = {
         "codec": blosc.Codec.ZSTD,

@@ -1,4 +1,4 @@
-"""From a fresh copy of the repository to the first page, and once more when all is set up."""
+"""Measure from a fresh copy of the repository to the first page, and a second start."""
 
 import os
 import shutil
@@ -20,14 +20,14 @@ LEFT_OUT = ("VIRTUAL_ENV", "PYTHONPATH", "REEMBODY_DATA_DIR", "REEMBODY_DATABASE
 
 @dataclass(frozen=True)
 class Start:
-    """Seconds from the call to the answer, and the bytes of the first page."""
+    """Seconds from the call to the response, and the bytes of the first page."""
 
     duration_s: float
     page_bytes: int
 
 
 def figures(folder: Path) -> list[Figure]:
-    """Cold `./run` in a fresh copy with empty caches, then warm."""
+    """Measure a cold `./run` in a fresh copy with empty caches, then a warm one."""
     copy = folder / "reembody"
     copy_repository(copy)
     caches = folder / "caches"
@@ -40,7 +40,7 @@ def figures(folder: Path) -> list[Figure]:
 
 
 def copy_repository(to: Path) -> None:
-    """The working tree as git knows it, without anything that was built or installed."""
+    """Copy the working tree as git tracks it, without anything that was built or installed."""
     to.mkdir(parents=True)
     names = subprocess.run(
         ["git", "ls-files", "-z", "--cached"], cwd=REPOSITORY, capture_output=True, check=True
@@ -54,7 +54,7 @@ def copy_repository(to: Path) -> None:
 
 
 def start_once(repository: Path, caches: Path) -> Start:
-    """Call ./run, wait for its first page, and end it."""
+    """Call ./run, wait for its first page, and stop it."""
     port = free_port()
     process = subprocess.Popen(
         ["./run", "serve", "--port", str(port)],
@@ -74,7 +74,7 @@ def start_once(repository: Path, caches: Path) -> Start:
 
 
 def environment_with(caches: Path) -> dict[str, str]:
-    """This machine's settings (they say where the registries are) with empty caches."""
+    """Return this machine's settings (including its registries) with empty caches."""
     kept = {name: value for name, value in os.environ.items() if name not in LEFT_OUT}
     return {
         **kept,

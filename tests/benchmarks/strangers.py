@@ -1,9 +1,9 @@
-"""Callers whom nobody knows, and a bare listener: `python -m tests.benchmarks.strangers`.
+"""Anonymous callers, and a bare listener: `python -m tests.benchmarks.strangers`.
 
-Reads the plan as JSON from one line of standard input and says `ready`. A plan with `callers` makes
-that many for so long, each as fast as it is answered: one half tries to sign in, the other sends
-bodies of 2 MB. It prints how many answers of each kind they got. A plan without listens, answers
-413 to every head and closes, until it is killed.
+Reads the plan as JSON from one line of standard input and prints `ready`. A plan with `callers`
+runs that many for a given time, each as fast as it gets responses: one half tries to sign in, the
+other sends bodies of 2 MB. It prints how many responses of each kind they got. A plan without
+callers listens, answers 413 to every head and closes, until it is killed.
 """
 
 import asyncio
@@ -24,7 +24,7 @@ REFUSAL = b"HTTP/1.1 413 Content Too Large\r\ncontent-length: 0\r\nconnection: c
 
 @dataclass(frozen=True)
 class CallersPlan:
-    """How many callers bother the server at `port`, for how long."""
+    """The number of callers that send requests to the server at `port`, and for how long."""
 
     port: int
     callers: int
@@ -47,7 +47,7 @@ class ListenerPlan:
 
 
 async def call(port: int, callers: int, duration_s: float) -> Counter[str]:
-    """All callers side by side; their answers by status, `none` where there was no answer."""
+    """Run all callers in parallel; return their responses by status, `none` for no response."""
     answers: Counter[str] = Counter()
     until_s = time.monotonic() + duration_s
     await asyncio.gather(*(_caller(port, number, until_s, answers) for number in range(callers)))
@@ -63,7 +63,7 @@ async def _caller(port: int, number: int, until_s: float, answers: Counter[str])
                 answers[await _asked(port, body)] += 1
         except (TimeoutError, OSError):
             answers["none"] += 1
-            # Refused connections would otherwise be tried again without a pause.
+            # Without a pause, refused connections would be retried in a busy loop.
             await asyncio.sleep(0)
 
 
@@ -73,7 +73,7 @@ def _credentials() -> bytes:
 
 
 async def _asked(port: int, body: bytes) -> str:
-    """Send a login with this body; the status of the answer."""
+    """Send a login with this body and return the status of the response."""
     reader, writer = await asyncio.open_connection("127.0.0.1", port)
     head = (
         "POST /api/login HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
@@ -109,7 +109,7 @@ async def listen(port: int) -> None:
 
 
 def main(plan: dict[str, Any]) -> None:
-    """Do what the plan says."""
+    """Run the plan from standard input."""
     if "callers" in plan:
         print("ready", flush=True)
         print(json.dumps(asyncio.run(call(**plan))), flush=True)

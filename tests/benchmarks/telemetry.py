@@ -1,7 +1,7 @@
-"""Fifty headsets at once: until when everything is safe and shown, and what it costs.
+"""Measure fifty headsets in parallel: time until data are durable and shown, and the cost.
 
 Parts: `load` on SQLite, `load-postgresql` on a durable PostgreSQL, `knee` (how many sessions are
-too many), `backlog` (one comes back with ten minutes in its journal), `peers` (what others do with
+too many), `backlog` (one reconnects with ten minutes in its journal), `peers` (other systems with
 the same frames).
 """
 

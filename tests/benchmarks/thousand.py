@@ -1,6 +1,7 @@
-"""A study with a thousand participants: a few are built, the others are copies with their own ids.
+"""Build a study with a thousand participants: a few are built, the others are copied.
 
-Every row that a finished session has stands a thousand times, movement excepted: pages read none.
+Copies have ids of their own. Every row of a completed session exists a thousand times, except for
+movement, which no page reads.
 """
 
 from collections.abc import Sequence
@@ -62,7 +63,7 @@ def shipped_database(data_dir: Path) -> Database:
 
 
 def fill_thousand(database: Database, participants: int = 1000) -> list[str]:
-    """Store them as completed sessions of people; the ids of the sessions."""
+    """Store a thousand completed sessions of people and return their ids."""
     with database.writing() as db:
         built = [build_session(db, SessionSpec(f"P-{at:04d}")) for at in range(ORDERS)]
         for session in built:
@@ -76,7 +77,7 @@ def fill_thousand(database: Database, participants: int = 1000) -> list[str]:
 
 
 def _summarised(db: Session, session: StudySession) -> list[PhaseQuality]:
-    """What a phase has once its movement was looked at; a server looks at all that has not."""
+    """Store the summaries of a phase; a server computes all that are missing."""
     phases = db.scalars(select(Phase).where(Phase.session_id == session.id)).all()
     return [
         PhaseQuality(
@@ -95,7 +96,7 @@ def _summarised(db: Session, session: StudySession) -> list[PhaseQuality]:
 
 
 def _copy(db: Session, built: Sequence[StudySession], at: int) -> str:
-    """One more session with the rows of the built one that has its order."""
+    """Copy the rows of the built session with the same order to one more session."""
     version = newest_version(db, study_by_key(db, STUDY))
     slot = take_slot(db, version, protocol_of(version), "people", NOW)
     model = built[at % len(built)]
@@ -130,7 +131,7 @@ def _copy_rows(connection: Connection, table: Table, old: str, new: str) -> None
 
 
 def _own_id(column: Column[Any], new: str) -> ColumnElement[Any]:
-    """Another id for the copy: half from the row it is copied from, half from its session."""
+    """Return an id for the copy: half from the original row, half from its session."""
     return func.substr(column, 1, 16).concat(new[:16])
 
 

@@ -1,15 +1,15 @@
-"""Relay tuning beside gains set by hand and beside Ziegler and Nichols.
+"""Compare relay tuning with manually set gains and with Ziegler and Nichols.
 
-All three on the product's own body of 52 parts, every free axis, on two threads. By hand are the
-gains that come with the product: one natural frequency a body part, chosen by people, times the
-inertia that each axis moves. Ziegler and Nichols's rule has the same relay experiments as ours,
-without an integral part, which an avatar does not have, and without a second attempt, which the
-rule does not know.
+All three run on the product's own body of 52 parts, every free axis, on two threads. The manual
+gains are those shipped with the product: one natural frequency per body part, chosen by people,
+times the inertia that each axis moves. Ziegler and Nichols's rule has the same relay experiments as
+ours, without an integral part, which an avatar does not have, and without a second attempt, which
+the rule does not include.
 
 `steps` lets each axis jump by 30 degrees on the whole body: overshoot (median at most 3 %, worst at
-most 10 %), settling to 2 %, how long it all took (at most 30 s), and what became of the axes. A
-value is that of our tuning; beside it, in turn, the limit and the two others. `tracking` lets the
-three bodies follow real people where the shared data are there.
+most 10 %), settling to 2 %, total duration (at most 30 s), and the state of the axes. A value is
+that of our tuning; its peers are, in turn, the limit and the two others. `tracking` lets the three
+bodies follow real people if the shared data are available.
 """
 
 import time
@@ -33,7 +33,7 @@ LIMITS = {"overshoot, median": 3.0, "overshoot, worst": 10.0, "wall time": 30.0}
 
 @dataclass(frozen=True)
 class Contender:
-    """One way to gains: the configuration that came of it, and its axes' steps."""
+    """One tuning method: the resulting configuration, and its axes' step responses."""
 
     name: str
     configuration: Configuration
@@ -41,7 +41,7 @@ class Contender:
     wall_s: float
 
     def figures(self) -> Iterator[tuple[str, float, str]]:
-        """Name, value and unit of each figure."""
+        """Return name, value and unit of each figure."""
         steps = [one.step for one in self.axes if one.step is not None]
         overshoots = [step.overshoot_percent for step in steps]
         settled = [step.settling_s for step in steps if step.settling_s is not None]
@@ -94,7 +94,7 @@ def _steps() -> Iterator[Figure]:
     for name, value, unit in ours.figures():
         for peer, value_of in beside:
             known = value_of(name)
-            # What people need for gains by hand is not measured here.
+            # The time that people need to set gains manually is not measured here.
             if known is not None and (peer, name) != (BY_HAND, "wall time"):
                 yield Figure("steps", name, value, unit, peer, known)
 

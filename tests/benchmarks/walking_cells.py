@@ -1,10 +1,12 @@
-"""All three models on all populations: the cells that the walking model is judged by.
+"""Evaluate all three models on all populations: the cells that the walking model is judged by.
 
-For each population a database of 24 people over the laboratory's sixteen scenes. A cell is a
-population in one of three situations, and nobody is ever on both sides:
+For each population there is a database of 24 people over the laboratory's sixteen scenes. A cell is
+a population in one of three situations, and no person is in both training and test data:
 
     laboratory    people left out of the database, a quarter at a time
-    workplace 1   ten other people in the paper's first scene, in which nobody of the database was
+
+    workplace 1   ten other people in the paper's first scene, which is not in the database
+
     workplace 2   the same in its second
 
 Readings are chosen on the people whom a model is fitted on.
@@ -64,13 +66,13 @@ class Studied:
 
 
 def made(entries: Sequence[PlannedWalk], maker: MapMaker, names: tuple[str, ...]) -> WalkDatabase:
-    """A database with all its maps."""
+    """Return a database with all its maps."""
     return database_of(entries, [one for _, one in maps_of(entries, maker)], names)
 
 
 @cache
 def studied() -> tuple[Studied, ...]:
-    """Everything, once in a process; takes some minutes."""
+    """Compute everything, once per process; takes some minutes."""
     return tuple(_study(population, seed) for seed, population in enumerate(POPULATIONS, start=1))
 
 

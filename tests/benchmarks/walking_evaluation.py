@@ -37,25 +37,25 @@ def measure(parts: frozenset[str], duration_s: float | None = None) -> Report:
 
 
 def cells() -> list[Cell]:
-    """All cells of all populations."""
+    """Return all cells of all populations."""
     return [cell for one in studied() for cell in one.cells]
 
 
 @cache
 def repeated() -> Replication:
-    """The paper's experiments on the first population."""
+    """Repeat the paper's experiments on the first population."""
     return replication(studied()[0])
 
 
 @cache
 def real() -> RealWalks | None:
-    """Real walks, None where the shared data are not there."""
+    """Evaluate real walks; None if the shared data are not available."""
     folder = shared_folder()
     return None if folder is None else real_walks(folder)
 
 
 def population_figures() -> Iterator[Figure]:
-    """Shares of cells, and the median of interquartile ratios."""
+    """Return shares of cells, and the median of interquartile ratios."""
     part, found = "populations", [cell.evaluation for cell in cells()]
     by_adapt = np.array([one.crps_ratio("prob", "adapt") for one in found])
     by_stat = np.array([one.crps_ratio("prob", "stat") for one in found])
@@ -75,7 +75,7 @@ def population_figures() -> Iterator[Figure]:
 
 
 def replication_figures() -> Iterator[Figure]:
-    """Leaving out, by neighbours and by radial bases."""
+    """Return the figures of leaving out, by neighbours and by radial bases."""
     one, part = repeated(), "replication"
     for name, left, limits in (
         ("neighbours left out", one.neighbours, NEIGHBOURS_LIMITS),
@@ -88,7 +88,7 @@ def replication_figures() -> Iterator[Figure]:
 
 
 def real_figures() -> Iterator[Figure]:
-    """Distances of the table within one deviation."""
+    """Return the share of the table's distances within one deviation."""
     found = real()
     if found is None:
         return

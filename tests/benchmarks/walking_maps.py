@@ -30,7 +30,7 @@ PLAN_MS, MAPS_S, EXCESS, AGREEMENT = 14.0, 60.0, 0.01, 1e-9
 
 
 def planner_figures() -> Iterator[Figure]:
-    """How long a path takes, and how much longer than the shortest it is."""
+    """Measure how long a path takes, and how much longer than the shortest it is."""
     walks = list(population(320, SUBJECTS))
     planned_walk(walks[-1][1], walks[-1][0])
     took = []
@@ -49,7 +49,7 @@ def planner_figures() -> Iterator[Figure]:
 
 
 def _random_scenes() -> tuple[FloatArray, int]:
-    """Excess of each scene's path over the shortest, and how many only one planner can cross."""
+    """Return each scene's excess over the shortest path, and how many only one planner crosses."""
     excess, unlike = [], 0
     for seed in range(SCENES):
         scene, start, goal = random_scene(np.random.default_rng(seed))
@@ -66,7 +66,7 @@ def _random_scenes() -> tuple[FloatArray, int]:
 
 
 def map_figures() -> Iterator[Figure]:
-    """How long all maps of a database take, and that both forms agree."""
+    """Measure how long all maps of a database take, and that both implementations agree."""
     began = time.perf_counter()
     entries = [planned_walk(walk, planner) for planner, walk in population(WALKS, SUBJECTS)]
     yield Figure("maps", f"{WALKS} walks made and planned", time.perf_counter() - began, "s")

@@ -1,4 +1,4 @@
-"""Figures that the paper prints, as it prints them; empty where it shows them in pictures only."""
+"""Figures as printed in the paper; empty if it shows them only in pictures."""
 
 PAPER_PERCENTILES = (
     {

@@ -61,7 +61,7 @@ class Distance:
 
     @property
     def off_sds(self) -> float:
-        """How many between-subject deviations the predicted peak speed is off."""
+        """Return the error of the predicted peak speed in between-subject deviations."""
         return abs(self.predicted_m_s - self.peak_m_s) / self.sd_m_s
 
 
@@ -81,13 +81,13 @@ class RealWalks:
 
 
 def shared_folder() -> Path | None:
-    """The published data, where they are."""
+    """Return the folder of the published data."""
     folder = shared_data_folder()
     return folder if folder.is_dir() else None
 
 
 def real_walks(folder: Path) -> RealWalks:
-    """Fit and test."""
+    """Fit on a few people and test on others."""
     fit, raw = (_fitted(folder, scaled=scaled) for scaled in (True, False))
     others = tuple(_planned(walk) for walk in _captured(folder, LEFT_OUT))
     result = evaluate(fit.models, FOLLOWER, others, np.random.default_rng(1), draws=DRAWS)

@@ -1,4 +1,4 @@
-"""The paper's experiments on one synthetic population: tables to stand beside the paper's.
+"""Repeat the paper's experiments on one synthetic population, for comparison with its tables.
 
 The population is the one most like the paper's people. Its workplaces are predicted with two
 readings of the maps: the paper's, and the one that was chosen on the training people.
@@ -69,7 +69,7 @@ class LongWalk:
 
 @dataclass(frozen=True, eq=False)
 class Replication:
-    """Everything that the paper has a table or a figure of."""
+    """The results for every table and figure of the paper."""
 
     studied: Studied
     papers: FittedWalking
@@ -134,7 +134,7 @@ def _submodels(studied: Studied, rng: np.random.Generator) -> Iterator[Submodel]
 
 
 def _long_walks(rng: np.random.Generator) -> Iterator[LongWalk]:
-    """Velocity and acceleration by stature and distance, half of the people to fit on."""
+    """Compare velocity and acceleration by stature and distance, fitted on half of the people."""
     values = (*PAPER_GRID.values[:2], (2.0,))
     maker = MapMaker(grid=ParameterGrid(PAPER_PARAMETERS, values))
     scenes = [straight_scene(distance) for distance in DISTANCES_M]

@@ -1,4 +1,4 @@
-"""The replication report as Markdown: the paper's tables beside ours."""
+"""Write the replication report as Markdown, with the paper's tables next to ours."""
 
 from collections.abc import Iterable, Sequence
 
@@ -30,7 +30,7 @@ MODELS = {"stat": "P_stat", "adapt": "P_adapt", "prob": "P_prob"}
 def replication_report(
     populations: Sequence[Studied], repeated: Replication, real: RealWalks | None
 ) -> str:
-    """The whole document."""
+    """Return the whole document."""
     parts = [
         INTRODUCTION.format(people=PEOPLE, others=OTHERS, times=REPETITIONS),
         "## What reproduces, and what does not\n\n" + verdicts(populations, repeated),

@@ -1,4 +1,4 @@
-"""The words of the replication report."""
+"""The texts of the replication report."""
 
 INTRODUCTION = """
 # Replication: a probabilistic steering parameter model

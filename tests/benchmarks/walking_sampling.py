@@ -1,10 +1,10 @@
-"""Draws of steering parameters: a part of `./run bench walking`.
+"""Measure draws of steering parameters: a part of `./run bench walking`.
 
-A space of 5000 entries over the paper's grid, k = 100, each question new. `fresh` is one draw with
-its search for neighbours: the default mixture (of the multilinear map) and the paper's way,
-blended radial basis functions and rejection. `cached` is one of many draws for a question that was
-prepared. Beside them, in the same run, stands the paper's own pipeline as it describes it: KDTree
-of scikit-learn, a weighted sum of maps, scipy's Rbf, rejection one proposal at a time.
+A space of 5000 entries over the paper's grid, k = 100, each query new. `fresh` is one draw with its
+search for neighbours: the default mixture (of the multilinear map) and the paper's method, blended
+radial basis functions and rejection. `cached` is one of many draws for a query that was prepared.
+The peer, in the same run, is the paper's own pipeline as it describes it: KDTree of scikit-learn, a
+weighted sum of maps, scipy's Rbf, rejection one proposal at a time.
 """
 
 import time
@@ -26,7 +26,7 @@ NAMES = ("length_m", "turning_per_m", "stature_m")
 
 
 def sampling_figures() -> Iterator[Figure]:
-    """How long draws take."""
+    """Measure how long draws take."""
     rng = np.random.default_rng(1)
     began = time.perf_counter()
     space, vectors = made_up_space(rng)
@@ -90,7 +90,7 @@ class Literal:
 
 
 def made_up_space(rng: np.random.Generator) -> tuple[BlendingSpace, FloatArray]:
-    """A space of made-up maps, one wide peak each that moves with the dependencies."""
+    """Return a space of synthetic maps, each with one wide peak moved by the dependencies."""
     lengths = rng.choice(np.arange(0.5, 4.5, 0.5), WALKS) + 0.02 * rng.standard_normal(WALKS)
     turning = rng.choice([0.0, 0.32, 0.51, 0.69], WALKS)
     statures = rng.choice(rng.normal(1.78, 0.07, PEOPLE), WALKS)

@@ -1,4 +1,4 @@
-"""What of the paper reproduces, decided from the figures."""
+"""Decide from the figures which results of the paper reproduce."""
 
 from collections.abc import Iterator, Sequence
 
@@ -15,7 +15,7 @@ LONG_SHARE = 0.05
 
 
 def verdicts(populations: Sequence[Studied], one: Replication) -> str:
-    """A list, one statement of the paper each."""
+    """Return a list with a verdict on each statement of the paper."""
     found = [cell.evaluation for studied in populations for cell in studied.cells]
     lines = [*_models(found), *_parts(one)]
     return "\n".join(f"- {line}" for line in lines)

@@ -1,6 +1,6 @@
-"""Every command line that the docs show, from their blocks of code and from their sentences.
+"""Find every command line in the docs, in blocks of code and in sentences.
 
-`python -m tests.docs.commands` lists them with what becomes of each in tests/docs/test_commands.py.
+`python -m tests.docs.commands` lists them with what tests/docs/test_commands.py does with each.
 """
 
 import re
@@ -34,7 +34,7 @@ class Fate(StrEnum):
 class Command:
     """One command line of a page, without explanations and optional parts.
 
-    `script`: it stands in a block that is a script and runs as a whole.
+    `script`: it is part of a block that is a script and runs as a whole.
     """
 
     page: str
@@ -44,7 +44,7 @@ class Command:
 
     @property
     def fate(self) -> Fate:
-        """What becomes of it."""
+        """Return what a test does with it."""
         if self.script:
             return Fate.SCRIPT
         if any(re.search(pattern, self.text) for pattern in NOT_RUN):
@@ -53,12 +53,12 @@ class Command:
 
     @property
     def settings(self) -> dict[str, str]:
-        """The variables that it sets."""
+        """Return the variables that it sets."""
         return dict(word.split("=", 1) for word in self._words[: self._program])
 
     @property
     def words(self) -> list[str]:
-        """The program and its arguments, without redirections."""
+        """Return the program and its arguments, without redirections."""
         return _without_redirection(self._words[self._program :])
 
     @property
@@ -90,12 +90,12 @@ LONG = {
 
 
 def commands() -> list[Command]:
-    """Those of blocks of code, in the order of the pages."""
+    """Return the commands of blocks of code, in the order of the pages."""
     return [command for page in pages() for command in _of_blocks(page)]
 
 
 def mentions() -> list[Command]:
-    """Those in sentences and tables, with their placeholders and optional parts."""
+    """Return the commands in sentences and tables, with placeholders and optional parts."""
     return [
         Command(page.name, number, span.replace("\\|", "|"))
         for page in pages()
@@ -133,7 +133,7 @@ def _without_redirection(words: list[str]) -> list[str]:
 
 
 def main() -> None:
-    """Print every command with its fate, and how many there are of each."""
+    """Print every command with its fate, and the number of commands for each fate."""
     found = commands()
     for command in found:
         print(f"{command.page}:{command.line}: {command.text}\n    {command.fate}")  # noqa: T201

@@ -1,9 +1,9 @@
-"""A random sample of the product's English, for somebody who wrote none of it to judge.
+"""Draw a random sample of the product's English, to be judged by a reader who wrote none of it.
 
-`python -m tests.docs.draw_texts [COMMIT]` prints a hundred texts of the pages (with the German
-beside the English) and a hundred docstrings of `app` and `tests`. The commit's hash is the seed, so
-that a sample can be drawn again and nobody can choose it; without a commit it is HEAD's, drawn from
-the working tree.
+`python -m tests.docs.draw_texts [COMMIT]` prints a hundred texts of the pages (with their German
+versions) and a hundred docstrings of `app` and `tests`. The commit's hash is the seed, so that a
+sample can be reproduced and nobody can choose it; without a commit it is HEAD's, drawn from the
+working tree.
 """
 
 # ruff: noqa: T201  # what it prints is what it is for
@@ -32,7 +32,7 @@ ENTRY = re.compile(r'^\s+"?(?P<key>[\w.-]+)"?:\s*(?P<text>"(?:[^"\\]|\\.)*")', r
 
 @dataclass(frozen=True)
 class Text:
-    """A text, where it stands, and its German where it has one."""
+    """A text, its place, and its German version if there is one."""
 
     place: str
     english: str
@@ -40,7 +40,7 @@ class Text:
 
 
 def page_texts(root: Path) -> list[Text]:
-    """Every text of the pages' tables of at least `FEWEST_WORDS` words, in the order of files."""
+    """Return every text of the pages' tables of at least `FEWEST_WORDS` words, in file order."""
     return [
         Text(f"{file} {key}", english, german)
         for file, key, english, german in _entries(root)
@@ -49,7 +49,7 @@ def page_texts(root: Path) -> list[Text]:
 
 
 def docstrings(root: Path) -> list[Text]:
-    """Every docstring of `app` and `tests`, in the order of files."""
+    """Return every docstring of `app` and `tests`, in file order."""
     found = []
     for folder in ("app", "tests"):
         for path in sorted((root / folder).rglob("*.py")):
@@ -67,13 +67,13 @@ def docstrings(root: Path) -> list[Text]:
 
 
 def drawn(texts: list[Text], seed: str) -> list[Text]:
-    """`SAMPLE` of the texts, the same ones for the same seed."""
+    """Return `SAMPLE` of the texts, the same ones for the same seed."""
     chosen = random.Random(seed).sample(range(len(texts)), min(SAMPLE, len(texts)))  # noqa: S311
     return [texts[at] for at in chosen]
 
 
 def _entries(root: Path) -> Iterator[tuple[str, str, str, str]]:
-    """File, key, English and German of every text of the pages."""
+    """Yield file, key, English and German of every text of the pages."""
     german: dict[str, str] = {}
     english: list[tuple[str, str, str]] = []
     for path in sorted((root / "frontend/src").rglob("*.ts")):
@@ -91,7 +91,7 @@ def _entries(root: Path) -> Iterator[tuple[str, str, str, str]]:
 
 
 def main(arguments: list[str]) -> int:
-    """Print the sample; returns the exit code."""
+    """Print the sample; return the exit code."""
     commit = arguments[0] if arguments else None
     seed = subprocess.run(
         ["git", "rev-parse", commit or "HEAD"],

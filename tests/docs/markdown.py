@@ -1,4 +1,4 @@
-"""Reads the repository's Markdown the way GitHub does, as far as tests need it.
+"""Parse the repository's Markdown as GitHub does, as far as tests need it.
 
 A page's text is its lines outside fenced and indented code; headings give anchors by GitHub's rule;
 links are relative, absolute or within the page.
@@ -22,7 +22,7 @@ CODE_SPAN = re.compile(r"`[^`]*`")
 
 @dataclass(frozen=True)
 class Code:
-    """A block of code: its language ("" without one), its lines, and the line it begins at."""
+    """A block of code: its language ("" without one), its text, and the line it begins at."""
 
     language: str
     text: str
@@ -37,7 +37,7 @@ class Page:
 
     @property
     def name(self) -> str:
-        """Its path in the repository."""
+        """Return its path in the repository."""
         return self.path.relative_to(REPOSITORY).as_posix()
 
     @cached_property
@@ -46,17 +46,17 @@ class Page:
 
     @property
     def lines(self) -> tuple[str, ...]:
-        """Its lines outside code, with empty ones in the place of code."""
+        """Return its lines outside code, with empty ones in place of code."""
         return self._parts[0]
 
     @property
     def code(self) -> tuple[Code, ...]:
-        """Its blocks of code, fenced and indented."""
+        """Return its blocks of code, fenced and indented."""
         return self._parts[1]
 
     @cached_property
     def anchors(self) -> frozenset[str]:
-        """What a link may name behind `#`: each heading as GitHub spells it."""
+        """Return the anchors that a link may name after `#`: one for each heading."""
         seen: dict[str, int] = {}
         found = set()
         for line in self.lines:
@@ -70,7 +70,7 @@ class Page:
 
     @cached_property
     def links(self) -> tuple[tuple[int, str], ...]:
-        """Line number and target of every link and picture."""
+        """Return line number and target of every link and picture."""
         return tuple(
             (number, link["target"])
             for number, line in enumerate(self.lines, 1)
@@ -78,7 +78,7 @@ class Page:
         )
 
     def file_of(self, target: str) -> tuple[Path, str] | None:
-        """The file and anchor that a link leads to; None where it leaves the repository."""
+        """Return the file and anchor that a link leads to; None if it leaves the repository."""
         if re.match(r"[a-z][a-z0-9+.-]*:", target):
             return None
         place, _, fragment = unquote(target).partition("#")
@@ -86,20 +86,20 @@ class Page:
 
 
 def anchor(heading: str) -> str:
-    """GitHub's anchor: lower case, punctuation dropped, spaces as hyphens."""
+    """Return GitHub's anchor: lower case, punctuation dropped, spaces as hyphens."""
     text = LINK.sub(lambda link: link["text"], heading)
     return re.sub(r"[^\w\- ]", "", text.lower()).replace(" ", "-")
 
 
 def pages() -> list[Page]:
-    """README, CONTRIBUTING, how to write a study, and everything in docs/."""
+    """Return README, CONTRIBUTING, the guide to writing a study, and everything in docs/."""
     front = [REPOSITORY / name for name in ("README.md", "CONTRIBUTING.md")]
     front.append(REPOSITORY / "study_configs" / "README.md")
     return [Page(path) for path in [*front, *sorted(DOCS.rglob("*.md"))]]
 
 
 def _split(lines: list[str]) -> tuple[tuple[str, ...], tuple[Code, ...]]:
-    """Text with code blanked out, and the blocks of code."""
+    """Return the text with code blanked out, and the blocks of code."""
     text: list[str] = []
     blocks: list[Code] = []
     block: list[str] | None = None
@@ -125,7 +125,7 @@ def _split(lines: list[str]) -> tuple[tuple[str, ...], tuple[Code, ...]]:
                 block, language, start, fenced = [], is_fence["language"], number + 1, True
                 text.append("")
             elif indented and not (text and text[-1].strip()):
-                # A paragraph cannot be interrupted by indented code: that is a wrapped line.
+                # Indented code cannot interrupt a paragraph: that is a wrapped line.
                 block, start, fenced = [line[4:]], number, False
                 text.append("")
             else:

@@ -1,9 +1,9 @@
-"""Every command that the docs show does what the page says of it, or at least ends well.
+"""Tests that every command in the docs works as described, or at least succeeds.
 
-Commands of blocks run page by page, in their order, in a folder with the files that they name: in
-this process where they are a command of `reembody`, else against a real server. What takes long
-runs in a brief form (BRIEF). Commands in sentences are checked: each command, option, path and
-script that they name is there.
+Commands of blocks run page by page, in order, in a folder with the files that they name: in this
+process if they are a command of `reembody`, else against a real server. Slow commands run in a
+brief form (BRIEF). Commands in sentences are checked: each command, option, path and script that
+they name exists.
 """
 
 import json
@@ -51,9 +51,9 @@ FAST_WALKING = ("--entries", "300", "--k", "30", "--reading", "time-aware")
 
 
 class Lab:
-    """A folder to work in, with an installation of its own, and the files that a page names.
+    """A working folder with an installation of its own, and the files that a page names.
 
-    `server`: a server whose data the commands work with; else they have the data for themselves.
+    `server`: a server whose data the commands use; without one they use the data alone.
     """
 
     def __init__(self, folder: Path, shared_data: Path, server: LiveServer | None = None) -> None:
@@ -66,7 +66,7 @@ class Lab:
         self.usb.mkdir()
 
     def fill(self, command: Command) -> None:
-        """Make the files that a command reads, unless an earlier command of the page did."""
+        """Create the files that a command reads, unless an earlier command of the page did."""
         for pattern, make in {
             r"walk\.bvh": self._walk,
             r"02_01\.amc": self._amc,
@@ -117,7 +117,7 @@ class Lab:
 
 @pytest.fixture(scope="module")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveServer]:
-    """What `./run` starts, with a study that takes seconds to rehearse."""
+    """Provide the server that `./run` starts, with a study that takes seconds to rehearse."""
     with LiveServer(tmp_path_factory.mktemp("docs")) as running:
         BRIEF_PHASES.store(running)
         yield running
@@ -130,7 +130,7 @@ def test_the_commands_of_a_page_run_in_their_order(
     request: pytest.FixtureRequest,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Each ends well; a later one finds what an earlier one has made."""
+    """Each command of a page succeeds, and later ones find what earlier ones have made."""
     with_server = page in {"README.md", "docs/commands.md", "docs/captures.md"}
     lab = Lab(
         tmp_path,
@@ -154,7 +154,7 @@ PREPARED = {"./run restore /media/usb/2026-11-21.reembody": "an empty data folde
 """What a page says has to be there first."""
 BRIEF = {
     r"\./run walk fit": FAST_WALKING,
-    # The last one counts: an avatar of which one arm moves.
+    # The last one wins: an avatar of which only one arm moves.
     r"\./run tune": ("--avatar", "arm"),
 }
 """What is added so that a command takes seconds."""
@@ -179,7 +179,7 @@ def _run(command: Command, lab: Lab, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def _rehearsed_at(lab: Lab, command: Command) -> list[str]:
-    """At a server that runs and with a brief study; else a rehearsal starts a server of its own."""
+    """Return options for a running server and a brief study; else a rehearsal starts a server."""
     if not re.match(r"\./run rehearse", command.text):
         return []
     assert lab.server is not None
@@ -187,7 +187,7 @@ def _rehearsed_at(lab: Lab, command: Command) -> list[str]:
 
 
 def _put_in_place(word: str, lab: Lab) -> str:
-    """Fill in what a page cannot know."""
+    """Replace the placeholders of a page with real values."""
     if word == "SESSION_ID":
         (session, *_) = _ask(lab, f"/api/studies/{BRIEF_PHASES.key}/sessions")
         return str(session["id"])
@@ -199,7 +199,7 @@ def _put_in_place(word: str, lab: Lab) -> str:
 
 
 def _spread(words: list[str], folder: Path) -> list[str]:
-    """As a shell does with `*`."""
+    """Expand `*` as a shell does."""
     return [
         name
         for word in words
@@ -208,7 +208,7 @@ def _spread(words: list[str], folder: Path) -> list[str]:
 
 
 def _serve(arguments: list[str], settings: Mapping[str, str], lab: Lab) -> None:
-    """Start what the line starts, on free ports of the loopback, and ask it for its page."""
+    """Start what the line starts, on free ports of the loopback, and request its page."""
     given = [word for word in arguments if word != "serve"]
     if "--port" in given:
         del given[(at := given.index("--port")) : at + 2]
@@ -222,7 +222,7 @@ def _serve(arguments: list[str], settings: Mapping[str, str], lab: Lab) -> None:
         return
     given.remove("--lan")
     if "--certificate" in given:
-        # The built-in authority stands in for the institute's.
+        # The built-in authority replaces the institute's.
         with LanServer(_fresh(lab.folder / "authority")) as authority:
             tls = authority.data_dir / "tls"
             _split(tls, lab.folder)
@@ -240,7 +240,7 @@ def _opens(server: LiveServer) -> None:
 
 
 def _split(tls: Path, folder: Path) -> None:
-    """The pair of files that `--certificate` and `--key` take."""
+    """Write the pair of files that `--certificate` and `--key` take."""
     text = "".join(path.read_text() for path in sorted(tls.glob("server*.pem")))
     blocks = re.findall(r"-----BEGIN [^-]+-----.*?-----END [^-]+-----\n", text, re.DOTALL)
     (folder / "key.pem").write_text("".join(block for block in blocks if "KEY" in block))
@@ -267,7 +267,7 @@ def _in_a_shell(command: Command, lab: Lab) -> None:
 
 @pytest.mark.long
 def test_the_structure_is_measured_from_a_shell() -> None:
-    """`python -m tests.architecture`, as docs/architecture.md shows it."""
+    """`python -m tests.architecture` runs from a shell, as docs/architecture.md shows it."""
     done = subprocess.run(
         [REPOSITORY / ".venv" / "bin" / "python", "-m", "tests.architecture"],
         cwd=REPOSITORY,
@@ -280,7 +280,7 @@ def test_the_structure_is_measured_from_a_shell() -> None:
 
 @pytest.mark.long
 def test_a_server_starts_on_postgresql(tmp_path: Path, postgres_url: str) -> None:
-    """The variable of docs/postgresql.md, with the address of a real database."""
+    """A server starts on PostgreSQL with the variable shown in docs/postgresql.md."""
     (shown,) = [command for command in commands() if command.page == "docs/postgresql.md"]
     (name,) = shown.settings
     with LiveServer(tmp_path, environment={name: postgres_url}) as running:
@@ -288,7 +288,7 @@ def test_a_server_starts_on_postgresql(tmp_path: Path, postgres_url: str) -> Non
 
 
 def test_every_command_of_reembody_has_a_sample_that_runs() -> None:
-    """In the usual run, in some block of some page."""
+    """Every command of `reembody` has an example in the docs that the usual run executes."""
     shown = {
         command.words[1]
         if command.words[1] not in {"tls", "walk"}
@@ -300,7 +300,7 @@ def test_every_command_of_reembody_has_a_sample_that_runs() -> None:
 
 
 def test_hardly_anything_is_shown_and_not_run() -> None:
-    """A command that joins those that no test can run does so on purpose."""
+    """At most a quarter of the commands in the docs are shown without being run."""
     not_run = [command for command in commands() if command.fate is Fate.NOT_RUN]
     assert len(not_run) <= len(commands()) / 4
 
@@ -312,7 +312,7 @@ def _checked() -> list[Command]:
 
 @pytest.mark.parametrize("page", sorted({command.page for command in _checked()}))
 def test_what_the_commands_of_a_page_name_is_there(page: str) -> None:
-    """Commands, options, tests, benchmarks, modules and scripts, in blocks and in sentences."""
+    """Commands, options, tests, benchmarks, modules and scripts that a page names exist."""
     wrong = [
         f"{command.page}:{command.line}: {command.text}: {problem}"
         for command in _checked()
@@ -354,7 +354,7 @@ def _problem_of_bench(arguments: list[str]) -> str | None:
 
 
 def _problem_of_reembody(arguments: list[str]) -> str | None:
-    """Follow the words through the commands; placeholders in capitals stand for anything."""
+    """Follow the words through the commands; placeholders in capitals match anything."""
     if arguments[0] == "COMMAND" or arguments == ["--help"]:
         return None
     found = CLI
@@ -384,7 +384,7 @@ def _database(lab: Lab) -> str:
 
 
 def _add_an_arm(lab: RunningLab) -> None:
-    """An avatar of which one arm moves: most experiments are left out."""
+    """Store an avatar of which only one arm moves: most experiments are left out."""
     held = ("trunk_head", "left_leg", "right_leg", "right_arm", "left_fingers", "right_fingers")
     arm = file_of(replace(default_configuration(), locked_groups=held))
     wish = NewAvatar(key="arm", title="Arm", origin="by_hand", configuration=arm)

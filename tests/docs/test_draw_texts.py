@@ -1,4 +1,4 @@
-"""The sample of texts that a reader judges is drawn by the commit alone, from everything."""
+"""Tests that the sample of texts depends only on the commit and is drawn from all texts."""
 
 from collections import Counter
 
@@ -7,7 +7,7 @@ from tests.docs.draw_texts import SAMPLE, docstrings, drawn, page_texts
 
 
 def test_a_seed_draws_the_same_texts_every_time() -> None:
-    """The sample depends on the seed, holds no text twice, and changes with the seed."""
+    """The sample depends on the seed, contains no text twice, and changes with the seed."""
     texts = docstrings(REPOSITORY)
     first = drawn(texts, "0123abcd")
     assert first == drawn(texts, "0123abcd") != drawn(texts, "4567cdef")
@@ -15,7 +15,7 @@ def test_a_seed_draws_the_same_texts_every_time() -> None:
 
 
 def test_every_page_text_is_drawn_with_its_german() -> None:
-    """The reader of the tables finds the texts of both languages, so none escapes the judge."""
+    """Every text of the pages' tables is found with its German version."""
     texts = page_texts(REPOSITORY)
     assert len(texts) > 1000
     assert [text.place for text in texts if not text.german] == []

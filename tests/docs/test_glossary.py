@@ -1,4 +1,4 @@
-"""docs/glossary.md has one entry for each word, and what it says of code and CSV is there."""
+"""Tests that docs/glossary.md has one entry per word, and that the code and CSV names exist."""
 
 import re
 from functools import cache
@@ -15,7 +15,7 @@ SOURCES = {"app": ("*.py",), "frontend/src": ("*.ts", "*.tsx")}
 
 
 def entries() -> list[list[str]]:
-    """The cells of every row of the tables of words."""
+    """Return the cells of every row of the tables of words."""
     rows: list[list[str]] = []
     inside = False
     for line in GLOSSARY.read_text(encoding="utf-8").splitlines():
@@ -27,7 +27,7 @@ def entries() -> list[list[str]]:
 
 @cache
 def code() -> str:
-    """The sources of the server and the pages."""
+    """Return the sources of the server and the pages."""
     return "\n".join(
         path.read_text(encoding="utf-8")
         for folder, patterns in SOURCES.items()
@@ -38,7 +38,7 @@ def code() -> str:
 
 
 def test_every_word_has_one_entry_in_both_languages() -> None:
-    """Two entries for one word would be two meanings."""
+    """Every word of the glossary has one complete entry with its German."""
     words = [row[0] for row in entries()]
     assert len(words) > 60
     assert [row for row in entries() if len(row) != 5 or not all(row[:4])] == []
@@ -47,7 +47,7 @@ def test_every_word_has_one_entry_in_both_languages() -> None:
 
 @pytest.mark.parametrize("row", entries(), ids=lambda row: row[0])
 def test_what_the_glossary_says_is_in_the_code_is_there(row: list[str]) -> None:
-    """A path exists; a name is a whole word of the sources."""
+    """Every path and name that the glossary gives for the code exists there."""
     for name in SPAN.findall(row[3]):
         if "/" in name:
             assert (REPOSITORY / name).exists(), f"{row[0]}: {name} does not exist"
@@ -56,7 +56,7 @@ def test_what_the_glossary_says_is_in_the_code_is_there(row: list[str]) -> None:
 
 
 def test_what_the_glossary_says_is_in_the_csv_is_there() -> None:
-    """Each is a table or a column of the export."""
+    """Every name that the glossary gives for CSV is a table or column of the export."""
     there = {*TABLES, *(column.name for column in CODEBOOK)}
     named = {name for row in entries() for name in SPAN.findall(row[4])}
     assert len(named) > 30
@@ -64,14 +64,14 @@ def test_what_the_glossary_says_is_in_the_csv_is_there() -> None:
 
 
 def test_every_table_of_the_export_is_a_word_of_the_glossary() -> None:
-    """An analyst finds what a file is about; parts of a word go with it."""
+    """Every table of the export, except for parts of others, is named in the glossary."""
     parts = {"joint_error_course", "clock_mapping", "calibrations"}
     named = {name for row in entries() for name in SPAN.findall(row[4])}
     assert sorted(set(TABLES) - named - parts) == []
 
 
 def test_the_words_that_stay_are_really_used() -> None:
-    """A list of old words that nothing uses any more would teach them for nothing."""
+    """Every older word in the glossary's list is still used in the code."""
     text = GLOSSARY.read_text(encoding="utf-8").partition("## Older words that stay")[2]
     rows = [line.strip("|").split(" |")[0] for line in text.splitlines() if line.startswith("| `")]
     words = [word for row in rows for word in SPAN.findall(row)]

@@ -1,21 +1,21 @@
-"""docs/README.md is a map without blank spots, and no page leads anywhere that is not there."""
+"""Tests that docs/README.md lists every page and that no link in the docs is broken."""
 
 import re
 
 from tests.docs.markdown import DOCS, MAP, REPOSITORY, Page, pages
 
 PARTS = ["Start", "Run a study", "Analyse", "Write studies", "Operate and build"]
-# One screen: what it is, a picture, two commands, the first study, the way into the map.
+# One screen: what it is, a picture, two commands, the first study, the link to the map.
 SCREEN = 50
 
 
 def test_the_map_has_its_five_parts() -> None:
-    """A reader looks for what to do, not for the name of a file."""
+    """The map has its five parts, named after tasks."""
     assert [line[3:] for line in Page(MAP).lines if line.startswith("## ")] == PARTS
 
 
 def test_every_page_is_on_the_map_with_a_sentence() -> None:
-    """Each page of docs/ once; the decisions have a list of their own, which is on the map."""
+    """Each page of docs/ is on the map once with a sentence; decisions have their own list."""
     entries = [line for line in Page(MAP).lines if line.startswith("- ")]
     targets = [re.match(r"- \[[^\]]+\]\(([^)]+)\): \S.{15,}\.$", entry) for entry in entries]
     assert [entry for entry, found in zip(entries, targets, strict=True) if not found] == []
@@ -27,7 +27,7 @@ def test_every_page_is_on_the_map_with_a_sentence() -> None:
 
 
 def test_every_decision_is_on_the_list_of_decisions() -> None:
-    """A record that nobody finds decides nothing."""
+    """Every decision record is on the list of decisions."""
     index = Page(DOCS / "decisions" / "README.md")
     listed = {found[0] for _, target in index.links if (found := index.file_of(target))}
     assert sorted(set((DOCS / "decisions").glob("*.md")) - listed - {index.path}) == []
@@ -50,7 +50,7 @@ def test_no_link_leads_nowhere() -> None:
 
 
 def test_every_picture_is_shown_somewhere() -> None:
-    """A picture that no page shows grows old unseen."""
+    """Every picture in docs/ is shown on a page."""
     shown = {
         found[0]
         for page in pages()
@@ -61,7 +61,7 @@ def test_every_picture_is_shown_somewhere() -> None:
 
 
 def test_the_front_page_is_one_screen() -> None:
-    """Whoever wants to know more finds the map there."""
+    """README.md fits on one screen and links to every part of the map."""
     front = Page(REPOSITORY / "README.md")
     assert len(front.path.read_text(encoding="utf-8").splitlines()) <= SCREEN
     assert {f"docs/README.md#{part.lower().replace(' ', '-')}" for part in PARTS} <= {

@@ -1,4 +1,4 @@
-"""The examples of docs/scripting.md do what the page says, against a real server."""
+"""Tests that the examples of docs/scripting.md work as described, against a real server."""
 
 import re
 import shutil
@@ -17,7 +17,7 @@ STUDY = "reembodiment-latency"
 
 
 def examples(language: str) -> str:
-    """All blocks of one language, in the order of the page."""
+    """Return all blocks of one language, in the order of the page."""
     blocks = [text for name, text in BLOCK.findall(PAGE.read_text("utf-8")) if name == language]
     assert blocks
     return "\n".join(blocks)
@@ -25,7 +25,7 @@ def examples(language: str) -> str:
 
 @pytest.fixture(scope="module")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveServer]:
-    """A server beside whose data `./run` is called."""
+    """Provide a server, with a `./run` that uses its data."""
     with LiveServer(tmp_path_factory.mktemp("scripting")) as running:
         folder = running.data_dir.parent
         there = f'REEMBODY_DATA_DIR="{running.data_dir}"'
@@ -35,7 +35,7 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveServer]:
 
 
 def run(server: LiveServer, *command: str, token: str = "") -> str:
-    """What a program prints, which must end well."""
+    """Run a program that must succeed, and return its output."""
     done = subprocess.run(
         command,
         cwd=server.data_dir.parent,
@@ -55,9 +55,9 @@ def run(server: LiveServer, *command: str, token: str = "") -> str:
 
 
 def test_the_python_examples_go_from_a_token_to_an_erasure(server: LiveServer) -> None:
-    """In one script, in the order of the page; the server's record says that all of it happened.
+    """The Python examples run as one script from a token to an erasure.
 
-    The token of a login does for it what one of the command does.
+    The server's audit trail contains each step. The token of a login works like one of the command.
     """
     with server.client() as client:
         credentials = {"username": "admin", "password": ADMIN_PASSWORD}
@@ -84,7 +84,7 @@ def test_the_python_examples_go_from_a_token_to_an_erasure(server: LiveServer) -
 
 @pytest.mark.skipif(shutil.which("curl") is None, reason="curl is not installed")
 def test_the_shell_examples_go_from_a_token_to_an_export(server: LiveServer) -> None:
-    """With a token of the command and a session that waits."""
+    """The shell examples run from a token of the command to an export of a planned session."""
     with server.client() as admin:
         assert admin.get("/api/openapi.json").json()["info"]["title"]
         credentials = {"username": "admin", "password": ADMIN_PASSWORD}

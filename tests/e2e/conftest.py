@@ -31,7 +31,7 @@ HERE = Path(__file__).resolve().parent
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark before `-m` selects."""
+    """Mark the tests before `-m` selects."""
     for item in items:
         if item.path.is_relative_to(HERE):
             item.add_marker(pytest.mark.browser)
@@ -39,14 +39,14 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.fixture(scope="session")
 def browser() -> Iterator[Browser]:
-    """One headless Chromium for all tests of the process."""
+    """Provide one headless Chromium for all tests of the process."""
     with launched_browser() as browser:
         yield browser
 
 
 @pytest.fixture
 def page_watch() -> PageWatch:
-    """What the test's pages complain about; `allow()` what the test provokes on purpose."""
+    """Provide the collected errors of the test's pages; `allow()` expected ones."""
     return PageWatch()
 
 
@@ -59,7 +59,7 @@ def new_context(browser: Browser, page_watch: PageWatch) -> Iterator[ContextFact
 
 @pytest.fixture
 def page_factory(new_context: ContextFactory) -> Callable[..., Page]:
-    """Like `new_context`, but a page in a new context of its own."""
+    """Provide a function like `new_context` that returns a page in a new context of its own."""
 
     def new_page(
         size: tuple[int, int] = (1280, 800),
@@ -77,7 +77,7 @@ def page_factory(new_context: ContextFactory) -> Callable[..., Page]:
 def screenshot() -> Callable[[Page, str], object]:
     """`screenshot(page, name)` saves to the folder $REEMBODY_SCREENSHOTS, if it is set.
 
-    No test looks at its pictures, and to draw whole pages costs more than most of what is tested.
+    No test examines its pictures, and drawing whole pages costs more than most of what is tested.
     """
     chosen = os.environ.get(SCREENSHOTS_VARIABLE)
     if not chosen:
@@ -95,7 +95,7 @@ def axe() -> Callable[[Page], list[str]]:
 
 @pytest.fixture(scope="session")
 def telemetry_bundle() -> Bundle:
-    """The client, bundled for the browser once in a run."""
+    """Provide the telemetry client, bundled for the browser once per run."""
     folder = run_folder() / "telemetry-bundle"
     with once("telemetry-bundle") as mark:
         if mark:
@@ -106,7 +106,7 @@ def telemetry_bundle() -> Bundle:
 
 @pytest.fixture
 def running_server(shared_server: LiveServer) -> LiveServer:
-    """The server of this process; it runs again if the test before left it dead."""
+    """Provide the server of this process, restarted if the previous test left it stopped."""
     try:
         _ = shared_server.pid
     except RuntimeError:
@@ -116,7 +116,7 @@ def running_server(shared_server: LiveServer) -> LiveServer:
 
 @pytest.fixture
 def headset_site(running_server: LiveServer) -> Iterator[Site]:
-    """A server with its operator signed in."""
+    """Provide a server with its operator signed in."""
     with running_server.client() as operator:
         ok(operator.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
         database = open_database(f"sqlite:///{running_server.data_dir / 'reembody.sqlite'}")
@@ -131,8 +131,8 @@ def wear(
     new_context: ContextFactory,
     page_watch: PageWatch,
 ) -> Wear:
-    """A paired headset on a page; `context` None is a new one."""
-    # What a browser says when a server is away.
+    """Provide a function that puts a paired headset on a page, by default in a new context."""
+    # The browser reports this error when a server is unavailable.
     page_watch.allow(r"WebSocket connection to .* failed")
 
     def put_on(

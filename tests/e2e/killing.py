@@ -1,4 +1,4 @@
-"""Pages and browsers that end without warning."""
+"""End pages and browsers without warning."""
 
 import os
 import signal
@@ -14,14 +14,14 @@ from tests.support.chromium_binary import find_chromium
 
 
 def crash(page: Page) -> None:
-    """End the page's process."""
+    """Crash the page's process."""
     with page.expect_event("crash"), suppress(Error):
         page.goto("chrome://crash")
 
 
 @contextmanager
 def kept_profile(browser: Browser, profile: Path) -> Iterator[BrowserContext]:
-    """A browser of its own whose storage stays in a folder."""
+    """Run a separate browser whose storage is kept in a folder."""
     chromium = find_chromium()
     context = browser.browser_type.launch_persistent_context(
         profile,
@@ -37,7 +37,7 @@ def kept_profile(browser: Browser, profile: Path) -> Iterator[BrowserContext]:
 
 
 def kill_browser(profile: Path) -> None:
-    """SIGKILL for the browser of this profile, and so for all its processes."""
+    """Send SIGKILL to the browser of this profile, which ends all its processes."""
     for process in psutil.process_iter(["cmdline"]):
         if f"--user-data-dir={profile}" in (process.info["cmdline"] or []):
             with suppress(psutil.NoSuchProcess):

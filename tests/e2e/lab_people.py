@@ -24,13 +24,13 @@ class BlindedLab:
     admin: httpx2.Client
 
     def invitation(self, role: str) -> str:
-        """The link of a fresh invitation to all studies."""
+        """Return the link of a new invitation to all studies."""
         url = ok(self.admin.post("/api/invitations", json={"role": role}))["url"]
         assert isinstance(url, str)
         return url
 
     def session(self, code: str) -> str:
-        """The address of a new session's cockpit."""
+        """Return the URL of a new session's cockpit."""
         wish = {"participant_code": code}
         made = ok(self.admin.post(f"/api/studies/{STUDY}/sessions", json=wish))
         return f"{self.server.url}/#/sessions/{made['id']}"
@@ -38,7 +38,7 @@ class BlindedLab:
 
 @contextmanager
 def blinded_lab(server: LiveServer) -> Iterator[BlindedLab]:
-    """Blind the shipped study by a new version."""
+    """Blind the shipped study with a new version."""
     with server.client() as admin:
         ok(admin.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
         yaml = ok(admin.get(f"/api/studies/{STUDY}"))["yaml"]
@@ -59,7 +59,7 @@ def make_account(page: Page, link: str, name: str) -> None:
 
 
 def invite_in(page: Page, role: str, note: str) -> str:
-    """Invite someone at the console's page People; the link."""
+    """Invite someone on the console's page People and return the link."""
     page.get_by_role("button", name="Invite someone").click()
     page.get_by_role("radio", name=role).click()
     page.get_by_label("Who is it for?").fill(note)

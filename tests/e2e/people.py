@@ -1,4 +1,4 @@
-"""What people do with the pages: an experimenter at the console, a participant at the tablet."""
+"""Actions of an experimenter at the console and a participant at the tablet."""
 
 import re
 from collections.abc import Mapping
@@ -13,7 +13,7 @@ PICTURE_HIDDEN = "localStorage.setItem('reembody.cockpit.live', 'false')"
 
 
 class Experimenter:
-    """At the console, by the words on the page."""
+    """An experimenter at the console, who finds controls by the texts on the page."""
 
     def __init__(self, page: Page, url: str) -> None:
         self.page, self.url = page, url
@@ -31,7 +31,7 @@ class Experimenter:
         self.page.goto(f"{self.url}/#/studies/{study}/{tab}")
 
     def create_session(self) -> None:
-        """Make a session for a participant and open it."""
+        """Create a session for a participant and open it."""
         self.page.get_by_role("button", name="New session").first.click()
         self.page.get_by_role("button", name="Create session").click()
         # Nothing is paired yet, so the pre-flight is open.
@@ -47,15 +47,15 @@ class Experimenter:
         return code
 
     def press(self, name: str) -> None:
-        """Press the button of that name as soon as it is there."""
+        """Press the button of that name as soon as it is enabled."""
         button = self.page.get_by_role("button", name=name).first
         expect(button).to_be_enabled(timeout=PATIENCE_MS)
         button.click()
 
     def start(self) -> None:
-        """Start the session, with a reason where the pre-flight asks for one.
+        """Start the session, with a reason if the pre-flight asks for one.
 
-        What is missing may come while the reason is written; the same button then starts.
+        Missing devices may arrive while the reason is entered; the same button then starts.
         """
         self.press("Start session")
         asked = self.page.get_by_role("dialog")
@@ -67,7 +67,7 @@ class Experimenter:
             expect(begun).to_be_visible(timeout=PATIENCE_MS)
 
     def match_height(self, stated_cm: str, matched_cm: str) -> None:
-        """Find the height that was stated on the tablet, and enter the matched one."""
+        """Check the height that was stated on the tablet, and enter the matched one."""
         stated = self.page.get_by_label("Stated height")
         expect(stated).to_have_value(f"{stated_cm} cm", timeout=PATIENCE_MS)
         self.page.get_by_label("Matched height").fill(matched_cm)
@@ -80,17 +80,17 @@ class Experimenter:
 
 
 class Participant:
-    """At the tablet."""
+    """A participant at the tablet."""
 
     def __init__(self, page: Page, url: str) -> None:
         self.page, self.url = page, url
 
     def pair(self, code: str) -> None:
-        """Scan the code."""
+        """Open the page that the pairing QR code leads to."""
         self.page.goto(f"{self.url}/tablet?code={code}")
 
     def agree(self) -> None:
-        """Consent."""
+        """Agree to take part."""
         self.page.get_by_role("button", name="I agree to take part").click()
 
     def have_read(self) -> None:
@@ -111,7 +111,7 @@ class Participant:
             self.page.get_by_role("button", name="Next").click()
 
     def waits(self) -> None:
-        """Wait until the answers are stored and the tablet says so, or goes on."""
+        """Wait until the answers are stored and the form has closed."""
         send = self.page.get_by_role("button", name="Send answers")
         expect(send).to_have_count(0, timeout=PATIENCE_MS)
 

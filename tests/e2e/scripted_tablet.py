@@ -1,4 +1,4 @@
-"""Somebody at a tablet who answers at once, over the interface that the tablet's page uses."""
+"""A scripted tablet that answers immediately, through the interface of the tablet's page."""
 
 import threading
 from typing import Any, Self
@@ -13,7 +13,7 @@ LOOK_EVERY_S = 0.1
 
 
 class ScriptedTablet:
-    """Pairs by the code from the console; reads, agrees and answers until the session is over."""
+    """Pair with the console's code, then read, agree and answer until the session is over."""
 
     def __init__(self, url: str, code: str) -> None:
         self.error: BaseException | None = None

@@ -1,7 +1,8 @@
-"""The browser's telemetry client on a page of its own, and the oracle of what it sent.
+"""Run the browser's telemetry client on a page of its own, and verify what it sent.
 
-What the page makes is a function of stream, epoch and seq (`frontend/src/vr/telemetry/testing/
-bench.ts`), so the test knows every bit of it without asking the page, which may be dead.
+The page's data are a function of stream, epoch and seq
+(`frontend/src/vr/telemetry/testing/bench.ts`), so the test knows every bit of them without asking
+the page, which may have crashed.
 """
 
 import base64
@@ -32,7 +33,7 @@ Mode = Literal["page", "worker"]
 
 
 def table() -> NDArray[np.float32]:
-    """Movement with every odd float in it, so that a bit that changes on the way is seen."""
+    """Return movement that contains every unusual float, so that any changed bit is detected."""
     rows = movement(seed=11)
     odd = every_odd_float()
     rows[100 : 100 + len(odd)] = odd
@@ -41,7 +42,7 @@ def table() -> NDArray[np.float32]:
 
 @dataclass
 class Headset:
-    """A page with the client, in one browser context; `open` again is a new life of the page."""
+    """A page with the client, in one browser context; calling `open` again restarts the client."""
 
     context: BrowserContext
     bundle: Bundle
@@ -58,7 +59,7 @@ class Headset:
         return self
 
     def open(self) -> int:
-        """Connect; the epoch of this run."""
+        """Connect and return the epoch of this run."""
         options = {
             "url": f"{self.server.url.replace('http', 'ws', 1)}/api/vr/stream",
             "token": self.token,
@@ -71,43 +72,43 @@ class Headset:
         return int(self.page.evaluate("(args) => bench.open(...args)", arguments))
 
     def produce(self, batches: int, speed: float | None) -> None:
-        """Make batches of both streams and wait until all are taken."""
+        """Produce batches of both streams and wait until all are accepted."""
         self.page.evaluate("(args) => bench.produce(...args)", [batches, speed])
 
     def begin(self, batches: int, speed: float | None) -> None:
-        """The same without waiting."""
+        """Start to produce batches of both streams without waiting."""
         self.page.evaluate("(args) => bench.begin(...args)", [batches, speed])
 
     def drained(self) -> float:
-        """Wait until everything is stored; seconds since the connection came up."""
+        """Wait until everything is stored; return the seconds since the connection opened."""
         return float(self.page.evaluate("() => bench.drained()"))
 
     def flush(self) -> None:
-        """Bring the journal to disk."""
+        """Write the journal to disk."""
         self.page.evaluate("() => bench.client.flush()")
 
     def wait_for(self, condition: str) -> None:
-        """Until an expression of the page holds."""
+        """Wait until an expression of the page is true."""
         self.page.wait_for_function(f"() => {condition}", timeout=60_000)
 
     def tell(self, expression: str) -> Any:
-        """What an expression of the page comes to."""
+        """Return the value of an expression of the page."""
         return self.page.evaluate(f"() => {expression}")
 
     @property
     def status(self) -> dict[str, Any]:
-        """How the sending goes."""
+        """Return the status of the sending."""
         status: dict[str, Any] = self.tell("bench.client.status")
         return status
 
     @property
     def made(self) -> "Made":
-        """What was taken so far."""
+        """Return the numbers of frames and reports accepted so far."""
         made = self.tell("bench.produced")
         return Made(int(made["frames"]), int(made["reports"]))
 
     def close(self) -> None:
-        """Hang up."""
+        """Close the connection."""
         self.page.evaluate("() => bench.client.close()")
 
 
@@ -117,34 +118,34 @@ Wear = Callable[..., Headset]
 
 @dataclass(frozen=True)
 class Meter:
-    """Memory and time of a page's main thread, by Chromium's own account."""
+    """Memory and processor time of a page's main thread, as Chromium reports them."""
 
     session: CDPSession
 
     @classmethod
     def of(cls, page: Page) -> "Meter":
-        """Begin to measure."""
+        """Start to measure a page."""
         session = page.context.new_cdp_session(page)
         session.send("Performance.enable")
         return cls(session)
 
     def heap_bytes(self) -> int:
-        """Objects and buffers that are alive now."""
+        """Return the size of all live objects and buffers."""
         self.session.send("HeapProfiler.collectGarbage")
         usage = self.session.send("Runtime.getHeapUsage")
         return int(usage["usedSize"] + usage.get("backingStorageSize", 0))
 
     def task_s(self) -> float:
-        """Time that the main thread has worked."""
+        """Return the processor time of the main thread."""
         metrics = self.session.send("Performance.getMetrics")["metrics"]
         return next(float(one["value"]) for one in metrics if one["name"] == "TaskDuration")
 
 
 @dataclass(frozen=True)
 class Made:
-    """What a run has made: frames of each stream, and reports.
+    """The numbers of frames per stream and of reports that a run produced.
 
-    `perhaps` more of each may have been made before the page died.
+    `perhaps` more of each may have been produced before the page crashed.
     """
 
     frames: int
@@ -153,7 +154,7 @@ class Made:
 
 
 def sent_by(runs: dict[int, Made]) -> LedgerJournal:
-    """What must be stored (as if acknowledged) and what may be, by epoch."""
+    """Return what must be stored (as if acknowledged) and what may be, by epoch."""
     ledger, rows = LedgerJournal(), table()
     for epoch, made in runs.items():
         seqs = np.arange(made.frames + made.perhaps)
@@ -173,6 +174,6 @@ def sent_by(runs: dict[int, Made]) -> LedgerJournal:
 
 
 def reconciled(server: LiveServer, session_id: str, runs: dict[int, Made]) -> Reconciliation:
-    """The database against what the runs have made; every frame bit by bit."""
+    """Compare the database bit by bit with what the runs produced."""
     with record_of(server) as db:
         return reconcile(db, session_id, sent_by(runs))

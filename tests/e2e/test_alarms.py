@@ -1,4 +1,4 @@
-"""An alarm comes up at the console, is taken note of, goes away, and stays in the list."""
+"""Browser tests of an alarm on the console."""
 
 import re
 import time
@@ -19,7 +19,11 @@ def test_an_alarm_comes_up_and_goes_away(
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
 ) -> None:
-    """The headset falls silent in a phase and wakes; nothing else on the page moves meanwhile."""
+    """An alarm appears, can be acknowledged, clears, and stays in the list.
+
+    It is raised by a headset that stops sending in a phase. Nothing else on the page moves
+    meanwhile.
+    """
     experimenter = Experimenter(page_factory((1280, 800)), headset_site.server.url)
     page, session_id = experimenter.page, materialised(headset_site)
     experimenter.log_in()

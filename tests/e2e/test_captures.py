@@ -1,4 +1,4 @@
-"""Captures at the console: brought in, looked at in space, mapped, and verified on avatars."""
+"""Browser tests of captures: uploaded, viewed in 3-D, mapped and verified on avatars."""
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -17,7 +17,7 @@ from tests.support.server import ADMIN_PASSWORD, LiveServer
 NewConsole = Callable[..., Page]
 FRAMES = 150
 
-# Copied from the picture itself: an empty stage has one colour.
+# Read from a copy of the picture: an empty stage has one colour.
 COLOURS = """canvas => {
     const copy = Object.assign(document.createElement('canvas'),
         { width: canvas.width, height: canvas.height });
@@ -37,14 +37,14 @@ WITHOUT_WEBGL = """HTMLCanvasElement.prototype.getContext = new Proxy(
 
 @pytest.fixture(scope="module")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveServer]:
-    """One server for the tests of this file."""
+    """Provide one server for the tests of this file."""
     with LiveServer(tmp_path_factory.mktemp("captures")) as server:
         yield server
 
 
 @pytest.fixture(scope="module")
 def admin(server: LiveServer) -> Iterator[Client]:
-    """The admin, signed in."""
+    """Provide a client of the signed-in admin."""
     with server.client() as admin:
         admin.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD})
         yield admin
@@ -52,7 +52,7 @@ def admin(server: LiveServer) -> Iterator[Client]:
 
 @pytest.fixture(scope="module")
 def walk(admin: Client) -> dict[str, Any]:
-    """A walk that is there already."""
+    """Provide an uploaded walk."""
     answer = admin.post(
         "/api/captures", params={"name": "a-walk.bvh"}, content=walk_bvh(FRAMES), timeout=60.0
     )
@@ -63,7 +63,7 @@ def walk(admin: Client) -> dict[str, Any]:
 
 @pytest.fixture
 def new_console(server: LiveServer, admin: Client, new_context: ContextFactory) -> NewConsole:
-    """Opens browsers of the admin, who is signed in there as well."""
+    """Provide a function that opens browsers in which the admin is signed in."""
 
     def console(scheme: ColorScheme = "light") -> Page:
         context = new_context((1180, 820), scheme)
@@ -80,7 +80,7 @@ def new_console(server: LiveServer, admin: Client, new_context: ContextFactory) 
 
 @pytest.fixture
 def console(new_console: NewConsole) -> Page:
-    """The admin's browser."""
+    """Provide the admin's browser."""
     return new_console()
 
 
@@ -90,7 +90,7 @@ def open_capture(page: Page, server: LiveServer, capture: dict[str, Any], tab: s
 
 
 def stage(page: Page) -> Locator:
-    """The picture in space, once something has been drawn."""
+    """Return the 3-D picture, once something has been drawn."""
     canvas = page.locator("canvas[data-frame]")
     expect(page.locator("[data-way=space]")).to_be_visible(timeout=PATIENCE_MS)
     return canvas
@@ -99,7 +99,7 @@ def stage(page: Page) -> Locator:
 def test_a_walk_is_brought_in_and_moves_in_space(
     server: LiveServer, console: Page, tmp_path: Path
 ) -> None:
-    """A dropped file is listed, drawn, scrubbed by keyboard, renamed and deleted."""
+    """A dropped file is listed, drawn in 3-D, scrubbed by keyboard, renamed and deleted."""
     file = tmp_path / "brought.bvh"
     file.write_bytes(walk_bvh(FRAMES + 1))
     console.goto(f"{server.url}/#/captures")
@@ -154,7 +154,7 @@ def test_another_unit_reads_the_file_again(
 
 
 def size_m(panel: Locator) -> float:
-    """The height that the panel tells."""
+    """Return the height that the panel shows."""
     told = panel.get_by_text("m high")
     expect(told).to_be_visible(timeout=PATIENCE_MS)
     return float(told.inner_text().rpartition(", ")[2].removesuffix(" m high"))
@@ -201,7 +201,7 @@ def test_a_joint_map_is_changed_undone_and_saved(
 def test_a_walk_is_verified_on_three_avatars(
     server: LiveServer, console: Page, walk: dict[str, Any], tmp_path: Path
 ) -> None:
-    """Lifts agree on 130, 165 and 190 cm, another can be added, and each can be taken along."""
+    """Foot lifts agree on avatars of 130, 165 and 190 cm; another can be added and downloaded."""
     open_capture(console, server, walk, "verification")
     expect(console.get_by_text("Every avatar lifts each foot as often")).to_be_visible(
         timeout=PATIENCE_MS
@@ -225,7 +225,7 @@ def test_a_walk_is_verified_on_three_avatars(
 def test_a_file_that_cannot_be_read_says_where(
     server: LiveServer, console: Page, tmp_path: Path, page_watch: PageWatch
 ) -> None:
-    """The line, the reason and what to do stay beside the name; an AMC asks for its ASF."""
+    """An unreadable file shows the line, reason and remedy; an AMC asks for its ASF."""
     page_watch.allow(r"status of 422")
     broken = tmp_path / "broken.bvh"
     broken.write_bytes(walk_bvh(2).replace(b"CHANNELS 3", b"CHANNELS 9", 1))
@@ -245,7 +245,7 @@ def test_a_file_that_cannot_be_read_says_where(
 def test_without_webgl_the_movement_is_seen_from_the_side(
     server: LiveServer, console: Page, walk: dict[str, Any]
 ) -> None:
-    """A browser without 3-D says so and draws the body as lines that move with the scrubber."""
+    """Without WebGL the page says so and draws the movement as lines from the side."""
     console.add_init_script(WITHOUT_WEBGL)
     open_capture(console, server, walk)
     expect(console.get_by_text("This browser cannot show 3-D")).to_be_visible(timeout=PATIENCE_MS)
@@ -265,7 +265,7 @@ def test_every_page_of_a_capture_is_accessible(
     screenshot: Callable[[Page, str], object],
     scheme: ColorScheme,
 ) -> None:
-    """Nothing serious or critical on the list and on each tab."""
+    """The list of captures and each tab of one have no serious accessibility violation."""
     page = new_console(scheme)
     page.goto(f"{server.url}/#/captures")
     expect(page.get_by_role("link", name="a-walk.bvh")).to_be_visible()

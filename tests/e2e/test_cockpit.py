@@ -1,4 +1,4 @@
-"""The cockpit by keyboard: the pre-flight asks for a reason, and the movement is seen live."""
+"""Browser tests of the cockpit by keyboard, from the pre-flight to the live picture."""
 
 import re
 from collections.abc import Callable
@@ -20,7 +20,7 @@ def test_a_start_needs_a_reason_and_the_boxes_light_up(
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
 ) -> None:
-    """Without a tablet the start is asked about; avatar and boxes are drawn as they move."""
+    """Starting without a tablet asks for a reason, and avatar and boxes are drawn as they move."""
     if headset_site.operator.get(f"/api/studies/{STUDY}").status_code == 404:
         ok(headset_site.operator.post("/api/studies", json={"yaml": short_study()}))
     view = ok(headset_site.operator.post(f"/api/studies/{STUDY}/sessions", json={}))
@@ -77,7 +77,7 @@ def _events(session_id: str) -> str:
 
 
 def _walk_to_the_hand_task(site: Site, session_id: str) -> None:
-    """Skip what is before the avatar, let it appear, skip on."""
+    """Skip the steps before the avatar, let it appear, and skip to the hand task."""
     while True:
         view = site.view(session_id)
         step = view["steps"][view["current"]["index"]]

@@ -1,4 +1,4 @@
-"""Consent as a participant gives it and as a lab files it: drawn, typed, printed, on paper."""
+"""Browser tests of consent: drawn, typed, printed and on paper."""
 
 from collections.abc import Callable
 
@@ -23,7 +23,7 @@ READ, TAKE_PART, LATER = (
 def pages(
     running_server: LiveServer, page_factory: Callable[..., Page], page_watch: PageWatch
 ) -> tuple[Experimenter, Participant]:
-    """A session of the study with a signed consent, started, and its tablet."""
+    """Provide a started session of the study with a signed consent, and its tablet."""
     page_watch.allow(r"status of 401")
     with running_server.client() as api:
         api.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD})
@@ -43,7 +43,7 @@ def pages(
 
 
 def shown_signature(page: Page) -> str:
-    """The strokes on the surface."""
+    """Return the strokes drawn on the signature area."""
     return page.locator("svg[role=img] path").first.get_attribute("d") or ""
 
 
@@ -66,7 +66,10 @@ def test_a_drawn_signature_is_filed_as_it_was_given(
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
 ) -> None:
-    """Nothing goes past an unticked line, a reload loses nothing, the record shows all of it."""
+    """A signed consent needs every required line, survives a reload and is shown in full.
+
+    The consent record contains all of it.
+    """
     experimenter, participant = pages
     tablet, console = participant.page, experimenter.page
     tablet.get_by_role("button", name=GO).click()
@@ -81,7 +84,7 @@ def test_a_drawn_signature_is_filed_as_it_was_given(
     expect(tablet.get_by_text("Please sign in the area above.")).to_be_visible()
     sign(tablet)
     drawn = shown_signature(tablet)
-    # Until it is kept: a stroke changes it many times a second.
+    # Wait until it is stored: a stroke changes it many times a second.
     tablet.wait_for_timeout(KEPT_AFTER_MS)
     tablet.reload()
     expect(tablet.get_by_label(TAKE_PART)).to_be_checked()
@@ -111,7 +114,7 @@ def test_a_drawn_signature_is_filed_as_it_was_given(
 def test_whoever_cannot_draw_signs_by_keyboard(
     pages: tuple[Experimenter, Participant],
 ) -> None:
-    """From the first line to the button without a pointer."""
+    """A participant can consent by keyboard alone, typing their name."""
     experimenter, participant = pages
     tablet, console = participant.page, experimenter.page
     for line in (READ, TAKE_PART):

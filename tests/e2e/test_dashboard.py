@@ -1,4 +1,4 @@
-"""Figures and tests on the pages: chosen by the address, saved as files, read by everybody."""
+"""Browser tests of figures and statistical tests, filtered by the URL and saved as files."""
 
 from collections.abc import Callable
 
@@ -15,7 +15,7 @@ from tests.support.server import LiveServer
 
 
 def _falling(step: Step, _: str) -> int:
-    """Ratings that fall with the added latency."""
+    """Return a rating that falls with the added latency."""
     return 6 - int((step.latency_ms or 0.0) / 100.0)
 
 
@@ -25,7 +25,10 @@ def test_figures_are_chosen_by_the_address_and_saved(
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
 ) -> None:
-    """A filter in the address, a picture and rows of a figure, statistics, what was declared."""
+    """A filter in the URL selects the figures, which are saved as pictures and rows.
+
+    Statistics and the preregistration are shown too.
+    """
     database = open_database(f"sqlite:///{live_server.data_dir / 'reembody.sqlite'}")
     with database.writing() as db:
         add_version(db, study_by_key(db, STUDY), FILE + SECTION, NOW)

@@ -1,4 +1,4 @@
-"""What goes wrong at the desk when hands are faster than pages: in real browsers, with figures."""
+"""Browser tests of simultaneous or repeated actions at the desk, with figures."""
 
 import re
 import time
@@ -29,7 +29,7 @@ EVERY_SUBMISSION_AT_ONCE = """(() => {
     };
 })()"""
 
-# By the pages' own clocks: one press after the other would be two operators who take turns.
+# Timed by the pages' own clocks: pressing one after the other would not be simultaneous.
 TOGETHER_IN_S = 1.5
 PRESS_AT = """(at_ms) => {
     const press = () => [...document.querySelectorAll("[role=dialog] button")]
@@ -41,7 +41,7 @@ PRESS_AT = """(at_ms) => {
 def test_a_form_sent_fifty_times_at_once_is_stored_once(
     headset_site: Site, page_factory: Callable[..., Page], page_watch: PageWatch
 ) -> None:
-    """The tablet's own request with its key, in parallel from one browser: one row, one receipt."""
+    """A form sent fifty times in parallel by one browser is stored once, with one receipt."""
     page_watch.allow(r"status of 401")
     session_id = headset_site.join()
     headset_site.skip_to(session_id, FORM)
@@ -63,14 +63,17 @@ def test_a_form_sent_fifty_times_at_once_is_stored_once(
 
 
 def as_set(receipts: list[list[Any]]) -> set[tuple[int, str]]:
-    """The different answers."""
+    """Return the distinct responses."""
     return {(status, receipt) for status, receipt in receipts}
 
 
 def test_of_two_tablets_with_one_code_one_holds_the_session(
     headset_site: Site, page_factory: Callable[..., Page], page_watch: PageWatch
 ) -> None:
-    """The second is told what to do; a new code is the takeover, and the first one says so."""
+    """Of two tablets with one code only one is paired, and a new code moves the session.
+
+    The second tablet shows what to do, and the first one says that it was replaced.
+    """
     page_watch.allow(r"status of (401|404|410)")
     session_id, url = headset_site.join(), headset_site.server.url
     headset_site.command(session_id, "start")
@@ -95,7 +98,7 @@ def test_of_two_tablets_with_one_code_one_holds_the_session(
 
 
 def wait_for_any(pages: list[Page], text: str) -> list[Page]:
-    """The pages that say `text` once one of them does: who was second first asks what changed."""
+    """Return the pages that show `text`, once one of them does."""
     until_s = time.monotonic() + PATIENCE_MS / 1000
     while time.monotonic() < until_s:
         saying = [page for page in pages if page.get_by_text(text).count()]
@@ -108,7 +111,7 @@ def wait_for_any(pages: list[Page], text: str) -> list[Page]:
 def test_two_operators_press_start_in_two_browsers(
     headset_site: Site, page_factory: Callable[..., Page], page_watch: PageWatch
 ) -> None:
-    """The session begins once, and whoever came second reads on the page that it has begun."""
+    """A session started in two browsers simultaneously starts once, and the second one says so."""
     page_watch.allow(r"status of 409")
     session_id = headset_site.join()
     pages = [page_factory((1280, 800)) for _ in range(2)]

@@ -1,4 +1,4 @@
-"""Writing a study and an instrument in the console, as a lab does it, on a real server."""
+"""Browser tests of writing a study and an instrument in the console, on a real server."""
 
 from collections.abc import Callable
 
@@ -16,25 +16,25 @@ STUDY = "reembodiment-latency"
 
 
 class Writer(Experimenter):
-    """Somebody who writes studies, at the console."""
+    """An author of studies, at the console."""
 
     @property
     def text(self) -> str:
-        """The YAML in the field, as far as it is on the screen."""
+        """Return the visible YAML of the text field."""
         return str(self.page.locator(".cm-content").inner_text())
 
     def open_section(self, name: str) -> None:
-        """A page of the form."""
+        """Open a section of the form."""
         self.page.get_by_role("tab", name=name, exact=False).first.click()
 
     def replace_all(self, text: str) -> None:
-        """Write the whole file anew."""
+        """Replace the whole file."""
         self.page.locator(".cm-content").click()
         self.page.keyboard.press("Control+A")
         self.page.keyboard.insert_text(text)
 
     def sees_no_problem(self) -> None:
-        """Wait until the file was checked and is sound, and the page has come to rest."""
+        """Wait until the file was checked without problems and the page is idle."""
         expect(self.page.get_by_text("No problems")).to_be_visible()
         self.page.wait_for_load_state("networkidle")
         self.page.wait_for_timeout(300)
@@ -42,7 +42,7 @@ class Writer(Experimenter):
 
 @pytest.fixture
 def writer(live_server: LiveServer, page_factory: Callable[..., Page]) -> Writer:
-    """Signed in, on the list of studies."""
+    """Provide a signed-in author on the list of studies."""
     writer = Writer(page_factory((1280, 800)), live_server.url)
     writer.log_in()
     return writer
@@ -51,7 +51,10 @@ def writer(live_server: LiveServer, page_factory: Callable[..., Page]) -> Writer
 def test_a_study_from_template_to_second_version(
     writer: Writer, axe: Callable[[Page], list[str]], screenshot: Callable[[Page, str], object]
 ) -> None:
-    """Create it, break it, see where, undo, dry run, save, change, see what changes, compare."""
+    """A study is created from a template, corrected, dry-run, saved, changed and compared.
+
+    A problem leads to its line, and a change can be undone.
+    """
     page = writer.page
     page.get_by_role("link", name="New study").click()
     expect(page.get_by_role("heading", name="From a template")).to_be_visible()
@@ -104,7 +107,7 @@ def test_a_study_from_template_to_second_version(
 
 
 def test_what_is_not_saved_is_not_lost(writer: Writer) -> None:
-    """Leaving asks; coming back finds what was written, and it can be dropped."""
+    """Leaving with unsaved changes asks first, and returning offers to keep or discard them."""
     page = writer.page
     writer.open_tab(STUDY, "edit")
     writer.sees_no_problem()
@@ -121,7 +124,7 @@ def test_what_is_not_saved_is_not_lost(writer: Writer) -> None:
 
 
 def test_an_archived_study_comes_back(writer: Writer) -> None:
-    """Archiving asks, takes it off the list, and restoring puts it there again."""
+    """An archived study leaves the list after a confirmation, and restoring brings it back."""
     page = writer.page
     writer.open_tab(STUDY, "versions")
     page.get_by_role("button", name="Archive").click()
@@ -138,7 +141,7 @@ def test_an_archived_study_comes_back(writer: Writer) -> None:
 def test_an_own_instrument_is_written_tried_and_stored(
     writer: Writer, axe: Callable[[Page], list[str]], screenshot: Callable[[Page, str], object]
 ) -> None:
-    """A slip in a formula is shown at its line; the preview scores as the formula says."""
+    """A mistake in a formula is shown at its line, and the preview scores by the formula."""
     page = writer.page
     page.get_by_role("link", name="Instruments").click()
     expect(page.get_by_role("link", name="Presence (IPQ)")).to_be_visible()
@@ -168,7 +171,7 @@ def test_editor_and_library_are_accessible(
     screenshot: Callable[[Page, str], object],
     scheme: ColorScheme,
 ) -> None:
-    """Every section of the form and every tab of an instrument: nothing serious, in German too."""
+    """No section of the form or tab of an instrument has a serious violation, also in German."""
     writer = Writer(page_factory((1180, 820), scheme), running_server.url)
     writer.log_in()
     page = writer.page
@@ -193,7 +196,7 @@ def test_editor_and_library_are_accessible(
 def test_many_steps_fit_under_a_finger(
     running_server: LiveServer, page_factory: Callable[..., Page], size: tuple[int, int]
 ) -> None:
-    """All 21 answers of the sickness scale are in sight and at least 44 px wide and high."""
+    """All 21 answers of the sickness scale are visible and at least 44 px wide and high."""
     page = page_factory(size)
     writer = Writer(page, running_server.url)
     writer.log_in()

@@ -1,4 +1,4 @@
-"""An expert looks a study over; the equipment is measured; heights that differ are asked about."""
+"""Browser tests of an expert's session, the equipment's latency and differing heights."""
 
 from collections.abc import Callable
 
@@ -14,7 +14,7 @@ from tests.support.server import ADMIN_PASSWORD, LiveServer
 
 @pytest.fixture
 def experimenter(running_server: LiveServer, page_factory: Callable[..., Page]) -> Experimenter:
-    """Signed in, with the study that has options."""
+    """Provide a signed-in experimenter, with the study that has options."""
     with running_server.client() as api:
         ok(api.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
         if api.get(f"/api/studies/{KEY}").status_code == 404:
@@ -29,7 +29,7 @@ def test_what_an_expert_advises_reaches_the_study(
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
 ) -> None:
-    """Written beside the step they are in, listed by version, decided once."""
+    """An expert's suggestion is saved with its step, listed by version and decided once."""
     page = experimenter.page
     experimenter.open_tab(KEY)
     page.get_by_role("button", name="New session").first.click()
@@ -59,7 +59,7 @@ def test_a_measurement_of_the_equipment_is_recorded_and_retired(
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
 ) -> None:
-    """The newest is marked; a mistake stays in the history with its reason."""
+    """The newest equipment measurement is marked, and a retired one stays with its reason."""
     page = experimenter.page
     page.get_by_role("link", name="Equipment").click()
     for delay in ("41.3", "44.8"):
@@ -85,7 +85,7 @@ def test_a_measurement_of_the_equipment_is_recorded_and_retired(
 def test_heights_that_differ_are_asked_about(
     experimenter: Experimenter, running_server: LiveServer
 ) -> None:
-    """More than 10 cm apart: the page asks once, then saves what was typed."""
+    """Heights that differ by more than 10 cm are questioned once, then saved as entered."""
     with running_server.client() as api:
         ok(api.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
         session = session_at(api, "height")["id"]

@@ -1,4 +1,4 @@
-"""What somebody meets who tries things out: no network, wrong addresses, odd codes, other files."""
+"""Browser tests of a first encounter: no network, wrong URLs, odd codes, other files."""
 
 from collections.abc import Callable
 
@@ -17,7 +17,7 @@ LONG = "P-" + "0" * 60
 
 @pytest.fixture
 def experimenter(running_server: LiveServer, page_factory: Callable[..., Page]) -> Experimenter:
-    """Signed in at a server that only this computer can reach."""
+    """Provide an experimenter signed in at a server that only this computer can reach."""
     made = Experimenter(page_factory(), running_server.url)
     made.log_in()
     return made
@@ -34,7 +34,7 @@ def test_no_device_is_sent_to_its_own_localhost(
     size: tuple[int, int],
     scheme: ColorScheme,
 ) -> None:
-    """There is a code, no QR code and no address, and how to let devices in; a headset by cable."""
+    """Without a network the pairing dialog shows a code, no QR code or URL, and a remedy."""
     experimenter = Experimenter(page_factory(size, scheme), running_server.url)
     experimenter.log_in()
     page = experimenter.page
@@ -57,7 +57,7 @@ def test_no_device_is_sent_to_its_own_localhost(
 def test_an_unpaired_tablet_complains_of_nothing(
     running_server: LiveServer, page_factory: Callable[..., Page]
 ) -> None:
-    """It asks for its code, and the browser's console stays empty (which every test looks at)."""
+    """An unpaired tablet asks for its code, and the browser's console stays empty."""
     page = page_factory((1180, 820))
     page.goto(f"{running_server.url}/tablet")
     expect(page.get_by_role("textbox").first).to_be_visible()
@@ -68,7 +68,7 @@ def test_an_unpaired_tablet_complains_of_nothing(
 def test_an_address_that_leads_nowhere_says_so(
     experimenter: Experimenter, screenshot: Screenshot, address: str
 ) -> None:
-    """Not the studies in its place; and a way to them."""
+    """A URL of no page says so and links to the studies."""
     page = experimenter.page
     page.goto(f"{page.url.partition('#')[0]}#/{address}")
     expect(page.get_by_text("Page not found")).to_be_visible()
@@ -78,7 +78,7 @@ def test_an_address_that_leads_nowhere_says_so(
 
 
 def test_a_long_code_is_not_cut_in_silence(experimenter: Experimenter) -> None:
-    """What was typed stays, with how long it may be."""
+    """A participant code that is too long stays in the field, with the maximum length."""
     page = experimenter.page
     experimenter.open_tab(STUDY)
     page.get_by_role("button", name="New session").first.click()
@@ -90,7 +90,7 @@ def test_a_long_code_is_not_cut_in_silence(experimenter: Experimenter) -> None:
 def test_a_loader_keeps_still_where_motion_is_not_wanted(
     running_server: LiveServer, page_factory: Callable[..., Page]
 ) -> None:
-    """Its dots are drawn once instead of flickering for ever."""
+    """The dots of a loader do not move if the user prefers reduced motion."""
     page = page_factory(motion="reduce")
     page.goto(running_server.url)
     repeats = page.evaluate(

@@ -1,4 +1,4 @@
-"""The first study, as a lab runs it: console, tablet and headset against the real server."""
+"""Browser test of a whole first study: console, tablet and headset on the real server."""
 
 import csv
 import io
@@ -39,7 +39,7 @@ DEMOGRAPHICS = {
 
 
 def short_study(task_s: float = 4) -> str:
-    """The shipped study with every duration cut, so that a whole session fits into a test."""
+    """Return the shipped study with short durations, so that a whole session fits into a test."""
     text = FILE.replace("key: reembodiment-latency", f"key: {STUDY}", 1)
     text = text.replace("duration_s: 120", f"duration_s: {task_s / 2}")
     text = re.sub(r"duration_s: 60", f"duration_s: {task_s}", text)
@@ -50,8 +50,8 @@ def short_study(task_s: float = 4) -> str:
 def pages(
     live_server: LiveServer, page_factory: Callable[..., Page], page_watch: PageWatch
 ) -> tuple[Experimenter, Participant]:
-    """An experimenter at a console and a participant at a tablet."""
-    # A tablet that is not paired asks who it is once and is told that it is nobody.
+    """Provide an experimenter at a console and a participant at a tablet."""
+    # An unpaired tablet requests its state once and gets 401.
     page_watch.allow(r"status of 401")
     console, tablet = page_factory((1280, 800)), page_factory((1180, 820))
     return Experimenter(console, live_server.url), Participant(tablet, live_server.url)
@@ -68,7 +68,7 @@ def test_a_whole_session_from_login_to_csv(
     task_s: float,
     watched: bool,  # noqa: FBT001 - by parameter
 ) -> None:
-    """An experimenter runs a session by the pages; dashboard and CSV then hold its score."""
+    """After a whole session run through the pages, dashboard and CSV contain its score."""
     experimenter, participant = pages
     if not watched:
         experimenter.page.add_init_script(PICTURE_HIDDEN)

@@ -1,4 +1,4 @@
-"""The docs as help pages of the console: by keyboard alone, in both themes, in both languages."""
+"""Browser tests of the help pages: by keyboard alone, in both themes and languages."""
 
 from collections.abc import Callable
 
@@ -15,9 +15,9 @@ def test_help_is_found_read_and_searched_with_the_keyboard(
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
 ) -> None:
-    """`?` opens the page about where one is; the search leads to a heading; nothing is unreadable.
+    """The key `?` opens the help page of the current page, and the search leads to a heading.
 
-    Pictures, tables and links of the Markdown are there.
+    Pictures, tables and links of the Markdown are shown, and all text is accessible.
     """
     page = page_factory((1280, 800))
     experimenter = Experimenter(page, running_server.url)

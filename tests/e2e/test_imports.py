@@ -1,4 +1,4 @@
-"""Answers from another tool, through the page: mapped, checked, taken in; and what was declared."""
+"""Browser test of importing answers from another tool, and of the preregistration page."""
 
 from collections.abc import Callable
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""An operator runs a whole session without a mouse, and every key they press is counted."""
+"""Browser test of a whole session without a mouse, in which every key press is counted."""
 
 import re
 import sys
@@ -24,7 +24,7 @@ FARTHEST = 80
 """So many times Tab at most, from wherever the focus is."""
 ARMED_AFTER_MS = 800
 """The cockpit takes no Enter sooner after a step has changed, so that none is meant for another."""
-# Keys that are pressed in every session, and those of each phase of a task: docs/operator-steps.md.
+# Keys pressed in every session, and those of each task phase: docs/operator-steps.md.
 FIXED_AT_MOST, PER_PHASE = 35, 1
 PROCEDURE = """procedure:
   before:
@@ -59,24 +59,27 @@ def short_study() -> str:
 
 @dataclass
 class Keyboard:
-    """The operator's hands. `steps`: what each key press was for; `typed`: characters of texts."""
+    """The operator's keyboard. `steps`: the purpose of each key press.
+
+    `typed`: characters of texts.
+    """
 
     page: Page
     steps: list[str] = field(default_factory=list)
     typed: int = 0
 
     def press(self, key: str, why: str) -> None:
-        """One key."""
+        """Press one key."""
         self.steps.append(why)
         self.page.keyboard.press(key)
 
     def write(self, text: str) -> None:
-        """A text, where the focus is."""
+        """Type a text into the focused field."""
         self.typed += len(text)
         self.page.keyboard.type(text)
 
     def go_to(self, place: Locator, why: str) -> None:
-        """Press Tab until the focus is there."""
+        """Press Tab until the element has the focus."""
         expect(place).to_be_visible(timeout=PATIENCE_MS)
         for _ in range(FARTHEST):
             if self._is_at(place):
@@ -85,12 +88,12 @@ class Keyboard:
         raise AssertionError(f"Tab does not lead to {why}")
 
     def choose(self, place: Locator, why: str) -> None:
-        """Go there and press it."""
+        """Focus the element and press Enter."""
         self.go_to(place, why)
         self.press("Enter", why)
 
     def do_next(self, name: str) -> None:
-        """The one large button, by its key, as soon as it is there."""
+        """Press the key of the main button, as soon as it is enabled."""
         button = self.page.get_by_role("button", name=name).first
         expect(button).to_be_enabled(timeout=PATIENCE_MS)
         self.page.wait_for_timeout(ARMED_AFTER_MS)
@@ -100,7 +103,7 @@ class Keyboard:
         expect(button).not_to_be_visible(timeout=PATIENCE_MS)
 
     def is_held(self) -> bool:
-        """Whether the focus is on a control, whose own Enter then is."""
+        """Return whether the focus is on a control that handles Enter itself."""
         return bool(
             self.page.evaluate("() => document.activeElement?.closest('button, a') != null")
         )
@@ -111,7 +114,7 @@ class Keyboard:
 
 @contextmanager
 def paired(keyboard: Keyboard, url: str) -> Iterator[tuple[ScriptedTablet, Wearer]]:
-    """Show both codes; the devices use them, which closes the dialogs."""
+    """Show both codes; the devices pair with them, which closes the dialogs."""
     with (
         ScriptedTablet(url, code_for(keyboard, "tablet")) as tablet,
         _gone(keyboard),
@@ -122,7 +125,7 @@ def paired(keyboard: Keyboard, url: str) -> Iterator[tuple[ScriptedTablet, Weare
 
 
 def code_for(keyboard: Keyboard, device: str) -> str:
-    """Ask for a device's code and read it."""
+    """Open a device's pairing dialog and return the code."""
     page = keyboard.page
     keyboard.press(device[0], f"pair the {device}")
     shown = page.get_by_role("dialog").get_by_text(re.compile(r"^[0-9A-Z]{3}-[0-9A-Z]{3}$"))
@@ -137,7 +140,7 @@ def _gone(keyboard: Keyboard) -> Iterator[None]:
 
 
 def log_in_and_create(keyboard: Keyboard, url: str) -> None:
-    """From the empty browser to the cockpit of a new session."""
+    """Go from the login page to the cockpit of a new session."""
     page = keyboard.page
     page.goto(url)
     expect(page.get_by_label("User name")).to_be_focused()
@@ -154,7 +157,7 @@ def log_in_and_create(keyboard: Keyboard, url: str) -> None:
 
 
 def start(keyboard: Keyboard) -> None:
-    """Where a check of the equipment has failed, the record says why it was right to go on."""
+    """Start the session, with a reason if a check of the equipment has failed."""
     page = keyboard.page
     page.wait_for_timeout(ARMED_AFTER_MS)
     if keyboard.is_held():
@@ -173,7 +176,7 @@ def start(keyboard: Keyboard) -> None:
 def console(
     running_server: LiveServer, page_factory: Callable[..., Page], page_watch: PageWatch
 ) -> Page:
-    """An empty browser; the server has the short study."""
+    """Provide an empty browser, with the short study on the server."""
     page_watch.allow(r"status of 401")
     with running_server.client() as api:
         ok(api.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
@@ -188,7 +191,7 @@ def test_a_whole_session_without_a_mouse(
     running_server: LiveServer,
     watched: bool,  # noqa: FBT001 - by parameter
 ) -> None:
-    """From the login to the end; a phase costs one key, and the rest stays within its bound."""
+    """A whole session without a mouse takes one key per phase and few others."""
     if not watched:
         console.add_init_script(PICTURE_HIDDEN)
     keyboard = Keyboard(console)
@@ -215,5 +218,5 @@ def test_a_whole_session_without_a_mouse(
 
 
 def tally(keyboard: Keyboard) -> dict[str, int]:
-    """How many keys each purpose took, in the order of the session."""
+    """Return how many keys each purpose took, in the order of the session."""
     return {why: keyboard.steps.count(why) for why in dict.fromkeys(keyboard.steps)}

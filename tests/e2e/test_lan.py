@@ -1,4 +1,4 @@
-"""Two devices on the lab's network: one has installed the certificate, the other has not yet."""
+"""Browser tests of devices on the lab's network, with and without its certificate."""
 
 import os
 from collections.abc import Callable, Iterator
@@ -32,7 +32,7 @@ STUDY = "reembodiment-latency"
 
 @pytest.fixture(scope="module")
 def lan(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LanServer]:
-    """A server with the built-in authority."""
+    """Provide a server with the built-in authority."""
     with LanServer(tmp_path_factory.mktemp("lan")) as server:
         yield server
 
@@ -41,7 +41,7 @@ def lan(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LanServer]:
 def trusting_browser(
     browser: Browser, lan: LanServer, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[Browser]:
-    """A browser whose user has installed the certificate of the help page, and that alone."""
+    """Provide a browser whose user has installed only the help page's certificate."""
     home, chromium = tmp_path_factory.mktemp("trusting"), find_chromium()
     certificate = home / "reembody-ca.crt"
     certificate.write_bytes(lan.authority())
@@ -60,7 +60,7 @@ def trusting_browser(
 
 @pytest.fixture
 def trusting(trusting_browser: Browser, page_watch: PageWatch) -> Iterator[ContextFactory]:
-    """Contexts of the browser that trusts the lab."""
+    """Provide contexts of the browser that trusts the lab."""
     with watched_contexts(trusting_browser, page_watch) as factory:
         yield factory
 
@@ -68,7 +68,7 @@ def trusting(trusting_browser: Browser, page_watch: PageWatch) -> Iterator[Conte
 def test_with_the_certificate_the_lab_works_over_https_and_wss(
     lan: LanServer, trusting: ContextFactory, page_watch: PageWatch
 ) -> None:
-    """Sign in, pair a tablet by its QR code's address, and a headset's socket is greeted."""
+    """With the certificate, signing in, pairing a tablet and a headset's socket work over TLS."""
     page_watch.allow(r"status of 401 .*/api/tablet/state")  # a tablet asks before it is paired
     operator = Experimenter(trusting().new_page(), lan.secure_url)
     operator.log_in()
@@ -91,7 +91,7 @@ def test_with_the_certificate_the_lab_works_over_https_and_wss(
 def test_without_it_the_device_is_refused_and_helped(
     lan: LanServer, new_context: ContextFactory, page_watch: PageWatch
 ) -> None:
-    """The browser shows no page of ours over https; the help page leads the way."""
+    """Without the certificate the browser refuses https, and the help page explains what to do."""
     page_watch.allow("ERR_CERT_AUTHORITY_INVALID")
     page = new_context((390, 844), locale="de-DE").new_page()
     with pytest.raises(Error, match="ERR_CERT_AUTHORITY_INVALID"):
@@ -116,7 +116,7 @@ def test_the_help_page_fits_and_can_be_read(
     screenshot: Callable[[Page, str], object],
     size: tuple[int, int],
 ) -> None:
-    """Nothing is cut off on a phone, nothing is serious to axe; in both languages."""
+    """The help page fits a phone and has no serious accessibility violation, in both languages."""
     page = page_factory(size)
     for language in ("en", "de"):
         page.goto(f"{lan.help_url}/?lang={language}")
@@ -136,7 +136,7 @@ def test_the_console_shows_how_to_reach_the_lab(
     screenshot: Callable[[Page, str], object],
     size: tuple[int, int],
 ) -> None:
-    """Addresses, fingerprint, the help page's QR code and the cable, by a link in the header."""
+    """The console's page Network shows addresses, fingerprint, QR code and the cable."""
     operator = Experimenter(page_factory(size), lan.url)
     operator.log_in()
     page = operator.page
@@ -159,7 +159,7 @@ def test_pairing_offers_the_certificate_first(
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
 ) -> None:
-    """The tablet's address is the network's, and the help page is one click away."""
+    """The pairing dialog shows the network address, and the certificate's page is a click away."""
     operator = Experimenter(page_factory(), lan.url)
     operator.log_in()
     operator.open_tab(STUDY)

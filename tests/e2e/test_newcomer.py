@@ -1,4 +1,4 @@
-"""Somebody who has never seen a session: one click, a tour, a file, and how much room it took."""
+"""Browser test of a newcomer: a scripted participant, the tour, a download and the storage."""
 
 import re
 import zipfile
@@ -18,7 +18,7 @@ STEPS = 8
 
 @pytest.fixture
 def fresh_server(tmp_path: Path) -> Iterator[LiveServer]:
-    """A server without any session."""
+    """Provide a server without any session."""
     with LiveServer(tmp_path) as server:
         yield server
 
@@ -29,7 +29,7 @@ def test_a_newcomer_sees_a_session_and_takes_its_data(
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
 ) -> None:
-    """Empty page, scripted participant, tour by the keyboard, stop, download, storage."""
+    """A newcomer starts a scripted participant, takes the tour, and downloads the data."""
     page = page_factory()
     experimenter = Experimenter(page, fresh_server.url)
     experimenter.log_in()
@@ -60,7 +60,7 @@ def test_a_newcomer_sees_a_session_and_takes_its_data(
 def _tour(
     page: Page, axe: Callable[[Page], list[str]], screenshot: Callable[[Page, str], object]
 ) -> None:
-    """Every page of it by the arrow keys; Escape ends it, and it does not come back by itself."""
+    """Go through every page of the tour by arrow keys; after Escape it does not reopen."""
     callout = page.get_by_role("dialog")
     for number in range(1, STEPS + 1):
         expect(callout.get_by_text(f"{number} of {STEPS}")).to_be_visible()
@@ -80,7 +80,7 @@ def _download(
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
 ) -> None:
-    """The file comes by itself once it is ready, under its name, and the list says so."""
+    """Check that a file is downloaded when ready, under its name, and marked in the list."""
     experimenter.open_tab(STUDY, "export")
     page.get_by_role("main").get_by_text("Simulated", exact=True).click()
     with page.expect_download(timeout=PATIENCE_MS) as download:

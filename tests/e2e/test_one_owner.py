@@ -1,4 +1,4 @@
-"""A second server and a full disk, as the operator at the console meets them."""
+"""Browser tests of a second server and of a full disk, as the operator sees them."""
 
 import re
 from collections.abc import Callable
@@ -27,7 +27,7 @@ from tests.support.server import LiveServer, free_port
 def test_the_console_goes_on_beside_a_second_server_that_is_refused(
     headset_site: Site, page_factory: Callable[..., Page]
 ) -> None:
-    """A phase runs; somebody starts another server on the same folder; the page does not change."""
+    """A second server that is refused on the same folder does not change a running cockpit."""
     server = headset_site.server
     experimenter = Experimenter(page_factory(), server.url)
     page, session_id = experimenter.page, materialised(headset_site)
@@ -57,7 +57,7 @@ def test_a_full_disk_is_said_on_the_page_and_an_export_can_be_deleted(
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
 ) -> None:
-    """What to do stands in the alarm; removing an export works; then all is well by itself."""
+    """A full disk raises an alarm with a remedy, and deleting an export clears it."""
     page_watch.allow(r"status of 503")
     folder = tmp_path / "live"
     server = LiveServer(folder, environment={"REEMBODY_LOW_DISK_BYTES": "0"})
@@ -84,5 +84,5 @@ def test_a_full_disk_is_said_on_the_page_and_an_export_can_be_deleted(
         (disk / "ballast").unlink()
         expect(strip).not_to_contain_text("Data cannot be stored", timeout=PATIENCE_MS)
         assert health(client)["storage"] == "ok"
-        # Before the server ends: its feed would break off.
+        # Leave the page before the server ends: its stream would be cut off.
         page.close()

@@ -1,4 +1,4 @@
-"""Every page of the console and the tablet, in both sizes and themes, on a real server."""
+"""Browser tests of every page of the console and the tablet, in both sizes and themes."""
 
 from collections.abc import Callable, Iterator
 
@@ -21,7 +21,7 @@ REPLAYED_S = 3.0
 
 @pytest.fixture(scope="module")
 def played_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveServer]:
-    """A server with a session of a simulated participant; the movement of one phase is there."""
+    """Provide a server with a simulated participant's session and the movement of one phase."""
     with LiveServer(tmp_path_factory.mktemp("played")) as server:
         database = open_database(f"sqlite:///{server.data_dir / 'reembody.sqlite'}")
         with database.writing() as db:
@@ -29,7 +29,7 @@ def played_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveServ
             of_session = select(Phase).where(Phase.session_id == session.id)
             phases = db.scalars(of_session.order_by(Phase.phase_id)).all()
             for phase in phases:
-                # Nobody moves enough in free movement here, which is told in words.
+                # There is too little movement in free movement, which is reported in words.
                 achieved_s = phase.latency_ms / 1000.0 + 0.02 if phase.limb else None
                 db.add(measured(phase, achieved_s))
             replayed = next(phase for phase in phases if phase.limb == "hand")
@@ -47,7 +47,7 @@ def test_every_console_page_is_accessible(
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
 ) -> None:
-    """Nothing serious or critical on any page of the console, and no error in its log."""
+    """No page of the console has a serious accessibility violation or an error in its log."""
     page = page_factory((1280, 800))
     traffic = Traffic(page)
 

@@ -1,4 +1,4 @@
-"""People at the console: invited, blind where they must be, shut out at once."""
+"""Browser tests of accounts: invitation, blinding and ended logins."""
 
 import time
 from collections.abc import Callable, Iterator
@@ -26,7 +26,7 @@ Screenshot = Callable[[Page, str], object]
 
 @pytest.fixture(scope="module")
 def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[BlindedLab]:
-    """One server for the tests of this file."""
+    """Provide one server for the tests of this file."""
     folder = tmp_path_factory.mktemp("people")
     with LiveServer(folder) as server, blinded_lab(server) as lab:
         yield lab
@@ -34,7 +34,7 @@ def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[BlindedLab]:
 
 @pytest.fixture
 def admin(lab: BlindedLab, page_factory: Pages) -> Page:
-    """The admin's browser, signed in."""
+    """Provide the admin's browser, signed in."""
     console = Experimenter(page_factory(), lab.server.url)
     console.log_in()
     return console.page
@@ -43,7 +43,7 @@ def admin(lab: BlindedLab, page_factory: Pages) -> Page:
 def test_an_operator_joins_by_a_link_and_runs_blind(
     lab: BlindedLab, admin: Page, page_factory: Pages
 ) -> None:
-    """The link makes an account that runs sessions and is told no condition anywhere."""
+    """An invited operator gets an account that runs sessions and never shows the condition."""
     admin.goto(f"{lab.server.url}/#/people")
     link = invite_in(admin, "Operator", "Weekend sessions")
     operator = page_factory()
@@ -66,7 +66,7 @@ def test_an_operator_joins_by_a_link_and_runs_blind(
 def test_a_login_that_is_ended_shuts_its_open_page_at_once(
     lab: BlindedLab, admin: Page, page_factory: Pages, page_watch: PageWatch
 ) -> None:
-    """An open cockpit asks to sign in again, and what was being typed there is kept."""
+    """When a login is ended, its open cockpit asks to sign in again and keeps the entered text."""
     page_watch.allow(r"status of 401")
     operator = page_factory()
     make_account(operator, lab.invitation("operator"), "lost-laptop")
@@ -89,7 +89,7 @@ def test_a_login_that_is_ended_shuts_its_open_page_at_once(
 
 
 def test_showing_a_condition_asks_why_and_is_on_record(lab: BlindedLab, admin: Page) -> None:
-    """An admin sees a blinded order only after giving a reason, and the event log says so."""
+    """An admin sees a blinded order only after giving a reason, which the event log records."""
     admin.goto(lab.session("P-SHOWN"))
     admin.get_by_role("button", name="Show condition").click()
     dialog = admin.get_by_role("dialog")
@@ -105,7 +105,7 @@ def test_showing_a_condition_asks_why_and_is_on_record(lab: BlindedLab, admin: P
 def test_a_link_that_cannot_be_used_says_why(
     lab: BlindedLab, admin: Page, page_factory: Pages, page_watch: PageWatch
 ) -> None:
-    """Used, taken back and unknown links say so; whoever is signed in is told as whom."""
+    """Used, revoked and unknown invitation links say so, also to somebody who is signed in."""
     page_watch.allow(r"status of (404|410|422)")
     link = lab.invitation("analyst")
     guest = page_factory()
@@ -132,7 +132,7 @@ def test_a_link_that_cannot_be_used_says_why(
 def test_the_only_admin_cannot_be_closed(
     lab: BlindedLab, admin: Page, page_watch: PageWatch
 ) -> None:
-    """The server's refusal stands in the confirmation, with what to do."""
+    """Closing the only admin account is rejected in the confirmation, with the remedy."""
     page_watch.allow(r"status of 409")
     admin.goto(f"{lab.server.url}/#/people")
     admin.get_by_role("button", name="Edit admin").click()
@@ -142,7 +142,7 @@ def test_the_only_admin_cannot_be_closed(
 
 
 def test_a_page_that_is_not_for_a_role_says_so(lab: BlindedLab, page_factory: Pages) -> None:
-    """An analyst who comes by address is told; a cockpit gives them nothing to press."""
+    """A page that a role may not open says so, and an analyst's cockpit has no controls."""
     analyst = page_factory()
     make_account(analyst, lab.invitation("analyst"), "reader")
     for address in ("people", "network", "new", f"studies/{STUDY}/edit", "instruments/new"):
@@ -159,7 +159,7 @@ def test_a_page_that_is_not_for_a_role_says_so(lab: BlindedLab, page_factory: Pa
 def test_the_pages_of_people_are_accessible(
     lab: BlindedLab, page_factory: Pages, axe: Axe, screenshot: Screenshot, scheme: ColorScheme
 ) -> None:
-    """Nothing serious on the people's pages and dialogs, nor behind an invitation's link."""
+    """The pages and dialogs of accounts and invitations have no serious violation."""
     guest = page_factory((1180, 820), scheme)
     guest.goto(lab.invitation("experimenter"))
     expect(guest.get_by_text("Your role will be")).to_be_visible()

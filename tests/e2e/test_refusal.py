@@ -1,4 +1,4 @@
-"""A participant refuses or asks: what tablet and console do about it, and the ways on."""
+"""Browser tests of a participant who refuses consent or asks a question."""
 
 from collections.abc import Callable, Iterator
 
@@ -19,7 +19,7 @@ KNOWS = "The experimenter knows that you do not want to take part"
 
 
 class Room:
-    """Console and tablet of one session at its consent, and the server behind them."""
+    """The console and tablet of one session at its consent step, and the server."""
 
     def __init__(self, server: LiveServer, api: httpx2.Client, console: Page, tablet: Page) -> None:
         self.api, self.console, self.tablet = api, console, tablet
@@ -33,12 +33,12 @@ class Room:
         expect(tablet.get_by_role("button", name=AGREE)).to_be_visible(timeout=PATIENCE_MS)
 
     def log(self) -> list[str]:
-        """The types of the session's events."""
+        """Return the types of the session's events."""
         events: list[Json] = ok(self.api.get(f"/api/sessions/{self.session_id}/events"))
         return [one["type"] for one in events]
 
     def refuses(self) -> None:
-        """Press it on the tablet, and see it on the console."""
+        """Refuse on the tablet, and wait until the console shows it."""
         self.tablet.get_by_role("button", name=DECLINE).click()
         expect(self.console.get_by_role("heading", name=REFUSED)).to_be_visible(timeout=PATIENCE_MS)
 
@@ -47,7 +47,7 @@ class Room:
 def room(
     running_server: LiveServer, page_factory: Callable[..., Page], page_watch: PageWatch
 ) -> Iterator[Room]:
-    """A session that waits for its consent, on both screens."""
+    """Provide a session at its consent step, on both screens."""
     page_watch.allow(r"status of 401")
     with running_server.client() as api:
         yield Room(running_server, api, page_factory(), page_factory((1180, 820)))
@@ -81,7 +81,10 @@ def test_a_refusal_stops_everything_until_the_session_is_ended(
 
 
 def test_whoever_changes_their_mind_reads_the_consent_again(room: Room) -> None:
-    """By themselves on the tablet, or shown again by the experimenter; then they may agree."""
+    """A participant who changes their mind sees the consent again and may agree.
+
+    They do so on the tablet, or the experimenter shows it again.
+    """
     console, tablet = room.console, room.tablet
     room.refuses()
     tablet.get_by_role("button", name=CHANGED).click()
@@ -102,7 +105,10 @@ def test_whoever_changes_their_mind_reads_the_consent_again(room: Room) -> None:
 def test_a_refusal_without_a_network_arrives_when_it_is_back(
     room: Room, screenshot: Callable[[Page, str], object], page_watch: PageWatch
 ) -> None:
-    """The tablet asks to say it aloud meanwhile, and sends it once."""
+    """A refusal without a network is sent once when the network is back.
+
+    Meanwhile the tablet asks the participant to tell the experimenter.
+    """
     page_watch.allow(r"ERR_INTERNET_DISCONNECTED|Failed to (load|fetch)")
     tablet = room.tablet
     tablet.context.set_offline(True)
@@ -122,7 +128,7 @@ def test_a_refusal_without_a_network_arrives_when_it_is_back(
 def test_a_question_calls_the_experimenter(
     room: Room, screenshot: Callable[[Page, str], object]
 ) -> None:
-    """The bar says so until somebody comes; the consent stays where it was."""
+    """A question raises an alarm until the experimenter responds, and the consent stays open."""
     console, tablet = room.console, room.tablet
     tablet.get_by_role("button", name=QUESTION).click()
     called = tablet.get_by_text("The experimenter has been called")
@@ -141,7 +147,7 @@ def test_a_question_calls_the_experimenter(
 def test_no_key_of_the_experimenter_is_a_consent(
     room: Room, screenshot: Callable[[Page, str], object], page_watch: PageWatch
 ) -> None:
-    """Enter does nothing; a sheet needs its place and a reason. Skipping shows no older error."""
+    """No key press of the experimenter records a consent; a paper sheet needs place and reason."""
     page_watch.allow(r"status of 409")
     console = room.console
     console.locator("body").press("Escape")
@@ -152,7 +158,7 @@ def test_no_key_of_the_experimenter_is_a_consent(
     dialog = console.get_by_role("dialog")
     expect(dialog.get_by_role("button", name="Record the consent")).to_be_disabled()
     assert room.log() == ["session_started"]
-    # Somebody else was first: this one is refused, which is nothing that skipping did.
+    # Another operator was first: this command is rejected, which skipping must not show.
     dialog.get_by_label("Where the sheet is").fill("Folder A, sheet 12")
     dialog.get_by_text("The participant prefers paper").click()
     console.route("**/commands", lambda route: route.fulfill(status=409, json=NOT_NOW))

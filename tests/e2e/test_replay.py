@@ -1,4 +1,4 @@
-"""A phase looked at again at the console: by keyboard, by a link, and two side by side."""
+"""Browser test of replaying a phase: by keyboard, by a link, and two side by side."""
 
 import re
 from collections.abc import Callable
@@ -18,7 +18,7 @@ DURATION_S = 12.0
 
 @pytest.fixture
 def phases(headset_site: Site) -> list[Phase]:
-    """Two hand phases of a session that is over, each with twelve seconds of movement."""
+    """Provide two hand phases of a completed session, each with twelve seconds of movement."""
     with headset_site.database.writing() as db:
         session = build_session(db, SessionSpec("P-replay"))
         found = db.scalars(
@@ -42,7 +42,7 @@ def test_a_phase_is_replayed_in_step_with_what_happened(
     page_factory: Callable[..., Page],
     axe: Callable[[Page], list[str]],
 ) -> None:
-    """From the session's page to the moment of a touch; a link leads there again, and to two."""
+    """A replay is synchronised with its events, and a link reopens the moment or two phases."""
     first, second = phases
     url = headset_site.server.url
     page = page_factory()

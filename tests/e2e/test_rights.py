@@ -1,4 +1,4 @@
-"""An experimenter handles a withdrawal in the pages: a correction, a copy, an erasure."""
+"""Browser test of a withdrawal: a correction, a copy and an erasure."""
 
 from collections.abc import Callable
 
@@ -14,7 +14,7 @@ from tests.support.server import LiveServer
 def test_a_withdrawn_participant_is_erased_by_typing_the_code(
     shared_server: LiveServer, page_factory: Callable[..., Page], axe: Callable[[Page], list[str]]
 ) -> None:
-    """Answer corrected, copy downloaded, data erased; the pages then show a tombstone only."""
+    """After a correction and a copy, erasing a participant leaves only a tombstone on the pages."""
     page = page_factory()
     with open_site(shared_server) as site:
         visit = make_visit(site, "P-0077")

@@ -1,4 +1,4 @@
-"""A participant feels sick: what the tablet and the console do, and the two ways on."""
+"""Browser tests of the stop rule: the tablet, the console and the two ways to proceed."""
 
 import uuid
 from collections.abc import Callable
@@ -18,7 +18,7 @@ HELD = "Stop: check on the participant"
 
 
 def session_at(api: httpx2.Client, step_key: str) -> Json:
-    """A session that stands at a step, by skipping what comes before."""
+    """Create a session at a step by skipping the earlier ones."""
     view: Json = ok(api.post(f"/api/studies/{KEY}/sessions", json={}))
     view = command(api, view, "start")
     while view["steps"][view["current"]["index"]]["key"] != step_key:
@@ -27,7 +27,7 @@ def session_at(api: httpx2.Client, step_key: str) -> Json:
 
 
 def command(api: httpx2.Client, view: Json, kind: str, **fields: object) -> Json:
-    """Send a command decided on what was seen."""
+    """Send a command based on this view of the session."""
     body = {"command_id": str(uuid.uuid4()), "expected_version": view["version"], "type": kind}
     after: Json = ok(api.post(f"/api/sessions/{view['id']}/commands", json={**body, **fields}))
     return after
@@ -37,7 +37,7 @@ def command(api: httpx2.Client, view: Json, kind: str, **fields: object) -> Json
 def pages(
     running_server: LiveServer, page_factory: Callable[..., Page], page_watch: PageWatch
 ) -> tuple[Experimenter, Participant, str]:
-    """Console and tablet of a session in which the sickness scale is due."""
+    """Provide console and tablet of a session in which the sickness scale is due."""
     page_watch.allow(r"status of 401")
     with running_server.client() as api:
         ok(api.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
@@ -58,7 +58,10 @@ def test_the_session_is_held_until_the_experimenter_decides(
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
 ) -> None:
-    """Unmissable on the console, calm on the tablet; a reason lets it go on."""
+    """A met stop rule holds the session with an alarm until the experimenter gives a reason.
+
+    The tablet only asks the participant to wait.
+    """
     experimenter, participant, _ = pages
     console, tablet = experimenter.page, participant.page
     participant.fill_in({"sickness": "18"})
@@ -97,7 +100,7 @@ def test_ending_is_the_first_thing_offered(
 def test_the_warning_is_seen_and_nothing_stops(
     pages: tuple[Experimenter, Participant, str],
 ) -> None:
-    """Between the limits the operator is told to ask."""
+    """A score between the limits warns the operator and stops nothing."""
     experimenter, participant, _ = pages
     participant.fill_in({"sickness": "12"})
     console = experimenter.page

@@ -1,4 +1,4 @@
-"""What somebody wrote is shown as written, and never run (fault 36)."""
+"""Browser test that entered text is shown as written and never executed (fault 36)."""
 
 from collections.abc import Callable
 from typing import Any
@@ -33,7 +33,7 @@ PAGES = ("", "people", "people/invitations", "people/audit", "instruments", "equ
 
 
 def hostile_study() -> str:
-    """The shipped study whose words are scripts."""
+    """Return the shipped study with scripts in its texts."""
     text = EVIL.replace("'", "''")
     return edited(
         ("key: reembodiment-latency", f"key: {HOSTILE}"),
@@ -43,7 +43,7 @@ def hostile_study() -> str:
 
 
 def write_everywhere(api: httpx2.Client, server: LiveServer) -> str:
-    """Put scripts wherever words can be put; the session that has them."""
+    """Enter scripts in every text field and return the session that contains them."""
     ok(api.post("/api/studies", json={"yaml": hostile_study()}))
     database = open_database(f"sqlite:///{server.data_dir / 'reembody.sqlite'}")
     with database.writing() as db:
@@ -79,7 +79,7 @@ def _note(view: dict[str, Any]) -> dict[str, Any]:
 def test_nothing_that_was_written_is_run(
     running_server: LiveServer, page_factory: Callable[..., Page], page_watch: PageWatch
 ) -> None:
-    """Titles, labels, answers, notes, invitations, suggestions: on every page just words."""
+    """Scripts in titles, labels, answers, notes, invitations and suggestions are never executed."""
     with running_server.client() as api:
         ok(api.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
         session_id = write_everywhere(api, running_server)

@@ -1,4 +1,4 @@
-"""A tablet without a network whose browser is killed: nothing entered is lost or sent twice."""
+"""Browser test of an offline tablet whose browser is killed: nothing is lost or sent twice."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -41,7 +41,7 @@ EXPERT = {f"q{number}": str(1 + number % 7) for number in range(1, 15)}
 
 
 class Visit:
-    """One life of the tablet's browser."""
+    """One run of the tablet's browser."""
 
     def __init__(self, context: BrowserContext, url: str) -> None:
         self.page: Page = context.new_page()
@@ -49,16 +49,16 @@ class Visit:
         self._context, self._url = context, url
 
     def open(self, *, network: bool, query: str = "") -> None:
-        """Open the page by its address, as somebody who takes the tablet up again."""
+        """Open the page by its URL, as somebody who picks up the tablet."""
         self._context.set_offline(not network)
         self.page.goto(f"{self._url}/tablet{query}")
 
     def cut_off(self) -> None:
-        """The network goes."""
+        """Disconnect the network."""
         self._context.set_offline(True)
 
     def reconnect(self) -> None:
-        """The network is back."""
+        """Reconnect the network."""
         self._context.set_offline(False)
 
     def choose(self, items: int | None = None) -> None:
@@ -77,29 +77,29 @@ class Visit:
         expect(self.page.locator('[data-name^="q"]').first).to_be_visible(timeout=PATIENCE_MS)
 
     def sees(self, heading: str) -> None:
-        """Wait for a screen."""
+        """Wait for the screen with this heading."""
         title = self.page.get_by_role("heading", name=heading)
         expect(title).to_be_visible(timeout=PATIENCE_MS)
 
     def kept(self) -> Any:
-        """What IndexedDB holds: the forms, and the last screen."""
+        """Return the contents of IndexedDB: the forms, and the last screen."""
         return self.page.evaluate(KEPT)
 
 
 def code_for(site: Site, session_id: str) -> str:
-    """A pairing code for the session's tablet."""
+    """Return a pairing code for the session's tablet."""
     path = f"/api/sessions/{session_id}/pairings"
     return str(ok(site.operator.post(path, json={"device": "tablet"}))["code"])
 
 
 def entered(kept: Any) -> Json:
-    """The answers of the only form that is kept, as text."""
+    """Return the answers of the only stored form, as text."""
     (form,) = kept["kept"]
     return {item: str(value) for item, value in form["draft"]["data"].items()}
 
 
 def noted_status(response: Response, arrived: list[int]) -> None:
-    """Put the status of an answered submission on the list."""
+    """Record the status of a response to a submission."""
     if SENT in response.url:
         arrived.append(response.status)
 
@@ -108,7 +108,7 @@ def noted_status(response: Response, arrived: list[int]) -> None:
 def test_ten_minutes_offline_and_a_killed_browser_lose_nothing(
     browser: Browser, headset_site: Site, tmp_path: Path, screenshot: Callable[[Page, str], object]
 ) -> None:
-    """Answers, a kill, answers, sending, ten minutes, a kill; with the network, one form."""
+    """Answers survive ten minutes offline and two kills of the browser, and are sent once."""
     site, url = headset_site, headset_site.server.url
     session_id = site.join()
     site.skip_to(session_id, FORM)
@@ -174,6 +174,6 @@ def test_ten_minutes_offline_and_a_killed_browser_lose_nothing(
 
 
 def stored(site: Site, session_id: str) -> list[Json]:
-    """Every stored form."""
+    """Return every stored form."""
     forms: list[Json] = ok(site.operator.get(f"/api/sessions/{session_id}/answers"))
     return forms

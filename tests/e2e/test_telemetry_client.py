@@ -1,4 +1,4 @@
-"""The browser's telemetry client against the real server: nothing lost, nothing twice."""
+"""Browser tests of the telemetry client: nothing is lost or duplicated on the real server."""
 
 import sys
 import time
@@ -27,7 +27,7 @@ BACKLOG_FRAMES = 54_000
 def test_what_is_streamed_arrives_bit_by_bit(
     wear: Wear, headset_site: Site, mode: Mode, stream_s: int
 ) -> None:
-    """At real speed every frame and report is stored as it was made, with little writing."""
+    """Streaming at real speed stores every frame and report bit by bit, with few disk writes."""
     headset = wear(mode=mode)
     epoch = headset.open()
     meter = Meter.of(headset.page)
@@ -50,7 +50,7 @@ def test_what_is_streamed_arrives_bit_by_bit(
 
 
 def test_a_server_that_is_killed_gets_everything_once(wear: Wear, headset_site: Site) -> None:
-    """SIGKILL in mid-stream, twice: the same run goes on, and nothing is lost or stored twice."""
+    """After two SIGKILLs of the server in mid-stream, nothing is lost or stored twice."""
     headset = wear()
     epoch = headset.open()
     headset.begin(6 * BATCHES_PER_S, speed=1.0)
@@ -98,7 +98,7 @@ def test_ten_minutes_offline_are_drained(wear: Wear, headset_site: Site) -> None
 
 
 def test_a_full_journal_holds_the_producer(wear: Wear, headset_site: Site) -> None:
-    """At the limit the producer waits and the status says so; afterwards nothing is missing."""
+    """At the journal's limit the producer waits, the status says so, and nothing is lost."""
     headset = wear(journalBytes=MEBIBYTE)
     epoch = headset.open()
     headset_site.server.stop()
@@ -120,7 +120,7 @@ def test_a_full_journal_holds_the_producer(wear: Wear, headset_site: Site) -> No
 
 
 def test_a_replaced_headset_hears_it_in_the_servers_words(wear: Wear, headset_site: Site) -> None:
-    """A new code takes the socket from the headset before; what it holds stays in its journal."""
+    """A replaced headset reports the server's reason and keeps its journal."""
     headset = wear()
     headset.open()
     headset_site.token(headset.session_id)

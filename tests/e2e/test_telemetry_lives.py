@@ -1,4 +1,4 @@
-"""Pages that are left, crash, or are killed with their browser: the journal is delivered later."""
+"""Browser tests of pages that are left, crash or are killed: their journal is sent later."""
 
 import time
 from collections.abc import Callable
@@ -34,7 +34,10 @@ def test_a_page_that_is_left_takes_its_journal_to_disk(
     mode: Mode,
     flush_every_s: float,
 ) -> None:
-    """A client of the page writes its journal at once; one in a worker has done so by its turn."""
+    """A page that is left has written its journal to disk.
+
+    A client in the page writes it immediately; one in a worker at its regular interval.
+    """
     context = new_context()
     headset = wear(context, mode=mode, flushEveryS=flush_every_s)
     first = headset.open()
@@ -52,7 +55,7 @@ def test_a_page_that_is_left_takes_its_journal_to_disk(
 def test_a_page_that_crashes_delivers_under_its_old_number(
     wear: Wear, headset_site: Site, new_context: ContextFactory
 ) -> None:
-    """The page's process dies without a server; the next life delivers, and has its own number."""
+    """A page that crashed offline sends its journal after a restart, under its old epoch."""
     context = new_context()
     headset = wear(context)
     first = headset.open()
@@ -64,7 +67,7 @@ def test_a_page_that_crashes_delivers_under_its_old_number(
 def test_a_browser_that_is_killed_delivers_under_its_old_number(
     wear: Wear, headset_site: Site, browser: Browser, tmp_path: Path
 ) -> None:
-    """The same with SIGKILL for the whole browser, which then finds its journal on the disk."""
+    """A killed browser finds its journal on disk and sends it under the old epoch."""
     profile = tmp_path / "profile"
     with kept_profile(browser, profile) as context:
         headset = wear(context)
@@ -75,7 +78,7 @@ def test_a_browser_that_is_killed_delivers_under_its_old_number(
 
 
 def make_and_be_killed(headset: Headset, site: Site, kill: Callable[[], None]) -> Made:
-    """Stream, lose the server, go on, and die in the middle of it; what was certain by then."""
+    """Stream, stop the server, continue, and kill the client; return what was surely journaled."""
     headset.produce(2 * BATCHES_PER_S, speed=4.0)
     site.server.kill()
     headset.produce(2 * BATCHES_PER_S, speed=4.0)
@@ -89,12 +92,12 @@ def make_and_be_killed(headset: Headset, site: Site, kill: Callable[[], None]) -
 
 
 def next_life(headset: Headset, context: BrowserContext) -> Headset:
-    """The same headset after it was started again."""
+    """Return the same headset after a restart."""
     return replace(headset, context=context).load()
 
 
 def check_both_lives(again: Headset, site: Site, first: int, certain: Made) -> None:
-    """What was in the journal is stored under its own epoch, what is new under a new one."""
+    """Assert that journaled data are stored under their own epoch and new data under a new one."""
     second = again.open()
     again.produce(BATCHES_PER_S, speed=4.0)
     again.drained()
@@ -106,12 +109,12 @@ def check_both_lives(again: Headset, site: Site, first: int, certain: Made) -> N
     again.close()
     told = produced_of(site, again.session_id)
     assert told["target", second] == again.made.frames
-    # The journal tells of the dead page too how far it had come.
+    # The journal also reports how many frames the crashed page had produced.
     assert certain.frames <= told["actual", first] <= certain.frames + certain.perhaps
 
 
 def produced_of(site: Site, session_id: str) -> dict[tuple[str, int], int]:
-    """How far each run has come, as it told the server before it hung up."""
+    """Return how many frames each run reported as produced before it disconnected."""
     deadline = time.monotonic() + 10.0
     while True:
         with site.database.reading() as db:

@@ -1,4 +1,4 @@
-"""A path is drawn at the console and answered with a distribution of durations."""
+"""Browser test of predicting the walking time along a drawn path."""
 
 from collections.abc import Callable, Iterator
 
@@ -13,7 +13,7 @@ from tests.support.server import ADMIN_PASSWORD, LiveServer
 
 @pytest.fixture(scope="module")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveServer]:
-    """One server for the tests of this file."""
+    """Provide one server for the tests of this file."""
     with LiveServer(tmp_path_factory.mktemp("walking")) as server:
         yield server
 
@@ -25,7 +25,10 @@ def test_a_drawn_path_is_answered(
     screenshot: Callable[[Page, str], object],
     page_watch: PageWatch,
 ) -> None:
-    """Fitted, drawn by mouse, moved by keys, undone; an obstacle in the way is named."""
+    """A path drawn by mouse and moved by keys gets a distribution of durations.
+
+    Changes can be undone, and an obstacle in the way is named.
+    """
     page_watch.allow(r"status of 422")
     context = new_context((1180, 820), "light")
     with server.client() as admin:

@@ -1,4 +1,4 @@
-"""A session whose tasks were skipped: it ends, does not count, and every page says so."""
+"""Browser test of a session whose tasks were skipped: it does not count."""
 
 import csv
 import io
@@ -20,7 +20,10 @@ def test_a_session_of_skipped_tasks_does_not_count(
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
 ) -> None:
-    """The cockpit gives the reasons, the slot is free, dashboard and export agree."""
+    """A session of skipped tasks is not valid: the cockpit says why, and its slot is free.
+
+    Dashboard and export agree.
+    """
     with live_server.client() as api:
         ok(api.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
         session_id = _skipped(api)
@@ -62,7 +65,7 @@ def test_a_session_of_skipped_tasks_does_not_count(
 
 
 def _skipped(api: httpx2.Client) -> str:
-    """A session of people in which every step was skipped; its id."""
+    """Create a session of people in which every step was skipped, and return its id."""
     view: Json = ok(api.post(f"/api/studies/{STUDY}/sessions", json={}))
     for kind in ("start", *["skip"] * len(view["steps"])):
         body = {

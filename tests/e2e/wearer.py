@@ -1,4 +1,4 @@
-"""Somebody under a headset: a real headset client on a thread, at real speed."""
+"""A scripted wearer of a headset: a real headset client on a thread, at real speed."""
 
 import asyncio
 import json
@@ -15,7 +15,7 @@ from app.rehearsal.headset import FrameClock, Headset
 
 
 class Wearer:
-    """Pairs by the code from the console and plays whatever the session asks for."""
+    """Pair with the console's code and perform whatever the session asks for."""
 
     def __init__(self, url: str, code: str) -> None:
         self.error: BaseException | None = None

@@ -1,4 +1,4 @@
-"""`./run bench`: benchmarks by name, and this tree beside another commit."""
+"""Tests of `./run bench`: benchmarks by name, and this tree compared with another commit."""
 
 import argparse
 import os
@@ -41,7 +41,7 @@ WAITS_S = 60.0
 
 
 def git(folder: Path, *arguments: str) -> str:
-    """What git says, in a repository that no settings of this machine reach."""
+    """Return git's output, in a repository unaffected by the machine's settings."""
     who = ["-c", "user.name=Lab", "-c", "user.email=lab@example.org", "-c", "commit.gpgsign=false"]
     return subprocess.run(
         ["git", *who, *arguments], cwd=folder, check=True, capture_output=True, text=True
@@ -50,7 +50,7 @@ def git(folder: Path, *arguments: str) -> str:
 
 @pytest.fixture
 def repository(tmp_path: Path) -> Path:
-    """A repository whose benchmark told 2.0 when it was committed, and tells 1.0 now."""
+    """Provide a repository whose benchmark gave 2.0 when it was committed, and gives 1.0 now."""
     folder = tmp_path / "repository"
     for name in ("app", "migrations", "tests", "tests/benchmarks"):
         (folder / name).mkdir(parents=True)
@@ -65,14 +65,14 @@ def repository(tmp_path: Path) -> Path:
 
 
 def write_benchmark(folder: Path, value: float, *, waits: bool = False) -> None:
-    """A benchmark with one figure; or one that waits for its end."""
+    """Write a benchmark with one figure, or one that waits to be ended."""
     text = BENCHMARK.format(value=value, waits=waits, mark=str(folder.parent / "mark"))
     (folder / "tests" / "benchmarks" / "__main__.py").write_text(text)
 
 
 @pytest.fixture
 def scratch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Where temporary folders are made."""
+    """Provide the folder in which temporary folders are created."""
     folder = tmp_path / "scratch"
     folder.mkdir()
     monkeypatch.setattr("tempfile.tempdir", str(folder))
@@ -80,18 +80,18 @@ def scratch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def asked(*arguments: str) -> argparse.Namespace:
-    """Arguments as the command reads them."""
+    """Parse arguments as the command does."""
     return parser().parse_args(arguments)
 
 
 def test_only_benchmarks_are_offered() -> None:
-    """A module that measures; neither the command itself nor a benchmark's own helpers."""
+    """Only modules that measure are offered as benchmarks, not the command or helpers."""
     assert {"avatar", "desk", "retargeting", "telemetry", "walking"} <= set(NAMES)
     assert not {"__main__", "against", "report", "codecs", "walking_maps"} & set(NAMES)
 
 
 def test_short_forms_are_of_parts_that_there_are() -> None:
-    """Each names parts of its benchmark as that spells them."""
+    """Each short form names existing parts of an existing benchmark."""
     assert set(SHORT) <= set(NAMES)
     for name, words in SHORT.items():
         text = (BENCHMARKS / f"{name}.py").read_text()
@@ -105,7 +105,7 @@ def test_short_forms_are_of_parts_that_there_are() -> None:
     [(1, 0, 0.0), (5, 0, 0.9375), (6, 0, 0.96875), (9, 1, 0.9609375), (20, 5, 0.9586105346)],
 )
 def test_the_interval_is_of_order_statistics(count: int, low: int, confidence: float) -> None:
-    """As tables of the sign test have it: of twenty the sixth from either end."""
+    """The interval consists of order statistics as in tables of the sign test."""
     found = interval([float(number) for number in range(count)][::-1])
     assert (found.low, found.high) == (low, count - 1 - low)
     assert found.median == (count - 1) / 2
@@ -113,20 +113,20 @@ def test_the_interval_is_of_order_statistics(count: int, low: int, confidence: f
 
 
 def test_a_limit_is_met_from_its_side() -> None:
-    """ "At most" and "at least" are limits; a rival is none."""
+    """ "At most" and "at least" make a peer a limit that a value meets or not; a rival is none."""
     peers = ("at most", "at least", "bare mj_step")
     rows = [Figure("p", "n", 2.0, "s", peer, 3.0).as_json() for peer in peers]
     assert [(row["limit"], row["met"]) for row in rows] == [(3.0, True), (3.0, False), (None, None)]
 
 
 def test_keys_of_a_benchmarks_own_stand_beside_its_figures() -> None:
-    """One shape for all, however it was measured."""
+    """Keys of a benchmark's own are added to the report at the top level."""
     told = Report("desk", beside={"pairs": 6}).as_json()
     assert set(told) == {"benchmark", "machine", "figures", "pairs"}
 
 
 def test_a_commit_is_written_out_without_a_trace(repository: Path, tmp_path: Path) -> None:
-    """Its files as committed; the repository has neither a work tree nor a change more."""
+    """Checking out a commit writes its files and leaves the repository unchanged."""
     before = git(repository, "status", "--short")
     name = check_out(repository, "HEAD", tmp_path / "tree")
     assert git(repository, "rev-parse", "HEAD").startswith(name)
@@ -137,7 +137,7 @@ def test_a_commit_is_written_out_without_a_trace(repository: Path, tmp_path: Pat
 
 
 def test_an_unknown_commit_is_named(repository: Path, tmp_path: Path) -> None:
-    """Before anything is measured."""
+    """An unknown commit is named in the error before anything is measured."""
     with pytest.raises(CannotMeasure, match="no commit nowhere"):
         check_out(repository, "nowhere", tmp_path / "tree")
 
@@ -145,7 +145,7 @@ def test_an_unknown_commit_is_named(repository: Path, tmp_path: Path) -> None:
 def test_both_sides_run_their_own_tree(
     repository: Path, scratch: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The working tree and the commit, with medians of either; nothing of the commit remains."""
+    """The working tree and the commit each run their own benchmark, and the copy is removed."""
     monkeypatch.setattr(against, "REPOSITORY", repository)
     told = compare(asked("desk", "--against", "HEAD", "--pairs", "2")).as_json()
     assert told["pairs"] == 2
@@ -158,7 +158,7 @@ def test_both_sides_run_their_own_tree(
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_an_interrupted_comparison_leaves_nothing(repository: Path, number: int) -> None:
-    """Neither the commit's files nor a process, whether Ctrl+C ends it or somebody else."""
+    """An interrupted comparison leaves neither the commit's files nor a process."""
     write_benchmark(repository, 1.0, waits=True)
     scratch, mark = repository.parent / "scratch", repository.parent / "mark"
     scratch.mkdir()
@@ -185,7 +185,7 @@ def test_an_interrupted_comparison_leaves_nothing(repository: Path, number: int)
 
 
 def test_what_differs_in_the_work_is_told(tmp_path: Path) -> None:
-    """A changed number is another workload, an import from another place is not."""
+    """A changed number is reported as another workload, a moved import is not."""
     texts = {
         "moved.py": ("'''Old.'''\nfrom app.a import b\nN = 1\n", "from app.c.a import b\nN = 1\n"),
         "changed.py": ("N = 1\n", "N = 2\n"),
@@ -209,7 +209,7 @@ def test_what_differs_in_the_work_is_told(tmp_path: Path) -> None:
 def test_what_cannot_be_compared_is_said(
     arguments: tuple[str, ...], told: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """With what would be possible, and exit code 2."""
+    """A comparison that is impossible exits with code 2 and says what is possible."""
     before = signal.getsignal(signal.SIGTERM), signal.getsignal(signal.SIGHUP)
     try:
         assert main(arguments) == 2

@@ -1,4 +1,4 @@
-"""`./run check` looks at what a change can have broken, and starts nothing for it."""
+"""Tests of `./run check`: it checks what a change may break, and starts no server for it."""
 
 import os
 import subprocess
@@ -33,7 +33,7 @@ def test_on_both_engines(engine): pass
 
 @pytest.fixture
 def tree(tmp_path: Path) -> Path:
-    """A repository with wings of features, whose tests mirror them."""
+    """Provide a repository with nested features, whose tests mirror them."""
     for file in (
         "app/main.py",
         "app/features/record/sessions/service.py",
@@ -64,12 +64,12 @@ def tree(tmp_path: Path) -> Path:
     ],
 )
 def test_tests_are_found_by_their_place(tree: Path, path: str, tests: str) -> None:
-    """The mirror of a path below tests, or of its nearest parent that has one."""
+    """The tests of a path are its mirror below tests, or that of its nearest parent."""
     assert mirror(Path(path), tree) == Path(tests)
 
 
 def test_what_is_inside_another_folder_runs_once() -> None:
-    """A folder holds its files."""
+    """A path inside another chosen folder is not run twice."""
     paths = map(Path, ("tests/a/b", "tests/a", "tests/c.py", "tests/a/b/d", "tests/c.py"))
     assert without_inner(paths) == [Path("tests/a"), Path("tests/c.py")]
 
@@ -77,7 +77,7 @@ def test_what_is_inside_another_folder_runs_once() -> None:
 def test_a_path_that_is_not_there_is_answered_with_those_that_are(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """The nearest folder that is there tells its contents."""
+    """For a missing path, the contents of the nearest existing folder are listed."""
     assert checking.main(["app/no-such-folder/deep"]) == 2
     told = capsys.readouterr().err
     assert "there is no app/no-such-folder/deep; app has " in told
@@ -85,13 +85,13 @@ def test_a_path_that_is_not_there_is_answered_with_those_that_are(
 
 
 def test_a_path_outside_is_refused() -> None:
-    """Nothing there belongs to the project."""
+    """A path outside the repository is rejected."""
     with pytest.raises(NoSuchPath, match="outside"):
         Chosen.of([".."])
 
 
 def test_without_paths_everything_is_checked() -> None:
-    """Sources, pages and unit tests; these come last, since they take both cores."""
+    """Without paths everything is checked, with the unit tests last and alone."""
     planned = plan(Chosen.of([]))
     assert [stage.name for stage in planned if stage.alone] == ["unit tests"]
     assert planned[-1].name == "unit tests"
@@ -99,7 +99,7 @@ def test_without_paths_everything_is_checked() -> None:
 
 
 def test_a_feature_needs_no_look_at_the_pages() -> None:
-    """Its own tests in one process, so that types are checked on the other core meanwhile."""
+    """A feature's check runs its own tests in one process and leaves out the pages."""
     planned = {stage.name: stage for stage in plan(Chosen.of(["app/api"]))}
     assert set(planned) == {"ruff check", "ruff format", "mypy", "imports", "unit tests"}
     assert "tests/api" in planned["unit tests"].command
@@ -107,14 +107,14 @@ def test_a_feature_needs_no_look_at_the_pages() -> None:
 
 
 def test_pages_need_no_look_at_python() -> None:
-    """Lint and tests of the folder, types of all of them."""
+    """A folder of the pages is linted and tested, with all types and without Python."""
     planned = {stage.name: stage for stage in plan(Chosen.of(["frontend/src/shared"]))}
     assert set(planned) == {"frontend lint", "frontend types", "frontend tests"}
     assert str(REPOSITORY / "frontend/src/shared") in planned["frontend tests"].command
 
 
 def test_tests_that_need_more_than_a_process_are_left_out(tmp_path: Path) -> None:
-    """By their fixtures before they begin, else by what they ask for."""
+    """Tests that need a server, PostgreSQL or a browser are deselected or skipped."""
     (tmp_path / "test_needing.py").write_text(NEEDING)
     options = ["-c", "/dev/null", "-p", "tests.support.unit_tests", "-rs", str(tmp_path)]
     told = subprocess.run(
@@ -130,7 +130,7 @@ def test_tests_that_need_more_than_a_process_are_left_out(tmp_path: Path) -> Non
 
 
 def test_what_starts_something_is_a_fixture() -> None:
-    """A fixture that gets another name is found here, not by a check that takes minutes."""
+    """Every fixture that starts something exists under the name in STARTERS."""
     conftests = (REPOSITORY / folder / "conftest.py" for folder in ("tests", "tests/e2e"))
     defined = "".join(file.read_text() for file in conftests)
     assert [name for name in STARTERS if f"def {name}(" not in defined] == []

@@ -1,4 +1,4 @@
-"""`npm run dev` serves pages that work against a running server."""
+"""Tests that `npm run dev` serves pages that work with a running server."""
 
 import os
 import re
@@ -19,7 +19,7 @@ STARTS_WITHIN_S = 120.0
 
 @pytest.fixture(scope="module")
 def dev_server(shared_server: LiveServer) -> Iterator[str]:
-    """The address of a dev server in front of the real one."""
+    """Provide the URL of a dev server in front of the real one."""
     install_packages(FRONTEND)
     port = free_port()
     options = ["--host", "127.0.0.1", "--port", str(port), "--strictPort"]
@@ -35,13 +35,13 @@ def dev_server(shared_server: LiveServer) -> Iterator[str]:
         wait_for(f"http://127.0.0.1:{port}/api/health")
         yield f"http://127.0.0.1:{port}"
     finally:
-        # npm does not hand it on to what it has started.
+        # npm does not pass the signal on to its child processes.
         os.killpg(process.pid, signal.SIGTERM)
         process.wait()
 
 
 def wait_for(url: str) -> None:
-    """Wait until it answers."""
+    """Wait until the URL responds."""
     deadline_s = time.monotonic() + STARTS_WITHIN_S
     while True:
         try:
@@ -54,13 +54,13 @@ def wait_for(url: str) -> None:
 
 
 def test_it_hands_calls_over(dev_server: str) -> None:
-    """The interface answers through it."""
+    """The dev server passes API requests on to the server."""
     assert httpx2.get(f"{dev_server}/api/health", timeout=30.0).json()["status"] == "ok"
 
 
 @pytest.mark.parametrize("path", ["/", "/console", "/tablet"])
 def test_every_page_comes_with_its_scripts(dev_server: str, path: str) -> None:
-    """What a page names is there: a browser looks for it relative to the page's address."""
+    """Every script and icon that a page names is served relative to the page's URL."""
     page = httpx2.get(f"{dev_server}{path}", timeout=30.0)
     named = re.findall(r'(?:src|href)="([^"]+\.(?:tsx|svg))"', page.text)
     assert len(named) >= 2
@@ -73,7 +73,7 @@ def test_every_page_comes_with_its_scripts(dev_server: str, path: str) -> None:
     ("origin", "status"), [("own", 200), ("http://elsewhere.example", 403), ("null", 403)]
 )
 def test_only_its_own_pages_may_change_something(dev_server: str, origin: str, status: int) -> None:
-    """The server's check of origins holds behind it as without it."""
+    """Through the dev server, only its own pages may change something."""
     answer = httpx2.post(
         f"{dev_server}/api/login",
         json={"username": "admin", "password": ADMIN_PASSWORD},

@@ -1,4 +1,4 @@
-"""Stages share two cores, and all that they cost is told in one shape."""
+"""Tests that stages share two cores and that their costs are reported in one format."""
 
 import json
 import sys
@@ -26,12 +26,12 @@ def test_that_is_missing_something(): pytest.skip("it is not there")
 
 
 def python(name: str, code: str, *, alone: bool = False, aloud: bool = False) -> Stage:
-    """A stage that runs some Python."""
+    """Return a stage that runs a piece of Python code."""
     return Stage(name, [sys.executable, "-S", "-c", code], alone=alone, aloud=aloud)
 
 
 def test_a_failure_keeps_nothing_from_running(capfd: pytest.CaptureFixture[str]) -> None:
-    """All run, in the order of the plan, and what failed says what it has to say."""
+    """After a failed stage the others still run in order, and its output is shown."""
     outcomes = run_stages(
         [python("one", "raise SystemExit('it is wrong')"), python("two", "", alone=True)]
     )
@@ -40,7 +40,7 @@ def test_a_failure_keeps_nothing_from_running(capfd: pytest.CaptureFixture[str])
 
 
 def test_neighbours_run_side_by_side(tmp_path: Path) -> None:
-    """Two that need one core each wait for each other's file, so neither could run alone."""
+    """Two stages that need one core each run in parallel."""
     meet = """
 import pathlib, time
 pathlib.Path({mine!r}).touch()
@@ -54,7 +54,7 @@ while not pathlib.Path({other!r}).exists(): time.sleep(0.01)
 def test_one_that_is_alone_waits_for_its_neighbours_and_prints_as_it_goes(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """Nothing else is being run, and what it says is under its own heading."""
+    """A stage that is alone waits for the earlier ones and prints under its own heading."""
     done = tmp_path / "done"
     late = f"import pathlib, time; time.sleep(0.2); pathlib.Path({str(done)!r}).touch()"
     look = f"import pathlib; print('it was', pathlib.Path({str(done)!r}).exists())"
@@ -63,7 +63,7 @@ def test_one_that_is_alone_waits_for_its_neighbours_and_prints_as_it_goes(
 
 
 def test_in_short_what_passes_gets_one_line(capfd: pytest.CaptureFixture[str]) -> None:
-    """`./run check` shows what is wrong, not what is right."""
+    """In brief mode a stage that passes gets one line."""
     run_stages([python("chatty", "print('all is well')")], brief=True)
     told = capfd.readouterr().out
     assert "all is well" not in told
@@ -71,7 +71,7 @@ def test_in_short_what_passes_gets_one_line(capfd: pytest.CaptureFixture[str]) -
 
 
 def test_a_stage_that_cannot_begin_has_failed() -> None:
-    """What must be there before it is part of it."""
+    """A stage whose preparation fails has failed."""
 
     def prepare() -> None:
         raise RuntimeError("no packages")
@@ -81,7 +81,7 @@ def test_a_stage_that_cannot_begin_has_failed() -> None:
 
 
 def test_times_and_counts_are_sums_of_stages() -> None:
-    """The file of --json: totals, every stage, the slowest tests of all."""
+    """Times and counts in the file of --json are sums over the stages."""
     first = Tally(3, 1, 1, [("a", "not there")], [("a", 2.0), ("b", 1.0)])
     second = Tally(2, 0, 0, [], [("c", 1.5)])
     outcomes = [
@@ -100,7 +100,7 @@ def test_times_and_counts_are_sums_of_stages() -> None:
 
 
 def test_only_the_slowest_are_kept() -> None:
-    """Twenty, of however many runs."""
+    """Only the twenty slowest tests are kept over several runs."""
     total = Tally()
     for run in range(3):
         total.add(Tally(slowest=[(f"{run} {at}", float(at)) for at in range(SLOWEST)]))
@@ -111,7 +111,7 @@ def test_only_the_slowest_are_kept() -> None:
 def test_a_pytest_run_can_be_told_as_json(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """`./run test PATH --json FILE`: the counts, and a test's time with that of its fixtures."""
+    """`./run test PATH --json FILE` writes counts and each test's time with its fixtures."""
     (tmp_path / "test_some.py").write_text(TEST_FILE)
     file = tmp_path / "told.json"
     arguments = [str(tmp_path), "-c", "/dev/null", "--json", str(file)]
@@ -124,7 +124,7 @@ def test_a_pytest_run_can_be_told_as_json(
 
 
 def test_help_says_what_json_holds(capsys: pytest.CaptureFixture[str]) -> None:
-    """The shape is documented where it is asked for."""
+    """The help describes every key of the JSON file."""
     with pytest.raises(SystemExit):
         stages.main(["--help"])
     told = capsys.readouterr().out
@@ -132,7 +132,7 @@ def test_help_says_what_json_holds(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_architecture_and_browser_tests_have_stages_of_their_own() -> None:
-    """What the stage of all tests leaves out is a folder that is there, and another stage's."""
+    """Every folder that the stage of all tests ignores has a stage of its own."""
     commands = {stage.name: stage.command for stage in stages.stages(long=False)}
     ignored = [word.partition("=")[2] for word in commands["tests"] if word.startswith("--ignore=")]
     others = {folder for folder in ignored for name in commands if folder in commands[name]}

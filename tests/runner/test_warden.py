@@ -1,4 +1,4 @@
-"""A command under a warden leaves no process behind, and all its time is known."""
+"""Tests that a command under a warden leaves no process behind and is fully timed."""
 
 import os
 import signal
@@ -38,12 +38,12 @@ WAITS_S = 60.0
 
 
 def python(code: str) -> list[str]:
-    """A command that runs some Python."""
+    """Return a command that runs a piece of Python code."""
     return [sys.executable, "-S", "-c", code]
 
 
 def eventually(fact: Callable[[], bool]) -> None:
-    """Wait until it is so."""
+    """Wait until the fact is true."""
     deadline_s = time.monotonic() + WAITS_S
     while not fact():
         assert time.monotonic() < deadline_s, "it did not come true"
@@ -51,7 +51,7 @@ def eventually(fact: Callable[[], bool]) -> None:
 
 
 def lives(pid: int) -> bool:
-    """Whether there is such a process; one that nobody has waited for yet is over."""
+    """Return whether the process exists; one that has ended but was not collected does not."""
     try:
         state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
     except FileNotFoundError:
@@ -61,18 +61,18 @@ def lives(pid: int) -> bool:
 
 @pytest.mark.parametrize("code", [0, 3, 127])
 def test_the_exit_code_is_the_commands(tmp_path: Path, code: int) -> None:
-    """The warden adds nothing to it."""
+    """The exit code is that of the command."""
     assert run_warded(python(f"raise SystemExit({code})"), folder=tmp_path).code == code
 
 
 def test_a_signal_is_told_as_one(tmp_path: Path) -> None:
-    """Negative, as subprocess has it; and as a shell has it."""
+    """A signal is reported as a negative code, and as a shell does."""
     ended = run_warded(["sh", "-c", "kill -9 $$"], folder=tmp_path)
     assert (ended.code, ended.exit_code) == (-signal.SIGKILL, 128 + signal.SIGKILL)
 
 
 def test_a_command_that_is_not_there_is_named(tmp_path: Path) -> None:
-    """As a shell does it."""
+    """A missing command is named and gives exit code 127, as in a shell."""
     with (tmp_path / "errors").open("wb") as errors:
         assert run_warded(["no-such-command"], folder=tmp_path, errors=errors).code == 127
     assert "no-such-command" in (tmp_path / "errors").read_text()
@@ -80,7 +80,7 @@ def test_a_command_that_is_not_there_is_named(tmp_path: Path) -> None:
 
 @linux
 def test_the_time_of_an_orphan_counts(tmp_path: Path) -> None:
-    """A process that outlives its parent, in a session of its own, is waited for and counted."""
+    """A process that outlives its parent, in a session of its own, is awaited and timed."""
     ended = run_warded(python(LEAVE.format(code=BURN)), folder=tmp_path)
     assert ended.code == 0
     assert ended.processor_s >= BURN_S
@@ -89,7 +89,7 @@ def test_the_time_of_an_orphan_counts(tmp_path: Path) -> None:
 @linux
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL])
 def test_whoever_kills_the_caller_ends_its_servers(tmp_path: Path, number: int) -> None:
-    """Also where the server has a session of its own, and its parent is gone."""
+    """Killing the caller also ends a server that runs in a session of its own."""
     mark = tmp_path / "pid"
     command = python(
         LEAVE.format(code=SERVE.format(file=str(mark))) + "\nimport time\ntime.sleep(600)"

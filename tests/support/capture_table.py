@@ -210,7 +210,7 @@ def _first_sentence(text: str) -> str:
 
 
 def _kind(name: str) -> str:
-    """UXF writes a file a trial: those of one tracker are of one kind."""
+    """Return the kind of a file: UXF writes one per trial, those of one tracker are one kind."""
     if not name.startswith("logs/uxf/"):
         return name
     return "logs/uxf/*/" + re.sub(r"_T\d+", "_T*", name.rsplit("/", 1)[1])

@@ -1,1 +1,1 @@
-"""A lab full of headsets and consoles against the real server, and what they saw."""
+"""A load of many headsets and consoles on the real server, with measurements."""

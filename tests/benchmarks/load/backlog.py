@@ -1,4 +1,4 @@
-"""One headset comes back with ten minutes in its journal while all others stream on."""
+"""One headset reconnects with ten minutes in its journal while all others stream."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -39,7 +39,7 @@ DRAIN_LIMIT_S = 60.0
 
 @dataclass(frozen=True)
 class Backlog:
-    """A load with one that came back; `told` is what that one said."""
+    """A load in which one headset reconnected; `told` is its own result."""
 
     outcome: Outcome
     told: dict[str, Any]
@@ -47,7 +47,7 @@ class Backlog:
 
 
 def backlog_figures(part: str, folder: Path, duration_s: float) -> Iterator[Figure]:
-    """How fast the journal drains, and what the others notice of it."""
+    """Measure how fast the journal drains, and how it affects the others."""
     found = run_backlog(folder, min(duration_s, LASTS_S))
     told, others = found.told, SESSIONS - 1
     took_s = told["drained_s"] - told["back_s"]
@@ -76,7 +76,7 @@ def backlog_figures(part: str, folder: Path, duration_s: float) -> Iterator[Figu
 
 
 def run_backlog(folder: Path, duration_s: float) -> Backlog:
-    """All begin; after a while one more comes, with a journal as long in proportion as the run."""
+    """Start all headsets, and later one more with a journal proportional to the run."""
     away_s = AWAY_S * min(1.0, duration_s / LASTS_S)
     load = Load(sessions=SESSIONS - 1, duration_s=duration_s)
     server = live_server(folder, Store())
@@ -114,20 +114,20 @@ def _plan(
 
 
 def _meanwhile(found: Backlog) -> Outcome:
-    """The others' messages while the journal drained."""
+    """Return the others' messages while the journal drained."""
     handed_s = found.outcome.messages[:, 2]
     inside = (handed_s >= found.told["back_s"]) & (handed_s <= found.told["drained_s"])
     return replace(found.outcome, messages=found.outcome.messages[inside])
 
 
 def _consoles(part: str, found: Backlog) -> Iterator[Figure]:
-    """The open consoles while the journal drained."""
+    """Return the open consoles' requests while the journal drained."""
     back_s, drained_s = found.told["back_s"], found.told["drained_s"]
     news, views = found.outcome.news, found.outcome.views
     ages_ms = live_age_ms(found.outcome)[(news[:, 2] >= back_s) & (news[:, 2] <= drained_s)]
     waits_ms = 1000 * views[(views[:, 0] >= back_s) & (views[:, 0] <= drained_s), 1]
     for name, values_ms in (("age of live figures", ages_ms), ("session view", waits_ms)):
-        # A journal that drains at once leaves nothing to look at.
+        # A journal that drains immediately leaves nothing to measure.
         if len(values_ms):
             p95 = float(np.percentile(values_ms, 95))
             name = f"meanwhile console: {name} p95 of {len(values_ms)}"

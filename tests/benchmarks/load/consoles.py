@@ -1,7 +1,7 @@
 """Consoles in a process of their own: `python -m tests.benchmarks.load.consoles`.
 
-Each follows the live news of a session and asks for its view every two seconds. Same conversation
-with the parent as the generator; the plan ends by itself after its duration.
+Each follows the live stream of a session and requests its view every two seconds. It uses the
+generator's protocol with the parent; the plan ends after its duration.
 """
 
 import asyncio
@@ -22,7 +22,7 @@ VIEW_EVERY_S = 2.0
 
 @dataclass(frozen=True)
 class ConsolePlan:
-    """Which sessions have an open console: numbers and ids. `token`: an operator's."""
+    """The sessions that have an open console: numbers and ids. `token`: an operator's."""
 
     url: str
     cookies: dict[str, str]
@@ -45,14 +45,14 @@ class ConsolePlan:
 
 @dataclass
 class Seen:
-    """News (session number, headset's clock s, arrived at s); views (asked at s, wait s); flat."""
+    """Events (session number, headset's clock s, arrival s); views (request s, wait s); flat."""
 
     live: "array[float]"
     views: "array[float]"
 
 
 async def run(plan: ConsolePlan) -> dict[str, Any]:
-    """Open the consoles, watch for the duration, save the news."""
+    """Open the consoles, watch for the duration, and save the events."""
     seen = Seen(array("d"), array("d"))
     timeout = Timeout(30.0, read=60.0, pool=None)
     async with AsyncClient(base_url=plan.url, cookies=plan.cookies, timeout=timeout) as client:
@@ -89,7 +89,7 @@ async def run(plan: ConsolePlan) -> dict[str, Any]:
 async def _follow(
     client: AsyncClient, number: int, session_id: str, is_open: asyncio.Event, seen: Seen
 ) -> None:
-    """Read the live news as a page does."""
+    """Read the live stream as a page does."""
     async with client.stream("GET", f"/api/sessions/{session_id}/live") as response:
         response.raise_for_status()
         kind = ""
@@ -100,14 +100,14 @@ async def _follow(
             elif line.startswith("data: "):
                 is_open.set()
                 client_t_s = json.loads(line[6:]).get("client_t_s")
-                # News without figures tell of the connection and the alarms.
+                # Events without figures report the connection and the alarms.
                 if kind == "telemetry" and client_t_s is not None:
                     seen.live.extend((number, client_t_s, arrived_s))
     raise ConnectionError(f"the live news of {session_id} ended")
 
 
 async def _view(client: AsyncClient, at: int, session_id: str, begin_s: float, seen: Seen) -> None:
-    """Ask for the session as a page does when it opens."""
+    """Request the session as a page does when it opens."""
     due_s = begin_s + at * 0.618034 % 1.0 * VIEW_EVERY_S
     while True:
         await asyncio.sleep(max(0.0, due_s - time.monotonic()))
@@ -116,7 +116,7 @@ async def _view(client: AsyncClient, at: int, session_id: str, begin_s: float, s
             response = await client.get(f"/api/sessions/{session_id}")
             response.raise_for_status()
         finally:
-            # Who still waits at the end has waited for at least so long.
+            # A request that is pending at the end has waited for at least this long.
             seen.views.extend((asked_s, time.monotonic() - asked_s))
         due_s += VIEW_EVERY_S
 

@@ -1,4 +1,4 @@
-"""A PostgreSQL as people run it: what it has committed survives the end of the power."""
+"""A PostgreSQL with durable settings: committed data survive a power loss."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -7,14 +7,14 @@ from tests.benchmarks.load.scenario import Store
 from tests.support.postgres import SETTINGS, Cluster, start_keeper, stop_keeper
 from tests.support.shared_run import close_run, open_run, run_folder
 
-# The tests' own, but for what makes them fast and careless.
+# The settings of the tests, without those that trade durability for speed.
 DURABLE = {**SETTINGS, "fsync": "on", "full_page_writes": "on", "synchronous_commit": "on"}
 DATABASE = "reembody"
 
 
 @contextmanager
 def durable_postgres() -> Iterator[Store]:
-    """An empty database in a cluster of its own, removed afterwards."""
+    """Yield an empty database in a cluster of its own, removed afterwards."""
     open_run()
     folder = run_folder() / "durable"
     try:

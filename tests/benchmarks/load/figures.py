@@ -1,4 +1,4 @@
-"""The figures of a run, each beside its limit."""
+"""Compute the figures of a run, each with its limit."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,7 @@ MIB = 2.0**20
 
 
 def load_figures(part: str, outcome: Outcome) -> list[Figure]:
-    """Everything a run of one load tells."""
+    """Return all figures of a run of one load."""
     return [
         *acknowledgement(part, outcome),
         *consoles(part, outcome),
@@ -29,7 +29,7 @@ def load_figures(part: str, outcome: Outcome) -> list[Figure]:
 
 
 def acknowledgement(part: str, outcome: Outcome) -> list[Figure]:
-    """From handing a message to the client until its acknowledgement."""
+    """Return the time from passing a message to the client until its acknowledgement."""
     load, waits_ms = outcome.load, ack_ms(outcome)
     p50, p99, most = np.percentile(waits_ms, [50, 99, 100])
     real = outcome.messages[:, 0] >= load.sessions - load.real
@@ -47,7 +47,7 @@ def acknowledgement(part: str, outcome: Outcome) -> list[Figure]:
 
 
 def ack_ms(outcome: Outcome, chosen: NDArray[np.bool_] | None = None) -> NDArray[np.float64]:
-    """Waits (ms); a message that was never acknowledged has waited for as long as it could."""
+    """Return waits (ms); a message without acknowledgement waited until the end of the run."""
     rows = outcome.messages if chosen is None else outcome.messages[chosen]
     longest_s = np.nanmax(outcome.messages[:, 2] + np.nan_to_num(outcome.messages[:, 3]))
     never = np.isnan(rows[:, 3])
@@ -56,7 +56,7 @@ def ack_ms(outcome: Outcome, chosen: NDArray[np.bool_] | None = None) -> NDArray
 
 
 def consoles(part: str, outcome: Outcome) -> list[Figure]:
-    """How old the live figures are when they arrive, and how long a page waits."""
+    """Return the age of live figures on arrival, and how long a page waits."""
     if not outcome.load.consoles:
         return []
     ages_ms = live_age_ms(outcome)
@@ -93,7 +93,7 @@ def consoles(part: str, outcome: Outcome) -> list[Figure]:
 
 
 def live_age_ms(outcome: Outcome) -> NDArray[np.float64]:
-    """From handing a batch to the client until the event that shows its newest frame arrives."""
+    """Return the time from passing a batch to the client until its newest frame is shown."""
     handed_s = {
         number: outcome.messages[
             (outcome.messages[:, 0] == number) & (outcome.messages[:, 1] == ACTUAL), 2
@@ -108,7 +108,7 @@ def live_age_ms(outcome: Outcome) -> NDArray[np.float64]:
 
 
 def safety(part: str, outcome: Outcome) -> list[Figure]:
-    """What was promised against what is stored."""
+    """Compare the acknowledged data with the stored data."""
     found = outcome.verdict
     told = [session for one in outcome.told.values() for session in one["sessions"]]
     failed = sum(session["failure"] is not None for session in told)
@@ -126,7 +126,7 @@ def safety(part: str, outcome: Outcome) -> list[Figure]:
 
 
 def server(part: str, outcome: Outcome) -> list[Figure]:
-    """Processor and memory of the server; a database of its own counts as a part of it."""
+    """Return processor time and memory of the server, including its database's processes."""
     watch, load = outcome.watch, outcome.load
     rss_mib, cores = watch.rss_mib(), watch.cpu_share()
     warm_up_s = min(60.0, load.duration_s / 3)
@@ -153,7 +153,7 @@ def server(part: str, outcome: Outcome) -> list[Figure]:
 
 
 def samples_per_s(outcome: Outcome) -> float:
-    """Rotations of one joint in one stream, made safe in a second while the load lasted."""
+    """Return how many rotations of one joint in one stream were stored per second of the load."""
     rows = outcome.messages[outcome.messages[:, 1] <= ACTUAL]
     in_time = rows[:, 2] + rows[:, 3] <= outcome.begin_s + outcome.load.duration_s
     frames = int(in_time.sum()) * FRAMES_PER_BATCH
@@ -161,10 +161,10 @@ def samples_per_s(outcome: Outcome) -> float:
 
 
 def storage(part: str, outcome: Outcome) -> list[Figure]:
-    """What stays on the disk."""
+    """Return the size of the stored data on disk."""
     found, load = outcome.verdict, outcome.load
     session_minutes = load.sessions * load.duration_s / 60
-    # Two streams of 90 Hz; of what is not folded yet nothing is counted.
+    # Two streams of 90 Hz; data that are not folded yet do not count.
     frames_per_minute = 2 * 90 * 60
     per_frame = found.chunk_bytes / max(1, found.chunk_frames)
     return [
@@ -182,7 +182,7 @@ def storage(part: str, outcome: Outcome) -> list[Figure]:
 
 
 def generators(part: str, outcome: Outcome) -> list[Figure]:
-    """That the load itself kept up."""
+    """Return whether the load itself kept up."""
     figures = []
     for name, told in outcome.told.items():
         share = 100 * told["cpu_s"] / outcome.load.duration_s

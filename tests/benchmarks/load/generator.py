@@ -1,8 +1,8 @@
 """Headsets in a process of their own: `python -m tests.benchmarks.load.generator`.
 
-Standard input: a line with the plan (JSON). This answers `connected`, then, when every session's
-phase runs, `ready`; then a line with the moment to begin (s, monotonic clock of the machine).
-Writes its messages to the plan's file and the counters to standard output.
+Standard input: a line with the plan (JSON). The process prints `connected`, then, when every
+session's phase runs, `ready`; then it reads a line with the start time (s, monotonic clock of the
+machine). It writes its messages to the plan's file and the counters to standard output.
 """
 
 import asyncio
@@ -38,9 +38,9 @@ class Seat:
 
 @dataclass(frozen=True)
 class GeneratorPlan:
-    """What a generator does. `client`: `lean`, or `real` for the product's own client.
+    """The work of a generator. `client`: `lean`, or `real` for the product's own client.
 
-    Of the sessions whose number is a multiple of `digest_every` every frame is digested.
+    Every frame is digested in sessions whose number is a multiple of `digest_every`.
     """
 
     url: str
@@ -63,7 +63,7 @@ class GeneratorPlan:
 
 
 async def run(plan: GeneratorPlan) -> dict[str, Any]:
-    """Connect all, wait for the word, stream, wait for the last acknowledgements."""
+    """Connect all, wait for the start time, stream, and wait for the last acknowledgements."""
     movements = [make_movement(np.random.default_rng(seed)) for seed in range(MOVEMENTS)]
     gate = asyncio.Semaphore(CONNECT_AT_ONCE)
     streams = await asyncio.gather(*(_seated(plan, seat, movements, gate) for seat in plan.seats))
@@ -110,12 +110,12 @@ async def _seated(
 
 
 def _out_of_step_s(seat: Seat) -> float:
-    """Headsets do not tick together: spread them evenly over the time between two messages."""
+    """Spread the headsets evenly over the time between two messages, as real ones are."""
     return seat.number * 0.618034 % 1.0 * FRAMES_PER_BATCH / RATE_HZ
 
 
 async def _settled(streams: list[Streaming]) -> None:
-    """Wait for the last acknowledgements; what does not come stays without a latency."""
+    """Wait for the last acknowledgements; a missing one has no latency."""
     give_up_s = time.monotonic() + DRAINS_WITHIN_S
     while time.monotonic() < give_up_s:
         if all(stream.record.is_settled or stream.record.failure for stream in streams):

@@ -1,4 +1,4 @@
-"""What the load needs of a headset, and the real client of the product behind it."""
+"""The interface of a headset in the load, and its implementation by the product's real client."""
 
 import asyncio
 import time
@@ -14,7 +14,7 @@ from tests.benchmarks.load.record import Record
 
 
 class Headset(Protocol):
-    """A connected headset; its record notes whatever it is handed."""
+    """A connected headset; its record notes every message that is passed to it."""
 
     @property
     def epoch(self) -> int:
@@ -36,19 +36,19 @@ class Headset(Protocol):
 
 @dataclass
 class RecordedJournal(Journal):
-    """The client's own journal, with a record of what comes and goes."""
+    """The client's own journal, with a record of added and acknowledged messages."""
 
     record: Record | None = None
 
     def add(self, entry: Entry) -> None:
-        """Keep a message, and note it."""
+        """Add a message and record it."""
         assert self.record is not None
         self.record.epoch = entry.epoch
         self.record.hand(entry.stream, entry.seq_end)
         super().add(entry)
 
     def acknowledge(self, positions: Iterable[tuple[str, int, int]]) -> None:
-        """Forget what is stored, and note it."""
+        """Remove acknowledged messages and record them."""
         known = list(positions)
         super().acknowledge(known)
         if self.record is not None:
@@ -57,7 +57,7 @@ class RecordedJournal(Journal):
 
 @dataclass
 class RealHeadset:
-    """The product's own client; use `open` to make one."""
+    """The product's own client; use `open` to create one."""
 
     client: TelemetryClient
 

@@ -1,4 +1,4 @@
-"""How many sessions the server takes before its acknowledgements come late."""
+"""Find how many sessions the server supports before its acknowledgements are late."""
 
 import sys
 from collections.abc import Iterator
@@ -32,17 +32,17 @@ class Step:
 
     @property
     def is_good(self) -> bool:
-        """Whether the acknowledgements come in time and nothing is lost."""
+        """Return whether acknowledgements are in time and nothing is lost."""
         return self.ack_p99_ms <= LATE_MS and self.lost == 0
 
     @property
     def is_measured(self) -> bool:
-        """Whether the generator kept up, so that what is late is the server's doing."""
+        """Return whether the generator kept up, so that delays are the server's."""
         return self.lag_p99_ms <= GENERATOR_LAG_MS
 
 
 def knee_figures(part: str, folder: Path, duration_s: float) -> Iterator[Figure]:
-    """Add sessions until they are too many; every number of them on a fresh server."""
+    """Increase the number of sessions until there are too many, each on a fresh server."""
     steps: list[Step] = []
     for sessions in range(FIRST, LAST + 1, STEP):
         step = _step(sessions, run_load(folder / str(sessions), _load(sessions, duration_s)))
@@ -58,7 +58,7 @@ def knee_figures(part: str, folder: Path, duration_s: float) -> Iterator[Figure]
 
 
 def _verdict(part: str, steps: list[Step]) -> Iterator[Figure]:
-    """The last good and the first bad number, and whose limit it was."""
+    """Return the last good and the first bad number, and whether server or load was the limit."""
     good = [step for step in steps if step.is_good and step.is_measured]
     if good:
         yield Figure(part, "last good number of sessions", good[-1].sessions, "sessions")
@@ -74,7 +74,7 @@ def _verdict(part: str, steps: list[Step]) -> Iterator[Figure]:
 
 
 def _load(sessions: int, duration_s: float) -> Load:
-    """Only cheap clients and no comparison bit by bit: the cores are for the server."""
+    """Return a load of lean clients without digests, which leaves the cores to the server."""
     return Load(sessions=sessions, duration_s=duration_s, real=0, consoles=0, digest_every=10**9)
 
 

@@ -1,4 +1,4 @@
-"""The study of the load, and sessions that need nothing but their headsets."""
+"""The study of the load, and sessions that only need their headsets."""
 
 import uuid
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from tests.protocol.helpers import STUDY as FILE
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 
 STUDY = "load"
-# Longer than any run; nothing else than moving freely.
+# Longer than any run, with only free movement.
 PROCEDURE = """procedure:
   before:
     - {step: materialise, text: t_pose}
@@ -21,14 +21,14 @@ PROCEDURE = """procedure:
 
 @dataclass(frozen=True)
 class Lab:
-    """Sessions that wait for their headsets' frames."""
+    """Sessions that are ready for their headsets' frames."""
 
     seats: tuple[Seat, ...]
     cookies: dict[str, str]
 
 
 def make_lab(server: LiveServer, count: int, first: int = 0) -> Lab:
-    """Make `count` sessions, numbered from `first`: begun, their headset paired."""
+    """Create `count` started sessions with paired headsets, numbered from `first`."""
     with server.client() as client:
         credentials = {"username": "admin", "password": ADMIN_PASSWORD}
         client.post("/api/login", json=credentials).raise_for_status()
@@ -39,7 +39,7 @@ def make_lab(server: LiveServer, count: int, first: int = 0) -> Lab:
 
 
 def call_phases(server: LiveServer, lab: Lab) -> None:
-    """Let every avatar appear and begin its phase; the headsets must be connected."""
+    """Let every participant enter the body and begin the phase; headsets must be connected."""
     with server.client() as client:
         client.cookies.update(lab.cookies)
         for seat in lab.seats:
@@ -48,7 +48,7 @@ def call_phases(server: LiveServer, lab: Lab) -> None:
 
 
 def study_text() -> str:
-    """The shipped study with another beginning; who is cut off goes on by the journal."""
+    """Return the shipped study with another start; lost headsets continue from the journal."""
     text = FILE
     start, end = text.index("procedure:\n"), text.index("  block:\n")
     text = text[:start] + PROCEDURE + text[end:]
@@ -66,7 +66,7 @@ def _seat(client: httpx2.Client, number: int) -> Seat:
 
 
 def _command(client: httpx2.Client, at: str, kind: str) -> dict[str, Any]:
-    """Send a command, decided on the newest view."""
+    """Send a command based on the newest view."""
     view = client.get(at).json()
     body = {"command_id": str(uuid.uuid4()), "expected_version": view["version"], "type": kind}
     return _post(client, f"{at}/commands", body)

@@ -1,8 +1,8 @@
-"""A headset that costs little: the same protocol as `app.client`, without journal and retries.
+"""A headset that costs little: the protocol of `app.client`, without journal and retries.
 
 The load shares two cores with the server it measures. So this client parses an acknowledgement as
-plain JSON, and what waits for it lies in the socket's buffer. It cannot reconnect: a broken
-connection is a failure of the run.
+plain JSON, and unacknowledged messages are only in the socket's buffer. It cannot reconnect: a
+broken connection is a failure of the run.
 """
 
 import asyncio
@@ -38,7 +38,7 @@ WELCOMED_WITHIN_S = 30.0
 
 @dataclass
 class LeanHeadset(asyncio.Protocol):
-    """One run of a headset; use `open` to make one."""
+    """One run of a headset; use `open` to create one."""
 
     record: Record
     protocol: ClientProtocol
@@ -54,7 +54,7 @@ class LeanHeadset(asyncio.Protocol):
 
     @classmethod
     async def open(cls, url: str, token: str, record: Record) -> "LeanHeadset":
-        """Connect and greet."""
+        """Connect and send the hello message."""
         uri = parse_uri(url)
         names = [Subprotocol(SUBPROTOCOL), Subprotocol(f"bearer.{token}")]
         made = cls(record, ClientProtocol(uri, subprotocols=names, max_size=4 * 1024 * 1024))
@@ -93,13 +93,13 @@ class LeanHeadset(asyncio.Protocol):
             self._transport.close()
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """Ask for the WebSocket."""
+        """Request the WebSocket."""
         self._transport = cast("asyncio.Transport", transport)
         self.protocol.send_request(self.protocol.connect())
         self._flush()
 
     def data_received(self, data: bytes) -> None:
-        """Take what the server says."""
+        """Handle data from the server."""
         self.protocol.receive_data(data)
         for event in self.protocol.events_received():
             if isinstance(event, Response):
@@ -110,7 +110,7 @@ class LeanHeadset(asyncio.Protocol):
         self._flush()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """A broken connection ends the run: its figures would mean nothing."""
+        """End the run after a broken connection: its figures would mean nothing."""
         if not self.welcomed.done():
             self.welcomed.set_exception(ConnectionError(f"no welcome: {exc}"))
         elif not self._closing and self.record.failure is None:
@@ -136,7 +136,7 @@ class LeanHeadset(asyncio.Protocol):
                 self.record.failure = f"the load is not what the server expects: {message}"
 
     async def _tell_regularly(self) -> None:
-        """Probe the clock, and tell how far the headset has come, once a second."""
+        """Probe the clock and report the number of produced frames, once a second."""
         while True:
             self._tell(Probe(client_sent_s=time.monotonic() - self._began_s).model_dump_json())
             made = {name: self.record.streams[name].ends for name in STREAMS}

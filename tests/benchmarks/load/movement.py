@@ -1,4 +1,4 @@
-"""Movement for the load: made once, looped without a seam, and as hard to compress as captured.
+"""Movement for the load: synthetic, looped without a seam, as hard to compress as captures.
 
 Every joint turns by a random rotation vector whose spectrum falls off as in people's movement, plus
 the noise of a tracker. The avatar follows: the same, delayed and through a second-order low-pass.
@@ -48,7 +48,7 @@ def make_movement(rng: np.random.Generator, frames: int = LOOP_FRAMES) -> Moveme
 def _spectra(
     rng: np.random.Generator, hz: NDArray[np.float64], count: int, size: float, noise: float
 ) -> NDArray[np.complex128]:
-    """Spectra (len(hz), count) of signals of standard deviation `size`, on a floor of noise."""
+    """Return spectra (len(hz), count) of signals with SD `size` on a floor of noise."""
     shape = np.where(hz >= SLOWEST_HZ, 1.0 / (1.0 + (hz / FALLS_OFF_HZ) ** 2), 0.0)
     frames = 2 * (len(hz) - 1)
     drawn = rng.normal(size=(len(hz), count)) + 1j * rng.normal(size=(len(hz), count))
@@ -63,7 +63,7 @@ def _spectra(
 def _frames(
     root: NDArray[np.complex128], turns: NDArray[np.complex128], frames: int
 ) -> NDArray[np.float32]:
-    """Values (2 * frames, 91): the loop twice, so that no piece has to be put together."""
+    """Return values (2 * frames, 91): the loop twice, so that every piece is contiguous."""
     vectors_rad = np.fft.irfft(turns, frames, axis=0).reshape(frames, BODY_JOINTS, 3)
     angle = np.linalg.norm(vectors_rad, axis=2, keepdims=True)
     # sin(a/2)/a without a division by zero.

@@ -1,4 +1,4 @@
-"""Who takes part in a load, and the plans they are given."""
+"""The participants of a load, and the plans of their processes."""
 
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
@@ -14,7 +14,7 @@ from tests.support.server import LiveServer
 
 @dataclass(frozen=True)
 class Load:
-    """How much: `real` of the sessions use the product's own client, `consoles` are watched."""
+    """The size of a load: `real` sessions use the product's own client, `consoles` are watched."""
 
     sessions: int = 50
     duration_s: float = 600.0
@@ -32,7 +32,7 @@ class Companions:
     consoles: Companion | None
 
     def everybody(self) -> Iterator[Companion]:
-        """Generators first."""
+        """Return all processes, generators first."""
         yield from self.generators.values()
         if self.consoles is not None:
             yield self.consoles
@@ -40,7 +40,7 @@ class Companions:
 
 @contextmanager
 def companions(folder: Path, server: LiveServer, lab: Lab, load: Load) -> Iterator[Companions]:
-    """Every process of the load, connected and with its phases running."""
+    """Start every process of the load, connected and with its phases running."""
     split = len(lab.seats) - load.real
     groups = {"lean": lab.seats[:split], "real": lab.seats[split:]}
     with ExitStack() as stack:
@@ -69,7 +69,7 @@ def companions(folder: Path, server: LiveServer, lab: Lab, load: Load) -> Iterat
 
 
 def stream_url(server: LiveServer) -> str:
-    """Where headsets connect."""
+    """Return the URL at which headsets connect."""
     return f"{server.url.replace('http', 'ws', 1)}/api/vr/stream"
 
 
@@ -88,7 +88,7 @@ def _generator_plan(
 
 
 def _console_plan(folder: Path, server: LiveServer, lab: Lab, load: Load) -> ConsolePlan:
-    """Consoles on sessions spread over all, so that both clients are watched."""
+    """Plan consoles on evenly spread sessions, so that both kinds of clients are watched."""
     step = max(1, len(lab.seats) // load.consoles)
     watched = lab.seats[step - 1 :: step][: load.consoles]
     return ConsolePlan(

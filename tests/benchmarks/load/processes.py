@@ -1,4 +1,4 @@
-"""The processes of a load, and the conversation with them."""
+"""The processes of a load, and the protocol with them."""
 
 import json
 import subprocess
@@ -12,7 +12,7 @@ ANSWERS_WITHIN_S = 300.0
 
 
 class Plan(Protocol):
-    """What a process is given."""
+    """The plan that is passed to a process."""
 
     def as_json(self) -> str:
         """One line."""
@@ -27,7 +27,7 @@ class Companion:
 
     @classmethod
     def start(cls, module: str, plan: Plan, errors: Path) -> Self:
-        """Start `tests.benchmarks.MODULE` and give it its plan."""
+        """Start `tests.benchmarks.MODULE` and pass it its plan."""
         with errors.open("w") as told:
             process = subprocess.Popen(
                 [sys.executable, "-m", f"tests.benchmarks.{module}"],
@@ -42,17 +42,17 @@ class Companion:
         return made
 
     def wait_for(self, word: str) -> None:
-        """Read a line; raises RuntimeError with what the process said if it is another."""
+        """Wait for a line; raise RuntimeError with the process's output if it is another one."""
         heard = self._hear()
         if heard != word:
             raise RuntimeError(f"expected {word!r}, heard {heard!r}; {self._last_words()}")
 
     def begin(self, begin_s: float) -> None:
-        """Tell the moment to begin."""
+        """Send the start time."""
         self._say(repr(begin_s))
 
     def result(self) -> dict[str, Any]:
-        """What it counted; waits for its end."""
+        """Wait for the end of the process and return its result."""
         text = self._hear()
         self.process.wait(ANSWERS_WITHIN_S)
         if self.process.returncode != 0 or not text:
@@ -62,7 +62,7 @@ class Companion:
 
     @property
     def pid(self) -> int:
-        """Its process."""
+        """Return its process id."""
         return self.process.pid
 
     def __enter__(self) -> Self:

@@ -1,4 +1,4 @@
-"""What a headset has handed over and what was acknowledged: the load's own book-keeping."""
+"""Record which messages a headset has sent and which were acknowledged."""
 
 import hashlib
 import time
@@ -19,7 +19,7 @@ STREAMS = (StreamName.TARGET.value, StreamName.ACTUAL.value, REPORT_STREAM)
 
 @dataclass
 class StreamRecord:
-    """One stream: when each message was handed over (monotonic s), how long until its ack (s)."""
+    """One stream: when each message was sent (monotonic s), and the time until its ack (s)."""
 
     ends: "array[int]" = field(default_factory=lambda: array("q"))
     handed_s: "array[float]" = field(default_factory=lambda: array("d"))
@@ -27,12 +27,12 @@ class StreamRecord:
     acked: int = 0
 
     def hand(self, seq_end: int) -> None:
-        """A message goes to the client now."""
+        """Record that a message is passed to the client now."""
         self.ends.append(seq_end)
         self.handed_s.append(time.monotonic())
 
     def acknowledge(self, next_seq: int, now_s: float) -> None:
-        """Everything below `next_seq` is on the server's disk."""
+        """Record that everything below `next_seq` is on the server's disk."""
         self.acked = max(self.acked, next_seq)
         at = len(self.latency_s)
         while at < len(self.ends) and self.ends[at] <= next_seq:
@@ -41,13 +41,13 @@ class StreamRecord:
 
     @property
     def is_settled(self) -> bool:
-        """Whether nothing waits for its acknowledgement."""
+        """Return whether every message was acknowledged."""
         return len(self.latency_s) == len(self.ends)
 
 
 @dataclass
 class Digest:
-    """What went over a stream, independent of how it was cut: times, flags and values."""
+    """A digest of a stream's times, flags and values, independent of how it was batched."""
 
     times: Any = field(default_factory=hashlib.sha256)
     flags: Any = field(default_factory=hashlib.sha256)
@@ -56,14 +56,14 @@ class Digest:
     def take(
         self, times_s: NDArray[np.float64], flags: NDArray[np.uint8], values: NDArray[np.float32]
     ) -> None:
-        """Frames follow: `times_s` (n,), `flags` (n,), `values` (n, 91)."""
+        """Add frames: `times_s` (n,), `flags` (n,), `values` (n, 91)."""
         self.times.update(np.ascontiguousarray(times_s, "<f8"))
         self.flags.update(np.ascontiguousarray(flags, "u1"))
         self.values.update(np.ascontiguousarray(values, "<f4"))
 
     @property
     def text(self) -> str:
-        """Comparable over processes."""
+        """Return the digest as text, comparable between processes."""
         return " ".join(one.hexdigest() for one in (self.times, self.flags, self.values))
 
 
@@ -80,11 +80,11 @@ class Record:
     failure: str | None = None
 
     def hand(self, stream: str, seq_end: int) -> None:
-        """A message goes to the client now."""
+        """Record that a message is passed to the client now."""
         self.streams[stream].hand(seq_end)
 
     def acknowledge(self, positions: Iterable[tuple[str, int, int]]) -> None:
-        """Take an acknowledgement: (stream, epoch, next_seq) each."""
+        """Record acknowledgements, each (stream, epoch, next_seq)."""
         now_s = time.monotonic()
         for stream, epoch, next_seq in positions:
             if epoch == self.epoch:
@@ -92,17 +92,17 @@ class Record:
 
     @property
     def is_settled(self) -> bool:
-        """Whether nothing waits for its acknowledgement."""
+        """Return whether every message was acknowledged."""
         return all(stream.is_settled for stream in self.streams.values())
 
     def columns(self, number: int) -> NDArray[np.float64]:
-        """One row a message (n, 4): session number, stream, handed over (s), latency (s or NaN)."""
+        """Return one row per message (n, 4): session, stream, sent (s), latency (s or NaN)."""
         return np.concatenate(
             [_columns(number, code, self.streams[name]) for code, name in enumerate(STREAMS)]
         )
 
     def summary(self) -> dict[str, Any]:
-        """Counters and digests, for the comparison with the database."""
+        """Return counters and digests, for the comparison with the database."""
         return {
             "session_id": self.session_id,
             "epoch": self.epoch,

@@ -1,9 +1,9 @@
-"""A headset that was cut off and comes back: `python -m tests.benchmarks.load.returning`.
+"""A headset that was cut off and reconnects: `python -m tests.benchmarks.load.returning`.
 
-It connects once, begins its phase and hangs up; then it fills its journal on the disk with what it
-would have made meanwhile. Told to begin, it waits, opens the journal again as a program does that
-was started again, and sends all of it through the product's own client, while it makes new frames
-in real time. Same conversation with the parent as the generator.
+It connects once, begins its phase and disconnects; then it fills its journal on the disk with the
+data it would have produced meanwhile. At the start time it waits, opens the journal again as a
+restarted program does, and sends all of it through the product's own client, while it produces new
+frames in real time. It uses the generator's protocol with the parent.
 """
 
 import asyncio
@@ -41,7 +41,7 @@ class LeftJournal(FileJournal):
         self.left = self.end
 
     def acknowledge(self, positions: Iterable[tuple[str, int, int]]) -> None:
-        """Forget what is stored, and notice when nothing is left of what was found."""
+        """Remove stored messages, and record when none of the earlier ones is left."""
         super().acknowledge(positions)
         if self.first >= self.left:
             self.is_drained.set()
@@ -49,9 +49,9 @@ class LeftJournal(FileJournal):
 
 @dataclass(frozen=True)
 class ReturnPlan:
-    """`frames` of each stream are journaled; it comes back so long after the beginning.
+    """`frames` of each stream are journaled; it reconnects after a given time.
 
-    It gives up `gives_up_s` after it came back.
+    It gives up `gives_up_s` after it reconnected.
     """
 
     url: str
@@ -73,7 +73,10 @@ class ReturnPlan:
 
 
 async def run(plan: ReturnPlan) -> dict[str, Any]:
-    """Begin a phase, go, come back; when (monotonic s) it came back and had nothing left."""
+    """Begin a phase, disconnect and reconnect; return when it did and when the journal was empty.
+
+    Times are in monotonic seconds.
+    """
     before = await _before(plan)
     print("ready", flush=True)
     begin_s = float(await asyncio.to_thread(sys.stdin.readline))
@@ -113,7 +116,7 @@ async def run(plan: ReturnPlan) -> dict[str, Any]:
 
 
 async def _before(plan: ReturnPlan) -> Streaming:
-    """The run that is cut off: its phase begins, and what it makes afterwards is journaled."""
+    """Run until the cut: begin the phase, and journal what is produced afterwards."""
     client, journal = _client(plan)
     async with client:
         print("connected", flush=True)
@@ -129,7 +132,7 @@ async def _before(plan: ReturnPlan) -> Streaming:
 
 
 def _touches(plan: ReturnPlan) -> range:
-    """The seqs at which it touched something: once a second."""
+    """Return the seqs of its contacts: one per second."""
     return range(int(RATE_HZ), plan.frames, int(RATE_HZ))
 
 

@@ -1,4 +1,4 @@
-"""One run of a load: the real server, the headsets, the consoles, and what became of it all."""
+"""Run a load once: the real server, the headsets, the consoles, and the evaluation."""
 
 import time
 from collections.abc import Mapping, Sequence
@@ -25,7 +25,7 @@ BEGINS_IN_S = 1.0
 class Store:
     """Where the server keeps its data: `url` of a database, None for SQLite in its own folder.
 
-    `processes` that belong to the database, by name, are watched too.
+    `processes` are the names of the database's processes, which are watched too.
     """
 
     url: str | None = None
@@ -34,7 +34,7 @@ class Store:
 
 @dataclass(frozen=True)
 class Course:
-    """A load that is over: when it began (monotonic s), from when to when, what was told."""
+    """A completed load: when it started (monotonic s), its period, and the results."""
 
     begin_s: float
     lasted: tuple[datetime, datetime]
@@ -46,11 +46,11 @@ class Course:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a run has shown.
+    """The results of a run.
 
-    `messages` (n, 4): session number, stream, handed over (monotonic s), latency (s, NaN if never
-    acknowledged). `news` (m, 3): session number, the headset's clock (s), arrived at the console.
-    `views` (k, 2): when a console asked for a session's view (monotonic s), and how long it waited.
+    `messages` (n, 4): session number, stream, sent (monotonic s), latency (s, NaN if never
+    acknowledged). `news` (m, 3): session number, the headset's clock (s), arrival at the console.
+    `views` (k, 2): when a console requested a session's view (monotonic s), and how long it waited.
     `told`: the generators' own results. `beside`: the processes of the database.
     """
 
@@ -68,7 +68,7 @@ class Outcome:
 
 
 def run_load(folder: Path, load: Load, store: Store | None = None) -> Outcome:
-    """Run it; the database is compared with the generators' counters after the server stopped."""
+    """Run a load, then stop the server and compare its database with the generators' counters."""
     store = store or Store()
     with live_server(folder, store) as server:
         lab = make_lab(server, load.sessions)
@@ -77,14 +77,14 @@ def run_load(folder: Path, load: Load, store: Store | None = None) -> Outcome:
 
 
 def live_server(folder: Path, store: Store) -> LiveServer:
-    """The product's server, not started."""
+    """Return the product's server, not started."""
     folder.mkdir(parents=True, exist_ok=True)
     environment = {} if store.url is None else {"REEMBODY_DATABASE_URL": store.url}
     return LiveServer(folder, environment=environment)
 
 
 def database_url(server: LiveServer, store: Store) -> str:
-    """Where the server's data are."""
+    """Return the URL of the server's database."""
     return store.url or f"sqlite:///{server.data_dir / 'reembody.sqlite'}"
 
 
@@ -96,7 +96,7 @@ def run_course(
     store: Store,
     guests: Sequence[Companion] = (),
 ) -> Course:
-    """Let everybody begin at one moment; `guests` are processes of the caller that begin too."""
+    """Start all processes at the same moment, including the caller's own in `guests`."""
     file = None if store.url else server.data_dir / "reembody.sqlite"
     with companions(folder, server, lab, load) as these:
         begin_s = time.monotonic() + BEGINS_IN_S
@@ -120,9 +120,9 @@ def run_course(
 def outcome_of(
     folder: Path, load: Load, course: Course, url: str, guests: Sequence[dict[str, Any]] = ()
 ) -> Outcome:
-    """Put together what the processes left in `folder`, and verify the database.
+    """Combine the results that the processes left in `folder`, and verify the database.
 
-    `guests`: what the caller's own processes have told.
+    `guests`: the results of the caller's own processes.
     """
     tellers = (*course.told.values(), *guests)
     sessions = [session for one in tellers for session in one["sessions"]]
@@ -142,6 +142,6 @@ def outcome_of(
 
 
 def _loaded(path: Path, columns: int) -> NDArray[np.float64]:
-    """The rows of a console's file; none where there was no console."""
+    """Return the rows of a console's file; none if there was no console."""
     rows: NDArray[np.float64] = np.load(path) if path.exists() else np.empty((0, columns))
     return rows

@@ -1,4 +1,4 @@
-"""One headset in a running phase: 90 frames a second of both streams, six to a message."""
+"""One headset in a running phase: 90 frames a second of both streams, six per message."""
 
 import asyncio
 import time
@@ -24,7 +24,7 @@ STARTS_WITHIN_S = 30.0
 class Streaming:
     """Streams `movement` from frame `offset` on. `lag_s`: how late each message was made (s).
 
-    `active_from_s`: how much of the phase had passed before, in a run that goes on with one.
+    `active_from_s`: the elapsed active time of the phase, in a run that continues one.
     """
 
     headset: Headset
@@ -70,7 +70,7 @@ class Streaming:
                 await self.touch(seq / RATE_HZ)
 
     async def send(self, seq: int) -> None:
-        """Hand over the message of both streams that begins at `seq`."""
+        """Send the messages of both streams that begin at `seq`."""
         at = (self.offset + seq) % LOOP_FRAMES
         here = slice(at, at + FRAMES_PER_BATCH)
         times_s = FIRST_T_S + (seq + np.arange(FRAMES_PER_BATCH)) / RATE_HZ
@@ -96,7 +96,7 @@ class Streaming:
                 self.record.digests[name.value].take(times_s, flags, loop[here])
 
     async def touch(self, active_s: float) -> None:
-        """Report that a hand touched a side."""
+        """Report a contact of a hand with a side."""
         await self.headset.report(
             ContactReport(
                 phase_id=self.phase_id,
@@ -115,6 +115,6 @@ class Streaming:
 
 
 def batch_of(client_t_s: float) -> int:
-    """Which message of a stream has its newest frame at this time of the headset's clock."""
+    """Return the index of the message whose newest frame has this time of the headset's clock."""
     newest = (client_t_s - FIRST_T_S) * RATE_HZ
     return round((newest - (FRAMES_PER_BATCH - 1)) / FRAMES_PER_BATCH)

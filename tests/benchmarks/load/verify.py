@@ -1,4 +1,4 @@
-"""The database against the generator's own counters and digests."""
+"""Compare the database with the generator's own counters and digests."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -25,10 +25,10 @@ Row = TypeVar("Row", TelemetryChunk, TelemetryBatch)
 
 @dataclass
 class Verdict:
-    """Frames and reports: handed over, acknowledged, stored; and what is wrong with them.
+    """Frames and reports: sent, acknowledged, stored; and the problems found.
 
     `lost` were acknowledged and are not stored, `duplicated` are stored more than once, `surplus`
-    were never handed over. `digested`, `differing`: streams that were compared bit by bit. `alarms`
+    were never sent. `digested`, `differing`: streams that were compared bit by bit. `alarms`: those
     that the server raised while the load lasted.
     """
 
@@ -49,7 +49,7 @@ class Verdict:
 def verify(
     url: str, sessions: list[Mapping[str, Any]], lasted: tuple[datetime, datetime] | None = None
 ) -> Verdict:
-    """Compare every stream's rows with what was acknowledged, and the digested ones bit by bit.
+    """Compare every stream's rows with the acknowledgements, and the digested ones bit by bit.
 
     `lasted`: when the load began and ended. Headsets that wait for each other before, and leave
     afterwards, raise alarms too.
@@ -70,7 +70,7 @@ def verify(
 
 
 def database_bytes(url: str) -> int:
-    """What the database takes on the disk, after its server has stopped."""
+    """Return the size of the database on disk, after its server has stopped."""
     database = open_database(url)
     try:
         with database.reading() as db:
@@ -111,7 +111,7 @@ def _count(database: Database, told: Mapping[str, Any], stream: str, verdict: Ve
 
 
 def _spans(db: Session, session_id: str, stream: str, epoch: int) -> Iterator[Span]:
-    """Every stored row of a stream as (first seq, one past the last)."""
+    """Return every stored row of a stream as (first seq, one past the last)."""
     if stream == REPORT_STREAM:
         query = select(ClientReport.seq).where(
             ClientReport.session_id == session_id, ClientReport.epoch == epoch
@@ -126,7 +126,7 @@ def _spans(db: Session, session_id: str, stream: str, epoch: int) -> Iterator[Sp
 
 
 def _digest(database: Database, told: Mapping[str, Any], stream: str) -> str:
-    """What is stored of a stream, in order of seq; not by the product's own reader."""
+    """Digest the stored data of a stream, in order of seq, without the product's own reader."""
     digest = Digest()
     with database.reading() as db:
         rows: Iterator[Piece] = merge(

@@ -1,4 +1,4 @@
-"""Looks at the server once a second while it works: memory, processor, files."""
+"""Sample the server's memory, processor time and files once a second."""
 
 import threading
 import time
@@ -18,7 +18,7 @@ HOUR_S = 3600.0
 
 @dataclass(frozen=True)
 class Look:
-    """One look: when (monotonic s), resident memory and CPU time of the server, bytes of files."""
+    """One sample: time (monotonic s), the server's resident memory and CPU time, file bytes."""
 
     at_s: float
     rss_bytes: int
@@ -49,25 +49,25 @@ class Watch:
             self._thread.join()
 
     def cpu_share(self) -> float:
-        """Cores in use on average between the first and the last look."""
+        """Return the mean number of cores in use between the first and the last sample."""
         first, last = self.looks[0], self.looks[-1]
         return (last.cpu_s - first.cpu_s) / (last.at_s - first.at_s)
 
     def rss_mib(self) -> NDArray[np.float64]:
-        """Resident memory at every look."""
+        """Return the resident memory at every sample."""
         return np.array([look.rss_bytes for look in self.looks]) / MIB
 
     def rss_slope_mib_per_h(self, warm_up_s: float) -> float:
-        """Median slope between all pairs of looks (Theil-Sen) after the warm-up."""
+        """Return the median slope between all pairs of samples (Theil-Sen) after the warm-up."""
         times_s = np.array([look.at_s for look in self.looks])
         late = times_s >= times_s[0] + warm_up_s
-        # A line through more looks than this costs much and says the same.
+        # More samples than this would cost much time for the same slope.
         step = max(1, int(late.sum()) // 1000)
         fit = stats.theilslopes(self.rss_mib()[late][::step], times_s[late][::step])
         return float(fit[0]) * HOUR_S
 
     def wal_max_mib(self) -> float:
-        """The largest that SQLite's write-ahead log has been."""
+        """Return the greatest size of SQLite's write-ahead log."""
         return max(look.wal_bytes for look in self.looks) / MIB
 
     def _run(self) -> None:

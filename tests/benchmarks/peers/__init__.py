@@ -1,1 +1,1 @@
-"""What others do with the same frames, measured beside ours in the same run."""
+"""Measure other systems with the same frames, in the same run as ours."""

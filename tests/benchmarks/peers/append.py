@@ -1,4 +1,4 @@
-"""The bare disk: the same bytes appended to a file and synced at the commit interval."""
+"""Measure the bare disk: the same bytes appended to a file and synced at the commit interval."""
 
 import os
 import sqlite3
@@ -24,7 +24,7 @@ CHUNKS_PER_MINUTE = 2 * 60
 
 
 def append_figures(part: str, folder: Path, ours: Ours, duration_s: float) -> Iterator[Figure]:
-    """Latency at the rate of 50 sessions, and how many one-second chunks the disk takes."""
+    """Measure latency at the rate of 50 sessions, and how many one-second chunks the disk takes."""
     folder.mkdir(parents=True)
     waits_ms = 1000 * _latencies(folder / "messages", duration_s)
     peer = "append + fsync every 50 ms"
@@ -34,7 +34,7 @@ def append_figures(part: str, folder: Path, ours: Ours, duration_s: float) -> It
     ):
         yield Figure(part, name, value, "ms", peer, float(np.percentile(waits_ms, at)))
     each_s = duration_s / 4
-    # A second of a stream as ours is stored, folded.
+    # A second of a stream as our server stores it, folded.
     size_bytes = int(ours.mib_per_minute * MIB / CHUNKS_PER_MINUTE)
     rng = np.random.default_rng(2)
     for together in (1, 2 * SESSIONS):
@@ -46,9 +46,10 @@ def append_figures(part: str, folder: Path, ours: Ours, duration_s: float) -> It
 
 
 def _latencies(path: Path, duration_s: float) -> "np.typing.NDArray[np.float64]":
-    """From when each message is due until it is synced: it waits for its interval and the disk.
+    """Return the time from when each message is due until it is synced.
 
-    Messages come evenly; the interval after one in which the disk was slow begins late.
+    It waits for its interval and the disk. Messages come evenly; the interval after one in which
+    the disk was slow begins late.
     """
     payload = np.random.default_rng(1).bytes(MESSAGE_BYTES)
     due_s = np.arange(int(duration_s * MESSAGES_PER_S)) / MESSAGES_PER_S
@@ -70,7 +71,7 @@ def _latencies(path: Path, duration_s: float) -> "np.typing.NDArray[np.float64]"
 def _chunks_per_s(
     commit: Callable[[list[bytes]], None], chunks: list[bytes], duration_s: float
 ) -> float:
-    """As fast as it goes, always these in one commit."""
+    """Return the chunks per second at full speed, with a fixed number per commit."""
     began_s, commits = time.monotonic(), 0
     while time.monotonic() - began_s < duration_s:
         commit(chunks)
@@ -89,7 +90,7 @@ def _into_file(path: Path) -> Callable[[list[bytes]], None]:
 
 
 def _into_rows(path: Path) -> Callable[[list[bytes]], None]:
-    """The same into a table of the same kind and with the same settings as the product's."""
+    """Measure the same with a table like the product's and the same settings."""
     database = sqlite3.connect(path, isolation_level=None)
     database.execute("PRAGMA journal_mode = WAL")
     database.execute("PRAGMA synchronous = FULL")

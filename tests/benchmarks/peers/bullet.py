@@ -1,8 +1,8 @@
-"""A rival: PyBullet, which many labs simulate bodies with.
+"""Measure PyBullet, a common engine for simulating bodies, as a peer.
 
 It gets the body of `bullet_body`, the same inputs and the same boxes, in steps of the same length.
-It is checked that it has as many driven axes and as many kilograms, and how near it comes to its
-targets is told beside how near ours does.
+The numbers of driven axes and the masses are checked to be equal, and the distances of both bodies
+from their targets are reported.
 """
 
 import json
@@ -92,7 +92,7 @@ def bullet_avatar(
         found = _asked(plan)
     if found is None:
         return []
-    # A body that is held has no mass there, so the hips' is left out.
+    # A fixed body has no mass in Bullet, so the hips' is left out.
     mass = float(np.sum(model.body_mass) - model.body("Hips").mass[0])
     if found["axes"] != len(plan["axes"]) or abs(found["mass_kg"] - mass) > _SAME_MASS_KG:
         raise AssertionError(f"{PEER} has another body: {found['axes']}, {found['mass_kg']} kg.")
@@ -103,7 +103,7 @@ def bullet_avatar(
 
 
 def bullet_humanoid_steps_per_s(timestep_s: float, steps: int, rounds: int) -> float | None:
-    """Steps per second of PyBullet's own humanoid; None where it cannot be had."""
+    """Return the steps per second of PyBullet's own humanoid; None if it is unavailable."""
     plan = {"kind": "humanoid", "timestep_s": timestep_s, "steps": steps, "rounds": rounds}
     found = _asked(plan)
     return None if found is None else steps / min(found["steps_s"])
@@ -125,6 +125,6 @@ def _asked(plan: dict[str, Any]) -> dict[str, Any] | None:
     )
     if done.returncode != 0:
         raise RuntimeError(f"{PEER} failed:\n{(done.stdout + done.stderr)[-4000:]}")
-    # Bullet talks on standard output, too.
+    # Bullet prints to standard output, too.
     answer: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
     return answer

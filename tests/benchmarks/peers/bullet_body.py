@@ -1,11 +1,13 @@
-"""The avatar's body as PyBullet reads it: the same links, masses, shapes, hinges and partners.
+"""Write the avatar's body for PyBullet: the same links, masses, shapes, hinges and partners.
 
-Written from the model that MuJoCo has compiled, so nothing is told twice. What differs, since URDF
-and Bullet know no other way:
+It is generated from the model that MuJoCo has compiled, so nothing is specified twice. Differences
+caused by URDF and Bullet:
 
 - A part with several hinges becomes a chain of links of a gram each, with the part at its end.
-- Armature is no property of a hinge there. It is added to the inertia of the link that the hinge
-  moves, about all three axes alike.
+
+- Armature is not a property of a hinge there. It is added to the inertia of the link that the hinge
+  moves, about all three axes equally.
+
 - Motors are constraints that Bullet solves together with contacts, not torques. Their gains are set
   to the same natural frequency and damping (`motor_gains`).
 """
@@ -29,7 +31,7 @@ _CAPSULE = mujoco.mjtGeom.mjGEOM_CAPSULE
 
 
 def urdf_of(model: mujoco.MjModel) -> str:
-    """The body whose root is carried, as URDF; joints are called after the axes."""
+    """Return the URDF of the body whose root is carried; joints are named after the axes."""
     robot = Element("robot", name="avatar")
     bodies = range(1, model.nbody)
     for body in bodies:
@@ -45,7 +47,7 @@ def urdf_of(model: mujoco.MjModel) -> str:
 
 
 def colliding_pairs(model: mujoco.MjModel) -> Iterator[tuple[str, str]]:
-    """The pairs of body parts that may touch, as MuJoCo finds them."""
+    """Return the pairs of body parts that may touch, as MuJoCo determines them."""
     excluded = {
         frozenset((int(signature) >> 16, int(signature) & 0xFFFF))
         for signature in model.exclude_signature
@@ -62,7 +64,7 @@ def colliding_pairs(model: mujoco.MjModel) -> Iterator[tuple[str, str]]:
 
 
 def scene_boxes(model: mujoco.MjModel) -> Iterator[dict[str, list[float]]]:
-    """The immovable boxes: centre and half size."""
+    """Return the immovable boxes: centre and half size."""
     for geom in range(model.ngeom):
         if model.geom_bodyid[geom] == 0 and model.geom_type[geom] == _BOX:
             yield {
@@ -86,7 +88,7 @@ def motor_gains(model: mujoco.MjModel) -> tuple[FloatArray, FloatArray]:
     and Bullet's by  g (angle* - angle) / h + d (speed* - speed).  So g = (w h)^2, d = 2 w h, with
     w = 2 kp / kd as for critical damping.
     """
-    # Where MuJoCo keeps them: bias = ... - kp angle - kd speed.
+    # MuJoCo's bias: ... - kp angle - kd speed.
     kp, kd = -model.actuator_biasprm[:, 1], -model.actuator_biasprm[:, 2]
     omega_h = 2.0 * kp / kd * model.opt.timestep
     return omega_h**2, 2.0 * omega_h
@@ -178,6 +180,6 @@ def _row(values: FloatArray) -> str:
 
 def _rpy(q: FloatArray) -> str:
     with warnings.catch_warnings():
-        # At a pitch of 90 degrees any of the ways to write it will do.
+        # At a pitch of 90 degrees any of the equivalent notations is valid.
         warnings.simplefilter("ignore", UserWarning)
         return _row(Rotation.from_quat(q, scalar_first=True).as_euler("xyz"))

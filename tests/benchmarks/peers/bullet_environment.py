@@ -1,7 +1,7 @@
-"""PyBullet in an environment of its own: no part of the product needs it.
+"""Install PyBullet in an environment of its own: no part of the product needs it.
 
 It is installed on first use into `.cache/` of the checkout, with the interpreter that runs the
-benchmarks and from the index that uv is set to. There are wheels for CPython 3.11 and older; for a
+benchmarks and from the index configured for uv. There are wheels for CPython 3.11 and older; for a
 newer one uv builds the source, which takes a compiler and many minutes.
 """
 
@@ -21,7 +21,7 @@ _LONGEST_S = 1800
 
 
 class NoPyBullet(RuntimeError):
-    """It could not be installed; says why."""
+    """Raised if PyBullet could not be installed; the message says why."""
 
 
 def pybullet_python() -> Path:
@@ -53,7 +53,7 @@ def _uv() -> str:
 
 
 def _call(command: list[str | Path]) -> None:
-    # The benchmark's own environment must not be what is installed into.
+    # Nothing must be installed into the benchmark's own environment.
     inherited = {name: value for name, value in os.environ.items() if name != "VIRTUAL_ENV"}
     try:
         done = subprocess.run(

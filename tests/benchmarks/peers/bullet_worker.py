@@ -1,7 +1,7 @@
-"""PyBullet's side, run by an interpreter that has it: a plan on standard input, figures back.
+"""Run PyBullet in an interpreter that has it: read a plan on standard input, print figures.
 
-Only the standard library and PyBullet are here. `avatar` simulates the body of `bullet_body`;
-`humanoid` the one that PyBullet brings, limp. Times are seconds of processor time.
+Only the standard library and PyBullet are used here. `avatar` simulates the body of `bullet_body`;
+`humanoid` the one of PyBullet, limp. Times are seconds of processor time.
 """
 
 import importlib
@@ -36,7 +36,7 @@ class Avatar:
         self.joints, self.links = self._names()
         self._choose_partners()
         for link in range(-1, bullet.getNumJoints(self.body)):
-            # Bullet slows every body a little unless told otherwise.
+            # By default, Bullet damps every body a little.
             bullet.changeDynamics(self.body, link, linearDamping=0.0, angularDamping=0.0)
         for joint, angle in zip(self.joints, plan["targets_rad"][0], strict=True):
             bullet.resetJointState(self.body, joint, angle)
@@ -56,7 +56,7 @@ class Avatar:
         )
 
     def run(self, every: int) -> None:
-        """Go through all targets, setting those of every so many steps."""
+        """Simulate all targets, setting new ones every given number of steps."""
         step_on, count = self._bullet.stepSimulation, len(self._plan["targets_rad"])
         for first in range(0, count, every):
             last = min(first + every, count) - 1
@@ -65,7 +65,7 @@ class Avatar:
                 step_on()
 
     def errors_rad(self) -> list[float]:
-        """Go through all targets; the mean distance of all axes from them after each step."""
+        """Simulate all targets; return the mean distance of all axes from them after each step."""
         found = []
         for step, targets in enumerate(self._plan["targets_rad"]):
             self.aim(step)
@@ -76,7 +76,7 @@ class Avatar:
         return found
 
     def mass_kg(self) -> float:
-        """Of all links."""
+        """Return the mass of all links."""
         links = range(-1, self._bullet.getNumJoints(self.body))
         return sum(float(self._bullet.getDynamicsInfo(self.body, link)[0]) for link in links)
 
@@ -101,7 +101,7 @@ class Avatar:
 
 
 def avatar(bullet: Any, plan: Plan) -> Plan:
-    """Rounds of each way to run it; what was made, and how it followed."""
+    """Run rounds of each variant; return the body's properties and how closely it followed."""
     found: Plan = {"ways": []}
     for way in plan["ways"]:
         made = Avatar(bullet, {**plan, **way})
@@ -116,7 +116,7 @@ def avatar(bullet: Any, plan: Plan) -> Plan:
 
 
 def humanoid(bullet: Any, plan: Plan) -> Plan:
-    """Rounds of so many steps of PyBullet's own humanoid, falling onto a floor."""
+    """Run rounds of steps of PyBullet's own humanoid, falling onto a floor."""
     folder = Path(importlib.import_module("pybullet_data").getDataPath())
     rounds = []
     for _ in range(plan["rounds"]):
@@ -164,7 +164,7 @@ def _timed_s(work: Callable[[], None]) -> float:
 
 
 def main() -> None:
-    """Do what the plan asks for."""
+    """Run the plan from standard input."""
     bullet = importlib.import_module("pybullet")
     plan: Plan = json.load(sys.stdin)
     bullet.connect(bullet.DIRECT)

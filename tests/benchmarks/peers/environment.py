@@ -1,6 +1,6 @@
-"""Peers that are installed on first use, each into a folder of its own below `.cache/peers`.
+"""Install peers on first use, each into a folder of its own below `.cache/peers`.
 
-No part of the product needs them. They come from the indexes that uv and npm are set to.
+No part of the product needs them. They come from the indexes configured for uv and npm.
 """
 
 import hashlib
@@ -21,7 +21,7 @@ _LONGEST_S = 600
 
 
 class NoPeer(RuntimeError):
-    """It could not be installed; says why."""
+    """Raised if a peer could not be installed; the message says why."""
 
 
 def python_peer(name: str, *requirements: str) -> Path:
@@ -83,7 +83,7 @@ def _call(
     cwd: Path | None = None,
     environment: Mapping[str, str] | None = None,
 ) -> None:
-    # The benchmark's own environment must not be what is installed into.
+    # Nothing must be installed into the benchmark's own environment.
     given = dict(os.environ if environment is None else environment)
     given.pop("VIRTUAL_ENV", None)
     try:

@@ -1,7 +1,7 @@
 """A headset that sends one JSON record per joint: `python -m tests.benchmarks.peers.json_client`.
 
-As XRXP's recorder does it: a queue in memory, one message a record, forgotten as soon as it is
-sent; after a broken connection it connects again and goes on with the record that failed.
+It works like XRXP's recorder: a queue in memory, one message per record, removed as soon as it is
+sent; after a broken connection it reconnects and continues with the record that failed.
 """
 
 import asyncio
@@ -26,7 +26,7 @@ DRAINS_WITHIN_S = 5.0
 
 @dataclass(frozen=True)
 class JsonClientPlan:
-    """`records_per_s` are made for the duration; None: as many as the socket takes."""
+    """`records_per_s` are made for the duration; None: as many as the socket accepts."""
 
     url: str
     joints: int
@@ -40,7 +40,7 @@ class JsonClientPlan:
 
 @dataclass
 class Sender:
-    """Sends in the order of making; `sent` were handed to a socket that took them."""
+    """Sends records in order; `sent` were written to a socket that accepted them."""
 
     plan: JsonClientPlan
     sent: int = 0
@@ -81,7 +81,10 @@ class Sender:
 
 
 def records(joints: int) -> Iterator[str]:
-    """Records of a session, frame by frame all joints of both streams; `t_s`: when it was made."""
+    """Yield a session's records, for each frame all joints of both streams.
+
+    `t_s`: creation time.
+    """
     seq = 0
     while True:
         for stream in StreamName:
@@ -107,7 +110,7 @@ def records(joints: int) -> Iterator[str]:
 
 
 async def run(plan: JsonClientPlan) -> dict[str, Any]:
-    """Send, and count what went out."""
+    """Send, and count the sent records."""
     sender = Sender(plan)
     with contextlib.suppress(asyncio.CancelledError):
         await sender.run()

@@ -1,4 +1,4 @@
-"""A rival: one JSON record per joint sample into one row each, committed for itself, as XRXP."""
+"""Measure one JSON record per joint sample, each in a row and commit of its own, as in XRXP."""
 
 import sqlite3
 import time
@@ -26,32 +26,32 @@ PEER = "JSON rows"
 
 @dataclass(frozen=True)
 class Bench:
-    """A folder and a port for one run of the rival."""
+    """A folder and a port for one run of the peer."""
 
     folder: Path
     port: int
 
     @property
     def database(self) -> Path:
-        """Where the rows go."""
+        """Return the path of the database."""
         return self.folder / "records.sqlite"
 
     def server(self) -> Companion:
-        """Start it and wait until it listens."""
+        """Start the server and wait until it listens."""
         plan = JsonServerPlan(self.port, str(self.database))
         made = Companion.start("peers.json_server", plan, self.folder / "server")
         made.wait_for("ready")
         return made
 
     def client(self, records_per_s: float | None, duration_s: float) -> Companion:
-        """Start to send."""
+        """Start the client."""
         url = f"ws://127.0.0.1:{self.port}"
         plan = JsonClientPlan(url, BODY_JOINTS, records_per_s, duration_s)
         return Companion.start("peers.json_client", plan, self.folder / "client")
 
 
 def json_figures(part: str, folder: Path, ours: Ours, duration_s: float) -> Iterator[Figure]:
-    """Saturated, at half of that, and killed."""
+    """Measure at saturation, at half of that rate, and with a killed server."""
     full = _run(_bench(folder / "full"), None, duration_s)
     rate, cores = full["stored"] / full["wall_s"], full["cpu_s"] / full["wall_s"]
     yield Figure(part, "joint samples", ours.samples_per_s, "1/s", f"{PEER}, saturated", rate)
@@ -80,7 +80,7 @@ def _bench(folder: Path) -> Bench:
 
 
 def _run(bench: Bench, records_per_s: float | None, duration_s: float) -> dict[str, Any]:
-    """Send for so long; what the server counted, and the size of its file."""
+    """Send for a given time; return the server's counters and the size of its file."""
     with bench.server() as server, bench.client(records_per_s, duration_s) as client:
         client.result()
         _settle(bench.database)
@@ -90,7 +90,7 @@ def _run(bench: Bench, records_per_s: float | None, duration_s: float) -> dict[s
 
 
 def _killed(bench: Bench, duration_s: float) -> tuple[int, int]:
-    """Kill the server in the middle, start it again; what was sent and what is there."""
+    """Kill the server in mid-run and restart it; return the counts of sent and stored records."""
     with bench.server() as server, bench.client(SAMPLES_PER_SESSION_S, duration_s) as client:
         time.sleep(duration_s / 2)
         server.end()
@@ -104,7 +104,7 @@ def _killed(bench: Bench, duration_s: float) -> tuple[int, int]:
 
 
 def _settle(path: Path) -> None:
-    """Wait until nothing more comes: what lies in the sockets is still stored."""
+    """Wait until nothing more arrives: records in the socket buffers are still stored."""
     before = -1
     while (now := _count(path)) != before:
         before = now

@@ -1,8 +1,9 @@
-"""One JSON record per joint sample, one row each: `python -m tests.benchmarks.peers.json_server`.
+"""Store one JSON record per joint sample: `python -m tests.benchmarks.peers.json_server`.
 
-It stores as XRXP's recorder sends: a WebSocket text message holds one record of one object's pose;
-nothing is acknowledged. Every message is committed for itself, to SQLite with synchronous FULL.
-Prints `ready`, serves until its standard input says a line, then tells what it counted.
+It stores data as XRXP's recorder sends them: a WebSocket text message contains one record of one
+object's pose; nothing is acknowledged. Every message is committed individually, to SQLite with
+synchronous FULL. Prints `ready`, serves until a line arrives on standard input, then prints its
+counters.
 """
 
 import asyncio
@@ -24,7 +25,7 @@ INSERT = "INSERT INTO records (session, stream, joint, seq, t_s, record) VALUES 
 
 @dataclass(frozen=True)
 class JsonServerPlan:
-    """Where it listens and stores."""
+    """The port and the database of the server."""
 
     port: int
     database: str
@@ -36,7 +37,7 @@ class JsonServerPlan:
 
 @dataclass
 class Recorder:
-    """The single writer. `latency_s`: from making a record until it is committed."""
+    """The single writer. `latency_s`: from creating a record until it is committed."""
 
     database: sqlite3.Connection
     latency_s: "array[float]" = field(default_factory=lambda: array("d"))
@@ -44,7 +45,7 @@ class Recorder:
     ended: tuple[float, float] = (0.0, 0.0)
 
     async def take(self, socket: ServerConnection) -> None:
-        """Store what a headset sends."""
+        """Store the records of one headset."""
         try:
             async for text in socket:
                 self.store(str(text))
@@ -52,7 +53,7 @@ class Recorder:
             return
 
     def store(self, text: str) -> None:
-        """One record, one row, one commit."""
+        """Store one record in one row with one commit."""
         if self.began is None:
             self.began = time.process_time(), time.monotonic()
         record = json.loads(text)
@@ -63,7 +64,7 @@ class Recorder:
         self.ended = time.process_time(), now_s
 
     def told(self) -> dict[str, Any]:
-        """Processor and wall time between the first and the last record."""
+        """Return the counters, with processor and wall time between the first and last record."""
         if self.began is None:
             raise RuntimeError("no record came")
         p50, p99 = np.percentile(np.asarray(self.latency_s), [50, 99])
@@ -77,7 +78,7 @@ class Recorder:
 
 
 def open_records(path: str) -> sqlite3.Connection:
-    """The table, made if it is not there; every statement commits."""
+    """Open the table, creating it if missing; every statement commits."""
     database = sqlite3.connect(path, isolation_level=None)
     database.execute("PRAGMA journal_mode = WAL")
     database.execute("PRAGMA synchronous = FULL")
@@ -89,7 +90,7 @@ def open_records(path: str) -> sqlite3.Connection:
 
 
 async def run(plan: JsonServerPlan) -> dict[str, Any]:
-    """Serve until told to end."""
+    """Serve until requested to end."""
     recorder = Recorder(open_records(plan.database))
     async with serve(recorder.take, "127.0.0.1", plan.port, compression=None):
         print("ready", flush=True)

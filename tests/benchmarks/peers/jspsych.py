@@ -1,4 +1,4 @@
-"""jsPsych as a peer: its survey of rated statements on a page of its own."""
+"""Use jsPsych as a peer: its survey of rated statements on a page of its own."""
 
 import functools
 import html
@@ -47,7 +47,7 @@ def served_survey(folder: Path, statements: Sequence[str], steps: Sequence[str])
 
 class _Quiet(SimpleHTTPRequestHandler):
     def log_message(self, format: str, *args: object) -> None:  # noqa: A002 - its own name
-        """Say nothing."""
+        """Suppress log messages."""
 
 
 def _write(folder: Path, statements: Sequence[str], steps: Sequence[str]) -> None:

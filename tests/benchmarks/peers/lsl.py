@@ -1,4 +1,4 @@
-"""A rival: the Lab Streaming Layer with a recorder that works as LabRecorder does."""
+"""Measure the Lab Streaming Layer with a recorder that works as LabRecorder does."""
 
 import importlib.util
 import sys
@@ -37,7 +37,7 @@ SessionID = {session}
 
 @dataclass(frozen=True)
 class Recordings:
-    """A recorder killed in mid-stream and the one after it. CPU and wall time of the first (s)."""
+    """A recorder killed in mid-stream and its successor. CPU and wall time of the first (s)."""
 
     before: Path
     after: Path
@@ -46,7 +46,7 @@ class Recordings:
 
 
 def lsl_figures(part: str, folder: Path, ours: Ours, duration_s: float) -> Iterator[Figure]:
-    """Record, kill the recorder, record again; nothing where the library is not installed."""
+    """Record, kill the recorder, record again; skip if the library is not installed."""
     if importlib.util.find_spec("pylsl") is None:
         print(f"  {part}: {PEER} is left out: pylsl is not installed", file=sys.stderr)
         return
@@ -70,7 +70,7 @@ def lsl_figures(part: str, folder: Path, ours: Ours, duration_s: float) -> Itera
     yield Figure(part, "stored per session-minute", ours.mib_per_minute, "MiB", peer, mib)
     name = "delivery p99 (ours: durable and acknowledged)"
     for recorded, every_s in ((before, PULLS_EVERY_S), (after, PULLS_OFTEN_S)):
-        # The first pull brings what waited while the other streams were opened.
+        # The first pull returns the samples that queued while the other streams were opened.
         steady = recorded.written_s > recorded.written_s[0] + 2 * PULLS_EVERY_S
         ages_ms = 1000 * (recorded.written_s - recorded.times_s)[steady]
         beside = f"{PEER} written, not synced, pulled every {every_s:g} s"
@@ -85,7 +85,7 @@ def lsl_figures(part: str, folder: Path, ours: Ours, duration_s: float) -> Itera
 
 
 def _record(folder: Path, streams: int, duration_s: float) -> Recordings:
-    """Outlets all the time; a recorder that is killed, a second without, another recorder."""
+    """Stream continuously while a recorder is killed and another starts a second later."""
     from tests.benchmarks.peers.lsl_outlets import OutletsPlan
     from tests.benchmarks.peers.lsl_recorder import RecorderPlan
 
@@ -119,7 +119,7 @@ def _gaps_s(
     after: NDArray[np.int64],
     after_s: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    """Of every stream the time between its last sample of the one file and the next one's first."""
+    """Return each stream's gap between its last sample in one file and its first in the next."""
     return np.array(
         [
             after_s[after == number].min() - before_s[before == number].max() - 1.0 / RATE_HZ

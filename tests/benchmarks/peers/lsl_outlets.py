@@ -1,6 +1,6 @@
 """The headsets of a lab on the Lab Streaming Layer: `python -m tests.benchmarks.peers.lsl_outlets`.
 
-One outlet a stream, 91 float32 channels at 90 Hz, pushed six samples at a time as ours are sent.
+One outlet per stream, 91 float32 channels at 90 Hz, pushed six samples at a time as ours are sent.
 Prints `ready` when all outlets are open, then streams until it is killed.
 """
 
@@ -17,14 +17,14 @@ from app.wire import VALUES_PER_FRAME
 from tests.benchmarks.load.movement import LOOP_FRAMES, RATE_HZ, make_movement
 from tests.benchmarks.load.streaming import FRAMES_PER_BATCH
 
-# It knows no types.
+# It has no type annotations.
 pylsl: Any = importlib.import_module("pylsl")
 KIND = "reembody-benchmark"
 
 
 @dataclass(frozen=True)
 class OutletsPlan:
-    """How many streams; `config` of the library keeps them apart from others on the network."""
+    """The number of streams; `config` of the library isolates them from others on the network."""
 
     streams: int
     config: str
@@ -43,7 +43,7 @@ def run(plan: OutletsPlan) -> None:
     began_s = time.monotonic()
     pushed = 0
     while True:
-        # Streams take turns, evenly spread over the time between two messages.
+        # Streams are spread evenly over the time between two messages.
         due_s = began_s + pushed / plan.streams * FRAMES_PER_BATCH / RATE_HZ
         time.sleep(max(0.0, due_s - time.monotonic()))
         number, turn = pushed % plan.streams, pushed // plan.streams

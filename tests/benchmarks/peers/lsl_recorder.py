@@ -1,9 +1,9 @@
-"""The least of a recorder: `python -m tests.benchmarks.peers.lsl_recorder`.
+"""A minimal recorder: `python -m tests.benchmarks.peers.lsl_recorder`.
 
-It finds the streams and writes what it pulls to a file as LabRecorder does: every stream is pulled
-at an interval (there 0.5 s), written through a buffered file, never synced; nobody keeps a journal.
-A record is a head (stream, samples, written at) and, as in XDF, samples with 8 bytes of time stamp
-and one that tells its length. Prints `ready` when all streams are open, records until it is killed.
+It finds the streams and writes pulled samples to a file as LabRecorder does: every stream is pulled
+at an interval (there 0.5 s), written through a buffered file, never synced; there is no journal. A
+record is a head (stream, samples, written at) and, as in XDF, samples with an 8-byte timestamp and
+a byte for its length. Prints `ready` when all streams are open, records until it is killed.
 """
 
 import importlib
@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from app.wire import VALUES_PER_FRAME
 from tests.benchmarks.peers.lsl_outlets import KIND
 
-# It knows no types.
+# It has no type annotations.
 pylsl: Any = importlib.import_module("pylsl")
 RESOLVES_WITHIN_S, OPENS_WITHIN_S = 30.0, 30.0
 HEAD = struct.Struct("<IId")
@@ -32,7 +32,7 @@ TIME_STAMP_BYTES = 8
 
 @dataclass(frozen=True)
 class RecorderPlan:
-    """Which streams, how often each is pulled, into which file."""
+    """The streams, the pull interval, and the file."""
 
     streams: int
     config: str
@@ -46,7 +46,10 @@ class RecorderPlan:
 
 @dataclass(frozen=True)
 class Recorded:
-    """What is in a file, one row a sample: stream, time stamp (s), written at (s); its size."""
+    """The contents of a file, one row per sample: stream, timestamp (s), written at (s).
+
+    Its size.
+    """
 
     streams: NDArray[np.int64]
     times_s: NDArray[np.float64]
@@ -55,7 +58,7 @@ class Recorded:
 
 
 def run(plan: RecorderPlan) -> None:
-    """Record."""
+    """Record until the process is killed."""
     pylsl.util.set_config_content(plan.config)
     inlets = _open(plan.streams)
     print("ready", flush=True)
@@ -69,7 +72,7 @@ def run(plan: RecorderPlan) -> None:
 
 
 def read(path: Path) -> Recorded:
-    """The whole records of a file; the last may be torn."""
+    """Read the complete records of a file; the last may be torn."""
     data = path.read_bytes()
     streams, times_s, written_s = [], [], []
     at = 0
@@ -88,7 +91,7 @@ def read(path: Path) -> Recorded:
 
 
 def _open(streams: int) -> dict[int, Any]:
-    """All at once, as LabRecorder with a thread for each."""
+    """Open all streams in parallel, as LabRecorder does with a thread for each."""
     found = pylsl.resolve_byprop("type", KIND, minimum=streams, timeout=RESOLVES_WITHIN_S)
     numbers = {int(info.source_id().rpartition("-")[2]): info for info in found}
     if len(numbers) < streams:

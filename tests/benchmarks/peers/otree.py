@@ -1,7 +1,7 @@
-"""oTree as a peer: one page of rated statements, shown over and over.
+"""Use oTree as a peer: one page of rated statements, shown repeatedly.
 
 Its production server runs on the loopback, on its own SQLite. That is a database in memory, which
-is written to disk when the server ends: an answered submission is not yet safe there.
+is written to disk when the server ends: an acknowledged submission is not durable there.
 """
 
 import os
@@ -83,7 +83,7 @@ PAGE = """\
 
 @dataclass(frozen=True)
 class OTree:
-    """A running server, its process, and the code of each of its participants."""
+    """A running server, its process, and the codes of its participants."""
 
     pid: int
     port: int
@@ -91,11 +91,11 @@ class OTree:
 
     @property
     def url(self) -> str:
-        """Where it is."""
+        """Return the base URL of the server."""
         return f"http://localhost:{self.port}"
 
     def first_page(self, at: int) -> str:
-        """The path that brings a participant to their form."""
+        """Return the path that leads a participant to their form."""
         return f"/InitializeParticipant/{self.participants[at]}"
 
 
@@ -131,9 +131,9 @@ def running_otree(
 
 
 def write_project(folder: Path, statements: Sequence[str], rounds: int) -> None:
-    """A project of one app with one page, as small as oTree starts it."""
+    """Write a project of one app with one page, as small as oTree accepts."""
     app = folder / "form"
-    # Without these two it does not start.
+    # It does not start without these two.
     for path in (app, folder / "_static", folder / "_templates" / "global"):
         path.mkdir(parents=True)
     (folder / "settings.py").write_text(SETTINGS.format(secret=secrets.token_hex(16)))

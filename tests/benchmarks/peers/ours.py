@@ -1,4 +1,4 @@
-"""What the product itself does, and what a kill of its server costs."""
+"""Measure the product itself, and the effect of killing its server."""
 
 import sys
 import time
@@ -33,7 +33,7 @@ KILLED_SESSIONS = 20
 
 @dataclass(frozen=True)
 class Ours:
-    """What the others are compared with. `mib_per_minute`: of one session, folded."""
+    """The figures that the peers are compared with. `mib_per_minute`: of one session, folded."""
 
     ack_p50_ms: float
     ack_p99_ms: float
@@ -43,7 +43,7 @@ class Ours:
 
 
 def ours_of(outcome: Outcome) -> Ours:
-    """The figures of a load that the others are measured at, too."""
+    """Return the figures of a load that are also measured for the peers."""
     p50, p99 = np.percentile(ack_ms(outcome), [50, 99])
     rate, found = samples_per_s(outcome), outcome.verdict
     return Ours(
@@ -56,7 +56,7 @@ def ours_of(outcome: Outcome) -> Ours:
 
 
 def killed_figures(part: str, folder: Path, duration_s: float) -> Iterator[Figure]:
-    """Kill -9 the server in mid-load, start it again a second later, and count."""
+    """Kill -9 the server in mid-load, restart it a second later, and count losses."""
     load = Load(
         sessions=KILLED_SESSIONS,
         duration_s=duration_s,

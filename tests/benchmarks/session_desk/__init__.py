@@ -1,1 +1,1 @@
-"""What an operator's cockpit and a participant's tablet cost and how soon they answer."""
+"""Measure the cost and response times of an operator's cockpit and a participant's tablet."""

@@ -1,7 +1,7 @@
-"""What a browser that knows nothing fetches for the first page, and how soon it is there.
+"""Measure what a browser without a cache fetches for the first page, and how long it takes.
 
-Bytes are those on the wire (compressed, with headers), as the browser counts them. A page is there
-when what a person needs on it is drawn; the clock runs from the navigation.
+Bytes are those on the wire (compressed, with headers), as the browser counts them. A page is ready
+when its essential content is drawn; the time starts at the navigation.
 """
 
 from collections.abc import Iterator
@@ -40,7 +40,7 @@ requestAnimationFrame(look);
 
 @dataclass(frozen=True)
 class FirstPage:
-    """A page, by what must be drawn on it. `cookies`: who comes, as a request's header."""
+    """A page, with the content that must be drawn on it. `cookies`: the request's Cookie header."""
 
     name: str
     path: str
@@ -50,7 +50,7 @@ class FirstPage:
 
 @dataclass
 class Wire:
-    """Bytes that came, and of which files."""
+    """The received bytes and their files."""
 
     total: int = 0
     by_file: dict[str, int] = field(default_factory=dict)
@@ -74,7 +74,7 @@ class Wire:
 
 
 def figures(folder: Path) -> Iterator[Figure]:
-    """Console and tablet, before and after somebody is known."""
+    """Measure console and tablet, before and after signing in or pairing."""
     with LiveServer(folder) as server, signed_in(server) as desk, launched_browser() as browser:
         for page in _pages(desk):
             found = [_load(browser, server.url, page) for _ in range(REPEATS)]
@@ -104,7 +104,7 @@ def _header(client: httpx2.Client) -> str:
 
 
 def _load(browser: Browser, url: str, first: FirstPage) -> tuple[float, Wire]:
-    """When it was drawn (ms), and what came until nothing came any more."""
+    """Return when the content was drawn (ms), and everything received until the page was idle."""
     context = browser.new_context(viewport=SIZE, locale="en-US", service_workers="block")
     try:
         context.add_init_script(WHEN_DRAWN.replace("SELECTOR", repr(first.selector)))
@@ -116,7 +116,7 @@ def _load(browser: Browser, url: str, first: FirstPage) -> tuple[float, Wire]:
         try:
             page.wait_for_function("() => window.drawnAt !== null", timeout=READY_WITHIN_MS)
         except NotInTime as error:
-            # Such as pages that are built anew while they are served.
+            # For example pages that are rebuilt while they are served.
             told = page.evaluate("() => document.body.innerText")
             raise RuntimeError(f"{first.name} was not drawn; it shows {told!r}") from error
         drawn_ms = float(page.evaluate("window.drawnAt"))

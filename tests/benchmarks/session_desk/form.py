@@ -1,8 +1,8 @@
-"""How long until a form of fourteen statements can be filled in: the tablet's, oTree's, jsPsych's.
+"""Measure how soon a form of fourteen statements can be filled in: ours, oTree's, jsPsych's.
 
-A page is ready when every statement it is to show at first has a drawn, enabled choice; the page
-itself notes the time since its navigation began, in the frame where that first holds. Ours shows
-three statements at a time (none has to be scrolled to), the others show all fourteen.
+A page is ready when every statement it shows at first has a drawn, enabled choice; the page itself
+records the time since its navigation began, in the frame where that is first true. Ours shows three
+statements at a time (none requires scrolling), the others show all fourteen.
 """
 
 from collections.abc import Iterator
@@ -41,7 +41,7 @@ requestAnimationFrame(look);
 
 
 def figures(folder: Path) -> Iterator[Figure]:
-    """Each with an empty browser first, then again with what the browser has kept."""
+    """Measure each with an empty browser, then again with the browser's cache."""
     folder.mkdir()
     with ExitStack() as stack:
         browser = stack.enter_context(launched_browser())
@@ -53,7 +53,7 @@ def figures(folder: Path) -> Iterator[Figure]:
         )
         survey = stack.enter_context(served_survey(folder / "jspsych", statements(), STEPS))
         rows: dict[str, list[tuple[float, float]]] = {"ours": [], "oTree": [], "jsPsych": []}
-        # One after the other in turn: what else the machine does then meets all alike.
+        # Alternately, so that other load on the machine affects all equally.
         for at in range(REPEATS):
             cookie = desk.tablet_at_form()
             tablet = f"{server.url}/tablet/"
@@ -71,7 +71,7 @@ def figures(folder: Path) -> Iterator[Figure]:
 def _twice(
     browser: Browser, url: str, expected: int, origin: str = "", cookie: str = ""
 ) -> tuple[float, float]:
-    """Milliseconds with an empty browser, and once more in the same one."""
+    """Return the milliseconds with an empty browser, and again in the same one."""
     context = browser.new_context(viewport=SIZE, locale="en-US")
     try:
         context.add_init_script(WHEN_READY.replace("EXPECTED", str(expected)))

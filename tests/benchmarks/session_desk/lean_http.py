@@ -1,6 +1,6 @@
-"""HTTP/1.1 that costs little: the load shares two cores with the servers it measures.
+"""A minimal HTTP/1.1 client: the load shares two cores with the servers it measures.
 
-One connection, kept alive, one request at a time; cookies are the caller's affair.
+One connection, kept alive, one request at a time; cookies are left to the caller.
 """
 
 import asyncio
@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True)
 class Answer:
-    """What came back; the names of headers are in small letters."""
+    """A response; the names of headers are in lower case."""
 
     status: int
     headers: Mapping[str, str]
@@ -19,7 +19,7 @@ class Answer:
 
 @dataclass
 class LeanHttp:
-    """One connection to the loopback. `headers` go with every request."""
+    """One connection to the loopback. `headers` are sent with every request."""
 
     port: int
     headers: dict[str, str] = field(default_factory=dict)
@@ -29,7 +29,7 @@ class LeanHttp:
     async def ask(
         self, method: str, path: str, body: bytes = b"", kind: str = "application/json"
     ) -> Answer:
-        """Send a request and read all of its answer."""
+        """Send a request and read its whole response."""
         if self._reader is None or self._writer is None:
             self._reader, self._writer = await asyncio.open_connection("localhost", self.port)
         lines = [f"{method} {path} HTTP/1.1", f"host: localhost:{self.port}"]

@@ -1,7 +1,7 @@
-"""Whether the server and the cockpit's page keep their memory while a session streams.
+"""Measure whether the memory of the server and the cockpit's page grows during streaming.
 
-The server's is what the system counts as resident, its helpers included; the page's is what lives
-after a forced collection. A slope is the median over all pairs of looks after a warm-up.
+The server's is the resident size reported by the system, its helpers included; the page's is what
+remains after a forced collection. A slope is the median over all pairs of samples after a warm-up.
 """
 
 import time
@@ -23,7 +23,7 @@ WARM_UP_SHARE = 0.2
 
 
 def figures(folder: Path, duration_s: float) -> Iterator[Figure]:
-    """Both while the session streams for so long."""
+    """Measure both while the session streams for the given time."""
     heap: list[tuple[float, int]] = []
     with (
         launched_browser() as browser,

@@ -1,10 +1,10 @@
-"""How old a frame is when the console shows it, with one drawing console and three that listen.
+"""Measure a frame's age when one console draws it while three others receive the stream.
 
-The headset notes when it hands a message to its socket. The page says over its own socket that it
-has drawn the poses which came before; a script that runs before the page's own notes which they
-are, and takes as the moment of showing the animation frame that follows, when the drawn one has
-left for the screen. Both clocks are read on the same machine: the page is asked for its time many
-times, the shortest question counts, and half its length is the bound that is told.
+The headset records when it writes a message to its socket. The page acknowledges over its own
+socket that it has drawn the preceding poses; a script that runs before the page's own records which
+they are, and takes as the time of display the next animation frame, when the drawn one has been
+sent to the screen. Both clocks are read on the same machine: the page is asked for its time many
+times, the shortest exchange counts, and half its duration is the reported bound.
 """
 
 import time
@@ -25,7 +25,7 @@ PART = "shown"
 LIMIT_MS = 200.0
 WARM_UP_S = 2.0
 ASKED = 40
-# Offsets as the server packs a pose: the stream's code at 4, the newest frame's seq at 12.
+# Byte offsets of an encoded pose: the stream's code at 4, the newest frame's seq at 12.
 NOTES = """
 window.shownPoses = [];
 const Original = window.WebSocket;
@@ -53,14 +53,14 @@ window.WebSocket = class extends Original {
 
 @dataclass(frozen=True)
 class PageClock:
-    """Where the page's clock stands: machine's monotonic seconds = page's seconds + `offset_s`."""
+    """The page's clock: machine's monotonic seconds = page's seconds + `offset_s`."""
 
     offset_s: float
     bound_s: float
 
     @classmethod
     def of(cls, page: Page) -> "PageClock":
-        """Ask many times; the shortest question counts."""
+        """Measure the offset many times; the shortest exchange counts."""
         best = cls(0.0, float("inf"))
         for _ in range(ASKED):
             before_s = time.monotonic()
@@ -73,7 +73,7 @@ class PageClock:
 
 
 def figures(folder: Path, duration_s: float) -> Iterator[Figure]:
-    """Newest frames of both streams, from the headset's socket to the screen."""
+    """Measure the newest frames of both streams, from the headset's socket to the screen."""
     with (
         launched_browser() as browser,
         watched_session(folder, browser, duration_s + WARM_UP_S, NOTES) as watched,
@@ -97,7 +97,10 @@ def figures(folder: Path, duration_s: float) -> Iterator[Figure]:
 def ages_ms(
     record: Record, rows: NDArray[np.float64], clock: PageClock
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Ages at arrival and when shown; `rows`: stream's code, seq, arrived and shown (page's ms)."""
+    """Return ages at arrival and when shown.
+
+    `rows`: stream's code, seq, arrived and shown (page's ms).
+    """
     sent_s = {
         (code, end - 1): handed_s
         for code, name in ((1, "target"), (2, "actual"))

@@ -1,4 +1,4 @@
-"""A server with studies that are made for measuring, and people who are signed in."""
+"""A server with studies made for measurements, and signed-in accounts."""
 
 import uuid
 from collections.abc import Iterator
@@ -27,14 +27,14 @@ class Desk:
     client: httpx2.Client
 
     def post(self, path: str, body: dict[str, Any]) -> Any:
-        """Raises RuntimeError with the server's words where it says no."""
+        """Send a POST request; raise RuntimeError with the server's message if it is rejected."""
         response = self.client.post(path, json=body)
         if response.is_error:
             raise RuntimeError(f"POST {path}: {response.status_code} {response.text[:500]}")
         return response.json()
 
     def add_forms_study(self, forms: int) -> None:
-        """A study that is nothing but the same form, so many times."""
+        """Store a study that consists of the same form, repeated."""
         step = f"    - {{step: form, instrument: {INSTRUMENT}}}\n"
         text = FILE
         start, end = text.index("procedure:\n"), text.index("  block:\n")
@@ -43,7 +43,7 @@ class Desk:
         self.post("/api/studies", {"yaml": text})
 
     def tablet_at_form(self) -> str:
-        """The cookie of a tablet whose session has begun."""
+        """Return the cookie of a tablet whose session has started."""
         view = self.post(f"/api/studies/{FORMS}/sessions", {"kind": "simulated"})
         at = f"/api/sessions/{view['id']}"
         code = self.post(f"{at}/pairings", {"device": "tablet"})["code"]
@@ -57,7 +57,7 @@ class Desk:
 
 
 def statements() -> list[str]:
-    """The wordings of the rated statements, in English."""
+    """Return the wordings of the rated statements, in English."""
     file = study_configs_dir() / "instruments" / f"{INSTRUMENT}.yaml"
     items = yaml.safe_load(file.read_text(encoding="utf-8"))["items"]
     return [str(one["text"]["en"]) for one in items if one["type"] == "likert"]
@@ -65,7 +65,7 @@ def statements() -> list[str]:
 
 @contextmanager
 def signed_in(server: LiveServer) -> Iterator[Desk]:
-    """The administrator at a running server."""
+    """Sign the administrator in at a running server."""
     with server.client() as client:
         credentials = {"username": "admin", "password": ADMIN_PASSWORD}
         client.post("/api/login", json=credentials).raise_for_status()

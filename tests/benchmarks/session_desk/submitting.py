@@ -1,8 +1,8 @@
 """Tablets that fill in form after form: `python -m tests.benchmarks.session_desk.submitting`.
 
-Reads the plan as JSON from standard input and prints how long every submission took, and how long
-all of them together. A tablet sends a form, fetches the next one, and so on, without a pause: what
-a room full of people does only in the worst second of the day.
+Reads the plan as JSON from standard input and prints how long every submission took, and the total.
+A tablet sends a form, fetches the next one, and so on, without a pause: a room full of people does
+that only in the worst second of the day.
 """
 
 import asyncio
@@ -37,7 +37,7 @@ class Plan:
 
 @dataclass(frozen=True)
 class Submitted:
-    """Seconds: of each submission (sent to answered), of the whole, of the server's processor."""
+    """Seconds: of each submission (sent to answered), in total, and of the server's processor."""
 
     submits_s: tuple[float, ...]
     total_s: float
@@ -45,11 +45,11 @@ class Submitted:
 
 
 class Refused(RuntimeError):
-    """A submission was not taken."""
+    """Raised if a submission was rejected."""
 
 
 async def our_tablet(plan: Plan, cookie: str) -> list[float]:
-    """Fill in forms as our page does: the state, then the answers."""
+    """Fill in forms as our page does: request the state, then send the answers."""
     http, took_s = LeanHttp(plan.port, {"cookie": cookie}), []
     for _ in range(plan.forms):
         state = json.loads(_good(await http.ask("GET", "/api/tablet/state"), OK).body)
@@ -63,7 +63,7 @@ async def our_tablet(plan: Plan, cookie: str) -> list[float]:
 
 
 async def otree_browser(plan: Plan, path: str) -> list[float]:
-    """Fill in forms as a browser does: the page, then the fields, then where it is sent."""
+    """Fill in forms as a browser does: fetch the page, read its fields, and send them."""
     http, took_s = LeanHttp(plan.port), []
     path = _good(await http.ask("GET", path), *MOVED).headers["location"]
     fields = "&".join(f"q{number}={1 + number % 7}" for number in range(1, plan.items + 1))
@@ -99,7 +99,7 @@ def _good(answer: Answer, *expected: int) -> Answer:
 
 
 async def run(plan: Plan) -> Submitted:
-    """All tablets at once."""
+    """Run all tablets in parallel."""
     fill_in = our_tablet if plan.server == "ours" else otree_browser
     began_s = time.perf_counter()
     found = await asyncio.gather(*(fill_in(plan, one) for one in plan.who))

@@ -1,8 +1,8 @@
-"""A session that streams at real speed while people look at it.
+"""A session that streams at real speed while it is watched.
 
-The headset is the load's own (90 frames a second of both streams, six to a message, a contact a
+The headset is the load's own (90 frames a second of both streams, six per message, a contact per
 second). One console is a page in a real browser that draws the body in 3-D; three more only
-receive: each follows the session's news, and its poses as fast as they come.
+receive: each follows the session's live stream, and its poses as fast as they arrive.
 """
 
 import asyncio
@@ -34,7 +34,7 @@ DRAWS_WITHIN_MS = 60_000
 
 @dataclass
 class Sender:
-    """The headset and the subscribers of poses, on a thread; `record` tells what was sent when."""
+    """The headset and the subscribers of poses, on a thread; `record` contains the send times."""
 
     server: LiveServer
     lab: Lab
@@ -47,7 +47,7 @@ class Sender:
     _thread: threading.Thread | None = None
 
     def start(self) -> None:
-        """Connect, have the operator begin the phase, and wait until it runs."""
+        """Connect, let the operator begin the phase, and wait until it runs."""
         self.record = Record(self.lab.seats[0].session_id)
         self._thread = threading.Thread(target=self._live, daemon=True)
         self._thread.start()
@@ -60,7 +60,7 @@ class Sender:
         self._begin.set()
 
     def join(self) -> None:
-        """Wait for the last frame; raises what went wrong."""
+        """Wait for the last frame; raise any error of the thread."""
         assert self._thread is not None
         self._thread.join(self.duration_s + STARTS_WITHIN_S)
         self._raise()
@@ -106,7 +106,7 @@ class Sender:
         await headset.close()
 
     async def _look_on(self, url: str) -> None:
-        """Take every pose, and say at once that it was drawn."""
+        """Receive every pose and immediately acknowledge it as drawn."""
         cookie = "; ".join(f"{name}={value}" for name, value in self.lab.cookies.items())
         headers = {"cookie": cookie, "origin": self.server.url}
         async with connect(url, additional_headers=headers, compression=None) as socket:
@@ -117,7 +117,7 @@ class Sender:
 
 @dataclass(frozen=True)
 class Watched:
-    """What is running: the page draws already, and the first frame was sent."""
+    """The running session: the page already draws, and the first frame was sent."""
 
     server: LiveServer
     page: Page
@@ -128,7 +128,10 @@ class Watched:
 def watched_session(
     folder: Path, browser: Browser, duration_s: float, script: str = ""
 ) -> Iterator[Watched]:
-    """A streaming session that is looked at by four; `script` runs in the page before its own."""
+    """Run a streaming session that four consoles watch.
+
+    `script` runs in the page before its own.
+    """
     with ExitStack() as stack:
         server = stack.enter_context(LiveServer(folder))
         lab = make_lab(server, 1)
