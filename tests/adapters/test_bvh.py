@@ -84,12 +84,12 @@ def test_writing_and_reading_back_gives_the_same_poses(shared_data: Path) -> Non
     """A clip is the same after writing it as text and reading it back."""
     path = shared_data / "motion" / "bvh_toolbox" / "walk01.bvh"
     clip = read_bvh(path, metres_per_unit=0.01)
-    again = parse_bvh(format_bvh(clip, metres_per_unit=0.01), metres_per_unit=0.01)
-    assert again.names == clip.names
-    assert [joint for joint, _ in again.end_sites] == [joint for joint, _ in clip.end_sites]
-    np.testing.assert_allclose([o for _, o in again.end_sites], [o for _, o in clip.end_sites])
-    np.testing.assert_allclose(again.translations_m, clip.translations_m, atol=1e-9)
-    assert float(np.max(rot.geodesic_angle(again.rotations, clip.rotations))) < 1e-9
+    reread = parse_bvh(format_bvh(clip, metres_per_unit=0.01), metres_per_unit=0.01)
+    assert reread.names == clip.names
+    assert [joint for joint, _ in reread.end_sites] == [joint for joint, _ in clip.end_sites]
+    np.testing.assert_allclose([o for _, o in reread.end_sites], [o for _, o in clip.end_sites])
+    np.testing.assert_allclose(reread.translations_m, clip.translations_m, atol=1e-9)
+    assert float(np.max(rot.geodesic_angle(reread.rotations, clip.rotations))) < 1e-9
 
 
 @pytest.mark.parametrize(

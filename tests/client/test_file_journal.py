@@ -41,11 +41,11 @@ def test_it_contains_what_a_journal_in_memory_contains(
         journal.acknowledge([("target", 3, acked)])
     assert (list(filed), len(filed)) == (list(model), len(model))
     filed.close()
-    again = FileJournal(folder=folder, segment_bytes=segment_bytes)
-    again.acknowledge([("target", 3, acked)])
-    assert list(again) == list(model)
+    reopened = FileJournal(folder=folder, segment_bytes=segment_bytes)
+    reopened.acknowledge([("target", 3, acked)])
+    assert list(reopened) == list(model)
     if not len(model):
-        assert again.waiting_bytes == 0
+        assert reopened.waiting_bytes == 0
 
 
 def test_acknowledged_segments_are_deleted(tmp_path: Path) -> None:
@@ -116,11 +116,11 @@ def test_a_killed_process_leaves_everything_it_added(tmp_path: Path) -> None:
         [sys.executable, "-c", work, str(tmp_path)], stdout=subprocess.PIPE, text=True
     )
     assert process.stdout is not None
-    told = [int(process.stdout.readline()) for _ in range(500)]
+    added = [int(process.stdout.readline()) for _ in range(500)]
     process.kill()
-    told += [int(line) for line in process.stdout.read().split("\n")[:-1]]
+    added += [int(line) for line in process.stdout.read().split("\n")[:-1]]
     process.wait()
     process.stdout.close()
     found = [one.seq_end for one in FileJournal(folder=tmp_path)]
-    assert found[: len(told)] == told
-    assert len(found) - len(told) in (0, 1)
+    assert found[: len(added)] == added
+    assert len(found) - len(added) in (0, 1)

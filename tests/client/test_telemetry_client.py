@@ -53,8 +53,8 @@ def test_a_clean_end_reports_how_much_was_produced(live_server: LiveServer) -> N
                 await headset.drained()
 
         asyncio.run(run())
-        told = _produced(live_server, session_id)
-    assert told == {("target", 1): 180}
+        produced = _produced(live_server, session_id)
+    assert produced == {("target", 1): 180}
     assert receipt(live_server, session_id).complete
 
 
@@ -130,7 +130,7 @@ def _produced(server: LiveServer, session_id: str) -> dict[tuple[str, int], int]
             rows = db.scalars(
                 select(TelemetryStream).where(TelemetryStream.session_id == session_id)
             ).all()
-        told = {(row.stream, row.epoch): row.produced for row in rows if row.produced}
-        if told or time.monotonic() > give_up_s:
-            return told
+        produced = {(row.stream, row.epoch): row.produced for row in rows if row.produced}
+        if produced or time.monotonic() > give_up_s:
+            return produced
         time.sleep(0.02)

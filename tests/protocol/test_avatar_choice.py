@@ -50,7 +50,7 @@ def test_a_delayed_copy_has_no_configuration() -> None:
 
 
 @pytest.mark.parametrize(
-    ("configuration", "path", "said"),
+    ("configuration", "path", "expected_message"),
     [
         ("{key: hard, version: 1}", "avatar_configuration.key", "no avatar 'hard'"),
         ("{key: standard, version: 3}", "avatar_configuration.version", "no version 3"),
@@ -59,13 +59,15 @@ def test_a_delayed_copy_has_no_configuration() -> None:
         ("standard", "avatar_configuration", "Expected a mapping"),
     ],
 )
-def test_an_unknown_configuration_is_rejected(configuration: str, path: str, said: str) -> None:
+def test_an_unknown_configuration_is_rejected(
+    configuration: str, path: str, expected_message: str
+) -> None:
     """An unknown configuration is rejected with its place in the file."""
     with pytest.raises(ConfigError) as caught:
         load_study(physics(configuration), instruments=instruments(), avatars=AVATARS)
     (problem,) = caught.value.problems
     assert problem.path == path
-    assert said in problem.message
+    assert expected_message in problem.message
     assert problem.line > 0
 
 

@@ -88,7 +88,7 @@ def test_a_file_states_its_units_and_its_format() -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "path", "said", "valid"),
+    ("change", "path", "expected_message", "valid"),
     [
         (('"hips": "carried"', '"hips": "loose"'), "hips", "'loose'", ""),
         (('"gravity": true', '"gravity": 1'), "gravity", "true or false", ""),
@@ -105,7 +105,9 @@ def test_a_file_states_its_units_and_its_format() -> None:
         (('"version": 1,', '"version": 1'), "", "This is not JSON", ""),
     ],
 )
-def test_a_problem_has_its_place(change: tuple[str, str], path: str, said: str, valid: str) -> None:
+def test_a_problem_has_its_place(
+    change: tuple[str, str], path: str, expected_message: str, valid: str
+) -> None:
     """A problem has its path, line and column and what is valid."""
     with pytest.raises(ConfigError) as caught:
         load_avatar(TEXT.replace(*change, 1))
@@ -114,7 +116,7 @@ def test_a_problem_has_its_place(change: tuple[str, str], path: str, said: str, 
     assert problem.column > 0
     if path:
         assert problem.path == path
-    assert said in problem.message
+    assert expected_message in problem.message
     assert valid in str(problem.valid)
 
 
@@ -123,10 +125,10 @@ def test_an_unknown_key_is_rejected_with_the_valid_ones() -> None:
     text = TEXT.replace('"gravity"', '"gravitiy"', 1).replace("kp_nm_per_rad", "kp", 1)
     with pytest.raises(ConfigError) as caught:
         load_avatar(text)
-    told = {problem.path: problem.remedy for problem in caught.value.problems}
-    assert "Did you mean 'gravity'?" in told["gravitiy"]
-    assert "kp_nm_per_rad" in told["axes.SpineX.kp"]
-    assert {"gravity", "axes.SpineX.kp_nm_per_rad"} <= set(told)
+    remedies = {problem.path: problem.remedy for problem in caught.value.problems}
+    assert "Did you mean 'gravity'?" in remedies["gravitiy"]
+    assert "kp_nm_per_rad" in remedies["axes.SpineX.kp"]
+    assert {"gravity", "axes.SpineX.kp_nm_per_rad"} <= set(remedies)
 
 
 def test_a_duplicate_key_is_rejected() -> None:

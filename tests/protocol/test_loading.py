@@ -41,8 +41,10 @@ def test_the_hash_names_the_content_and_not_its_formatting() -> None:
     """Comments, key order, quoting, flow style, 60 for 60.0 and a BOM do not change the hash."""
     content_hash = loaded().content_hash
     tree = reordered(yaml.safe_load(STUDY))
-    again = yaml.safe_dump(tree, sort_keys=False, allow_unicode=True, default_style='"', width=60)
-    plain = re.sub(r'"(-?[0-9.]+|true|false)"', r"\1", re.sub(r"!!\w+ ", "", again))
+    rewritten = yaml.safe_dump(
+        tree, sort_keys=False, allow_unicode=True, default_style='"', width=60
+    )
+    plain = re.sub(r'"(-?[0-9.]+|true|false)"', r"\1", re.sub(r"!!\w+ ", "", rewritten))
     for text in (
         "# a remark\n" + STUDY,
         "\ufeff" + STUDY.replace("\n", "\r\n"),
@@ -76,8 +78,8 @@ def test_only_what_decides_balance_changes_the_design_hash() -> None:
 
 def test_the_canonical_json_gives_the_same_study() -> None:
     """The canonical JSON gives an equal study with the same canonical JSON."""
-    again = parse_study_json(loaded().canonical_json)
-    assert again == loaded().protocol
+    rewritten = parse_study_json(loaded().canonical_json)
+    assert rewritten == loaded().protocol
     instrument = load_instrument(KARAS)
     assert parse_instrument_json(instrument.canonical_json) == instrument.instrument
     assert load_instrument(instrument.canonical_json).content_hash == instrument.content_hash

@@ -26,8 +26,8 @@ def test_the_hash_of_a_study_without_options_stays() -> None:
 def test_a_written_default_does_not_change_the_hash() -> None:
     """Writing the default signature `none` does not change the hash."""
     plain = "{step: consent, text: consent}"
-    said = "{step: consent, text: consent, signature: none, statements: []}"
-    assert loaded(BEFORE_RULES.replace(plain, said)).content_hash == SHIPPED
+    explicit = "{step: consent, text: consent, signature: none, statements: []}"
+    assert loaded(BEFORE_RULES.replace(plain, explicit)).content_hash == SHIPPED
 
 
 def test_a_practice_is_outside_the_blocks() -> None:
@@ -48,7 +48,7 @@ def test_the_design_is_that_of_the_study_without_options() -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "path", "said"),
+    ("old", "new", "path", "expected_message"),
     [
         (RULE, "score: fms, stop_at: 15", "safety.stop_rules[0].score", "no score 'fms'"),
         (RULE, RULE.replace("15", "21"), "safety.stop_rules[0].stop_at", "by nobody"),
@@ -70,12 +70,12 @@ def test_the_design_is_that_of_the_study_without_options() -> None:
     ],
 )
 def test_impossible_options_are_rejected_at_their_place(
-    old: str, new: str, path: str, said: str
+    old: str, new: str, path: str, expected_message: str
 ) -> None:
     """Stop rules that always or never apply, unknown scores and early practice are rejected."""
     found = [one for one in problems(with_options((old, new))) if one.path.startswith(path)]
     assert found
-    assert said in found[0].message
+    assert expected_message in found[0].message
     assert found[0].remedy
 
 

@@ -119,7 +119,7 @@ def test_listed_orders_are_used_as_they_are() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "path", "said"),
+    ("text", "path", "expected_message"),
     [
         (explicit("c0, c0"), "orders.sequences[0]", "every condition once"),
         (explicit("c0, c1", "c0"), "orders.sequences[1]", "every condition once"),
@@ -133,12 +133,12 @@ def test_listed_orders_are_used_as_they_are() -> None:
     ],
 )
 def test_an_invalid_list_of_orders_is_rejected_at_its_place(
-    text: str, path: str, said: str
+    text: str, path: str, expected_message: str
 ) -> None:
     """Missing, repeated and superfluous orders are rejected with their path."""
     found = [one for one in problems(text) if one.path == path]
     assert found
-    assert said in found[0].message
+    assert expected_message in found[0].message
 
 
 def test_the_hash_of_a_study_without_a_list_stays() -> None:

@@ -48,9 +48,13 @@ def test_tasks_carry_their_times_and_questionnaires_their_instrument() -> None:
     task = steps["block2.hand"]
     assert (task.preparation_s, task.duration_s, task.freeze_s) == (5, 60, 5)
     assert (task.condition, task.text, task.instrument) == ("latency_0", "hand_task", None)
-    asked = steps["block2.hand.karas2020"]
-    assert (asked.instrument, asked.condition, asked.duration_s) == ("karas2020", "latency_0", None)
-    assert asked.title["de"] == "Fragebogen"
+    questionnaire = steps["block2.hand.karas2020"]
+    assert (questionnaire.instrument, questionnaire.condition, questionnaire.duration_s) == (
+        "karas2020",
+        "latency_0",
+        None,
+    )
+    assert questionnaire.title["de"] == "Fragebogen"
 
 
 def test_indices_count_and_keys_are_unique() -> None:

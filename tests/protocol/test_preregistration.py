@@ -31,9 +31,12 @@ def test_declaring_changes_the_content_and_not_the_balance() -> None:
     declared = loaded(STUDY + SECTION)
     assert declared.content_hash != loaded().content_hash
     assert declared.protocol.design_hash == loaded().protocol.design_hash
-    told = declared.protocol.preregistration
-    assert told is not None
-    assert (told.primary.test, told.primary.correction) == ("page_trend", "none")
+    preregistration = declared.protocol.preregistration
+    assert preregistration is not None
+    assert (preregistration.primary.test, preregistration.primary.correction) == (
+        "page_trend",
+        "none",
+    )
     stricter = loaded(STUDY + SECTION.replace("0.05", "0.01"))
     assert stricter.content_hash != declared.content_hash
 

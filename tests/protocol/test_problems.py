@@ -6,7 +6,7 @@ from tests.protocol.helpers import edited, problems
 
 
 @pytest.mark.parametrize(
-    ("change", "path", "said", "remedy"),
+    ("change", "path", "expected_message", "remedy"),
     [
         (
             ("replicates: 2", "replicates: 2\n  replicate: 3"),
@@ -97,13 +97,13 @@ from tests.protocol.helpers import edited, problems
     ],
 )
 def test_each_problem_has_its_place_and_its_remedy(
-    change: tuple[str, str], path: str, said: str, remedy: str
+    change: tuple[str, str], path: str, expected_message: str, remedy: str
 ) -> None:
     """Each mistake gives one problem with its line, its path and a remedy."""
     text = edited(change)
     (problem,) = problems(text)
     assert problem.path == path
-    assert said in problem.message
+    assert expected_message in problem.message
     assert remedy in problem.remedy
     assert problem.line > 0
     assert problem.column > 0

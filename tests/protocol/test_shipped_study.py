@@ -55,10 +55,10 @@ def test_participants_are_not_told_the_condition() -> None:
     """No text before the debriefing mentions latency to the participant."""
     for key, text in STUDY.texts.items():
         for words in text.values():
-            told = [
+            mentions = [
                 secret for secret in ("latenc", "delay", "erzöger", "125", "350") if secret in words
             ]
-            assert bool(told) == (key == "debrief"), (key, told)
+            assert bool(mentions) == (key == "debrief"), (key, mentions)
 
 
 def test_the_instructions_say_what_matters() -> None:

@@ -63,7 +63,7 @@ def bomb(levels: int) -> str:
 
 
 @pytest.mark.parametrize(
-    ("text", "line", "column", "said"),
+    ("text", "line", "column", "expected_message"),
     [
         (bomb(12), 1, 5, "Anchors (&a0)"),
         ("a: 1\nb: *a\n", 2, 4, "Aliases (*a)"),
@@ -86,19 +86,19 @@ def bomb(levels: int) -> str:
     ],
 )
 def test_dangerous_yaml_is_rejected_at_its_place(
-    text: str, line: int, column: int, said: str
+    text: str, line: int, column: int, expected_message: str
 ) -> None:
     """YAML bombs, tags, too much depth or size and syntax errors are rejected unexpanded."""
     with pytest.raises(ConfigError) as caught:
         read_source(text)
     (problem,) = caught.value.problems
     assert (problem.line, problem.column) == (line, column)
-    assert said in problem.message
+    assert expected_message in problem.message
     assert problem.remedy
 
 
 @pytest.mark.parametrize(
-    ("text", "place", "said"),
+    ("text", "place", "expected_message"),
     [
         ("a: 1\nb: 2\na: 3\n", (3, 1), "occurs twice; first in line 1"),
         ("a: .nan\n", (1, 4), "not a finite number"),
@@ -111,12 +111,14 @@ def test_dangerous_yaml_is_rejected_at_its_place(
         ('a: "\\ud800"\n', (1, 4), "U+D800"),
     ],
 )
-def test_small_problems_are_collected(text: str, place: tuple[int, int], said: str) -> None:
+def test_small_problems_are_collected(
+    text: str, place: tuple[int, int], expected_message: str
+) -> None:
     """Problems that leave the rest readable are collected with those that follow."""
     source = read_source(text)
     (problem,) = source.problems
     assert (problem.line, problem.column) == place
-    assert said in problem.message
+    assert expected_message in problem.message
 
 
 def test_of_duplicate_keys_the_first_counts() -> None:

@@ -29,8 +29,10 @@ def test_a_template_asks_for_every_task_and_every_form_of_a_block(file: Path) ->
     rules, block = protocol.valid_when, protocol.procedure.block
     assert rules is not None
     assert {one.phase for one in rules.phases} == {str(one.limb) for one in block.phases}
-    asked = {one.questionnaire for one in block.phases} | {one.instrument for one in block.after}
-    assert asked <= set(rules.forms)
+    requested = {one.questionnaire for one in block.phases} | {
+        one.instrument for one in block.after
+    }
+    assert requested <= set(rules.forms)
 
 
 def test_an_older_study_keeps_its_content() -> None:

@@ -28,15 +28,15 @@ def test_the_instructions_describe_the_boxes_for_the_avatar(file: Path) -> None:
     In both languages, in the file and in its stored form.
     """
     text = file.read_text(encoding="utf-8")
-    for words, said, unsaid in (
+    for words, expected, unexpected in (
         (text, HELD_BACK, PASSES),
         (as_delayed_copy(text), PASSES, HELD_BACK),
     ):
         study = loaded(words)
         for protocol in (study.protocol, parse_study_json(study.canonical_json)):
             for wording in protocol.texts["instructions"].values():
-                assert said.search(wording)
-                assert not unsaid.search(wording)
+                assert expected.search(wording)
+                assert not unexpected.search(wording)
                 assert "[avatar" not in wording
                 assert "\n\n\n" not in wording
 
@@ -78,5 +78,5 @@ def test_a_consent_names_the_time_that_the_visit_is_computed_to_take(file: Path)
     protocol = loaded(file.read_text(encoding="utf-8")).protocol
     minutes = visit_time(protocol, instruments()).total
     for language, words in (("en", r"about (\d+) minutes"), ("de", r"etwa (\d+) Minuten")):
-        [told] = re.findall(words, protocol.texts["consent"][language])
-        assert abs(int(told) - minutes) <= 2.5
+        [stated] = re.findall(words, protocol.texts["consent"][language])
+        assert abs(int(stated) - minutes) <= 2.5

@@ -94,7 +94,7 @@ def test_the_arrays_are_views_on_the_message() -> None:
 
 
 @pytest.mark.parametrize(
-    ("field", "value", "said"),
+    ("field", "value", "reason"),
     [
         ("magic", b"RMB2", "magic b'RMB2'"),
         ("length", 128, "header length 128"),
@@ -115,9 +115,9 @@ def test_the_arrays_are_views_on_the_message() -> None:
         ("closed_at_s", float("nan"), "closed_at_s nan"),
     ],
 )
-def test_an_invalid_header_is_rejected_by_field(field: str, value: object, said: str) -> None:
+def test_an_invalid_header_is_rejected_by_field(field: str, value: object, reason: str) -> None:
     """An invalid header field is rejected with its name and value."""
-    with pytest.raises(MalformedBatchError, match=said):
+    with pytest.raises(MalformedBatchError, match=reason):
         decode_batch(changed(field, value))
 
 

@@ -46,7 +46,7 @@ def test_a_batch_is_encoded_and_decoded(vector: dict[str, Any]) -> None:
     assert np.array_equal(bits(batch.values), bits(values))
     for field in ("stream", "epoch", "phase_id", "seq_first", "frame_count", "crc32"):
         assert getattr(batch.header, field) == vector[field]
-    again = encode_batch(
+    reencoded = encode_batch(
         StreamName(vector["stream"]),
         epoch=vector["epoch"],
         phase_id=vector["phase_id"],
@@ -57,7 +57,7 @@ def test_a_batch_is_encoded_and_decoded(vector: dict[str, Any]) -> None:
         active_s=vector["active_s"],
         closed_at_s=vector["closed_at_s"],
     )
-    assert again == message
+    assert reencoded == message
 
 
 @pytest.mark.parametrize("vector", entries("refused_batches", "batches"))
@@ -102,5 +102,5 @@ def test_every_kind_of_message_has_a_vector() -> None:
         ("messages_from_client", CLIENT_MESSAGE),
         ("messages_from_server", SERVER_MESSAGE),
     ):
-        known = set(adapter.json_schema()["discriminator"]["mapping"])
-        assert {vector["message"]["type"] for vector in VECTORS[name]["messages"]} == known
+        kinds = set(adapter.json_schema()["discriminator"]["mapping"])
+        assert {vector["message"]["type"] for vector in VECTORS[name]["messages"]} == kinds

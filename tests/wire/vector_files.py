@@ -50,8 +50,8 @@ def make_all() -> dict[str, Json]:
         "refused_messages": {
             "kind": "refused_messages",
             "fact": "Neither side accepts these.",
-            "from_client": [{"name": name, "message": told} for name, told in REFUSED_CLIENT],
-            "from_server": [{"name": name, "message": told} for name, told in REFUSED_SERVER],
+            "from_client": [{"name": name, "message": content} for name, content in REFUSED_CLIENT],
+            "from_server": [{"name": name, "message": content} for name, content in REFUSED_SERVER],
         },
     }
 
@@ -157,8 +157,8 @@ def _changed(good: bytes, field: str, value: object) -> bytes:
     return HEADER.pack(*{**parts, field: value}.values()) + good[HEADER_BYTES:]
 
 
-def _message(name: str, told: Json) -> Json:
-    return {"name": name, "text": json.dumps(told), "message": told}
+def _message(name: str, content: Json) -> Json:
+    return {"name": name, "text": json.dumps(content), "message": content}
 
 
 def as_text(vector: Json) -> str:

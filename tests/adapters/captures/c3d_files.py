@@ -27,7 +27,7 @@ class C3dFile:
     )
     lists: dict[str, tuple[str, ...]] = field(default_factory=dict)
     long: bool = False
-    frames_told: int | None = None
+    stated_frames: int | None = None
 
     def to_bytes(self) -> bytes:
         """Return the whole file."""
@@ -37,7 +37,7 @@ class C3dFile:
         return self._header(frames, data_block) + parameters + self._frames()
 
     def _header(self, frames: int, data_block: int) -> bytes:
-        last = min(frames, 65535) if self.frames_told is None else self.frames_told
+        last = min(frames, 65535) if self.stated_frames is None else self.stated_frames
         words = (len(self.labels), self.analogue, 1, last, 0)
         out = b"\x02\x50" + b"".join(self._word(word) for word in words)
         out += self._number(-self.scale if self.real else self.scale)
@@ -45,7 +45,7 @@ class C3dFile:
         return out.ljust(BLOCK, b"\x00")
 
     def _parameters(self, frames: int) -> bytes:
-        frames = frames if self.frames_told is None else self.frames_told
+        frames = frames if self.stated_frames is None else self.stated_frames
         records = [_group(1, "POINT"), _group(2, "TRIAL")]
         records += [self._text(1, name, (text,)) for name, text in self.texts.items()]
         labels = {"LABELS": self.labels, **self.lists}

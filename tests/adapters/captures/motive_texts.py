@@ -22,7 +22,7 @@ class Dialect:
     labelled: bool = True
     parents: bool = False
     timecode: bool = False
-    told: bool = True
+    states_settings: bool = True
     """Whether rotation type, units and space stand in the first row."""
     mark: bool = False
     trailing_commas: int = 0
@@ -69,7 +69,7 @@ def _settings(motion: RigMotion, dialect: Dialect) -> str:
         ("Capture Start Time", dialect.start),
         ("Total Exported Frames", str(motion.frame_count)),
     ]
-    if dialect.told:
+    if dialect.states_settings:
         pairs += [
             ("Rotation Type", dialect.rotation),
             ("Length Units", dialect.units),

@@ -60,7 +60,7 @@ def _motive() -> list[bytes]:
     motion = random_motion(rng, rig, frames=4)
     dialects = (
         Dialect("1.21", labelled=False, line_end="\r\n"),
-        Dialect("1.22", rotation="XYZ", labelled=False, told=False, mark=True),
+        Dialect("1.22", rotation="XYZ", labelled=False, states_settings=False, mark=True),
         Dialect("1.24", timecode=True, missing=((1, 1),)),
         Dialect("1.25", parents=True, space="Local", markers=1, trailing_commas=5),
     )

@@ -131,7 +131,7 @@ def test_the_missing_file_is_named() -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "line", "told"),
+    ("old", "new", "line", "expected_message"),
     [
         ("thigh 90 0", "tail 90 0", 10, "'tail' does not move"),
         ("thigh 90 0", "thigh 90", 10, "1 values"),
@@ -142,16 +142,16 @@ def test_the_missing_file_is_named() -> None:
     ],
 )
 def test_errors_in_an_amc_are_reported_with_their_line(
-    old: str, new: str, line: int, told: str
+    old: str, new: str, line: int, expected_message: str
 ) -> None:
     """Each error in an AMC is reported with its line."""
-    with pytest.raises(CaptureError, match=told) as caught:
+    with pytest.raises(CaptureError, match=expected_message) as caught:
         _read(_AMC.replace(old, new, 1))
     assert caught.value.line == line
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "line", "told"),
+    ("old", "new", "line", "expected_message"),
     [
         ("dof rx rz", "dof rx tz", 22, "shift or stretch"),
         ("length 8", "length much", 20, "'much'"),
@@ -166,11 +166,11 @@ def test_errors_in_an_amc_are_reported_with_their_line(
     ],
 )
 def test_errors_in_an_asf_are_reported_with_their_line(
-    old: str, new: str, line: int, told: str
+    old: str, new: str, line: int, expected_message: str
 ) -> None:
     """Each error in an ASF is reported with its file and line."""
     assert old in _ASF
-    with pytest.raises(CaptureError, match=f"small.asf: .*{told}") as caught:
+    with pytest.raises(CaptureError, match=f"small.asf: .*{expected_message}") as caught:
         _read(asf=_ASF.replace(old, new, 1))
     assert caught.value.line == line
 

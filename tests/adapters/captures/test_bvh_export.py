@@ -61,17 +61,17 @@ def test_reading_it_back_gives_the_same_body() -> None:
     rng = np.random.default_rng(4)
     rig = random_rig(rng, *motive_body(), rest=True, ends=True)
     motion = random_motion(rng, rig, frames=12)
-    again = read_capture(to_bvh(motion).encode(), name="again.bvh", reading=_METRES).motion
-    assert isinstance(again, RigMotion)
-    order = [again.rig.names.index(name) for name in rig.names]
-    np.testing.assert_allclose(again.world()[0][:, order], motion.world()[0], atol=1e-9)
-    rest, _ = again.rig.rest_world()
+    reread = read_capture(to_bvh(motion).encode(), name="written.bvh", reading=_METRES).motion
+    assert isinstance(reread, RigMotion)
+    order = [reread.rig.names.index(name) for name in rig.names]
+    np.testing.assert_allclose(reread.world()[0][:, order], motion.world()[0], atol=1e-9)
+    rest, _ = reread.rig.rest_world()
     expected, _ = rig.rest_world()
     np.testing.assert_allclose(rest[order], expected, atol=1e-9)
-    before, after = (m.world()[1] for m in (motion, again))
+    before, after = (m.world()[1] for m in (motion, reread))
     turned = geodesic_angle(before[0], before[5])
     np.testing.assert_allclose(geodesic_angle(after[0], after[5])[order], turned, atol=1e-9)
-    assert len(again.rig.ends) == len(rig.ends)
+    assert len(reread.rig.ends) == len(rig.ends)
 
 
 @pytest.mark.parametrize("file", ["cmu_bvh/05_06.bvh", "bvh_toolbox/walk01.bvh"])

@@ -54,8 +54,10 @@ def test_cmu_walk_is_read_with_its_conventions(shared_data: Path) -> None:
     waist = motion.positions_m[:, [motion.names.index(f"{s}WT") for s in ("LF", "RF", "LB", "RB")]]
     middle = waist.mean(axis=1)
     assert float(np.linalg.norm(middle[-1] - middle[0])) == pytest.approx(3.366, abs=5e-4)
-    told = capture.conventions
-    assert [(c.value, c.origin) for c in (told.length, told.axes, told.rate)] == [
+    conventions = capture.conventions
+    assert [
+        (c.value, c.origin) for c in (conventions.length, conventions.axes, conventions.rate)
+    ] == [
         ("mm", "file"),
         ("z up, right-handed", "file"),
         ("120 Hz", "file"),
@@ -149,13 +151,13 @@ def test_a_truncated_file_is_rejected() -> None:
     whole = C3dFile(_some_places(50), ("A", "B", "C")).to_bytes()
     with pytest.raises(CaptureError, match="50 frames but contains 49"):
         _read(whole[:-8])
-    huge = C3dFile(_some_places(1), ("A", "B", "C"), frames_told=65_535).to_bytes()
+    huge = C3dFile(_some_places(1), ("A", "B", "C"), stated_frames=65_535).to_bytes()
     with pytest.raises(CaptureError, match="contains 1"):
         _read(huge)
 
 
 @pytest.mark.parametrize(
-    ("at", "value", "told"),
+    ("at", "value", "expected_message"),
     [
         (0, 200, "parameters at byte"),
         (1, 0, "no C3D"),
@@ -164,13 +166,15 @@ def test_a_truncated_file_is_rejected() -> None:
         (16, 99, "begin at byte"),
     ],
 )
-def test_a_damaged_header_is_rejected_with_the_reason(at: int, value: int, told: str) -> None:
+def test_a_damaged_header_is_rejected_with_the_reason(
+    at: int, value: int, expected_message: str
+) -> None:
     """Each damaged field of the header is named in the error."""
     data = bytearray(C3dFile(_some_places(), ("A", "B", "C")).to_bytes())
     data[at] = value
     if at == 2:
         data[3] = 0
-    with pytest.raises(CaptureError, match=told):
+    with pytest.raises(CaptureError, match=expected_message):
         _read(bytes(data))
 
 

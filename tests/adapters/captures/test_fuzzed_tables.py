@@ -75,8 +75,8 @@ def test_reading_takes_a_few_times_the_memory_of_the_movement() -> None:
     finally:
         tracemalloc.stop()
     assert motion.frame_count == 5_000
-    held = 8 * 5_000 * (21 * 4 + 3)
-    assert peak < 5 * held, f"{peak / held:.1f} times"
+    movement_bytes = 8 * 5_000 * (21 * 4 + 3)
+    assert peak < 5 * movement_bytes, f"{peak / movement_bytes:.1f} times"
 
 
 @pytest.mark.parametrize("title", _BOMBS)

@@ -14,8 +14,8 @@ from tests.adapters.captures.moving_rigs import motive_body, random_motion, rand
 
 _DIALECTS = {
     "1.21 without labels, CRLF": Dialect("1.21", labelled=False, line_end="\r\n"),
-    "1.22 with Euler angles and nothing told": Dialect(
-        "1.22", rotation="XYZ", labelled=False, told=False, mark=True
+    "1.22 with Euler angles and nothing stated": Dialect(
+        "1.22", rotation="XYZ", labelled=False, states_settings=False, mark=True
     ),
     "1.23 in millimetres, Chinese afternoon": Dialect(
         "1.23", units="Millimeters", start="2023-03-29 06.23.40.520 下午"
@@ -67,14 +67,14 @@ def test_conventions_are_marked_as_stated_or_guessed() -> None:
     """A 1.22 take states neither unit nor rotations, so both are marked as guessed."""
     rng = np.random.default_rng(22)
     motion = random_motion(rng, random_rig(rng, *motive_body()))
-    silent = _read(motive_text(motion, _DIALECTS["1.22 with Euler angles and nothing told"]))
+    silent = _read(motive_text(motion, _DIALECTS["1.22 with Euler angles and nothing stated"]))
     assert (silent.conventions.rotations.value, silent.conventions.rotations.origin) == (
         "Euler XYZ, degrees",
         "guessed",
     )
     assert (silent.conventions.length.value, silent.conventions.length.origin) == ("m", "guessed")
-    told = _read(motive_text(motion, Dialect(units="Millimeters")))
-    assert (told.conventions.length.value, told.conventions.length.origin) == ("mm", "file")
+    stated = _read(motive_text(motion, Dialect(units="Millimeters")))
+    assert (stated.conventions.length.value, stated.conventions.length.origin) == ("mm", "file")
 
 
 def test_a_gap_is_filled_and_marked() -> None:
@@ -173,9 +173,9 @@ def test_markers_alone_are_read_as_markers(shared_data: Path) -> None:
     """Without bodies the labelled markers are read and the unlabelled ones left out."""
     path = shared_data / "motion" / "optitrack_csv" / "sample_optitrack_take.csv"
     rows = [line.split(",") for line in path.read_text().splitlines()]
-    kept = [0, 1, *(n for n, kind in enumerate(rows[2]) if kind == "Marker")]
+    remaining = [0, 1, *(n for n, kind in enumerate(rows[2]) if kind == "Marker")]
     text = "\n".join(
-        ",".join(row[n] for n in kept if n < len(row)) if number > 1 else ",".join(row)
+        ",".join(row[n] for n in remaining if n < len(row)) if number > 1 else ",".join(row)
         for number, row in enumerate(rows)
     )
     capture = _read(text)

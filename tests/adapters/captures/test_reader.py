@@ -28,7 +28,7 @@ def _key_of(data: bytes, name: str) -> str | None:
 def test_the_format_is_detected_by_content_whatever_the_name(key: str) -> None:
     """Every format is detected by its content in a file called recording.txt."""
     assert _key_of(_HEADS[key], "recording.txt") == key
-    assert key in {known.key for known in FORMATS}
+    assert key in {capture_format.key for capture_format in FORMATS}
 
 
 def test_a_blank_before_the_first_word_makes_no_binary_file() -> None:
@@ -38,12 +38,12 @@ def test_a_blank_before_the_first_word_makes_no_binary_file() -> None:
 
 def test_every_format_has_a_detection_test() -> None:
     """Every format is covered by the test of detection by content."""
-    assert {known.key for known in FORMATS} == set(_HEADS)
+    assert {capture_format.key for capture_format in FORMATS} == set(_HEADS)
 
 
 def test_every_format_names_a_function_that_reads() -> None:
     """The function that each format names as its reader exists."""
-    assert all(callable(known.load_reader()) for known in FORMATS)
+    assert all(callable(capture_format.load_reader()) for capture_format in FORMATS)
 
 
 def test_an_ambiguous_extension_gives_no_format() -> None:
@@ -77,8 +77,8 @@ def test_unknown_content_is_rejected_with_what_was_seen(data: bytes, seen: str) 
     """The error about unknown content says what it looks like and lists the formats."""
     with pytest.raises(CaptureError, match=re.escape(seen)) as caught:
         read_capture(data, name="something.dat")
-    for known in FORMATS:
-        assert known.title in str(caught.value)
+    for capture_format in FORMATS:
+        assert capture_format.title in str(caught.value)
 
 
 def test_an_impossible_scale_is_rejected() -> None:

@@ -87,7 +87,7 @@ def test_the_up_axis_is_guessed_from_the_markers() -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "line", "told"),
+    ("old", "new", "line", "expected_message"),
     [
         ("PathFileType", "Something", 1, "PathFileType"),
         ("100.0\t100.0\t3", "-5\t100.0\t3", 3, "rate is -5"),
@@ -100,10 +100,12 @@ def test_the_up_axis_is_guessed_from_the_markers() -> None:
         ("3\t0.02", "99999999999\t0.02", 9, "frames of"),
     ],
 )
-def test_errors_are_reported_with_their_line(old: str, new: str, line: int, told: str) -> None:
+def test_errors_are_reported_with_their_line(
+    old: str, new: str, line: int, expected_message: str
+) -> None:
     """Each error in a TRC is reported with its line."""
     assert old in _SMALL
-    with pytest.raises(CaptureError, match=told) as caught:
+    with pytest.raises(CaptureError, match=expected_message) as caught:
         _read(_SMALL.replace(old, new, 1))
     assert caught.value.line == line
 

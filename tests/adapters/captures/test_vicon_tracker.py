@@ -67,11 +67,11 @@ def test_the_angles_are_rotation_vectors(shared_data: Path) -> None:
     assert _scatter(motion.rotations[seen, elbow], apart[seen]) < 0.035
     rows = [line.split(",") for line in path.read_text("utf-8-sig").splitlines()[5:] if line]
     first = 2 + 6 * elbow
-    told = np.array([[float(cell or "nan") for cell in row[first : first + 3]] for row in rows])
+    stated = np.array([[float(cell or "nan") for cell in row[first : first + 3]] for row in rows])
     to_ours = Rotation.from_rotvec((-np.pi / 2.0, 0.0, 0.0))
     for order in ("".join(axes) for axes in permutations("XYZ")):
         columns = ["XYZ".index(axis) for axis in order]
-        turn = to_ours * Rotation.from_euler(order, told[seen][:, columns]) * to_ours.inv()
+        turn = to_ours * Rotation.from_euler(order, stated[seen][:, columns]) * to_ours.inv()
         scatter = _scatter(turn.as_quat(scalar_first=True), apart[seen])
         assert scatter > 0.07, f"Euler {order} would fit as well: {scatter}"
 

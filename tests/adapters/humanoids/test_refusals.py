@@ -40,9 +40,9 @@ def test_all_missing_parts_are_named() -> None:
 
 def test_a_dog_is_no_humanoid() -> None:
     """A dog is rejected with its missing arms and the names of its bones."""
-    told = str(rejected(dog_file()))
-    assert "no LeftUpperArm, LeftLowerArm, LeftHand" in told
-    assert "front_paw.L" in told
+    message = str(rejected(dog_file()))
+    assert "no LeftUpperArm, LeftLowerArm, LeftHand" in message
+    assert "front_paw.L" in message
 
 
 def test_a_box_is_no_humanoid() -> None:
@@ -52,8 +52,8 @@ def test_a_box_is_no_humanoid() -> None:
 
 def test_a_dog_with_a_humans_names_is_no_humanoid() -> None:
     """A dog whose bones have a human's names is rejected, as its body is not upright."""
-    told = str(rejected(dog_file(humans_names=True)))
-    assert "not a standing human body" in told
+    message = str(rejected(dog_file(humans_names=True)))
+    assert "not a standing human body" in message
 
 
 def test_exchanged_sides_are_found() -> None:
@@ -72,8 +72,8 @@ def test_a_bone_out_of_order_is_named() -> None:
         bones = document["extensions"]["VRMC_vrm"]["humanoid"]["humanBones"]
         bones["leftHand"], bones["leftUpperArm"] = bones["leftUpperArm"], bones["leftHand"]
 
-    told = str(rejected(humanoid_file(Model(vrm=1, edit=crossed))))
-    assert "is LeftHand, but is not below" in told
+    message = str(rejected(humanoid_file(Model(vrm=1, edit=crossed))))
+    assert "is LeftHand, but is not below" in message
 
 
 def test_a_bone_that_is_two_parts_is_named() -> None:
@@ -100,7 +100,7 @@ def test_impossible_lengths_are_rejected() -> None:
 
 
 @pytest.mark.parametrize(
-    ("data", "told"),
+    ("data", "message"),
     [
         (b"", "begins with b''"),
         (b"Kaydara FBX Binary  ", "FBX"),
@@ -114,9 +114,9 @@ def test_impossible_lengths_are_rejected() -> None:
         (b'{"a":[' + b"1," * 2_000_001, "2000000 values"),
     ],
 )
-def test_files_that_are_no_model_are_rejected(data: bytes, told: str) -> None:
+def test_files_that_are_no_model_are_rejected(data: bytes, message: str) -> None:
     """Files with wrong first bytes, header or JSON are rejected with the reason."""
-    assert told in str(rejected(data))
+    assert message in str(rejected(data))
 
 
 def test_a_truncated_file_is_rejected() -> None:
@@ -191,7 +191,7 @@ def test_limits_are_enforced() -> None:
     assert "more than 100 vertices" in str(rejected(humanoid_file(), Limits(vertices=100)))
     assert "more numbers" in str(rejected(humanoid_file(), Limits(values=1000)))
 
-    def again(document: dict[str, Any]) -> None:
+    def repeated(document: dict[str, Any]) -> None:
         document["meshes"][0]["primitives"] *= 5_000
 
-    assert "more" in str(rejected(humanoid_file(Model(edit=again))))
+    assert "more" in str(rejected(humanoid_file(Model(edit=repeated))))

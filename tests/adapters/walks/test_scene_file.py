@@ -51,7 +51,7 @@ def test_json_is_read_too() -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "said"),
+    ("old", "new", "expected_message"),
     [
         ("[0, 1], size", "[0, .nan], size", r"line 7.*center_m\[1\].*nan.*finite"),
         ("size_m: [1.2, 0.6]", "size_m: [1.2, -0.6]", r"line 7.*size_m\[1\].*out of range"),
@@ -68,13 +68,13 @@ def test_json_is_read_too() -> None:
         ("title: My lab", "tittle: My lab", r"line 3.*Did you mean 'title'"),
     ],
 )
-def test_each_problem_is_reported_with_its_line(old: str, new: str, said: str) -> None:
+def test_each_problem_is_reported_with_its_line(old: str, new: str, expected_message: str) -> None:
     """Each problem is reported with its line, its path and what is valid."""
     text = SCENE.replace(old, new, 1)
     assert text != SCENE
     with pytest.raises(ConfigError) as refused:
         load_scene(text)
-    assert any(re.search(said, str(problem)) for problem in refused.value.problems)
+    assert any(re.search(expected_message, str(problem)) for problem in refused.value.problems)
 
 
 def test_all_problems_are_reported_together() -> None:

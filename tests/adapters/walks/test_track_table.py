@@ -50,7 +50,7 @@ def test_people_are_kept_apart() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "expected_message"),
     [
         ("t,x,y\n0,0,0\n0.5,nan,0\n", "line 3: column 2 contains 'nan'"),
         ("t,x,y\n0,0,0\n0.5,,0\n", "line 3: column 2 contains ''"),
@@ -67,9 +67,9 @@ def test_people_are_kept_apart() -> None:
         ("1 2 3\n", "3 columns without a header"),
     ],
 )
-def test_invalid_tables_are_rejected_with_their_line(text: str, said: str) -> None:
+def test_invalid_tables_are_rejected_with_their_line(text: str, expected_message: str) -> None:
     """An invalid row is rejected with its line instead of being guessed or skipped."""
-    with pytest.raises(CaptureError, match=said):
+    with pytest.raises(CaptureError, match=expected_message):
         read_tracks(text.encode(), name="a.csv")
 
 

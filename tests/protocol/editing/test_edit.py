@@ -76,14 +76,14 @@ def test_a_change_does_just_what_it_says(case: tuple[str, Change]) -> None:
     """The edited text gives the changed tree, or the change is rejected with a remedy."""
     text, change = case
     before = read_source(text).tree
-    wanted = applied(copy.deepcopy(before), change)
+    expected = applied(copy.deepcopy(before), change)
     try:
         after = edit_text(text, [change])
     except ConfigError as error:
         # Only what no file may contain at all: control characters and too much depth.
         assert all(problem.remedy for problem in error.problems)  # noqa: PT017 - either way is fine
         return
-    assert same(read_source(after).tree, wanted)
+    assert same(read_source(after).tree, expected)
 
 
 @settings(max_examples=usually(15, at_length=60), deadline=None)
@@ -121,9 +121,9 @@ def test_comments_survive_every_kind_of_change() -> None:
             Change(("texts", "consent", "en"), "set", "One\n\nTwo"),
         ],
     )
-    kept = [line for line in STUDY.split("\n") if line.lstrip().startswith("#")]
+    hash_lines = [line for line in STUDY.split("\n") if line.lstrip().startswith("#")]
     # Lines that begin with # inside of a text are headings, not comments.
-    comments = [line for line in kept if not line.startswith("      #")]
+    comments = [line for line in hash_lines if not line.startswith("      #")]
     assert [line for line in comments if line not in after.split("\n")] == []
     protocol = loaded(after).protocol
     assert protocol.conditions[1].latency_ms == 200

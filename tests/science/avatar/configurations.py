@@ -57,7 +57,7 @@ def configurations(draw: st.DrawFn) -> Configuration:
     axes = {name: draw(axis_settings()) for part in parts for name in axes_of(part)}
     locked = draw(st.lists(st.sampled_from(parts), unique=True))
     names = [name for part in locked for name in axes_of(part)]
-    held = draw(st.lists(st.sampled_from(names), unique=True)) if names else []
+    held_axes = draw(st.lists(st.sampled_from(names), unique=True)) if names else []
     colliders: ColliderKind = draw(st.sampled_from(("simple", "mesh", "none")))
     head_of_skin = draw(st.booleans())
     modelled = colliders == "mesh" or head_of_skin or draw(st.booleans())
@@ -73,7 +73,7 @@ def configurations(draw: st.DrawFn) -> Configuration:
         part_colliders={"Head": "mesh"} if head_of_skin else {},
         humanoid=draw(st.text("0123456789abcdef", min_size=64, max_size=64)) if modelled else None,
         locked_groups=tuple(locked),
-        held_rad={name: axes[name].clamped(draw(angles_rad)) for name in held},
+        held_rad={name: axes[name].clamped(draw(angles_rad)) for name in held_axes},
     )
 
 

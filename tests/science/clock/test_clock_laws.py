@@ -143,8 +143,8 @@ def test_segments_describe_the_mapping() -> None:
     for segment in mapping.segments:
         t_s = simulated.event_client_s
         mine = (t_s >= segment.client_from_s) & (t_s < segment.client_to_s)
-        told = t_s + segment.offset_s + segment.drift * (t_s - segment.client_from_s)
-        assert told[mine] == pytest.approx(server_s[mine], abs=1e-9)
+        mapped_s = t_s + segment.offset_s + segment.drift * (t_s - segment.client_from_s)
+        assert mapped_s[mine] == pytest.approx(server_s[mine], abs=1e-9)
         assert (uncertainty_s[mine] <= segment.uncertainty_s + 1e-9).all()
         seen += mine
     assert (seen[10:-10] == 1).all()

@@ -74,10 +74,10 @@ def test_a_headset_and_two_controllers_are_no_body() -> None:
 def test_missing_bodies_are_named() -> None:
     """Without a rigid body on the right elbow the error names it as missing."""
     bodies = bodies_on(moving(0), 0)
-    kept = [place for place, name in enumerate(BODIES) if name != "right_elbow"]
+    remaining = [place for place, name in enumerate(BODIES) if name != "right_elbow"]
     few = BodyMotion(
-        tuple(BODIES[place] for place in kept), bodies.times_s,
-        bodies.positions_m[:, kept], bodies.rotations[:, kept],
+        tuple(BODIES[place] for place in remaining), bodies.times_s,
+        bodies.positions_m[:, remaining], bodies.rotations[:, remaining],
     )  # fmt: skip
     with pytest.raises(FitError, match="right elbow missing"):
         fit_skeleton(few)

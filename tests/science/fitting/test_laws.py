@@ -64,10 +64,10 @@ def test_marker_noise_of_a_millimetre_moves_joints_little(scale: float) -> None:
 def test_a_limb_that_is_not_marked_is_named() -> None:
     """Without the right wrist the right arm is listed as unfitted, and the rest is unchanged."""
     markers = markers_on(moving(1))
-    kept = [name for name in markers.names if name not in {"RWRA", "RWRB"}]
-    columns = [markers.names.index(name) for name in kept]
+    remaining = [name for name in markers.names if name not in {"RWRA", "RWRB"}]
+    columns = [markers.names.index(name) for name in remaining]
     fitted = fit_skeleton(
-        MarkerMotion(tuple(kept), markers.rate_hz, markers.positions_m[:, columns])
+        MarkerMotion(tuple(remaining), markers.rate_hz, markers.positions_m[:, columns])
     )
     assert fitted.unfitted == (
         "Chest",
@@ -166,9 +166,12 @@ def test_rigid_bodies_recover_positions_and_rotations(seed: int) -> None:
 def test_uneven_times_are_resampled() -> None:
     """Samples at uneven times are resampled to an even rate, missing ones interpolated."""
     bodies = bodies_on(moving(2), 2)
-    kept = np.delete(np.arange(len(bodies.times_s)), [100, 150])
+    remaining = np.delete(np.arange(len(bodies.times_s)), [100, 150])
     uneven = BodyMotion(
-        bodies.names, bodies.times_s[kept], bodies.positions_m[kept], bodies.rotations[kept]
+        bodies.names,
+        bodies.times_s[remaining],
+        bodies.positions_m[remaining],
+        bodies.rotations[remaining],
     )
     fitted = fit_skeleton(uneven).motion
     assert fitted.frame_count == len(bodies.times_s)

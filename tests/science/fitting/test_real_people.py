@@ -155,9 +155,11 @@ def test_outer_markers_alone_give_nearly_the_same_legs(shared_data: Path, path: 
     assert isinstance(both, MarkerMotion)
     inner = {f"{s}.{joint}.Medial" for s in "LR" for joint in ("Knee", "Ankle")}
     assert inner <= set(both.names)
-    kept = [column for column, name in enumerate(both.names) if name not in inner]
+    remaining = [column for column, name in enumerate(both.names) if name not in inner]
     outer = MarkerMotion(
-        tuple(both.names[column] for column in kept), both.rate_hz, both.positions_m[:, kept]
+        tuple(both.names[column] for column in remaining),
+        both.rate_hz,
+        both.positions_m[:, remaining],
     )
     ours, theirs = fit_skeleton(outer).motion, fit_skeleton(both).motion
     for side in ("Left", "Right"):
@@ -198,11 +200,11 @@ def test_vicon_bodies_agree_with_their_authors_bvh(shared_data: Path) -> None:
     the person about the vertical becomes a bow), and lags by 5 frames, which is their smoothing.
     """
     file = shared_data / "motion" / "vicon_tracker" / "HumanRobotHandover_0.bvh"
-    declared, held = b"Zposition Zrotation Yrotation X", b"Zposition Zrotation Xrotation Y"
+    declared, stored = b"Zposition Zrotation Yrotation X", b"Zposition Zrotation Xrotation Y"
     text = file.read_bytes()
     assert declared in text
     theirs = read_capture(
-        text.replace(declared, held), name=file.name, reading=Reading(metres_per_unit=0.001)
+        text.replace(declared, stored), name=file.name, reading=Reading(metres_per_unit=0.001)
     ).motion
     assert isinstance(theirs, RigMotion)
     ours = _fitted(shared_data, "vicon_tracker/HumanRobotHandover_0.csv").motion

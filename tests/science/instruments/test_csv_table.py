@@ -71,7 +71,7 @@ def test_a_header_alone_gives_a_header() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "expected_message"),
     [
         ("", "empty"),
         (" \n\n", "empty"),
@@ -89,9 +89,9 @@ def test_a_header_alone_gives_a_header() -> None:
         ("agency,q1\n1,2\n", "name of a score"),
     ],
 )
-def test_invalid_tables_are_rejected_with_line_and_column(text: str, said: str) -> None:
+def test_invalid_tables_are_rejected_with_line_and_column(text: str, expected_message: str) -> None:
     """An invalid table is rejected with line, column, value and what is valid."""
-    with pytest.raises(InstrumentTableError, match=said):
+    with pytest.raises(InstrumentTableError, match=expected_message):
         score_csv(KARAS, text)
 
 

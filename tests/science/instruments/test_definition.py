@@ -23,7 +23,7 @@ def likert(key: str) -> Item:
 
 
 @pytest.mark.parametrize(
-    ("changes", "path", "said"),
+    ("changes", "path", "expected_message"),
     [
         ({"key": "Small"}, ("key",), "not a valid key"),
         ({"version": 0}, ("version",), "from 1"),
@@ -68,13 +68,13 @@ def likert(key: str) -> Item:
     ],
 )
 def test_contradictions_are_reported_at_their_place(
-    changes: dict[str, object], path: tuple[str | int, ...], said: str
+    changes: dict[str, object], path: tuple[str | int, ...], expected_message: str
 ) -> None:
     """Each contradiction in a definition is reported with its path and a sentence."""
     with pytest.raises(InstrumentDefinitionError) as caught:
         small(**changes)
     problem = next(one for one in caught.value.problems if one.path == path)
-    assert said in problem.message
+    assert expected_message in problem.message
     assert problem.remedy
 
 

@@ -73,7 +73,7 @@ def test_a_formula_never_gives_negative_zero() -> None:
 
 
 @pytest.mark.parametrize(
-    ("formula", "position", "said"),
+    ("formula", "position", "expected_message"),
     [
         ("q1 + q9", 5, "'q9' is unknown"),
         ("q1 + ", 4, "the formula ends"),
@@ -95,13 +95,13 @@ def test_a_formula_never_gives_negative_zero() -> None:
     ],
 )
 def test_an_invalid_formula_is_rejected_at_the_right_character(
-    formula: str, position: int, said: str
+    formula: str, position: int, expected_message: str
 ) -> None:
     """A syntax error points at the first invalid character and gives the reason."""
     with pytest.raises(FormulaError, match=r".") as caught:
         parse_formula(formula, NAMES)
     assert caught.value.position == position
-    assert said in caught.value.message
+    assert expected_message in caught.value.message
     assert caught.value.remedy
 
 

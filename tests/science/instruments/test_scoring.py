@@ -138,7 +138,7 @@ def test_an_answer_to_an_unknown_item_is_rejected() -> None:
 
 
 @pytest.mark.parametrize(
-    ("columns", "said"),
+    ("columns", "expected_message"),
     [
         (["id", "age"], "No column is an item"),
         (["q1", "Q1"], "more than once"),
@@ -146,7 +146,9 @@ def test_an_answer_to_an_unknown_item_is_rejected() -> None:
         (["ownership", "q1"], "name of a score"),
     ],
 )
-def test_tables_that_cannot_be_scored_are_rejected(columns: list[str], said: str) -> None:
+def test_tables_that_cannot_be_scored_are_rejected(
+    columns: list[str], expected_message: str
+) -> None:
     """Tables without items, with duplicate columns or with score names as columns are rejected."""
-    with pytest.raises(InstrumentTableError, match=said):
+    with pytest.raises(InstrumentTableError, match=expected_message):
         score_table(KARAS, pd.DataFrame([[1] * len(columns)], columns=columns))

@@ -149,8 +149,10 @@ def test_every_text_is_there_in_both_languages(key: str) -> None:
     """Every instrument has English and German texts, a source and what was verified."""
     instrument = shipped(key)
     assert instrument.languages == ("en", "de")
-    told = instrument.provenance
-    assert all(text.strip() for text in (told.source, told.licence, told.verified))
+    provenance = instrument.provenance
+    assert all(
+        text.strip() for text in (provenance.source, provenance.licence, provenance.verified)
+    )
 
 
 @pytest.mark.parametrize("key", KEYS)

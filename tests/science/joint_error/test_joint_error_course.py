@@ -42,9 +42,9 @@ def test_an_error_that_grows_evenly_grows_evenly_from_bin_to_bin() -> None:
 def test_a_bin_without_a_sample_has_no_mean_and_keeps_its_place() -> None:
     """A bin without samples, here from 5 to 10 s, is kept without a mean."""
     active_s = _times(15.0)
-    kept = (active_s < 5.0) | (active_s >= 10.0)
-    angles_rad = np.full((int(kept.sum()), 2), 0.5)
-    course = joint_error_course(angles_rad, active_s[kept], 15.0)
+    present = (active_s < 5.0) | (active_s >= 10.0)
+    angles_rad = np.full((int(present.sum()), 2), 0.5)
+    course = joint_error_course(angles_rad, active_s[present], 15.0)
     np.testing.assert_array_equal(course.mean_rad, [0.5, np.nan, 0.5])
     assert course.samples.tolist() == [2 * BIN_FRAMES, 0, 2 * BIN_FRAMES]
 

@@ -65,9 +65,11 @@ def nodding(size_deg: float) -> FloatArray:
 def recorded(target: FloatArray, actual: FloatArray, reference: HingeReference | None) -> Recorded:
     """Return a run whose avatar is seen from frame BEGIN on, on a clock that starts at 500 s."""
     times_s = 500.0 + np.arange(FRAMES) / RATE_HZ
-    asked = ReferenceMotion(target) if reference is None else reference.recording(times_s, target)
+    reference_motion = (
+        ReferenceMotion(target) if reference is None else reference.recording(times_s, target)
+    )
     frames = np.arange(BEGIN, FRAMES)
-    return Recorded(times_s, asked, frames, times_s[frames], actual[frames])
+    return Recorded(times_s, reference_motion, frames, times_s[frames], actual[frames])
 
 
 def clamped(target: FloatArray, delay_frames: int) -> FloatArray:
@@ -179,16 +181,16 @@ def test_a_delayed_copy_is_compared_with_the_raw_rotations_to_the_bit() -> None:
     found = recorded_errors([run], 0.1)
     present = joint_error_summary(target[run.partners], run.actual)
     good = np.delete(np.arange(FRAMES), (70, 71))
-    known = np.isfinite(run.actual_times_s)
+    valid = np.isfinite(run.actual_times_s)
     command = np.full_like(run.actual, np.nan)
-    command[known] = delayed_pose(run.times_s[good], target[good], run.actual_times_s[known], 0.1)
-    for got, expected in (
+    command[valid] = delayed_pose(run.times_s[good], target[good], run.actual_times_s[valid], 0.1)
+    for result, expected in (
         (found.present, present),
         (found.command, joint_error_summary(command, run.actual)),
     ):
         for table in ("mean_rad", "rms_rad", "p95_rad", "max_rad", "count", "left_out"):
-            np.testing.assert_array_equal(getattr(got, table), getattr(expected, table))
-        assert np.isnan(got.clipped_share).all()
+            np.testing.assert_array_equal(getattr(result, table), getattr(expected, table))
+        assert np.isnan(result.clipped_share).all()
 
 
 def test_a_recording_without_runs_is_rejected() -> None:

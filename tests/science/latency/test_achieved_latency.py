@@ -164,8 +164,8 @@ def test_glitches_and_unusable_samples_decide_nothing(rng: np.random.Generator) 
     """Glitches, NaN, non-unit rotations and untracked joints do not change the latency."""
     run = record(made_movement(rng), 0.125, rng, Flaws(noise_deg=0.2), duration_s=30.0)
     target, actual = run.target_rotations.copy(), run.actual_rotations.copy()
-    wild = rng.random(actual.shape[:2]) < 0.01
-    actual[wild] = rot.normalise(rng.normal(size=(int(wild.sum()), 4)))
+    glitches = rng.random(actual.shape[:2]) < 0.01
+    actual[glitches] = rot.normalise(rng.normal(size=(int(glitches.sum()), 4)))
     target[rng.random(target.shape[:2]) < 0.03] = np.nan
     actual[rng.random(actual.shape[:2]) < 0.03] *= 1.5
     actual[:, 7], target[:, 12] = np.inf, 0.0
@@ -188,11 +188,11 @@ def test_the_hips_do_not_count(rng: np.random.Generator) -> None:
 def test_only_active_frames_count(rng: np.random.Generator) -> None:
     """Frames of a pause, even with another delay, do not change the latency."""
     movement = made_movement(rng)
-    wanted = record(movement, 0.125, rng, duration_s=30.0)
+    active_run = record(movement, 0.125, rng, duration_s=30.0)
     other = record(movement, 0.3, rng, duration_s=30.0)
-    active = (wanted.actual_times_s % 6.0) < 4.0
-    mixed = np.where(active[:, None, None], wanted.actual_rotations, other.actual_rotations)
-    result = latency_of_runs([replace(wanted, actual_rotations=mixed, active=active)])
+    active = (active_run.actual_times_s % 6.0) < 4.0
+    mixed = np.where(active[:, None, None], active_run.actual_rotations, other.actual_rotations)
+    result = latency_of_runs([replace(active_run, actual_rotations=mixed, active=active)])
     # At the edges the curves include a little of the other side.
     assert result.latency_s == pytest.approx(0.125, abs=1.0 * MS)
     assert result.samples == active.sum()

@@ -110,14 +110,14 @@ def test_locking_the_feet_removes_their_slide(
     The hips are lowered by at most 4 % of a leg, and no joint's velocity changes from frame to
     frame by more than twice what it does in the capture.
     """
-    held = _onto(walk, 1.65, share, lock=True)
-    assert held.walks is not None
-    assert held.walks.locked is not None
-    assert held.walks.slide_before_m_s is not None
-    assert held.walks.slide_m_s is not None
-    assert 0.08 < held.walks.slide_before_m_s < 0.25
-    assert held.walks.slide_m_s < 0.005
-    assert held.walks.locked.lowered_m <= 0.04 * held.walks.avatar.leg_length_m + 1e-12
-    assert held.walks.locked.out_of_reach < 0.02 * held.motion.frame_count
+    locked = _onto(walk, 1.65, share, lock=True)
+    assert locked.walks is not None
+    assert locked.walks.locked is not None
+    assert locked.walks.slide_before_m_s is not None
+    assert locked.walks.slide_m_s is not None
+    assert 0.08 < locked.walks.slide_before_m_s < 0.25
+    assert locked.walks.slide_m_s < 0.005
+    assert locked.walks.locked.lowered_m <= 0.04 * locked.walks.avatar.leg_length_m + 1e-12
+    assert locked.walks.locked.out_of_reach < 0.02 * locked.motion.frame_count
     free = _onto(walk, 1.65, share)
-    assert _largest_jerk_m_s(held.motion) < 2.0 * _largest_jerk_m_s(free.motion)
+    assert _largest_jerk_m_s(locked.motion) < 2.0 * _largest_jerk_m_s(free.motion)

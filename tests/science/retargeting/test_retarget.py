@@ -130,12 +130,12 @@ def test_a_loop_steps_no_further_than_its_clip(shared_data: Path, name: str) -> 
 def test_resampling_keeps_duration_and_path(rng: np.random.Generator) -> None:
     """A movement resampled to 90 Hz keeps its duration and passes through the same rotations."""
     movement = _swaying(rng, frames=361)
-    again = resample(movement, 90.0)
-    assert again.duration_s == pytest.approx(movement.duration_s)
+    resampled = resample(movement, 90.0)
+    assert resampled.duration_s == pytest.approx(movement.duration_s)
     # Every third frame at 90 Hz coincides with every fourth at 120 Hz.
-    angle = rot.geodesic_angle(again.rotations[::3], movement.rotations[::4])
+    angle = rot.geodesic_angle(resampled.rotations[::3], movement.rotations[::4])
     assert float(np.max(angle)) < 1e-7
-    assert rot.is_unit(again.rotations, 1e-12).all()
+    assert rot.is_unit(resampled.rotations, 1e-12).all()
 
 
 def test_a_map_that_does_not_fit_is_rejected(rng: np.random.Generator) -> None:

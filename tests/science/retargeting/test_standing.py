@@ -89,19 +89,25 @@ def test_hips_below_a_root_are_where_they_should_be(rng: np.random.Generator) ->
 def test_an_upper_body_stands_on_the_avatars_legs(rng: np.random.Generator) -> None:
     """A capture without legs scales by the trunk and stands on the avatar's straight legs."""
     body = own_body(1.7)
-    kept = [at for at, name in enumerate(body.names) if not name.endswith(("Leg", "Foot", "Toes"))]
+    remaining = [
+        at for at, name in enumerate(body.names) if not name.endswith(("Leg", "Foot", "Toes"))
+    ]
     upper = Rig(
-        tuple(body.names[at] for at in kept),
-        tuple(-1 if at == 0 else kept.index(body.parents[at]) for at in kept),
-        body.offsets_m[kept],
-        identity(len(kept)),
+        tuple(body.names[at] for at in remaining),
+        tuple(-1 if at == 0 else remaining.index(body.parents[at]) for at in remaining),
+        body.offsets_m[remaining],
+        identity(len(remaining)),
     )
     upper_map = {name: name for name in upper.names}
     retargeter = Retargeter(upper, upper_map, own_body(1.87), SAME)
     assert (retargeter.scaled_by, retargeter.leg_ratio) == ("trunk", None)
     assert retargeter.scale == pytest.approx(1.1)
     still = RigMotion(
-        upper, 100.0, np.zeros((3, 3)), identity(3, len(kept)), np.ones((3, len(kept)), dtype=bool)
+        upper,
+        100.0,
+        np.zeros((3, 3)),
+        identity(3, len(remaining)),
+        np.ones((3, len(remaining)), dtype=bool),
     )
     standing = retargeter.batch(still).root_positions_m[0, 1]
     assert standing == pytest.approx(1.87 * (0.545 - 0.014), abs=1e-9)

@@ -100,10 +100,10 @@ def test_a_t_pose_of_a_t_pose_is_itself() -> None:
     for _ in range(50):
         rig = random_body(rng)
         once = t_pose(rig, SAME)
-        again = t_pose(Rig(rig.names, rig.parents, rig.offsets_m, once.local_rotations), SAME)
+        twice = t_pose(Rig(rig.names, rig.parents, rig.offsets_m, once.local_rotations), SAME)
         # Hip sockets may have turned with the pelvis, and so has the body's facing.
-        if float(geodesic_angle(once.facing, again.facing)) < 1e-9:
-            turn = geodesic_angle(once.local_rotations, again.local_rotations)
+        if float(geodesic_angle(once.facing, twice.facing)) < 1e-9:
+            turn = geodesic_angle(once.local_rotations, twice.local_rotations)
             assert float(np.max(turn)) < 1e-7
 
 

@@ -201,8 +201,8 @@ def test_unmapped_joints_are_listed_and_keep_their_t_pose(rng: np.random.Generat
     assert "Chest" not in retargeter.carried
     for name in retargeter.unmapped_avatar_joints:
         joint = avatar.index(name)
-        kept = retargeter.avatar_t_pose.local_rotations[joint]
-        assert float(np.max(geodesic_angle(result.rotations[:, joint], kept))) < 1e-12
+        rest = retargeter.avatar_t_pose.local_rotations[joint]
+        assert float(np.max(geodesic_angle(result.rotations[:, joint], rest))) < 1e-12
     unseen = np.argwhere(~result.observed).tolist()
     assert unseen == [[4, avatar.index("LeftHand")]]
 

@@ -77,26 +77,26 @@ def test_feet_are_on_the_ground_at_the_start(ground: Ground, stature_m: float) -
 @pytest.mark.parametrize("share", [0.42, 0.45, 0.55, 0.58])
 def test_locking_the_feet_ends_the_slide_of_other_proportions(share: float) -> None:
     """Feet slide if the knee is elsewhere; locked feet rest, without pops."""
-    free, held = _onto(1.65, share), _onto(1.65, share, lock=True)
+    free, locked = _onto(1.65, share), _onto(1.65, share, lock=True)
     assert free.walks is not None
-    assert held.walks is not None
-    assert held.walks.locked is not None
+    assert locked.walks is not None
+    assert locked.walks.locked is not None
     plain = _onto(1.65).walks
     assert plain is not None
     assert plain.slide_m_s is not None
     assert free.walks.slide_m_s is not None
-    assert held.walks.slide_m_s is not None
+    assert locked.walks.slide_m_s is not None
     assert free.walks.slide_m_s > plain.slide_m_s + 0.01
-    assert held.walks.slide_before_m_s == free.walks.slide_m_s
-    assert held.walks.slide_m_s < 1e-6
-    assert held.walks.locked.out_of_reach == 0
-    assert _jerk_m_s(held.motion) < 2.0 * _jerk_m_s(free.motion)
+    assert locked.walks.slide_before_m_s == free.walks.slide_m_s
+    assert locked.walks.slide_m_s < 1e-6
+    assert locked.walks.locked.out_of_reach == 0
+    assert _jerk_m_s(locked.motion) < 2.0 * _jerk_m_s(free.motion)
 
 
 def test_locking_the_feet_keeps_bone_lengths_and_foot_rotations() -> None:
     """Locking the feet changes neither bone lengths nor the feet's world rotations."""
-    free, held = _onto(1.65, 0.45).motion, _onto(1.65, 0.45, lock=True).motion
-    before, after = free.world(), held.world()
+    free, locked = _onto(1.65, 0.45).motion, _onto(1.65, 0.45, lock=True).motion
+    before, after = free.world(), locked.world()
     for joint, parent in enumerate(free.rig.parents):
         if parent >= 0:
             length = np.linalg.norm(after[0][:, joint] - after[0][:, parent], axis=1)
@@ -116,18 +116,18 @@ def test_locking_the_feet_keeps_bone_lengths_and_foot_rotations() -> None:
 )
 def test_locked_feet_stand_on_uneven_ground(ground: Ground) -> None:
     """The ball of a locked foot is on the ground wherever the foot is down, also uphill."""
-    held = _onto(1.65, ground=ground, lock=True)
-    assert held.walks is not None
+    locked = _onto(1.65, ground=ground, lock=True)
+    assert locked.walks is not None
     rises = []
-    for foot, path in enumerate(held.walks.avatar.feet):
-        for first, last in held.walks.avatar.contacts.intervals(foot):
+    for foot, path in enumerate(locked.walks.avatar.feet):
+        for first, last in locked.walks.avatar.contacts.intervals(foot):
             middle = (first + last) // 2
             assert path.height_m[middle] == pytest.approx(0.0, abs=2e-3)
-        leg = mapped(held.motion.rig).both[foot]
-        ball = leg.ball_m(*held.motion.world())
+        leg = mapped(locked.motion.rig).both[foot]
+        ball = leg.ball_m(*locked.motion.world())
         rises.append(ball[-1, 1] - ball[0, 1])
     assert min(rises) > 0.1
-    assert _jerk_m_s(held.motion) < 3.0 * _jerk_m_s(_onto(1.65).motion)
+    assert _jerk_m_s(locked.motion) < 3.0 * _jerk_m_s(_onto(1.65).motion)
 
 
 def test_no_body_jumps_up_a_kerb() -> None:

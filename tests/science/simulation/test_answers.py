@@ -47,8 +47,8 @@ def test_answers_are_on_the_scale_and_reproducible() -> None:
     """Every answer is a whole number on its scale, determined by the seed."""
     items = [SimulatedItem(f"q{i}", -3, 3) for i in range(30)]
     first = simulated_answers(items, {}, 350.0, "foot", np.random.default_rng(3))
-    again = simulated_answers(items, {}, 350.0, "foot", np.random.default_rng(3))
-    assert first == again
+    repeated = simulated_answers(items, {}, 350.0, "foot", np.random.default_rng(3))
+    assert first == repeated
     assert list(first) == [item.key for item in items]
     assert all(isinstance(answer, int) and -3 <= answer <= 3 for answer in first.values())
 

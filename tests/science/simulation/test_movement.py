@@ -41,11 +41,11 @@ from tests.science.simulation.people import (
 def test_the_same_seed_gives_the_same_movement() -> None:
     """The same seed, times and goals give the same movement; another seed gives another."""
     goal = reach(BOXES[2])
-    first, again, other = (
+    first, same, other = (
         np.stack([pose.rotations for pose in follow(person_of(seed, None), goal, 0.0, 2.0)])
         for seed in (4, 4, 5)
     )
-    assert first.tobytes() == again.tobytes()
+    assert first.tobytes() == same.tobytes()
     assert float(np.max(rot.geodesic_angle(first, other))) > 0.05
 
 

@@ -117,12 +117,12 @@ def test_a_missing_order_is_named() -> None:
     """Without the participants of one order the design is unbalanced and names that order."""
     experiment = Experiment()
     values = experiment.values(dict.fromkeys(LEVELS, 0.0), 0.1, 0.5)
-    kept = [at for at, row in enumerate(experiment.rows) if row[1] != LEVELS]
+    remaining = [at for at, row in enumerate(experiment.rows) if row[1] != LEVELS]
     found = carry_over(
-        values[kept],
-        [experiment.people[at] for at in kept],
-        [experiment.conditions[at] for at in kept],
-        [experiment.periods[at] for at in kept],
+        values[remaining],
+        [experiment.people[at] for at in remaining],
+        [experiment.conditions[at] for at in remaining],
+        [experiment.periods[at] for at in remaining],
     )
     assert found.orders.missing == (LEVELS,)
     assert not found.orders.balanced
@@ -133,12 +133,12 @@ def test_an_unknown_condition_before_is_left_out_and_counted() -> None:
     """A period after a missing one has no known previous condition and is left out."""
     experiment = Experiment()
     values = experiment.values(dict.fromkeys(LEVELS, 0.0), 0.1, 0.5)
-    kept = [at for at, row in enumerate(experiment.rows) if (row[0], row[2]) != (4, 1)]
+    remaining = [at for at, row in enumerate(experiment.rows) if (row[0], row[2]) != (4, 1)]
     found = carry_over(
-        values[kept],
-        [experiment.people[at] for at in kept],
-        [experiment.conditions[at] for at in kept],
-        [experiment.periods[at] for at in kept],
+        values[remaining],
+        [experiment.people[at] for at in remaining],
+        [experiment.conditions[at] for at in remaining],
+        [experiment.periods[at] for at in remaining],
     )
     assert found.left_out == 2
     assert found.orders.incomplete == 1

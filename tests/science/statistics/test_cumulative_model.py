@@ -180,7 +180,7 @@ def test_separated_answers_are_reported() -> None:
 
 
 @pytest.mark.parametrize(
-    ("answers", "people", "scale", "told"),
+    ("answers", "people", "scale", "expected_message"),
     [
         ([1, 1, 1, 1, 1, 1], 3, None, "no variation to model"),
         ([1, 2, 3, 1, 2, 8], 3, range(1, 8), "not on the scale"),
@@ -189,12 +189,12 @@ def test_separated_answers_are_reported() -> None:
     ],
 )
 def test_answers_that_cannot_be_fitted_are_rejected(
-    answers: list[int], people: int, scale: range | None, told: str
+    answers: list[int], people: int, scale: range | None, expected_message: str
 ) -> None:
     """Constant answers, answers off the scale and too few people are rejected."""
     design = build_design([factor("limb", ["hand", "foot"] * 3)])
     names = [at % people for at in range(len(answers))]
-    with pytest.raises(ModelError, match=told):
+    with pytest.raises(ModelError, match=expected_message):
         fit_cumulative_model(answers, names, design, scale=scale)
 
 

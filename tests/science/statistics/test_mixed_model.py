@@ -138,15 +138,15 @@ def test_missing_cells_are_allowed() -> None:
     """A participant without two cells stays in, and marginal means weigh cells equally."""
     values, people, _ = study(13)
     cells = [(one, two) for _ in range(12) for one in LATENCIES for two in LIMBS]
-    kept = [at for at in range(len(values)) if at not in (0, 7)]
+    remaining = [at for at in range(len(values)) if at not in (0, 7)]
     design = build_design(
         [
-            factor("latency", [cells[at][0] for at in kept], LATENCIES),
-            factor("limb", [cells[at][1] for at in kept], LIMBS),
+            factor("latency", [cells[at][0] for at in remaining], LATENCIES),
+            factor("limb", [cells[at][1] for at in remaining], LIMBS),
         ],
         interactions=[("latency", "limb")],
     )
-    model = fit_mixed_model(values[kept], [people[at] for at in kept], design)
+    model = fit_mixed_model(values[remaining], [people[at] for at in remaining], design)
     single = marginal_means(model, "latency", by="limb")
     joint = marginal_means(model, "latency")
     assert len(single) == 6
@@ -176,7 +176,7 @@ def test_linearly_dependent_terms_are_rejected() -> None:
 
 
 @pytest.mark.parametrize(
-    ("values", "people", "told"),
+    ("values", "people", "expected_message"),
     [
         ([1.0, 2.0, float("nan"), 3.0, 2.0, 1.0], [1, 1, 2, 2, 3, 3], "finite"),
         ([1.0, 2.0, 3.0, 3.0, 2.0, 1.0], [1, 2, 3, 4, 5, 6], "two or more"),
@@ -185,11 +185,11 @@ def test_linearly_dependent_terms_are_rejected() -> None:
     ],
 )
 def test_data_that_cannot_be_fitted_are_rejected(
-    values: list[float], people: list[int], told: str
+    values: list[float], people: list[int], expected_message: str
 ) -> None:
     """Missing values, too few people and single observations are rejected."""
     design = build_design([factor("limb", ["a", "b", "a", "b", "a", "b"])])
-    with pytest.raises(ModelError, match=told):
+    with pytest.raises(ModelError, match=expected_message):
         fit_mixed_model(values, people, design)
 
 

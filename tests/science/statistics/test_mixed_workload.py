@@ -42,12 +42,12 @@ class Workload(NamedTuple):
 
     def table(self) -> np.ndarray:
         """Return the scores as (people, methods)."""
-        known = {
+        scores = {
             (who, how): score
             for who, how, score in zip(self.people, self.methods, self.scores, strict=True)
         }
         return np.array(
-            [[known[who, how] for how in METHODS] for who in dict.fromkeys(self.people)]
+            [[scores[who, how] for how in METHODS] for who in dict.fromkeys(self.people)]
         )
 
 

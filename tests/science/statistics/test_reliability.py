@@ -30,8 +30,8 @@ def _with_covariance(loadings: list[float], errors: list[float], n: int = 60) ->
     drawn = rng.normal(size=(n, k))
     drawn -= drawn.mean(axis=0)
     white = drawn @ np.linalg.inv(np.linalg.cholesky(np.cov(drawn, rowvar=False))).T
-    wanted = np.outer(loadings, loadings) + np.diag(errors)
-    answers: FloatArray = white @ np.linalg.cholesky(wanted).T
+    covariance = np.outer(loadings, loadings) + np.diag(errors)
+    answers: FloatArray = white @ np.linalg.cholesky(covariance).T
     return answers
 
 
@@ -84,10 +84,10 @@ def test_scales_that_have_no_reliability_are_rejected() -> None:
 def test_an_interval_can_be_computed_again() -> None:
     """The same seed gives the same bootstrap interval; another seed nearly the same."""
     data = np.random.default_rng(6).gamma(2.0, size=20)
-    one, again, other = (
+    one, same, other = (
         bootstrap_interval(data, mean_of, rng=np.random.default_rng(seed)) for seed in (1, 1, 2)
     )
-    assert one == again
+    assert one == same
     assert one.low != other.low
     assert one.low == pytest.approx(other.low, abs=0.05)
     assert one.low < one.estimate < one.high

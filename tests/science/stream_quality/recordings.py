@@ -44,13 +44,13 @@ class Recording:
 
     def without(self, frames: NDArray[np.int64]) -> "Recording":
         """Return the recording without these frames."""
-        kept = np.ones(len(self), np.bool_)
-        kept[frames] = False
+        mask = np.ones(len(self), np.bool_)
+        mask[frames] = False
         return replace(
             self,
-            times_s=self.times_s[kept],
-            rotations=self.rotations[kept],
-            positions_m=self.positions_m[kept],
+            times_s=self.times_s[mask],
+            rotations=self.rotations[mask],
+            positions_m=self.positions_m[mask],
         )
 
 

@@ -42,16 +42,20 @@ def started() -> TaskRun:
 def test_a_margin_only_joins_contacts(touches: list[bool], seed: int) -> None:
     """A margin never gives more intervals, and each raw contact lies within one."""
     near = np.random.default_rng(seed).random(len(touches)) < 0.5
-    raw, held = started(), started()
+    raw, with_margin = started(), started()
     for index, touch in enumerate(touches):
         now = table(("hand/1/left", "RightHand")) if touch else table()
         raw.frame(index + 1.0, now)
-        held.frame(index + 1.0, now, now | (table(("hand/1/left", "RightHand")) & near[index]))
-    for run in (raw, held):
+        with_margin.frame(
+            index + 1.0, now, now | (table(("hand/1/left", "RightHand")) & near[index])
+        )
+    for run in (raw, with_margin):
         run.command(CommandKind.FREEZE, 100.0)
-    assert len(held.intervals) <= len(raw.intervals)
+    assert len(with_margin.intervals) <= len(raw.intervals)
     for short in raw.intervals:
-        assert any(i.begin_s <= short.begin_s and short.end_s <= i.end_s for i in held.intervals)
+        assert any(
+            i.begin_s <= short.begin_s and short.end_s <= i.end_s for i in with_margin.intervals
+        )
 
 
 def test_near_alone_begins_nothing() -> None:

@@ -96,8 +96,8 @@ def test_views_are_those_of_the_vector(vector: Json) -> None:
 def test_completions_can_be_derived_from_the_record(vector: Json) -> None:
     """The completions of every vector follow from its intervals and commands alone."""
     run, _ = play(vector)
-    told = [step(entry) for entry in vector["inputs"] if not entry.get("refused")]
-    commands = [given for given in told if isinstance(given, Command)]
+    inputs = [step(entry) for entry in vector["inputs"] if not entry.get("refused")]
+    commands = [given for given in inputs if isinstance(given, Command)]
     found = rederive(run.state.rules, run.intervals, commands)
     assert run.summary().completions == found
 

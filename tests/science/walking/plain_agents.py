@@ -41,8 +41,8 @@ def _off(places: FloatArray, way: Way, legs: IntArray) -> tuple[FloatArray, Floa
     units = way.units[legs]
     along = apart[:, 0] * units[:, 0] + apart[:, 1] * units[:, 1]
     along = np.minimum(np.maximum(along, 0.0), way.lengths[legs])
-    beside = apart - along[:, None] * units
-    return along, beside[:, 0] * beside[:, 0] + beside[:, 1] * beside[:, 1]
+    off_path = apart - along[:, None] * units
+    return along, off_path[:, 0] * off_path[:, 0] + off_path[:, 1] * off_path[:, 1]
 
 
 def _progress(
@@ -71,8 +71,8 @@ def _aim(way: Way, legs: IntArray, ahead: FloatArray) -> FloatArray:
     return aim
 
 
-def _turned(heading: FloatArray, wanted: FloatArray, most: FloatArray) -> FloatArray:
-    (hx, hy), (dx, dy) = heading.T, wanted.T
+def _turned(heading: FloatArray, desired: FloatArray, most: FloatArray) -> FloatArray:
+    (hx, hy), (dx, dy) = heading.T, desired.T
     distance = np.sqrt(dx * dx + dy * dy)
     there = distance < 1e-9
     dx, dy = dx / np.where(there, 1.0, distance), dy / np.where(there, 1.0, distance)
@@ -109,13 +109,13 @@ def move_all(
         legs, along = _progress(at, way, legs, pace.lookahead)
         aim = _aim(way, legs, way.before[legs] + along + pace.lookahead)
         heading = _turned(heading, aim - at, slope * speed)
-        wanted = fastest
+        desired = fastest
         if pace.brakes:
             room = np.maximum(_left(at, way, legs) - 0.5 * speed * pace.dt, 0.0)
             stops = np.sqrt(0.25 * change * change + 2.0 * vectors[:, 1] * room) - 0.5 * change
-            wanted = np.minimum(fastest, stops)
+            desired = np.minimum(fastest, stops)
         old = speed
-        speed = speed + np.minimum(np.maximum(wanted - speed, -change), change)
+        speed = speed + np.minimum(np.maximum(desired - speed, -change), change)
         speed = np.maximum(pace.floor, speed)
         stride = 0.5 * (old + speed) * pace.dt
         at = np.where(moving[:, None], at + stride[:, None] * heading, at)

@@ -26,10 +26,10 @@ def made_up_database(grid: ParameterGrid = GRID, walks: int = WALKS, seed: int =
     """Return walks that take L / v + v / a; a person's v grows with their stature."""
     rng = np.random.default_rng(seed)
     rows = dependency_rows(rng, walks)
-    wanted = np.clip(rows[:, 1] - 0.6 + 0.05 * rng.standard_normal(walks), 0.3, 1.9)
+    preferred = np.clip(rows[:, 1] - 0.6 + 0.05 * rng.standard_normal(walks), 0.3, 1.9)
     speeds, changes = grid.nodes[:, 0], grid.nodes[:, 1]
     arrivals = rows[:, :1] / speeds + speeds / changes
-    durations = rows[:, 0] / wanted + wanted / 1.5
+    durations = rows[:, 0] / preferred + preferred / 1.5
     deviations = np.abs(arrivals - durations[:, None]) + 0.1 * np.abs(changes - 1.5)
     return WalkDatabase(
         grid,

@@ -20,9 +20,9 @@ def without_dependency(database: WalkDatabase, name: str) -> WalkDatabase:
     """
     if name not in database.names or len(database.names) == 1:
         raise WalkingError(f"{name} cannot be left out of {', '.join(database.names)}.")
-    kept = [at for at, own in enumerate(database.names) if own != name]
-    names = tuple(database.names[at] for at in kept)
-    return replace(database, names=names, vectors=database.vectors[:, kept])
+    remaining = [at for at, own in enumerate(database.names) if own != name]
+    names = tuple(database.names[at] for at in remaining)
+    return replace(database, names=names, vectors=database.vectors[:, remaining])
 
 
 def with_fixed_parameter(database: WalkDatabase, parameter: str, value: float) -> WalkDatabase:
@@ -39,10 +39,12 @@ def with_fixed_parameter(database: WalkDatabase, parameter: str, value: float) -
     at = int(np.argmin(np.abs(np.array(grid.values[axis]) - value)))
     values = list(grid.values)
     values[axis] = (values[axis][at],)
-    held = ParameterGrid(grid.parameters, tuple(values))
+    fixed_grid = ParameterGrid(grid.parameters, tuple(values))
     count = len(database)
     cut = [
-        np.take(table.reshape(count, *grid.shape), [at], axis=axis + 1).reshape(count, held.size)
+        np.take(table.reshape(count, *grid.shape), [at], axis=axis + 1).reshape(
+            count, fixed_grid.size
+        )
         for table in (database.deviations, database.arrivals_s)
     ]
-    return replace(database, grid=held, deviations=cut[0], arrivals_s=cut[1])
+    return replace(database, grid=fixed_grid, deviations=cut[0], arrivals_s=cut[1])

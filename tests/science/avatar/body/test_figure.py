@@ -36,9 +36,9 @@ def test_joints_lie_where_the_model_has_them(lacking: tuple[str, ...]) -> None:
     _, data = loaded(model(own=own).mjcf)
     expected, hips = places(), places()["Hips"]
     for part, place in body.places_m().items():
-        told = SCALE * (expected[part] - np.array((hips[0], 0.0, hips[2])))
-        assert place == pytest.approx(told.tolist(), abs=2e-6)
-        assert data.body(part).xpos == pytest.approx(told, abs=2e-6)
+        scaled_m = SCALE * (expected[part] - np.array((hips[0], 0.0, hips[2])))
+        assert place == pytest.approx(scaled_m.tolist(), abs=2e-6)
+        assert data.body(part).xpos == pytest.approx(scaled_m, abs=2e-6)
 
 
 def test_lengths_are_the_models_own() -> None:

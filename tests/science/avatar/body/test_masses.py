@@ -150,8 +150,8 @@ def test_an_impossible_mass_is_rejected(total_kg: float) -> None:
 
 def test_estimates_are_listed() -> None:
     """Each split that no table gives is listed as an estimate: trunk, neck, fingers and toes."""
-    told = " ".join(ESTIMATES)
-    assert all(word in told for word in ("Middle trunk", "neck", "fingers", "toes", "shoulders"))
+    listed = " ".join(ESTIMATES)
+    assert all(word in listed for word in ("Middle trunk", "neck", "fingers", "toes", "shoulders"))
 
 
 def test_remainder_undoes_combined() -> None:

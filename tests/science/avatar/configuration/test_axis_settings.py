@@ -16,7 +16,7 @@ from tests.science.avatar.configurations import FINE_SPRING, angles_rad, axis_se
 
 
 @pytest.mark.parametrize(
-    ("change", "path", "said"),
+    ("change", "path", "expected_message"),
     [
         ({"kp": math.nan}, "kp_nm_per_rad", "not finite"),
         ({"kp": -1.0}, "kp_nm_per_rad", "-1 is out of range"),
@@ -29,14 +29,14 @@ from tests.science.avatar.configurations import FINE_SPRING, angles_rad, axis_se
     ],
 )
 def test_an_invalid_value_is_reported_with_its_key(
-    change: dict[str, float], path: str, said: str
+    change: dict[str, float], path: str, expected_message: str
 ) -> None:
     """An invalid value is reported with its key and unit as in a file, and what is valid."""
     with pytest.raises(AvatarSettingsError) as caught:
         replace(FINE_SPRING, **change)
     (problem,) = caught.value.problems
     assert problem.path == path
-    assert said in problem.message
+    assert expected_message in problem.message
     assert problem.valid
     assert problem.remedy
 

@@ -42,7 +42,7 @@ def test_axes_come_in_the_order_of_the_body() -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "path", "said"),
+    ("change", "path", "expected_message"),
     [
         ({"axes": {}}, "axes", "No axis"),
         ({"axes": {**BODY.axes, "TailX": FINE_SPRING}}, "axes.TailX", "no axis 'TailX'"),
@@ -65,14 +65,14 @@ def test_axes_come_in_the_order_of_the_body() -> None:
     ],
 )
 def test_an_invalid_value_is_reported_with_its_place(
-    change: dict[str, object], path: str, said: str
+    change: dict[str, object], path: str, expected_message: str
 ) -> None:
     """One invalid value gives one problem with its path and what is valid."""
     with pytest.raises(AvatarSettingsError) as caught:
         replace(BODY, **change)  # type: ignore[arg-type]  # the fact
     (problem,) = caught.value.problems
     assert problem.path == path
-    assert said in problem.message
+    assert expected_message in problem.message
     assert problem.valid is not None
 
 
@@ -140,8 +140,10 @@ def test_overlapping_locks_are_removed_one_by_one() -> None:
     assert both.locked_groups == ("left_leg", "left_foot")
     foot = unlock(both, "left_leg")
     assert foot.locked_axes == set(axes_of("left_foot"))
-    again = unlock(unlock(lock(both, "left_leg", {"LeftUpperLegX": 0.2}), "left_leg"), "left_foot")
-    assert again == BODY
+    unlocked = unlock(
+        unlock(lock(both, "left_leg", {"LeftUpperLegX": 0.2}), "left_leg"), "left_foot"
+    )
+    assert unlocked == BODY
 
 
 def test_an_axis_without_a_range_counts_as_locked() -> None:

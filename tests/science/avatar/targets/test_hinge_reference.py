@@ -29,9 +29,9 @@ def _times_s(frames: int) -> FloatArray:
     return np.arange(frames) / RATE_HZ
 
 
-def _clipped(asked: ReferenceMotion) -> npt.NDArray[np.bool_]:
-    assert asked.clipping is not None
-    return asked.clipping.clipped
+def _clipped(reference_motion: ReferenceMotion) -> npt.NDArray[np.bool_]:
+    assert reference_motion.clipping is not None
+    return reference_motion.clipping.clipped
 
 
 def _shrugging() -> FloatArray:
@@ -51,10 +51,10 @@ def _shrugging() -> FloatArray:
 def test_an_avatar_that_follows_its_command_has_no_error() -> None:
     """An avatar exactly at its command has no error, though raw rotations differ by 20 deg."""
     poses = _shrugging()
-    told = TargetAngles(ANATOMIC).batch(poses)
-    actual = joint_rotations(told.unclamped_rad, poses[:, 0])
-    asked = HingeReference(ANATOMIC).recording(_times_s(len(poses)), poses)
-    summary = joint_error_summary(asked.rotations, actual, asked.clipping)
+    targets = TargetAngles(ANATOMIC).batch(poses)
+    actual = joint_rotations(targets.unclamped_rad, poses[:, 0])
+    reference_motion = HingeReference(ANATOMIC).recording(_times_s(len(poses)), poses)
+    summary = joint_error_summary(reference_motion.rotations, actual, reference_motion.clipping)
     np.testing.assert_allclose(np.nan_to_num(summary.max_rad), 0.0, atol=1e-12)
     raw = joint_error_summary(poses, actual)
     for joint in ("LeftShoulder", "LeftUpperArm", "LeftUpperLeg"):
@@ -65,8 +65,8 @@ def test_a_joint_without_a_hinge_has_no_figures() -> None:
     """A joint without a hinge has no error and no samples, and none count as left out."""
     poses = wild_movement(50)
     parts = [part for part in PART_NAMES if part != "Chest"]
-    asked = HingeReference(ANATOMIC, parts).recording(_times_s(50), poses)
-    summary = joint_error_summary(asked.rotations, poses, asked.clipping)
+    reference_motion = HingeReference(ANATOMIC, parts).recording(_times_s(50), poses)
+    summary = joint_error_summary(reference_motion.rotations, poses, reference_motion.clipping)
     none = {joint for joint, count in zip(ERROR_JOINTS, summary.count, strict=True) if not count}
     assert none == {"LeftShoulder", "RightShoulder", "Chest"}
     rows = [ERROR_JOINTS.index(joint) for joint in none]
@@ -81,8 +81,8 @@ def test_clipped_shares_exist_only_for_free_hinges() -> None:
     cast = lock(default_configuration(), "left_leg")
 
     def shares(reference: HingeReference, joint: str) -> list[bool]:
-        asked = reference.recording(_times_s(50), poses)
-        summary = joint_error_summary(asked.rotations, poses, asked.clipping)
+        reference_motion = reference.recording(_times_s(50), poses)
+        summary = joint_error_summary(reference_motion.rotations, poses, reference_motion.clipping)
         return [not math.isnan(one) for one in summary.clipped_share[ERROR_JOINTS.index(joint)]]
 
     for limits, joint, expected in (
@@ -102,8 +102,10 @@ def test_a_locked_limb_has_the_error_of_the_movement_it_misses() -> None:
     angles = np.zeros((20, len(AXIS_NAMES)))
     angles[:, AXIS_NAMES.index("LeftLowerLegX")] = math.radians(40.0)
     poses = joint_rotations(angles, identity(20))
-    asked = HingeReference(cast.in_force, cast.parts).recording(_times_s(20), poses)
-    summary = joint_error_summary(asked.rotations, identity(20, JOINT_COUNT), asked.clipping)
+    reference_motion = HingeReference(cast.in_force, cast.parts).recording(_times_s(20), poses)
+    summary = joint_error_summary(
+        reference_motion.rotations, identity(20, JOINT_COUNT), reference_motion.clipping
+    )
     knee = ERROR_JOINTS.index("LeftLowerLeg")
     assert math.degrees(summary.mean_rad[knee, 0]) == pytest.approx(40.0, abs=1e-6)
 
@@ -113,8 +115,8 @@ def test_an_invalid_rotation_makes_only_dependent_joints_unknown(broken: float) 
     """An invalid hand rotation makes hand and forearm unknown in that frame, and nothing else."""
     poses = wild_movement(30)
     poses[10, JOINT_INDEX["RightHand"]] = broken
-    asked = HingeReference(ANATOMIC).recording(_times_s(30), poses)
-    unknown = np.argwhere(np.isnan(asked.rotations).any(axis=-1))
+    reference_motion = HingeReference(ANATOMIC).recording(_times_s(30), poses)
+    unknown = np.argwhere(np.isnan(reference_motion.rotations).any(axis=-1))
     assert {(frame, JOINT_NAMES[joint]) for frame, joint in unknown.tolist()} == {
         (10, "RightHand"),
         (10, "RightLowerArm"),
@@ -153,8 +155,10 @@ def test_a_real_walk_has_a_small_error_against_its_command(shared_data: Path) ->
     followed = follow(built, movement, delay_s=0.125)
     times_s, frames = _times_s(movement.frame_count), np.arange(45, movement.frame_count)
 
-    def mean_deg(asked: ReferenceMotion) -> float:
-        run = Recorded(times_s, asked, frames, times_s[frames], followed.rotations[frames])
+    def mean_deg(reference_motion: ReferenceMotion) -> float:
+        run = Recorded(
+            times_s, reference_motion, frames, times_s[frames], followed.rotations[frames]
+        )
         summary = recorded_errors([run], 0.125).command
         return float(np.degrees(np.nanmean(summary.mean_rad[:, 0])))
 
@@ -165,9 +169,11 @@ def test_a_real_walk_has_a_small_error_against_its_command(shared_data: Path) ->
 
 def test_a_recording_without_frames_has_an_empty_reference() -> None:
     """A run of which every target frame was lost has an empty reference."""
-    asked = HingeReference(ANATOMIC).recording(np.zeros(0), np.zeros((0, JOINT_COUNT, 4)))
-    assert asked.rotations.shape == (0, JOINT_COUNT, 4)
-    assert _clipped(asked).shape == (0, len(ERROR_JOINTS), 3)
+    reference_motion = HingeReference(ANATOMIC).recording(
+        np.zeros(0), np.zeros((0, JOINT_COUNT, 4))
+    )
+    assert reference_motion.rotations.shape == (0, JOINT_COUNT, 4)
+    assert _clipped(reference_motion).shape == (0, len(ERROR_JOINTS), 3)
 
 
 def test_limits_may_be_settings() -> None:
@@ -175,6 +181,6 @@ def test_limits_may_be_settings() -> None:
     settings = default_configuration().in_force
     assert all(isinstance(one, AxisSettings) for one in settings.values())
     poses = wild_movement(5)
-    asked = HingeReference(settings).recording(_times_s(5), poses)
+    reference_motion = HingeReference(settings).recording(_times_s(5), poses)
     expected = HingeReference(ANATOMIC).recording(_times_s(5), poses)
-    np.testing.assert_allclose(asked.rotations, expected.rotations, atol=1e-9)
+    np.testing.assert_allclose(reference_motion.rotations, expected.rotations, atol=1e-9)

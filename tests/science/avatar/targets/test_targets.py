@@ -109,8 +109,8 @@ def test_whole_turns_do_not_add_up() -> None:
     angles = np.zeros(len(AXIS_NAMES))
     for turned in np.linspace(0.0, 6.0 * math.pi, 600):
         angles[_column("HeadY")] = turned
-        wanted = follower.follow(joint_rotations(angles, identity())).unclamped_rad
-        assert abs(wanted[_column("HeadY")]) <= math.radians(225.0) + 1e-9
+        targets_rad = follower.follow(joint_rotations(angles, identity())).unclamped_rad
+        assert abs(targets_rad[_column("HeadY")]) <= math.radians(225.0) + 1e-9
 
 
 def test_a_knee_and_an_elbow_that_bend_askew_keep_all_below_them_in_place() -> None:
@@ -134,16 +134,18 @@ def test_a_knee_and_an_elbow_that_bend_askew_keep_all_below_them_in_place() -> N
             bones[f"{side}UpperLeg"] = np.array([0.0, -1.0, 0.0])
         follower.forget()
         found = follower.follow(pose)
-        made, asked = (
+        made, requested = (
             _orientations(joint_rotations(found.unclamped_rad, pose[0])),
             _orientations(pose),
         )
         below = [JOINT_INDEX[f"{side}{part}"] for side in ("Left", "Right")
                  for part in ("LowerArm", "Hand", "Foot")]  # fmt: skip
-        assert geodesic_angle(made[below], asked[below]).max() < math.radians(6.0)
+        assert geodesic_angle(made[below], requested[below]).max() < math.radians(6.0)
         for name, bone in bones.items():
             row = JOINT_INDEX[name]
-            np.testing.assert_allclose(rotate(made[row], bone), rotate(asked[row], bone), atol=1e-9)
+            np.testing.assert_allclose(
+                rotate(made[row], bone), rotate(requested[row], bone), atol=1e-9
+            )
         elbows = [_column("LeftLowerArmZ"), _column("RightLowerArmZ")]
         assert np.abs(found.unclamped_rad[elbows]).max() < math.radians(6.0)
 
@@ -166,16 +168,16 @@ def test_two_axes_come_as_near_as_they_can() -> None:
     columns = [_column(axis.name) for axis in AXES_OF[part]]
     follower = TargetAngles(ANYWHERE)
     for _ in range(50):
-        asked = from_rotation_vector(rng.normal(size=3))
+        requested = from_rotation_vector(rng.normal(size=3))
         follower.forget()
-        found = follower.follow(identity(len(JOINT_NAMES)), {part: asked})
+        found = follower.follow(identity(len(JOINT_NAMES)), {part: requested})
         missed = found.residual_rad[PART_NAMES.index(part)]
         tried = np.tile(found.unclamped_rad, (200, 1))
-        assert geodesic_angle(rotations_of(tried[0])[part], asked) == pytest.approx(
+        assert geodesic_angle(rotations_of(tried[0])[part], requested) == pytest.approx(
             missed, abs=1e-7
         )
         tried[:, columns] += rng.normal(scale=0.3, size=(200, 2))
-        assert np.all(geodesic_angle(rotations_of(tried)[part], asked) >= missed - 1e-9)
+        assert np.all(geodesic_angle(rotations_of(tried)[part], requested) >= missed - 1e-9)
 
 
 def test_the_turn_of_a_missing_part_goes_to_its_children() -> None:
@@ -184,9 +186,12 @@ def test_the_turn_of_a_missing_part_goes_to_its_children() -> None:
     parts = [part for part in PART_NAMES if part not in {"Chest", "UpperChest", "Neck"}]
     pose = from_rotation_vector(rng.normal(scale=0.3, size=(len(JOINT_NAMES), 3)))
     found = TargetAngles(ANYWHERE, parts).follow(pose)
-    made, asked = _orientations(joint_rotations(found.unclamped_rad, pose[0])), _orientations(pose)
+    made, requested = (
+        _orientations(joint_rotations(found.unclamped_rad, pose[0])),
+        _orientations(pose),
+    )
     rows = [JOINT_INDEX[name] for name in ("Spine", "Head", "LeftHand", "RightLowerArm")]
-    assert geodesic_angle(made[rows], asked[rows]).max() < 1e-10
+    assert geodesic_angle(made[rows], requested[rows]).max() < 1e-10
     assert found.unclamped_rad[_column("ChestX")] == 0.0
 
 

@@ -26,7 +26,7 @@ _ALL_BUT_LEFT_ARM = (*_ALL_BUT_ARMS, "right_arm")
 _LEFT_ARM = [name for name in axes_of("left_arm") if name != "LeftLowerArmZ"]
 
 
-def _held(groups: tuple[str, ...]) -> Configuration:
+def _with_locked_groups(groups: tuple[str, ...]) -> Configuration:
     return replace(default_configuration(), locked_groups=groups)
 
 
@@ -46,7 +46,7 @@ def _overshoots(report: TuningReport) -> list[float]:
 @pytest.fixture(scope="module")
 def left_arm() -> TuningReport:
     """Return the tuning of a body of which only the left arm is free."""
-    return _tuned(_held(_ALL_BUT_LEFT_ARM))
+    return _tuned(_with_locked_groups(_ALL_BUT_LEFT_ARM))
 
 
 def test_an_arm_is_tuned(left_arm: TuningReport) -> None:
@@ -64,10 +64,10 @@ def test_an_arm_is_tuned(left_arm: TuningReport) -> None:
 
 def test_existing_gains_are_assessed_with_the_steps_of_a_tuning(left_arm: TuningReport) -> None:
     """Assessing gains gives the tuning's own steps to the bit and changes nothing."""
-    again = assess(left_arm.configuration, 1.75, wall_s=time.monotonic)
-    assert again.configuration is left_arm.configuration
-    assert [one.step for one in again.axes] == [one.step for one in left_arm.axes]
-    assert {one.status for one in again.axes} == {"accepted", "locked"}
+    repeated = assess(left_arm.configuration, 1.75, wall_s=time.monotonic)
+    assert repeated.configuration is left_arm.configuration
+    assert [one.step for one in repeated.axes] == [one.step for one in left_arm.axes]
+    assert {one.status for one in repeated.axes} == {"accepted", "locked"}
     axes = dict(left_arm.configuration.axes)
     axes["LeftLowerArmY"] = replace(axes["LeftLowerArmY"], kd=0.0)
     loose = assess(replace(left_arm.configuration, axes=axes), 1.75, wall_s=time.monotonic)
@@ -109,7 +109,7 @@ def test_locked_axes_are_skipped_and_keep_their_gains(left_arm: TuningReport) ->
 
 def test_limits_torques_and_locks_stay_as_they_were(left_arm: TuningReport) -> None:
     """A tuning changes kp and kd of the free axes and nothing else."""
-    before, after = _held(_ALL_BUT_LEFT_ARM), left_arm.configuration
+    before, after = _with_locked_groups(_ALL_BUT_LEFT_ARM), left_arm.configuration
     assert after.locked_groups == before.locked_groups
     for name, own in after.axes.items():
         was = before.axes[name]
@@ -119,14 +119,16 @@ def test_limits_torques_and_locks_stay_as_they_were(left_arm: TuningReport) -> N
 
 def test_the_same_input_gives_the_same_gains(left_arm: TuningReport) -> None:
     """The same input gives exactly the same gains, with one thread or two."""
-    again = _tuned(_held(_ALL_BUT_LEFT_ARM), workers=1)
-    assert again.axes == left_arm.axes
-    assert again.configuration == left_arm.configuration
+    repeated = _tuned(_with_locked_groups(_ALL_BUT_LEFT_ARM), workers=1)
+    assert repeated.axes == left_arm.axes
+    assert repeated.configuration == left_arm.configuration
 
 
 def test_ziegler_nichols_overshoots_and_is_flagged(left_arm: TuningReport) -> None:
     """Ziegler and Nichols's rule overshoots more than ours and is flagged after every attempt."""
-    report = _tuned(_held(_ALL_BUT_LEFT_ARM), heuristic="ziegler-nichols-pd", attempts=2)
+    report = _tuned(
+        _with_locked_groups(_ALL_BUT_LEFT_ARM), heuristic="ziegler-nichols-pd", attempts=2
+    )
     assert median(_overshoots(report)) > 5.0 > max(_overshoots(left_arm))
     one = _by_name(report)["LeftLowerArmY"]
     assert one.flagged
@@ -136,7 +138,7 @@ def test_ziegler_nichols_overshoots_and_is_flagged(left_arm: TuningReport) -> No
 
 def test_an_axis_that_does_not_oscillate_in_time_keeps_its_gains() -> None:
     """An axis whose experiment times out is flagged with the reason and keeps its gains."""
-    report = _tuned(_held(_ALL_BUT_LEFT_ARM), longest_s=0.05, attempts=2)
+    report = _tuned(_with_locked_groups(_ALL_BUT_LEFT_ARM), longest_s=0.05, attempts=2)
     before = default_configuration().axes
     for name in _LEFT_ARM:
         one = _by_name(report)[name]
@@ -147,10 +149,10 @@ def test_an_axis_that_does_not_oscillate_in_time_keeps_its_gains() -> None:
 
 def test_a_motor_without_torque_is_flagged() -> None:
     """An axis whose motor has no torque is flagged although its relay experiment succeeds."""
-    held = _held((*_ALL_BUT_LEFT_ARM, "LeftLowerArm", "LeftHand"))
-    axes = dict(held.axes)
+    locked = _with_locked_groups((*_ALL_BUT_LEFT_ARM, "LeftLowerArm", "LeftHand"))
+    axes = dict(locked.axes)
     axes["LeftUpperArmY"] = replace(axes["LeftUpperArmY"], max_torque_nm=0.0)
-    report = _tuned(replace(held, axes=axes, gravity=False), attempts=1)
+    report = _tuned(replace(locked, axes=axes, gravity=False), attempts=1)
     assert _by_name(report)["LeftUpperArmY"].flagged
     assert "torque" in _by_name(report)["LeftUpperArmY"].status
 
@@ -159,7 +161,7 @@ def test_mirror_copies_the_left_side_to_the_right(left_arm: TuningReport) -> Non
     """With mirroring the right arm gets the left one's gains, is marked so, and is assessed."""
     seen: list[TuningProgress] = []
     report = tune(
-        _held(_ALL_BUT_ARMS),
+        _with_locked_groups(_ALL_BUT_ARMS),
         1.75,
         TuningOptions(mirror=True),
         wall_s=time.monotonic,
@@ -183,7 +185,9 @@ def test_mirror_copies_the_left_side_to_the_right(left_arm: TuningReport) -> Non
 
 def test_with_mirror_an_axis_without_a_left_counterpart_is_tuned_itself() -> None:
     """With mirroring the right arm is tuned itself if the left one is locked."""
-    report = _tuned(_held((*_ALL_BUT_ARMS, "left_arm", "RightUpperArm", "RightHand")), mirror=True)
+    report = _tuned(
+        _with_locked_groups((*_ALL_BUT_ARMS, "left_arm", "RightUpperArm", "RightHand")), mirror=True
+    )
     one = _by_name(report)["RightLowerArmY"]
     assert one.status == "tuned"
     assert one.mirrored_from is None
@@ -194,7 +198,7 @@ def test_a_tuning_can_be_cancelled() -> None:
     seen: list[TuningProgress] = []
     with pytest.raises(TuningCancelled):
         tune(
-            _held(_ALL_BUT_LEFT_ARM),
+            _with_locked_groups(_ALL_BUT_LEFT_ARM),
             1.75,
             wall_s=time.monotonic,
             progress=seen.append,
@@ -205,9 +209,9 @@ def test_a_tuning_can_be_cancelled() -> None:
 
 def test_a_fully_locked_body_has_nothing_to_tune() -> None:
     """In a fully locked body every axis is reported as locked."""
-    report = _tuned(_held(("all",)))
+    report = _tuned(_with_locked_groups(("all",)))
     assert {one.status for one in report.axes} == {"locked"}
-    assert report.configuration == _held(("all",))
+    assert report.configuration == _with_locked_groups(("all",))
 
 
 @pytest.mark.parametrize(

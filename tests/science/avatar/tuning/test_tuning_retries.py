@@ -18,9 +18,9 @@ _OTHERS = (
 
 def _shoulder(max_torque_nm: float) -> Configuration:
     """Return a body of which only the left upper arm moves, with a motor of this torque."""
-    held = replace(default_configuration(), locked_groups=_OTHERS)
-    axes = {**held.axes, _AXIS: replace(held.axes[_AXIS], max_torque_nm=max_torque_nm)}
-    return replace(held, axes=axes)
+    locked = replace(default_configuration(), locked_groups=_OTHERS)
+    axes = {**locked.axes, _AXIS: replace(locked.axes[_AXIS], max_torque_nm=max_torque_nm)}
+    return replace(locked, axes=axes)
 
 
 def _tuned(max_torque_nm: float, **options: object) -> AxisTuning:

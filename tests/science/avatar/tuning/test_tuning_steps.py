@@ -109,5 +109,5 @@ def test_an_objection_names_its_reason(
     figures: StepFigures, clearance: float, words: str | None
 ) -> None:
     """Each of the four reasons to reject gains is named, and acceptable gains have none."""
-    said = objection(figures, clearance, accepted_overshoot_percent=5.0)
-    assert said is None if words is None else words in (said or "")
+    reason = objection(figures, clearance, accepted_overshoot_percent=5.0)
+    assert reason is None if words is None else words in (reason or "")

@@ -42,8 +42,8 @@ def test_a_draw_from_the_truth_errs_by_sqrt_2_of_its_median() -> None:
     truth, draws = rng.standard_normal(40_000), rng.standard_normal(40_000)
     ratio = np.median(np.abs(draws - truth)) / np.median(np.abs(truth))
     assert ratio == pytest.approx(np.sqrt(2.0), rel=0.03)
-    told = stats.norm.ppf((np.arange(400) + 0.5) / 400)
-    proper = np.mean([crps_s(told, value) for value in truth[:2000]])
+    forecast_s = stats.norm.ppf((np.arange(400) + 0.5) / 400)
+    proper = np.mean([crps_s(forecast_s, value) for value in truth[:2000]])
     assert proper < 0.75 * np.abs(truth[:2000]).mean()
 
 
@@ -106,12 +106,12 @@ def test_a_population_is_predicted_from_others_of_it() -> None:
     maker = MapMaker(grid=regular_grid(PAPER_PARAMETERS, 7))
     scenes = [straight_scene(length) for length in (1.0, 2.0, 3.0)]
     population = POPULATIONS[3]
-    known = list(synthetic_walks(population, scenes, Sample(8, 1, seed=1)))
+    training = list(synthetic_walks(population, scenes, Sample(8, 1, seed=1)))
     others = list(synthetic_walks(population, scenes, Sample(5, 2, seed=2, prefix="other ")))
-    assert {entry.walk.kind for entry in known} == {"synthetic"}
-    assert not {e.walk.subject for e in known} & {e.walk.subject for e in others}
-    maps = [one for _, one in maps_of(known, maker, threads=1)]
-    database = database_of(known, maps, (LENGTH, TURNING, STATURE))
+    assert {entry.walk.kind for entry in training} == {"synthetic"}
+    assert not {e.walk.subject for e in training} & {e.walk.subject for e in others}
+    maps = [one for _, one in maps_of(training, maker, threads=1)]
+    database = database_of(training, maps, (LENGTH, TURNING, STATURE))
     fit = fitted(database, FitOptions(entries=600, k=30, reading=TIME_AWARE))
     rng = np.random.default_rng(5)
     halves = [

@@ -21,19 +21,21 @@ def test_dependencies_count_by_their_own_spread() -> None:
     assert z[:, :2].mean(axis=0) == pytest.approx([0.0, 0.0], abs=1e-12)
     assert z[:, :2].std(axis=0) == pytest.approx([1.0, 1.0])
     assert (z[:, 2] == 0.0).all()
-    asked = {"length_m": 2.0, "load_kg": 70.0, "stature_m": 1.6, "age": 30.0}
-    assert scaling.z(scaling.vector(asked)) == pytest.approx([0.0, 0.0, 0.0])
+    query = {"length_m": 2.0, "load_kg": 70.0, "stature_m": 1.6, "age": 30.0}
+    assert scaling.z(scaling.vector(query)) == pytest.approx([0.0, 0.0, 0.0])
 
 
 @pytest.mark.parametrize(
-    ("asked", "told"), [({"length_m": 1.0}, "stature_m is missing"),
+    ("query", "expected_message"), [({"length_m": 1.0}, "stature_m is missing"),
                         ({"length_m": 1.0, "stature_m": np.nan}, "finite")],
 )  # fmt: skip
-def test_a_query_without_a_dependency_is_rejected(asked: Mapping[str, float], told: str) -> None:
+def test_a_query_without_a_dependency_is_rejected(
+    query: Mapping[str, float], expected_message: str
+) -> None:
     """A query that lacks a dependency is rejected with its name."""
     scaling = scaling_of(NAMES, dependency_rows(np.random.default_rng(1)))
-    with pytest.raises(WalkingError, match=told):
-        scaling.vector(asked)
+    with pytest.raises(WalkingError, match=expected_message):
+        scaling.vector(query)
 
 
 def test_a_walk_without_a_dependency_is_named() -> None:

@@ -133,20 +133,20 @@ def test_maps_are_the_same_in_threads_after_a_stop_and_a_resume() -> None:
     """A run of five maps that was stopped after two and resumed gives the same maps in order."""
     entries = [_entry(LINE, vigour) for vigour in (0.8, 0.9, 1.0, 1.1, 1.2)]
     whole = dict(maps_of(entries, MAKER, threads=2))
-    told: list[tuple[int, int]] = []
+    reported: list[tuple[int, int]] = []
 
     def progress(done: int, of: int) -> None:
-        told.append((done, of))
+        reported.append((done, of))
 
     def stop() -> bool:
-        return len(told) == 2
+        return len(reported) == 2
 
-    kept = dict(maps_of(entries, MAKER, threads=1, stop=stop, progress=progress))
-    assert list(kept) == [0, 1]
-    kept |= dict(maps_of(entries, MAKER, done=kept, progress=progress))
-    assert told == [(done, 5) for done in range(1, 6)]
-    assert list(kept) == [0, 1, 2, 3, 4]
-    for index, made in kept.items():
+    made_maps = dict(maps_of(entries, MAKER, threads=1, stop=stop, progress=progress))
+    assert list(made_maps) == [0, 1]
+    made_maps |= dict(maps_of(entries, MAKER, done=made_maps, progress=progress))
+    assert reported == [(done, 5) for done in range(1, 6)]
+    assert list(made_maps) == [0, 1, 2, 3, 4]
+    for index, made in made_maps.items():
         assert made.deviations.tobytes() == whole[index].deviations.tobytes()
         assert made.arrival_s.tobytes() == whole[index].arrival_s.tobytes()
 

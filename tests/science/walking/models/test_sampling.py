@@ -68,10 +68,10 @@ def test_draws_have_the_density_of_the_map() -> None:
     values = multilinear(space.grid, density.grid_values, fine.nodes) * axes_of(fine).node_weights
     drawn = density.draw(DRAWS, rng)
     for powers in ((1, 0, 0), (1, 1, 0), (0, 0, 2)):
-        wanted, seen = (np.prod(points**powers, axis=1) for points in (fine.nodes, drawn))
-        exact = float(values @ wanted / values.sum())
-        error = float(seen.std()) / np.sqrt(DRAWS)
-        assert float(seen.mean()) == pytest.approx(exact, abs=5.0 * error + 0.002)
+        at_nodes, at_draws = (np.prod(points**powers, axis=1) for points in (fine.nodes, drawn))
+        exact = float(values @ at_nodes / values.sum())
+        error = float(at_draws.std()) / np.sqrt(DRAWS)
+        assert float(at_draws.mean()) == pytest.approx(exact, abs=5.0 * error + 0.002)
 
 
 def test_the_papers_radial_rejection_is_near_the_mixture() -> None:

@@ -15,7 +15,7 @@ from app.science.walking.synthetic.synthetic_walks import straight_path
 from tests.science.walking.spaces import GRID, PEOPLE, made_up_database, made_up_space
 from tests.science.walking.submodels import with_fixed_parameter, without_dependency
 
-ASKED = {LENGTH: 2.0, STATURE: 1.75}
+QUERY = {LENGTH: 2.0, STATURE: 1.75}
 QUICK = FitOptions(seed=3, k=20, entries=400, reading=TIME_AWARE)
 
 
@@ -47,16 +47,16 @@ def test_models_differ_as_they_should() -> None:
     """The static model is constant, the adaptive depends on the query, the probabilistic varies."""
     fit, rng = fitted(made_up_database(), QUICK), np.random.default_rng(1)
     other = {LENGTH: 2.0, STATURE: 1.6}
-    assert (fit.stat.vectors(ASKED, 3, rng) == fit.stat.vectors(other, 3, rng)).all()
-    tall, short = fit.adapt.vectors(ASKED, 1, rng)[0], fit.adapt.vectors(other, 1, rng)[0]
+    assert (fit.stat.vectors(QUERY, 3, rng) == fit.stat.vectors(other, 3, rng)).all()
+    tall, short = fit.adapt.vectors(QUERY, 1, rng)[0], fit.adapt.vectors(other, 1, rng)[0]
     assert tall[0] > short[0]
-    drawn = fit.prob.vectors(ASKED, 500, rng)
+    drawn = fit.prob.vectors(QUERY, 500, rng)
     assert len(np.unique(drawn[:, 0])) > 400
     by_stature = ProbabilisticModel(made_up_space())
-    tall, short = (by_stature.vectors(asked, 500, rng)[:, 1].mean() for asked in (ASKED, other))
+    tall, short = (by_stature.vectors(query, 500, rng)[:, 1].mean() for query in (QUERY, other))
     assert tall > short + 0.05
-    again = [fit.prob.vectors(ASKED, 5, np.random.default_rng(9)) for _ in range(2)]
-    assert (again[0] == again[1]).all()
+    repeated = [fit.prob.vectors(QUERY, 5, np.random.default_rng(9)) for _ in range(2)]
+    assert (repeated[0] == repeated[1]).all()
 
 
 def test_the_adaptive_model_is_at_the_top_of_its_map() -> None:
@@ -66,22 +66,22 @@ def test_the_adaptive_model_is_at_the_top_of_its_map() -> None:
 
     space = made_up_space()
     model, rng = AdaptiveModel(space), np.random.default_rng(1)
-    density = density_of(space, space.scaling.z(space.scaling.vector(ASKED)), "radial")
+    density = density_of(space, space.scaling.z(space.scaling.vector(QUERY)), "radial")
     heights = radial_basis(GRID).at(density.coefficients, rng.uniform(0.1, 2.0, (3000, 3)))
-    best = model.vectors(ASKED, 1, rng)
+    best = model.vectors(QUERY, 1, rng)
     assert float(radial_basis(GRID).at(density.coefficients, best)[0]) >= heights.max() - 1e-6
     flat = made_up_database()
-    level = fitted(flat, QUICK).adapt.vectors(ASKED, 1, rng)[0]
+    level = fitted(flat, QUICK).adapt.vectors(QUERY, 1, rng)[0]
     assert level[2] == pytest.approx(2.0)
 
 
 def test_both_samplers_serve_the_probabilistic_model() -> None:
     """The probabilistic model can use the paper's rejection, with about the mixture's mean."""
     space, rng = made_up_space(), np.random.default_rng(2)
-    mixture = ProbabilisticModel(space).vectors(ASKED, 4000, rng).mean(axis=0)
-    paper = ProbabilisticModel(space, "rejection").vectors(ASKED, 4000, rng).mean(axis=0)
+    mixture = ProbabilisticModel(space).vectors(QUERY, 4000, rng).mean(axis=0)
+    paper = ProbabilisticModel(space, "rejection").vectors(QUERY, 4000, rng).mean(axis=0)
     assert paper == pytest.approx(mixture, abs=0.05)
-    assert ProbabilisticModel(space).vectors(ASKED, 1, rng).shape == (1, 3)
+    assert ProbabilisticModel(space).vectors(QUERY, 1, rng).shape == (1, 3)
 
 
 def test_a_reading_is_chosen_on_people_left_out() -> None:
@@ -106,8 +106,8 @@ def test_one_person_alone_is_rejected() -> None:
 def test_a_model_restored_is_the_model() -> None:
     """A stored and restored model gives the same draws to the bit."""
     fit = fitted(made_up_database(), QUICK)
-    again = restored(fit.database, fit.options, fit.reading, fit.scores, fit.static)
-    one, two = (m.prob.vectors(ASKED, 50, np.random.default_rng(1)) for m in (fit, again))
+    repeated = restored(fit.database, fit.options, fit.reading, fit.scores, fit.static)
+    one, two = (m.prob.vectors(QUERY, 50, np.random.default_rng(1)) for m in (fit, repeated))
     assert (one == two).all()
 
 
@@ -117,8 +117,8 @@ def test_submodels_lack_one_parameter() -> None:
     rng = np.random.default_rng(1)
     fit = fitted(without_dependency(database, STATURE), QUICK)
     assert fit.prob.vectors({LENGTH: 2.0}, 10, rng).shape == (10, 3)
-    held = fitted(with_fixed_parameter(database, "velocity", 1.0), QUICK)
-    drawn = held.prob.vectors(ASKED, 100, rng)
+    fixed = fitted(with_fixed_parameter(database, "velocity", 1.0), QUICK)
+    drawn = fixed.prob.vectors(QUERY, 100, rng)
     assert (drawn[:, 0] == 1.05).all()
     assert np.ptp(drawn[:, 1]) > 0.1
     with pytest.raises(WalkingError, match="velocity, acceleration, angular"):
@@ -130,10 +130,10 @@ def test_agents_that_do_not_arrive_are_redrawn() -> None:
     fit = fitted(made_up_database(), QUICK)
     follower, rng = SteeringFollower(), np.random.default_rng(1)
     sharp = PlannedPath(np.array([[0.0, 0.0], [0.0, 1.5], [1.5, 1.5]]))
-    found = Predictor(fit.prob, follower).predict(sharp, ASKED, 40, rng)
+    found = Predictor(fit.prob, follower).predict(sharp, QUERY, 40, rng)
     assert found.lost > 0
     assert found.durations_s.shape == (40,)
     assert np.isfinite(found.durations_s).all()
-    best = Predictor(fit.adapt, follower).predict(straight_path(2.0), ASKED, 40, rng)
+    best = Predictor(fit.adapt, follower).predict(straight_path(2.0), QUERY, 40, rng)
     assert best.durations_s.shape == (1,)
     assert len({f"person {at}" for at in range(PEOPLE)}) == len(fit.database.persons)

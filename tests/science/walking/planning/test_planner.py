@@ -105,7 +105,7 @@ def test_a_closed_scene_has_no_path() -> None:
 
 
 @pytest.mark.parametrize(
-    ("goal", "said"),
+    ("goal", "expected_message"),
     [
         ((0.0, 0.0), "The goal is at .* inside obstacle 'box'"),
         ((0.0, 5.0), "The goal is at .* outside"),
@@ -113,10 +113,12 @@ def test_a_closed_scene_has_no_path() -> None:
         ((-1.0, -1.0), "same place"),
     ],
 )
-def test_a_goal_inside_an_obstacle_is_rejected(goal: tuple[float, float], said: str) -> None:
+def test_a_goal_inside_an_obstacle_is_rejected(
+    goal: tuple[float, float], expected_message: str
+) -> None:
     """A goal that cannot be reached is rejected before the search."""
     scene = Scene("box", FLOOR, (box("box", (0.0, 0.0), (1.0, 1.0)),))
-    with pytest.raises(SceneError, match=said):
+    with pytest.raises(SceneError, match=expected_message):
         LazyThetaPlanner(scene).plan((-1.0, -1.0), goal)
 
 

@@ -38,7 +38,7 @@ def test_a_start_near_an_obstacle_reduces_its_clearance() -> None:
 
 
 @pytest.mark.parametrize(
-    ("corners", "said"),
+    ("corners", "expected_message"),
     [
         ([[0, 0], [0, 1], [1, 1]], "clockwise"),
         ([[0, 0], [1, 0], [0.1, 0.1], [0, 1]], "not convex"),
@@ -49,23 +49,25 @@ def test_a_start_near_an_obstacle_reduces_its_clearance() -> None:
         ([[0, 0], [2, 2], [0, 2], [2, 0], [1, 3]], "not convex"),
     ],
 )
-def test_an_invalid_outline_is_rejected(corners: list[list[float]], said: str) -> None:
+def test_an_invalid_outline_is_rejected(corners: list[list[float]], expected_message: str) -> None:
     """An invalid outline is rejected with its name and the reason."""
-    with pytest.raises(SceneError, match=f"'thing'.*{said}"):
+    with pytest.raises(SceneError, match=f"'thing'.*{expected_message}"):
         Obstacle("thing", np.array(corners, dtype=np.float64))
 
 
 @pytest.mark.parametrize(
-    ("place", "said"),
+    ("place", "expected_message"),
     [
         ((0.2, 0.0), "inside obstacle 'table'"),
         ((9.0, 0.0), "outside the scene's bounds"),
         ((float("nan"), 0.0), "finite"),
     ],
 )
-def test_a_place_inside_an_obstacle_is_rejected(place: tuple[float, float], said: str) -> None:
+def test_a_place_inside_an_obstacle_is_rejected(
+    place: tuple[float, float], expected_message: str
+) -> None:
     """A place inside of an obstacle is rejected with its name and position."""
-    with pytest.raises(SceneError, match=f"'goal'.*{said}"):
+    with pytest.raises(SceneError, match=f"'goal'.*{expected_message}"):
         Scene("bad", BOUNDS, (TABLE,), {"goal": place})
 
 

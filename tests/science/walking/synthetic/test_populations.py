@@ -59,11 +59,11 @@ def test_people_differ_from_each_other_and_from_walk_to_walk() -> None:
 def test_the_same_seed_makes_the_same_people() -> None:
     """The same seed gives the same people, another seed others."""
     scene = [straight_scene(2.0)]
-    one, again, other = (
+    one, same, other = (
         [e.walk.duration_s for e in synthetic_walks(POPULATIONS[0], scene, Sample(3, 1, seed))]
         for seed in (1, 1, 2)
     )
-    assert one == again
+    assert one == same
     assert one != other
 
 
