@@ -86,7 +86,7 @@ def test_fixed_limbs_never_turn_round() -> None:
 
 
 def test_a_step_can_have_its_own_title() -> None:
-    """A title in the study replaces the built-in one."""
+    """A step's title in the study replaces the built-in one."""
     named = study(("limb: hand\n", "limb: hand\n        title: {en: Boxes, de: Kästen}\n"))
     steps = {step.key: step for step in compile_plan(named, ORDER)}
     assert steps["block1.hand"].title == {"en": "Boxes", "de": "Kästen"}

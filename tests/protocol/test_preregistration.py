@@ -60,7 +60,7 @@ def test_declaring_changes_the_content_and_not_the_balance() -> None:
 def test_an_impossible_preregistration_is_rejected_at_its_place(
     old: str, new: str, path: str
 ) -> None:
-    """Tests that the study cannot provide data for are rejected with path and remedy."""
+    """A preregistration that does not fit the study is rejected with path and remedy."""
     assert old in SECTION
     (problem,) = problems(STUDY + SECTION.replace(old, new))
     assert (problem.path, bool(problem.remedy)) == (f"preregistration.{path}", True)

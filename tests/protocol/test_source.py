@@ -35,7 +35,7 @@ from app.protocol.source import MAX_BYTES, MAX_DEPTH, MAX_NODES, Mark, read_sour
     ],
 )
 def test_only_true_false_and_decimal_numbers_are_special(word: str, value: object) -> None:
-    """Only true, false, null and decimal numbers are special: `no` and `12:30` stay text."""
+    """Plain words other than true, false and decimal numbers, such as `no`, stay text."""
     tree = read_source(f"a: {word}\n").tree
     assert tree == {"a": value}
     assert isinstance(tree, dict)
@@ -43,7 +43,7 @@ def test_only_true_false_and_decimal_numbers_are_special(word: str, value: objec
 
 
 def test_keys_are_always_text() -> None:
-    """Keys are always text, such as `no` for Norwegian."""
+    """Keys such as `no`, `5` and `true` are text."""
     assert read_source("{no: 1, 5: 2, true: 3}").tree == {"no": 1, "5": 2, "true": 3}
 
 

@@ -14,7 +14,7 @@ def rng() -> np.random.Generator:
 
 
 def _movement(rng: np.random.Generator, frames: int = 180) -> tuple[rot.FloatArray, rot.FloatArray]:
-    """Return jittered times around 90 Hz and smoothly moving rotations."""
+    """Return times jittered around a rate of 90 Hz, and smoothly moving rotations."""
     times = np.cumsum(rng.uniform(0.008, 0.014, frames))
     speed = rng.normal(size=(22, 3))
     phase = np.sin(times)[:, np.newaxis, np.newaxis]
@@ -41,7 +41,7 @@ def test_streaming_equals_the_batch(rng: np.random.Generator, delay_s: float) ->
 
 
 def test_the_hips_are_never_delayed(rng: np.random.Generator) -> None:
-    """The hips pass through unchanged at any delay."""
+    """The hips pass through the delay buffer unchanged at any delay."""
     times, q = _movement(rng)
     np.testing.assert_array_equal(delayed_pose(times, q, times, 0.35)[:, 0], q[:, 0])
 
@@ -54,7 +54,7 @@ def test_the_avatar_is_where_the_participant_was() -> None:
     delayed = delayed_pose(times, rot.from_rotation_vector(vector), times, 0.125)
     lag = rot.geodesic_angle(delayed, rot.from_rotation_vector(vector))
     np.testing.assert_allclose(lag[20:, 1:], 0.5 * 0.125, atol=1e-9)
-    # Until a sample of that age exists, the first one is held.
+    # Until a sample of that age exists, the first one is used.
     np.testing.assert_array_equal(delayed[5, 1:], rot.identity(21))
 
 

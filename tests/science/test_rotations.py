@@ -47,7 +47,7 @@ def test_product_is_associative(rng: np.random.Generator) -> None:
 
 
 def test_rotating_by_a_product_is_rotating_twice(rng: np.random.Generator) -> None:
-    """multiply(a, b) applies b first and a second."""
+    """Rotating by multiply(a, b) applies b first and a second."""
     a, b, v = _random(rng), _random(rng), rng.normal(size=(200, 3))
     np.testing.assert_allclose(
         rot.rotate(rot.multiply(a, b), v), rot.rotate(a, rot.rotate(b, v)), atol=1e-13
@@ -92,7 +92,7 @@ def test_euler_is_the_product_of_its_axes(rng: np.random.Generator, order: str) 
 
 
 def test_slerp_ends_and_constant_speed(rng: np.random.Generator) -> None:
-    """Slerp starts at a, ends at b and covers equal angles in equal times."""
+    """Slerp starts at a, ends at b and turns by equal angles in equal times."""
     a, b = _random(rng), _random(rng)
     total = rot.geodesic_angle(a, b)
     for fraction in (0.0, 0.25, 0.5, 1.0):

@@ -53,7 +53,10 @@ def test_t_pose_points_the_way_the_world_says() -> None:
 
 
 def test_published_segment_lengths() -> None:
-    """Upper arm .186, forearm .146, thigh .245 and shank .246 of the stature (Winter 2009)."""
+    """Segment lengths are Winter's (2009) shares of the stature.
+
+    Upper arm .186, forearm .146, thigh .245 and shank .246.
+    """
     skeleton = build_skeleton(1.0)
     lengths = [
         skeleton.length_m(n) for n in ("LeftLowerArm", "LeftHand", "LeftLowerLeg", "LeftFoot")

@@ -68,7 +68,7 @@ def test_arbitrary_text_is_rejected(text: str) -> None:
 )
 @settings(max_examples=200)
 def test_partly_valid_messages_are_rejected_or_read(kind: str, rest: dict[str, Any]) -> None:
-    """Known fields with any values give a message or ValidationError."""
+    """A message of known fields with any values is read or raises ValidationError."""
     with contextlib.suppress(ValidationError):
         assert CLIENT_MESSAGE.validate_python({"type": kind, **rest}).type == kind
 

@@ -29,7 +29,7 @@ def _by_pymotion(path: Path) -> dict[str, FloatArray]:
 def _by_bvhio(path: Path, frames: int) -> dict[str, FloatArray]:
     """Return each joint's positions by bvhio, in single precision: a few micrometres."""
     with warnings.catch_warnings():
-        # One of its own imports is deprecated.
+        # It imports a deprecated module.
         warnings.simplefilter("ignore", PendingDeprecationWarning)
         import bvhio
     root = bvhio.readAsHierarchy(str(path))

@@ -136,7 +136,7 @@ def test_the_users_choice_overrides_the_file() -> None:
 
 
 def test_missing_unit_and_axis_are_guessed() -> None:
-    """Without unit and axis, millimetres and the axis of a standing body are guessed."""
+    """If a file states no unit and axis, millimetres and the standing body's axis are guessed."""
     rng = np.random.default_rng(2)
     places = rng.uniform(-1.0, 1.0, (20, 8, 3)) * (250.0, 150.0, 850.0)
     labels = tuple("ABCDEFGH")

@@ -71,7 +71,7 @@ def test_all_zeros_means_not_tracked() -> None:
 
 
 def test_quaternions_of_a_labs_own_tracker_are_read() -> None:
-    """Columns rot_x to rot_w are quaternions, mirrored like angles."""
+    """Columns rot_x to rot_w are read as quaternions and mirrored like angles."""
     half = float(np.sqrt(0.5))
     text = "time,h_pos_x,h_pos_y,h_pos_z,h_rot_x,h_rot_y,h_rot_z,h_rot_w\n"
     motion = _uxf(text + f"0,0,1,0,0,{half},0,{half}\n")

@@ -1,4 +1,4 @@
-"""Bodies of humanoid models for tests."""
+"""Avatar bodies and models built from a made-up humanoid model."""
 
 from dataclasses import replace
 from functools import cache

@@ -71,7 +71,10 @@ def angle_of(body: PhysicsAvatar, axis: str) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Followed:
-    """N frames: `actual_rad` (N, 91) with NaN where there is no hinge, `rotations` (N, 22, 4)."""
+    """A followed movement of N frames, with its targets and the simulated body.
+
+    `actual_rad` is (N, 91) with NaN where there is no hinge, `rotations` (N, 22, 4).
+    """
 
     targets: Targets
     actual_rad: FloatArray

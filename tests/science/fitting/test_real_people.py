@@ -138,7 +138,7 @@ def test_the_cmu_fit_faces_where_the_cmus_own_skeleton_faces(shared_data: Path) 
     theirs = _solved_by_the_cmu(shared_data)
     ours = _fitted(shared_data, "cmu_c3d/02_01.c3d").motion
     for joint, bone in (("Hips", "root"), ("UpperChest", "thorax"), ("Head", "head")):
-        # Ours faces -z at rest and theirs +z; our -z, x are their x, z.
+        # Ours faces -z at rest and theirs +z; our -z and x axes are their x and z.
         mine = rotate(ours.world()[1][:, ours.rig.index(joint)], np.array((0.0, 0.0, -1.0)))
         its = rotate(theirs.world()[1][:, theirs.rig.index(bone)], np.array((0.0, 0.0, 1.0)))
         apart = np.arctan2(-mine[:, 2], mine[:, 0]) - np.arctan2(its[:, 0], its[:, 2])
@@ -169,7 +169,7 @@ def test_outer_markers_alone_give_nearly_the_same_legs(shared_data: Path, path: 
 
 
 def test_the_unfitted_joints_of_each_file_are_named(shared_data: Path) -> None:
-    """Unfitted joints are named: one spine joint (CMU), the head (Gait), the trunk (walk.trc)."""
+    """Chest (CMU), chest and head (Gait) and all but the legs (walk.trc) are unfitted."""
     assert _fitted(shared_data, "cmu_c3d/02_01.c3d").unfitted == ("Chest",)
     assert _fitted(shared_data, "c3d/Gait.c3d").unfitted == ("Chest", "Head")
     legs = _fitted(shared_data, "trc/walk.trc")

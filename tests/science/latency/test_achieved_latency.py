@@ -65,7 +65,7 @@ def test_the_interval_has_its_stated_coverage() -> None:
         run = record(made_movement(rng), latency_s, rng, flaws, duration_s=15.0)
         _, low_s, high_s = found(run)
         missed += not low_s <= latency_s <= high_s
-    # Binomial with 40 and 0.05: more than 6 in 1 of 300 such tests.
+    # Binomial with n = 40 and p = 0.05: more than 6 in 1 of 300 such tests.
     assert missed <= 6
 
 

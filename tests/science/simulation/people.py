@@ -36,7 +36,7 @@ def person_of(
 def follow(
     person: SimulatedParticipant, goal: Goal | None, start_s: float, for_s: float
 ) -> list[Pose]:
-    """Return the poses of some seconds under one goal."""
+    """Return the participant's poses over some seconds with one goal."""
     frames = round(for_s * RATE_HZ)
     return [person.pose(start_s + i / RATE_HZ, goal) for i in range(frames)]
 

@@ -35,12 +35,12 @@ TEACHING = np.array(
 
 
 def rows(path: Path) -> list[dict[str, str]]:
-    """Return the columns of a CSV file by their names."""
+    """Return the rows of a CSV file as dictionaries by column."""
     return list(csv.DictReader(path.read_text(encoding="utf-8-sig").splitlines()))
 
 
 def in_pingouin(name: str) -> list[dict[str, str]]:
-    """Return the path of a table in pingouin; skip the test if it is not installed."""
+    """Return the rows of a table in pingouin; skip the test if it is not installed."""
     spec = find_spec("pingouin")
     if spec is None or not spec.submodule_search_locations:
         pytest.skip("pingouin is not installed; it carries this table")

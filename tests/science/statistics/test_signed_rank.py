@@ -135,7 +135,7 @@ def test_holm_by_hand() -> None:
 
 
 def test_a_pairwise_comparison_uses_all_complete_pairs() -> None:
-    """A subject without the third level still counts in the first pair."""
+    """A subject without the third level still counts in the comparison of the first two."""
     values = [[1.0, 2.0, 3.0], [2.0, 4.0, 6.0], [1.0, 3.0, math.nan]]
     first, second, third = pairwise(values, ["0", "125", "350"])
     assert [(one.a, one.b) for one in (first, second, third)] == [

@@ -1,4 +1,4 @@
-"""Recordings whose faults are known to the frame."""
+"""The quality check on recordings whose faults are known to the frame."""
 
 import numpy as np
 import pytest

@@ -108,7 +108,7 @@ def test_completions_are_numbered_and_in_order(name: str, moves: Moves) -> None:
 
 @given(NAMES, MOVES)
 def test_a_side_is_red_no_longer_than_its_parts_touch_it(name: str, moves: Moves) -> None:
-    """The longest part <= the union <= the sum of the parts."""
+    """A side's red time is at least its longest part's contact and at most the sum of all."""
     run, _ = random_run(name, moves)
     parts = part_side_time_s(run.intervals)
     for side, red_s in side_red_time_s(run.intervals).items():

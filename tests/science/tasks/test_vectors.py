@@ -58,7 +58,7 @@ def test_events_are_those_of_the_vector(vector: Json) -> None:
 
 @pytest.mark.parametrize("vector", RULES)
 def test_summaries_are_those_of_the_vector(vector: Json) -> None:
-    """Every rules vector gives its completions and its times of sides and parts."""
+    """Every rules vector gives its completions and its contact times of sides and parts."""
     run, _ = play(vector)
     summary, expected = run.summary(), vector["expected"]
     found = [{**asdict(done), "order": list(done.order)} for done in summary.completions]

@@ -16,7 +16,7 @@ IntArray = npt.NDArray[np.int64]
 
 @dataclass(frozen=True)
 class PlainFollower(SteeringFollower):
-    """`SteeringFollower` without the compiler."""
+    """`SteeringFollower` in plain NumPy, without the compiler."""
 
     def _move(
         self, way: Way, vectors: FloatArray, pace: Pace, places: FloatArray, arrival: FloatArray
@@ -26,10 +26,10 @@ class PlainFollower(SteeringFollower):
 
 @dataclass(frozen=True)
 class PlainMetric(EuclideanMetric):
-    """`EuclideanMetric` without the compiler."""
+    """`EuclideanMetric` in plain NumPy, without the compiler."""
 
     def deviations(self, reference: Reference, trajectories: Trajectories) -> FloatArray:
-        """Return (K,) deviations."""
+        """Return the (K,) deviations of K agents from the reference walk."""
         apart = trajectories.xy_m - reference.xy_m
         sums = np.sqrt((apart * apart).sum(axis=-1)).sum(axis=-1)
         deviations: FloatArray = sums / reference.length_m

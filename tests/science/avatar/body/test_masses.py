@@ -117,7 +117,7 @@ def test_every_part_is_a_possible_rigid_body(
         assert moments[2] <= (moments[0] + moments[1]) * (1.0 + 1e-9), part
 
 
-def test_a_missing_part_s_mass_goes_to_the_part_above() -> None:
+def test_the_mass_of_a_missing_part_goes_to_the_part_above() -> None:
     """Mass, centre and inertia of the body stay the same when optional parts are missing."""
     absent = {*FINGER_PARTS, "Chest", "LeftShoulder", "RightToes", "Neck"}
     whole = build_body(1.75)

@@ -47,7 +47,7 @@ def test_published_ranges(axis: str, low_deg: float, high_deg: float) -> None:
 
 
 def test_the_neck_turns_as_far_as_published_in_all() -> None:
-    """Neck and head together bend 45 degrees forward, back and to each side."""
+    """The limits of neck and head together are 45 degrees forward, back and to each side."""
     for letter in "XZ":
         both = sum(ANATOMIC[f"{part}{letter}"].high_rad for part in ("Neck", "Head"))
         assert degrees(both) == pytest.approx(45.0)

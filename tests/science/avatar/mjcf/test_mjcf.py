@@ -178,7 +178,7 @@ def test_an_axis_without_settings_is_rejected() -> None:
 
 
 def test_the_studys_boxes_stand_in_the_scene_under_their_names() -> None:
-    """Panels, walls and targets are immovable geoms; the start square is a mark on the floor."""
+    """The study's panels, walls and targets are immovable geoms; the start square is a mark."""
     model, _ = loaded(mjcf_of(build_body(1.75), scene=STUDY_BOXES))
     for box in STUDY_BOXES.boxes:
         geom = model.geom(box.name)

@@ -80,7 +80,7 @@ def test_a_floor_does_no_harm_to_a_person_who_stands(shared_data: Path) -> None:
 
 
 def test_the_turning_capture_turns(shared_data: Path) -> None:
-    """The dancer's pelvis turns round four times over four metres."""
+    """In the capture of a dancer the pelvis turns round four times over four metres."""
     movement = travelling(shared_data, TURN)
     right = rotate(movement.rotations[:, 0], np.array([1.0, 0.0, 0.0]))
     turned = np.unwrap(np.arctan2(right[:, 2], right[:, 0]))

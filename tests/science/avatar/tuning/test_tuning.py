@@ -50,7 +50,7 @@ def left_arm() -> TuningReport:
 
 
 def test_an_arm_is_tuned(left_arm: TuningReport) -> None:
-    """Each free axis settles within a fifth of a second and overshoots by 3 % at most."""
+    """Each free axis of a tuned arm settles within 0.2 s and overshoots by 3 % at most."""
     found = _by_name(left_arm)
     for name in _LEFT_ARM:
         one = found[name]

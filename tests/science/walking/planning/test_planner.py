@@ -113,10 +113,8 @@ def test_a_closed_scene_has_no_path() -> None:
         ((-1.0, -1.0), "same place"),
     ],
 )
-def test_a_goal_inside_an_obstacle_is_rejected(
-    goal: tuple[float, float], expected_message: str
-) -> None:
-    """A goal that cannot be reached is rejected before the search."""
+def test_an_invalid_goal_is_rejected(goal: tuple[float, float], expected_message: str) -> None:
+    """A goal that is in an obstacle, out of bounds, not finite or the start is rejected."""
     scene = Scene("box", FLOOR, (box("box", (0.0, 0.0), (1.0, 1.0)),))
     with pytest.raises(SceneError, match=expected_message):
         LazyThetaPlanner(scene).plan((-1.0, -1.0), goal)

@@ -63,10 +63,8 @@ def test_an_invalid_outline_is_rejected(corners: list[list[float]], expected_mes
         ((float("nan"), 0.0), "finite"),
     ],
 )
-def test_a_place_inside_an_obstacle_is_rejected(
-    place: tuple[float, float], expected_message: str
-) -> None:
-    """A place inside of an obstacle is rejected with its name and position."""
+def test_an_invalid_place_is_rejected(place: tuple[float, float], expected_message: str) -> None:
+    """A place in an obstacle, out of bounds or not finite is rejected with its name."""
     with pytest.raises(SceneError, match=f"'goal'.*{expected_message}"):
         Scene("bad", BOUNDS, (TABLE,), {"goal": place})
 
