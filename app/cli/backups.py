@@ -5,6 +5,7 @@ import sqlite3
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, suppress
+from dataclasses import dataclass
 from datetime import timedelta
 from pathlib import Path
 
@@ -112,49 +113,39 @@ def _sentence(done: BackedUp) -> str:
     )
 
 
-def restore_from(
-    path: Path,
-    activity: Activity,
-    *,
-    replace: bool,
-    even_though_active: bool,
-    even_though_altered: bool,
-    erasures: Path | None,
-    as_json: bool,
-) -> str:
+@dataclass(frozen=True)
+class RestoreOptions:
+    """What `reembody restore` may do, as on its command line.
+
+    `replace`: replace a database that contains data. `even_though_active`, `even_though_altered`:
+    do it although sessions are running, or although the backup was altered. `erasures`: the list of
+    erasures of an earlier data folder, or None.
+    """
+
+    replace: bool
+    even_though_active: bool
+    even_though_altered: bool
+    erasures: Path | None
+
+
+def restore_from(path: Path, activity: Activity, options: RestoreOptions, *, as_json: bool) -> str:
     """Replace the database by a backup; raise ReembodyError with nothing changed if that fails.
 
     Phases whose clock was running when the backup was made are paused afterwards, as after a crash.
-    A damaged database is quarantined first. `erasures` is the list of erasures of an earlier data
-    folder, which are repeated here; if there is no list at all, it is requested on a terminal, and
+    A damaged database is quarantined first. The erasures listed in `options.erasures`
+    are repeated here; if there is no list at all, it is requested on a terminal, and
     elsewhere standard error reports what that may mean. The data are locked against other processes
     from the first check until everything is done.
     """
     settings = read_settings()
     with own_data(settings, "restore"), storage_errors_reported():
-        return _restored(
-            path,
-            settings,
-            activity,
-            replace=replace,
-            even_though_active=even_though_active,
-            even_though_altered=even_though_altered,
-            erasures=erasures,
-            as_json=as_json,
-        )
+        done = _restored(path, settings, activity, options)
+        return as_text(done) if as_json else _sentences(done)
 
 
 def _restored(
-    path: Path,
-    settings: Settings,
-    activity: Activity,
-    *,
-    replace: bool,
-    even_though_active: bool,
-    even_though_altered: bool,
-    erasures: Path | None,
-    as_json: bool,
-) -> str:
+    path: Path, settings: Settings, activity: Activity, options: RestoreOptions
+) -> Restored:
     from app.main import create_app  # not needed to back up
 
     clock, backups_folder = Clock(), backups_of(settings)
@@ -177,17 +168,17 @@ def _restored(
             context: AppContext = create_app(settings, clock=clock).state.context
             with _undone_if_refused(context) as expected:
                 outliving = ErasureReplay(
-                    context, _earlier_erasures(context, backup, erasures, activity)
+                    context, _earlier_erasures(context, backup, options.erasures, activity)
                 )
                 done = restore(
                     context.database,
                     backup,
                     keep_in=backups_folder,
                     clock=clock,
-                    replace=replace,
-                    even_though_active=even_though_active,
+                    replace=options.replace,
+                    even_though_active=options.even_though_active,
                     erasures=outliving,
-                    content=RestoredContent(even_though_altered, lifetimes),
+                    content=RestoredContent(options.even_though_altered, lifetimes),
                     progress=activity.rows("restoring"),
                 )
     if expected and not done.erasures_reapplied:
@@ -195,7 +186,7 @@ def _restored(
     activity.now("overwriting what had been erased")
     _overwrite(context, outliving.given)
     _stop_clocks(context)
-    return as_text(done) if as_json else _sentences(done)
+    return done
 
 
 @contextmanager

@@ -213,15 +213,8 @@ def restore(
 ) -> None:
     """Replace all data by those of a backup."""
     with reported(), Activity(f"restoring {file}: opening it") as now:
-        from app.cli.backups import restore_from
+        from app.cli.backups import RestoreOptions, restore_from
 
-        done = restore_from(
-            file,
-            now,
-            replace=replace,
-            even_though_active=even_though_active,
-            even_though_altered=even_though_altered,
-            erasures=erasures,
-            as_json=as_json,
-        )
+        options = RestoreOptions(replace, even_though_active, even_though_altered, erasures)
+        done = restore_from(file, now, options, as_json=as_json)
     print(done)

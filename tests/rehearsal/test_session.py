@@ -10,6 +10,7 @@ from sqlalchemy.orm import Session
 
 from app.features.design.studies import protocol_of
 from app.features.record.headset import participant_info
+from app.features.record.receipts.completions import interval_of
 from app.features.record.sessions import events_of, verify_chain
 from app.models import (
     Completion,
@@ -24,7 +25,6 @@ from app.platform.access import session_by_id
 from app.science.tasks import (
     Command,
     CommandKind,
-    ContactInterval,
     Laterality,
     TaskLayout,
     TaskRules,
@@ -143,17 +143,7 @@ def test_the_stored_contacts_lead_to_the_stored_completions(
     for phase in _task_phases(db, performed):
         rules = TaskRules(_layout(db, session, phase.limb), _hand(db, session))
         contacts = db.scalars(_of(Contact, phase).order_by(Contact.end_s, Contact.id))
-        intervals = [
-            ContactInterval(
-                row.surface,
-                row.body_part,
-                row.begin_s,
-                row.end_s,
-                row.begin_active_s,
-                row.end_active_s,
-            )
-            for row in contacts
-        ]
+        intervals = [interval_of(row) for row in contacts]
         derived = rederive(rules, intervals, _commands(performed, phase.phase_id))
         stored = db.scalars(_of(Completion, phase).order_by(Completion.number)).all()
         assert [(one.number, one.completed_s) for one in derived] == [

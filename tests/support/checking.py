@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tests.support.node import NODE
-from tests.support.stage_runner import CORES, REPOSITORY, Stage, print_stages, run_stages
+from tests.support.stage_runner import CORES, REPOSITORY, Stage, exit_with, print_stages, run_stages
 from tests.support.stages import (
     ARCHITECTURE_TESTS,
     BROWSER_TESTS,
@@ -164,7 +164,4 @@ def main(arguments: list[str]) -> int:
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main(sys.argv[1:]))
-    except KeyboardInterrupt:
-        sys.exit(130)
+    exit_with(main)

@@ -18,7 +18,7 @@ from functools import partial
 from itertools import groupby
 from pathlib import Path
 from threading import Lock
-from typing import IO, Any
+from typing import IO, Any, NoReturn
 
 from tests.support.tally import TALLY_VARIABLE, Tally
 from tests.support.warden import Ended, run_warded
@@ -206,3 +206,11 @@ def as_json(outcomes: Sequence[Outcome], wall_s: float) -> dict[str, Any]:
 
 def _counts(tally: Tally) -> dict[str, int]:
     return {"passed": tally.passed, "failed": tally.failed, "skipped": tally.skipped}
+
+
+def exit_with(main: Callable[[list[str]], int]) -> NoReturn:
+    """Exit with what `main` returns for the arguments, or as shells do after an interrupt."""
+    try:
+        sys.exit(main(sys.argv[1:]))
+    except KeyboardInterrupt:
+        sys.exit(130)

@@ -18,6 +18,7 @@ from tests.support.stage_runner import (
     REPOSITORY,
     Stage,
     as_json,
+    exit_with,
     print_stages,
     print_tests,
     run_stages,
@@ -149,7 +150,4 @@ def main(arguments: list[str]) -> int:
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main(sys.argv[1:]))
-    except KeyboardInterrupt:
-        sys.exit(130)
+    exit_with(main)

@@ -146,14 +146,11 @@ def _intervals(db: Session, phase: Phase, epoch: int) -> list[ContactInterval]:
         )
         .order_by(Contact.end_s, Contact.id)
     )
-    return [
-        ContactInterval(
-            row.surface,
-            row.body_part,
-            row.begin_s,
-            row.end_s,
-            row.begin_active_s,
-            row.end_active_s,
-        )
-        for row in rows
-    ]
+    return [interval_of(row) for row in rows]
+
+
+def interval_of(row: Contact) -> ContactInterval:
+    """Return a stored contact as the task rules see it."""
+    return ContactInterval(
+        row.surface, row.body_part, row.begin_s, row.end_s, row.begin_active_s, row.end_active_s
+    )

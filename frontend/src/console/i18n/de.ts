@@ -1,4 +1,5 @@
 /** The console's texts in German. */
+import { formDe } from "@shared/forms/texts";
 import { alarmsDe } from "../cockpit/alarms/texts";
 import { sideDe } from "../cockpit/record/texts";
 import { commandsDe } from "../cockpit/session/texts";
@@ -6,6 +7,7 @@ import { sessionDe } from "../cockpit/step/texts";
 import type { en } from "./en";
 
 export const de: Record<keyof typeof en, string> = {
+  ...formDe,
   ...alarmsDe,
   ...commandsDe,
   ...sessionDe,
@@ -107,17 +109,5 @@ export const de: Record<keyof typeof en, string> = {
   "entry.recorded":
     "Es wird festgehalten, dass Sie diese Antworten eingegeben haben. Unbeantwortete Fragen bleiben leer.",
   "entry.none": "Gerade gibt es kein Formular auszufüllen.",
-  "unit.years": "Jahre",
-  "form.yes": "Ja",
-  "form.no": "Nein",
-  "form.optional": "freiwillig",
-  "form.required": "Bitte beantworten Sie diese Frage.",
-  "form.back": "Zurück",
-  "form.next": "Weiter",
   "form.submit": "Antworten speichern",
-  "form.page": "Seite {{number}} von {{total}}",
-  "form.range": "{{low}} bis {{high}} {{unit}}",
-  "form.whole": "Bitte geben Sie eine ganze Zahl ein.",
-  "form.atLeast": "Mindestens {{low}} {{unit}}",
-  "form.atMost": "Höchstens {{high}} {{unit}}",
 };

@@ -1,10 +1,12 @@
 /** The console's texts in English; `de.ts` has the same keys. */
+import { formEn } from "@shared/forms/texts";
 import { alarmsEn } from "../cockpit/alarms/texts";
 import { sideEn } from "../cockpit/record/texts";
 import { commandsEn } from "../cockpit/session/texts";
 import { sessionEn } from "../cockpit/step/texts";
 
 export const en = {
+  ...formEn,
   ...alarmsEn,
   ...commandsEn,
   ...sessionEn,
@@ -103,17 +105,5 @@ export const en = {
   "entry.recorded":
     "The record will say that you entered these answers. Unanswered items stay empty.",
   "entry.none": "There is no form to fill in right now.",
-  "unit.years": "years",
-  "form.yes": "Yes",
-  "form.no": "No",
-  "form.optional": "optional",
-  "form.required": "Please answer this question.",
-  "form.back": "Back",
-  "form.next": "Next",
   "form.submit": "Save answers",
-  "form.page": "Page {{number}} of {{total}}",
-  "form.range": "{{low}} to {{high}} {{unit}}",
-  "form.whole": "Please enter a whole number.",
-  "form.atLeast": "At least {{low}} {{unit}}",
-  "form.atMost": "At most {{high}} {{unit}}",
 } as const;

@@ -45,3 +45,34 @@ export function formTexts(t: Translate<FormKey>): FormTexts {
     atMost: (high, unit) => t("form.atMost", { high, unit: units[unit] ?? unit }).trim(),
   };
 }
+
+/** The texts of forms that console and tablet share. */
+export const formEn = {
+  "unit.years": "years",
+  "form.yes": "Yes",
+  "form.no": "No",
+  "form.optional": "optional",
+  "form.required": "Please answer this question.",
+  "form.back": "Back",
+  "form.next": "Next",
+  "form.page": "Page {{number}} of {{total}}",
+  "form.range": "{{low}} to {{high}} {{unit}}",
+  "form.whole": "Please enter a whole number.",
+  "form.atLeast": "At least {{low}} {{unit}}",
+  "form.atMost": "At most {{high}} {{unit}}",
+} as const;
+
+export const formDe: Record<keyof typeof formEn, string> = {
+  "unit.years": "Jahre",
+  "form.yes": "Ja",
+  "form.no": "Nein",
+  "form.optional": "freiwillig",
+  "form.required": "Bitte beantworten Sie diese Frage.",
+  "form.back": "Zurück",
+  "form.next": "Weiter",
+  "form.page": "Seite {{number}} von {{total}}",
+  "form.range": "{{low}} bis {{high}} {{unit}}",
+  "form.whole": "Bitte geben Sie eine ganze Zahl ein.",
+  "form.atLeast": "Mindestens {{low}} {{unit}}",
+  "form.atMost": "Höchstens {{high}} {{unit}}",
+};

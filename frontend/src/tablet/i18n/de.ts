@@ -1,7 +1,9 @@
 /** The participant's texts in German. */
+import { formDe } from "@shared/forms/texts";
 import type { en } from "./en";
 
 export const de: Record<keyof typeof en, string> = {
+  ...formDe,
   "pair.title": "Dieses Tablet verbinden",
   "pair.lead":
     "Geben Sie den Code ein, der auf dem Bildschirm der Versuchsleitung steht, oder scannen Sie den QR-Code.",
@@ -73,19 +75,7 @@ export const de: Record<keyof typeof en, string> = {
     "Dieses Tablet erreicht die Versuchsleitung gerade nicht. Bitte sagen Sie der Versuchsleitung, dass Sie nicht teilnehmen möchten.",
   "refused.free": "Sie müssen keinen Grund nennen, und Ihnen entsteht kein Nachteil.",
   "refused.takeBack": "Ich habe es mir anders überlegt",
-  "unit.years": "Jahre",
-  "form.yes": "Ja",
-  "form.no": "Nein",
-  "form.optional": "freiwillig",
-  "form.required": "Bitte beantworten Sie diese Frage.",
-  "form.back": "Zurück",
-  "form.next": "Weiter",
   "form.submit": "Antworten senden",
-  "form.page": "Seite {{number}} von {{total}}",
-  "form.range": "{{low}} bis {{high}} {{unit}}",
-  "form.whole": "Bitte geben Sie eine ganze Zahl ein.",
-  "form.atLeast": "Mindestens {{low}} {{unit}}",
-  "form.atMost": "Höchstens {{high}} {{unit}}",
   "sending.title": "Ihre Antworten werden gesendet",
   "sending.body": "Einen Moment.",
   "sending.offline": "Ihre Antworten sind sicher",

@@ -1,5 +1,8 @@
 /** The participant's texts in English; `de.ts` has the same keys. */
+import { formEn } from "@shared/forms/texts";
+
 export const en = {
+  ...formEn,
   "pair.title": "Connect this tablet",
   "pair.lead": "Enter the code shown on the experimenter's screen, or scan its QR code.",
   "pair.code": "Pairing code",
@@ -67,19 +70,7 @@ export const en = {
     "This tablet cannot reach the experimenter at the moment. Please tell the experimenter that you do not want to take part.",
   "refused.free": "You do not have to give a reason, and refusing puts you at no disadvantage.",
   "refused.takeBack": "I have changed my mind",
-  "unit.years": "years",
-  "form.yes": "Yes",
-  "form.no": "No",
-  "form.optional": "optional",
-  "form.required": "Please answer this question.",
-  "form.back": "Back",
-  "form.next": "Next",
   "form.submit": "Send answers",
-  "form.page": "Page {{number}} of {{total}}",
-  "form.range": "{{low}} to {{high}} {{unit}}",
-  "form.whole": "Please enter a whole number.",
-  "form.atLeast": "At least {{low}} {{unit}}",
-  "form.atMost": "At most {{high}} {{unit}}",
   "sending.title": "Sending your answers",
   "sending.body": "One moment.",
   "sending.offline": "Your answers are safe",

@@ -100,8 +100,7 @@ describe("a full journal", () => {
     const telemetry = await bed.opened(undefined, { journalBytes: 10 * batchBytes(6) });
     const levels = new Set<Level>();
     telemetry.onStatus((status: Status) => levels.add(status.level));
-    bed.server.isUp = false;
-    bed.server.breaks();
+    bed.server.goesDown();
     const producing = produce(telemetry, 20);
     await eventually(() => telemetry.status.level === "full");
     expect(telemetry.status.waitingCalls).toBe(1);

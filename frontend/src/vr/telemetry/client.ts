@@ -118,3 +118,37 @@ export class Listeners<News> {
     }
   }
 }
+
+/** The newest welcome and state of a connection, and the listeners for what happens on it. */
+export abstract class ClientEvents {
+  protected readonly states = new Listeners<HeadsetState>();
+  protected readonly statuses = new Listeners<Status>();
+  protected readonly notices = new Listeners<Notice>();
+  protected newestWelcome: Welcome | null = null;
+  protected newestState: HeadsetState | null = null;
+
+  get epoch(): number {
+    return this.welcome.epoch;
+  }
+
+  get welcome(): Welcome {
+    if (this.newestWelcome === null) throw new Error("the client is not connected yet");
+    return this.newestWelcome;
+  }
+
+  get state(): HeadsetState {
+    return this.newestState ?? this.welcome.state;
+  }
+
+  onState(listener: (state: HeadsetState) => void): Unsubscribe {
+    return this.states.add(listener);
+  }
+
+  onStatus(listener: (status: Status) => void): Unsubscribe {
+    return this.statuses.add(listener);
+  }
+
+  onNotice(listener: (notice: Notice) => void): Unsubscribe {
+    return this.notices.add(listener);
+  }
+}

@@ -1,15 +1,14 @@
 /** The telemetry client, in the thread that opens it. */
 import { Admission } from "./admission";
 import {
+  ClientEvents,
   type Level,
-  Listeners,
   type Status,
   type TelemetryClient,
   type TelemetryOptions,
-  type Unsubscribe,
 } from "./client";
 import type { MakeSocket } from "./connection/channel";
-import { Connection, type Notice } from "./connection/connection";
+import { Connection } from "./connection/connection";
 import { CLOSED, type Failure, TelemetryError } from "./failure";
 import type { Entry } from "./journal/entries";
 import type { Journal } from "./journal/journal";
@@ -17,7 +16,7 @@ import type { Limits } from "./limits";
 import { PROTOCOL_VERSION, REPORT_STREAM } from "./wire/basis";
 import { encodeBatch, type Frames, MalformedBatch, type StreamName } from "./wire/batch";
 import { type ReportBody, textOf } from "./wire/fromClient";
-import type { HeadsetState, Welcome } from "./wire/fromServer";
+import type { Welcome } from "./wire/fromServer";
 
 /** The environment that the client depends on; tests replace it. */
 interface Environment {
@@ -33,25 +32,21 @@ interface Environment {
   readonly onClosed: () => Promise<void>;
 }
 
-export class DirectClient implements TelemetryClient {
+export class DirectClient extends ClientEvents implements TelemetryClient {
   readonly #ground: Environment;
   readonly #journal: Journal;
   readonly #connection: Connection;
   readonly #admission: Admission;
-  readonly #states = new Listeners<HeadsetState>();
-  readonly #statuses = new Listeners<Status>();
-  readonly #notices = new Listeners<Notice>();
   readonly #ticking: ReturnType<typeof setInterval>;
   readonly #running: Promise<void>;
   readonly #waiters = new Waiters();
   #produced: Record<string, number> = {};
-  #welcome: Welcome | null = null;
-  #state: HeadsetState | null = null;
   #closing: Promise<void> | null = null;
   #reported = "";
   #toldAll = "";
 
   constructor(options: TelemetryOptions, ground: Environment) {
+    super();
     this.#ground = ground;
     this.#journal = ground.journal;
     this.#admission = new Admission(ground.journal);
@@ -62,14 +57,14 @@ export class DirectClient implements TelemetryClient {
       hooks: {
         onWelcome: (welcome) => this.#welcomed(welcome),
         onState: (state) => {
-          this.#state = state;
-          this.#states.notify(state);
+          this.newestState = state;
+          this.states.notify(state);
         },
-        onNotice: (notice) => this.#notices.notify(notice),
+        onNotice: (notice) => this.notices.notify(notice),
         onChange: () => this.#changed(),
       },
     });
-    this.#statuses.add(ground.onStatus);
+    this.statuses.add(ground.onStatus);
     this.#journal.onChange = () => this.#changed();
     this.#ticking = setInterval(() => this.#tick(), ground.limits.flushEveryS * 1000);
     this.#running = this.#connection.run();
@@ -79,19 +74,6 @@ export class DirectClient implements TelemetryClient {
   async opened(): Promise<this> {
     await this.#until(() => this.#connection.epoch !== null);
     return this;
-  }
-
-  get epoch(): number {
-    return this.welcome.epoch;
-  }
-
-  get welcome(): Welcome {
-    if (this.#welcome === null) throw new Error("the client is not connected yet");
-    return this.#welcome;
-  }
-
-  get state(): HeadsetState {
-    return this.#state ?? this.welcome.state;
   }
 
   get settled(): boolean {
@@ -151,18 +133,6 @@ export class DirectClient implements TelemetryClient {
     await this.#closing;
   }
 
-  onState(listener: (state: HeadsetState) => void): Unsubscribe {
-    return this.#states.add(listener);
-  }
-
-  onStatus(listener: (status: Status) => void): Unsubscribe {
-    return this.#statuses.add(listener);
-  }
-
-  onNotice(listener: (notice: Notice) => void): Unsubscribe {
-    return this.#notices.add(listener);
-  }
-
   async #close(): Promise<void> {
     clearInterval(this.#ticking);
     this.#connection.close();
@@ -182,7 +152,7 @@ export class DirectClient implements TelemetryClient {
     if (!(await this.#journal.claim(welcome.session_id))) {
       return foreignJournal(this.#journal.sessionId ?? "", welcome.session_id);
     }
-    this.#welcome = welcome;
+    this.newestWelcome = welcome;
     return null;
   }
 
@@ -227,7 +197,7 @@ export class DirectClient implements TelemetryClient {
   #tellStatus(status: Status): void {
     this.#reported = urgentPart(status);
     this.#toldAll = JSON.stringify(status);
-    this.#statuses.notify(status);
+    this.statuses.notify(status);
   }
 }
 

@@ -23,8 +23,7 @@ describe("a connection that breaks", () => {
 
   it("is retried until the server answers", async () => {
     const telemetry = await bed.opened();
-    bed.server.isUp = false;
-    bed.server.breaks();
+    bed.server.goesDown();
     await eventually(() => bed.server.sockets.length > 5);
     bed.server.isUp = true;
     await eventually(() => telemetry.status.connected);
@@ -33,8 +32,7 @@ describe("a connection that breaks", () => {
   it("costs no memory: waiting messages are on disk and are read from there in order", async () => {
     const disk = new MemoryBlocks();
     const telemetry = await bed.opened(disk, { blockBytes: 5000, memoryBytes: 20_000 });
-    bed.server.isUp = false;
-    bed.server.breaks();
+    bed.server.goesDown();
     await produce(telemetry, 50);
     await telemetry.flush();
     expect([...disk.entries.values()].flat()).toHaveLength(101);
@@ -68,8 +66,7 @@ describe("the browser's disk", () => {
   it("only delays the sending when it cannot be read for a moment", async () => {
     const disk = new MemoryBlocks();
     const telemetry = await bed.opened(disk);
-    bed.server.isUp = false;
-    bed.server.breaks();
+    bed.server.goesDown();
     await produce(telemetry, 5);
     await telemetry.flush();
     disk.unreadable = new DOMException("not now", "UnknownError");
@@ -84,8 +81,7 @@ describe("the browser's disk", () => {
   it("is reported as a failure with a remedy when it has lost the journal", async () => {
     const disk = new MemoryBlocks();
     const telemetry = await bed.opened(disk);
-    bed.server.isUp = false;
-    bed.server.breaks();
+    bed.server.goesDown();
     await produce(telemetry, 5);
     await telemetry.flush();
     disk.entries.clear();

@@ -16,8 +16,7 @@ describe("a page that restarts", () => {
   it("delivers the previous run's messages under their own epoch, then its own", async () => {
     const disk = new MemoryBlocks();
     const first = await openedClient(bed.server, disk);
-    bed.server.isUp = false;
-    bed.server.breaks();
+    bed.server.goesDown();
     await produce(first, 5);
     await killed(first);
     bed.server.isUp = true;
@@ -37,8 +36,7 @@ describe("a page that restarts", () => {
   it("announces how much each run had produced, right after the welcome", async () => {
     const disk = new MemoryBlocks();
     const first = await openedClient(bed.server, disk);
-    bed.server.isUp = false;
-    bed.server.breaks();
+    bed.server.goesDown();
     await produce(first, 5);
     await killed(first);
     bed.server.isUp = true;
@@ -54,8 +52,7 @@ describe("a page that restarts", () => {
   it("does not deliver one session's frames to another", async () => {
     const disk = new MemoryBlocks();
     const first = await openedClient(bed.server, disk);
-    bed.server.isUp = false;
-    bed.server.breaks();
+    bed.server.goesDown();
     await produce(first, 1);
     await killed(first);
     Object.assign(bed.server, { isUp: true, sessionId: "another" });

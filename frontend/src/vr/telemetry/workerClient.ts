@@ -1,40 +1,28 @@
 /** The page's side of a client in a worker. */
-import {
-  Listeners,
-  type Status,
-  type TelemetryClient,
-  type TelemetryOptions,
-  type Unsubscribe,
-} from "./client";
-import type { Notice } from "./connection/connection";
+import { ClientEvents, type Status, type TelemetryClient, type TelemetryOptions } from "./client";
 import { CLOSED, type Failure, TelemetryError } from "./failure";
 import type { Call, FromWorker, Port, PortError, ToWorker } from "./port";
 import type { Frames, StreamName } from "./wire/batch";
 import type { ReportBody } from "./wire/fromClient";
-import type { HeadsetState, Welcome } from "./wire/fromServer";
 
 interface Pending {
   readonly resolve: () => void;
   readonly reject: (error: Error) => void;
 }
 
-export class WorkerClient implements TelemetryClient {
+export class WorkerClient extends ClientEvents implements TelemetryClient {
   readonly #port: Port<ToWorker, FromWorker>;
-  readonly #states = new Listeners<HeadsetState>();
-  readonly #statuses = new Listeners<Status>();
-  readonly #notices = new Listeners<Notice>();
   readonly #pending = new Map<number, Pending>();
   readonly #opening: Pending;
   readonly #opened: Promise<void>;
   #nextId = 0;
   #reportsMade = 0;
-  #welcome: Welcome | null = null;
-  #state: HeadsetState | null = null;
   #status = NOTHING_YET;
   #failure: Failure | null = null;
 
   /** `timeOriginMs`: of the page, whose clock the client's times refer to. */
   constructor(port: Port<ToWorker, FromWorker>, options: TelemetryOptions, timeOriginMs: number) {
+    super();
     let opening: Pending = { resolve: () => undefined, reject: () => undefined };
     this.#opened = new Promise((resolve, reject) => {
       opening = { resolve, reject };
@@ -63,19 +51,6 @@ export class WorkerClient implements TelemetryClient {
     for (const { reject } of this.#pending.values()) reject(error);
     this.#pending.clear();
     this.#tellStatus({ ...this.#status, connected: false, failure });
-  }
-
-  get epoch(): number {
-    return this.welcome.epoch;
-  }
-
-  get welcome(): Welcome {
-    if (this.#welcome === null) throw new Error("the client is not connected yet");
-    return this.#welcome;
-  }
-
-  get state(): HeadsetState {
-    return this.#state ?? this.welcome.state;
   }
 
   get status(): Status {
@@ -119,25 +94,13 @@ export class WorkerClient implements TelemetryClient {
 
   async close(): Promise<void> {
     if (this.#failure !== null) return;
-    if (this.#welcome === null) {
+    if (this.newestWelcome === null) {
       this.giveUp();
       return;
     }
     const closed = this.#call({ what: "close" });
     this.#failure = CLOSED;
     await closed;
-  }
-
-  onState(listener: (state: HeadsetState) => void): Unsubscribe {
-    return this.#states.add(listener);
-  }
-
-  onStatus(listener: (status: Status) => void): Unsubscribe {
-    return this.#statuses.add(listener);
-  }
-
-  onNotice(listener: (notice: Notice) => void): Unsubscribe {
-    return this.#notices.add(listener);
   }
 
   async #call(call: Call, transfer: Transferable[] = []): Promise<void> {
@@ -152,8 +115,8 @@ export class WorkerClient implements TelemetryClient {
   #receive(message: FromWorker): void {
     switch (message.kind) {
       case "opened":
-        this.#welcome = message.welcome;
-        this.#state = message.state;
+        this.newestWelcome = message.welcome;
+        this.newestState = message.state;
         this.#opening.resolve();
         break;
       case "refused":
@@ -164,15 +127,15 @@ export class WorkerClient implements TelemetryClient {
         this.#answered(message.id, message.wrong);
         break;
       case "state":
-        this.#welcome = message.welcome;
-        this.#state = message.state;
-        this.#states.notify(message.state);
+        this.newestWelcome = message.welcome;
+        this.newestState = message.state;
+        this.states.notify(message.state);
         break;
       case "status":
         this.#tellStatus(message.status);
         break;
       case "notice":
-        this.#notices.notify(message.notice);
+        this.notices.notify(message.notice);
     }
   }
 
@@ -185,7 +148,7 @@ export class WorkerClient implements TelemetryClient {
 
   #tellStatus(status: Status): void {
     this.#status = status;
-    this.#statuses.notify(status);
+    this.statuses.notify(status);
   }
 }
 

@@ -50,6 +50,12 @@ export class FakeServer {
     this.socket.breaks();
   }
 
+  /** Break the connection, and every new one until `isUp` is true again. */
+  goesDown(): void {
+    this.isUp = false;
+    this.breaks();
+  }
+
   acknowledge(): void {
     this.broadcast({ type: "ack", positions: this.#positions });
   }
