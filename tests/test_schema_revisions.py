@@ -27,7 +27,7 @@ def contents(file: Path) -> tuple[set[str], list[object]]:
 
 @pytest.mark.parametrize("revision", [all_revisions()[3], all_revisions()[-1]])
 def test_a_new_file_is_what_the_steps_lead_to(tmp_path: Path, revision: str) -> None:
-    """The same tables, indexes and constraints, the same settings, and nothing in it."""
+    """A new file has the schema and settings that the migrations give, and no rows."""
     migrate_file(tmp_path / "steps.sqlite", revision)
     for name in ("first.sqlite", "again.sqlite"):
         make_file(tmp_path / name, revision)

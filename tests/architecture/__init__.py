@@ -1,1 +1,1 @@
-"""Tests about the build itself: what is packed, how it is set up, what is never committed."""
+"""Tests of the build: what is packaged, how it is set up, what must never be committed."""

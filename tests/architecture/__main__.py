@@ -1,9 +1,9 @@
-"""`python -m tests.architecture [walks | repeats] [--json] [COMMIT]`: the structure of the house.
+"""`python -m tests.architecture [walks | repeats] [--json] [COMMIT]`: the structure of the code.
 
 Without a word it measures how the files import each other (`tests.architecture.measure`); `walks`
 follows four pieces of data through the running code (`tests.architecture.walks`), and `repeats`
-lists the code that stands twice (`tests.architecture.repetition`). All look at the working tree, or
-at a commit.
+lists duplicate code (`tests.architecture.repetition`). All of them read the working tree, or a
+commit.
 """
 
 # ruff: noqa: T201  # what it prints is what it is for
@@ -23,7 +23,7 @@ USAGE_ERROR = 2
 
 
 def main(arguments: list[str]) -> int:
-    """Print a table, or JSON; returns the exit code."""
+    """Print a table or JSON; return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m tests.architecture", description=__doc__)
     parser.add_argument("--json", action="store_true", help="print JSON")
     parser.add_argument("commit", nargs="?", help="a commit instead of the working tree")

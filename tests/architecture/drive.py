@@ -1,8 +1,8 @@
-"""Runs the four walks in this process and prints which files of `app` they entered, as JSON.
+"""Run the four walks in this process and print which files of `app` they enter, as JSON.
 
-A script, not a module of the tests: `python -P drive.py ROUNDS`, run in the tree to look at and
-with PYTHONPATH there, so that one and the same file can drive any commit. Of the product it imports
-only `create_app`, `Settings` and `encode_batch`; all else goes through HTTP and the headset's
+A script, not a module of the tests: `python -P drive.py ROUNDS`, run in the tree to examine and
+with PYTHONPATH there, so that the same file can drive any commit. Of the product it imports only
+`create_app`, `Settings` and `encode_batch`; everything else goes through HTTP and the headset's
 socket.
 """
 
@@ -36,10 +36,10 @@ AGAIN = 0x20 | 0x80 | 0x200
 
 
 class Recorder:
-    """Notes the file of every function of `app` that is called while it is on, in every thread.
+    """Record the file of every function of `app` that is called, in every thread, while it is on.
 
-    A thread that calls some while nothing is asked of the server works by a timer, whatever is on
-    its way elsewhere: it is left out once `leave_out_timers` has seen it.
+    A thread that calls functions while the server gets no requests is driven by a timer: its calls
+    are left out after `leave_out_timers` has found it.
     """
 
     def __init__(self) -> None:
@@ -52,7 +52,7 @@ class Recorder:
         self._timers: set[int] = set()
 
     def profile(self, frame: FrameType, event: str, _: Any) -> None:
-        """For `sys.setprofile`."""
+        """Record a call; pass this to `sys.setprofile`."""
         code = frame.f_code
         if not self.on or event != "call" or not code.co_flags & CALLABLE:
             return
@@ -62,7 +62,7 @@ class Recorder:
 
     @contextmanager
     def recording(self) -> Iterator[None]:
-        """Be on during the block."""
+        """Record while the block runs."""
         self.on = True
         try:
             yield
@@ -70,20 +70,23 @@ class Recorder:
             self.on = False
 
     def leave_out_timers(self) -> None:
-        """Look at the idle server for a while."""
+        """Watch the idle server for a while to find its timer threads."""
         with self.recording():
             time.sleep(IDLE_S)
         self._timers = {thread for thread, _ in self._noted}
 
     def taken(self) -> list[str]:
-        """The files entered since the last time, in order; calls within one file are one entry."""
+        """Return the files entered since the last call, in order.
+
+        Calls within a file count once.
+        """
         noted, self._noted = self._noted, []
         files = [file for thread, file in noted if thread not in self._timers]
         return [file for file, before in zip(files, [None, *files], strict=False) if file != before]
 
 
 def _goes_on(frame: FrameType) -> bool:
-    """Whether this is a generator or coroutine that was entered before."""
+    """Return whether this is a generator or coroutine that was entered before."""
     if not frame.f_code.co_flags & AGAIN:
         return False
     resume = frame.f_code.co_code[frame.f_lasti + 1] if frame.f_lasti >= 0 else 0
@@ -91,7 +94,7 @@ def _goes_on(frame: FrameType) -> bool:
 
 
 class InThisProcess(concurrent.futures.ThreadPoolExecutor):
-    """A process pool's place taken by a thread, so that what is computed there is seen, too."""
+    """A thread in place of a process pool, so that its computations are recorded, too."""
 
     def __init__(self, max_workers: int = 1, **_: Any) -> None:
         super().__init__(max_workers)
@@ -105,33 +108,33 @@ class Lab:
         self.post("/api/login", json={"username": "admin", "password": PASSWORD})
 
     def post(self, path: str, **more: Any) -> Any:
-        """What the answer holds."""
+        """Send a POST request and return the decoded response."""
         return _json(self.client.post(path, **more))
 
     def get(self, path: str, **more: Any) -> Any:
-        """What the answer holds."""
+        """Send a GET request and return the decoded response."""
         return _json(self.client.get(path, **more))
 
     def join(self) -> Json:
-        """A new session."""
+        """Create a session."""
         view: Json = self.post(f"/api/studies/{STUDY}/sessions", json={})
         return view
 
     def command(self, view: Json, kind: str, **fields: Any) -> Json:
-        """Send a command; the session after it."""
+        """Send a command and return the session after it."""
         body = {"command_id": str(uuid.uuid4()), "expected_version": view["version"], "type": kind}
         after: Json = self.post(f"/api/sessions/{view['id']}/commands", json={**body, **fields})
         return after
 
     def at_step(self, key: str) -> Json:
-        """A new session at a step."""
+        """Create a session at a step."""
         view = self.command(self.join(), "start")
         while view["steps"][view["current"]["index"]]["key"] != key:
             view = self.command(view, "skip", reason="not in this walk")
         return view
 
     def stranger(self) -> Any:
-        """A client with cookies of its own, on the same event loop."""
+        """Return a client with cookies of its own, on the same event loop."""
         from fastapi.testclient import TestClient
 
         client = TestClient(self.client.app)
@@ -139,29 +142,29 @@ class Lab:
         return client
 
     def paired(self, view: Json, device: str) -> tuple[Any, Json]:
-        """A device's client and what pairing answered."""
+        """Return a device's client and the response to its pairing."""
         code = self.post(f"/api/sessions/{view['id']}/pairings", json={"device": device})["code"]
         client = self.stranger()
         return client, _json(client.post("/api/devices/pair", json={"code": code}))
 
 
 def frame_to_csv(lab: Lab, recorder: Recorder) -> None:
-    """A batch of nine frames from the socket to its acknowledgement, then to its rows of a CSV.
+    """Follow a batch of nine frames from the socket to its acknowledgement and its CSV rows.
 
-    Of the export only the work on the file that holds the frames is recorded.
+    Of the export only the work on the file that contains the frames is recorded.
     """
     view = lab.at_step("free_roam")
     _, device = lab.paired(view, "headset")
     offered = ["reembody.v1", f"bearer.{device['token']}"]
     with lab.client.websocket_connect("/api/vr/stream", subprotocols=offered) as socket:
-        # The shipped study of the commit may be moved by physics or not.
+        # The commit's shipped study may use a physics avatar or a delayed copy.
         avatars = ["delayed_copy", "physics"]
         hello = {"type": "hello", "protocol": 1, "client": "walk", "avatars": avatars}
         socket.send_text(json.dumps(hello))
         epoch = _heard(socket, "welcome")["epoch"]
         socket.send_bytes(_batch(epoch, 0))
         _acknowledged(socket, 9)
-        # The second: what is made once for a connection is there.
+        # The second batch: objects created once per connection exist by now.
         with recorder.recording():
             socket.send_bytes(_batch(epoch, 9))
             _acknowledged(socket, 18)
@@ -174,7 +177,7 @@ def frame_to_csv(lab: Lab, recorder: Recorder) -> None:
 
 
 def answer_to_score(lab: Lab, recorder: Recorder) -> None:
-    """A filled questionnaire from the tablet's request to its stored scores."""
+    """Follow a completed questionnaire from the tablet's request to its stored scores."""
     view = lab.at_step(FORM)
     tablet, _ = lab.paired(view, "tablet")
     form = _json(tablet.get("/api/tablet/state"))["administration"]
@@ -193,7 +196,7 @@ def answer_to_score(lab: Lab, recorder: Recorder) -> None:
 
 
 def command_to_event(lab: Lab, recorder: Recorder) -> None:
-    """The operator's `start` from the request to the event in the log, and back to the page."""
+    """Follow the operator's `start` from the request to the event log and back to the page."""
     view = lab.join()
     with recorder.recording():
         lab.command(view, "start")
@@ -203,8 +206,8 @@ def command_to_event(lab: Lab, recorder: Recorder) -> None:
 
 
 def capture_to_bvh(lab: Lab, recorder: Recorder) -> None:
-    """A BVH from its upload to the same movement on an avatar of 165 cm, as BVH."""
-    # Another file each time: nothing is found that was computed before.
+    """Follow a BVH file from its upload to the same movement on an avatar of 165 cm, as BVH."""
+    # A different file each time, so that no cached result is used.
     capture = _capture(frames=40 + secrets.randbelow(10_000) / 10_000)
     with recorder.recording():
         view = lab.post("/api/captures", params={"name": "walk.bvh"}, content=capture)
@@ -280,7 +283,7 @@ def _recorded_member(recorder: Recorder, folder: str) -> Iterator[None]:
 
 
 def _capture(*, frames: float) -> bytes:
-    """A standing body, 40 frames at 30 a second; the fraction moves it a little aside."""
+    """Return a standing body, 40 frames at 30 a second; the fraction moves it a little aside."""
     joints = {
         "Hips": (None, (0, 0, 0)),
         "Spine": ("Hips", (0, 10, 0)),
@@ -323,7 +326,7 @@ def _capture(*, frames: float) -> bytes:
 
 
 def main(rounds: int) -> None:
-    """Run each walk once so that all is loaded, then `rounds` times; print the files of each."""
+    """Run each walk once to load everything, then `rounds` times; print the files of each."""
     from fastapi.testclient import TestClient
     from pydantic import SecretStr
 

@@ -1,10 +1,10 @@
-"""Which file of a tree imports which, read from the sources: nothing is imported or run.
+"""Read from a tree's sources which file imports which, without importing or running anything.
 
-A graph names files by their path from the tree's root, and holds for each the files it imports.
-Every import counts, wherever it stands: at the top, inside a function, under TYPE_CHECKING, by its
-name in `import_module`, and TypeScript's `import type`. Naming a module is an import of that module
+A graph names files by their path from the tree's root, and contains for each the files it imports.
+Every import counts, wherever it is: at the top, inside a function, under TYPE_CHECKING, by its name
+in `import_module`, and TypeScript's `import type`. Naming a module is an import of that module
 alone: Python also runs the `__init__` of each package above it, but no line of the importing file
-depends on what those say. A name that is put together while the program runs is not followed.
+depends on those. A name that is assembled at run time is not followed.
 """
 
 import ast
@@ -27,12 +27,12 @@ FROM = re.compile(
 
 
 def python_files(root: Path) -> list[str]:
-    """Paths of `app/**/*.py`, sorted."""
+    """Return the paths of `app/**/*.py`, sorted."""
     return sorted(path.relative_to(root).as_posix() for path in (root / "app").rglob("*.py"))
 
 
 def typescript_files(root: Path) -> list[str]:
-    """Paths of `frontend/src/**/*.ts` and `.tsx` without tests, sorted."""
+    """Return the paths of `frontend/src/**/*.ts` and `.tsx` without tests, sorted."""
     found = (path.relative_to(root).as_posix() for path in (root / "frontend/src").rglob("*.ts*"))
     return sorted(
         path
@@ -42,7 +42,7 @@ def typescript_files(root: Path) -> list[str]:
 
 
 def python_imports(root: Path) -> Graph:
-    """The import graph of `app/**/*.py`.
+    """Return the import graph of `app/**/*.py`.
 
     `import package` is an import of its `__init__`, and so is `from package import name`, unless
     `name` is a submodule: then it is an import of the submodule.
@@ -58,7 +58,7 @@ def python_imports(root: Path) -> Graph:
 
 
 def typescript_imports(root: Path) -> Graph:
-    """The import graph of `frontend/src`: imports, re-exports and `import()`, types included."""
+    """Return the import graph of `frontend/src`: imports, re-exports and `import()`, with types."""
     files = typescript_files(root)
     known = set(files)
     graph: Graph = {}
@@ -72,7 +72,7 @@ def typescript_imports(root: Path) -> Graph:
 
 
 def circles(graph: Mapping[str, set[str]]) -> list[list[str]]:
-    """The strongly connected components of more than one node, the largest first.
+    """Return the strongly connected components of more than one node, the largest first.
 
     Each is a set of files of which every one reaches every other along imports. Kosaraju: searching
     the graph in the order in which the searches of its reverse finish, last first, each search
@@ -93,7 +93,7 @@ def circles(graph: Mapping[str, set[str]]) -> list[list[str]]:
 
 
 def _search(start: str, graph: Mapping[str, set[str]], seen: set[str]) -> list[str]:
-    """What was not seen and can be reached, depth first, in the order in which it is finished."""
+    """Return the unseen nodes that can be reached, depth first, in the order they are finished."""
     if start in seen:
         return []
     seen.add(start)
@@ -132,7 +132,7 @@ def _named(tree: ast.AST, file: str, modules: Mapping[str, str]) -> Iterator[str
 
 
 def _loaded_by_name(call: ast.Call) -> str:
-    """The module that `import_module` or `__import__` is given by name; empty for other calls."""
+    """Return the module named in `import_module` or `__import__`; empty for other calls."""
     function = call.func.attr if isinstance(call.func, ast.Attribute) else None
     function = call.func.id if isinstance(call.func, ast.Name) else function
     match call.args:

@@ -66,13 +66,13 @@ class Layering:
 
     @property
     def floors(self) -> int:
-        """How many there are."""
+        """Return the number of floors."""
         return max(self.floor_of.values(), default=0)
 
 
 @dataclass(frozen=True)
 class Measure:
-    """The five figures and what they are made of; the module docstring defines them."""
+    """The five figures and their parts; the module docstring defines them."""
 
     circles: int
     upward_imports: int
@@ -93,7 +93,7 @@ class Measure:
     code_lines_typescript: int
 
     def as_json(self) -> dict[str, Any]:
-        """For `json.dumps`."""
+        """Return the figures for `json.dumps`."""
         return asdict(self)
 
 
@@ -138,23 +138,23 @@ def measure(root: Path) -> Measure:
 
 
 def texts(root: Path, files: Iterable[str]) -> dict[str, str]:
-    """The contents of files, by path."""
+    """Return the contents of files, by path."""
     return {file: (root / file).read_text(encoding="utf-8") for file in files}
 
 
 def small(contents: Iterable[str]) -> int:
-    """How many have at most `SMALL_LINES` physical lines."""
+    """Return how many texts have at most `SMALL_LINES` physical lines."""
     return sum(len(text.splitlines()) <= SMALL_LINES for text in contents)
 
 
 def rooms(graph: Graph, folder: str, *also: str) -> set[str]:
-    """The rooms directly below a folder, its own `__init__.py` left out, and other folders."""
+    """Return the rooms directly below a folder, without its `__init__.py`, and other folders."""
     found = {room_of(file, folder, also) for file in graph}
     return {room for room in found if room is not None}
 
 
 def room_of(file: str, folder: str, also: Sequence[str] = ()) -> str | None:
-    """The folder or file below `folder` to which a file belongs, or None outside."""
+    """Return the folder or file below `folder` to which a file belongs, or None outside."""
     for other in also:
         if file.startswith(f"{other}/"):
             return other
@@ -167,7 +167,7 @@ def room_of(file: str, folder: str, also: Sequence[str] = ()) -> str | None:
 
 
 def arrows(graph: Graph, folder: str, also: Sequence[str] = ()) -> Arrows:
-    """(room, imported room): the pairs of files between them."""
+    """Return the pairs of files that import each other across rooms, by (room, imported room)."""
     found: Arrows = {}
     for file, targets in sorted(graph.items()):
         here = room_of(file, folder, also)
@@ -179,7 +179,7 @@ def arrows(graph: Graph, folder: str, also: Sequence[str] = ()) -> Arrows:
 
 
 def layering(between: Arrows, every: Iterable[str]) -> Layering:
-    """Put rooms on floors.
+    """Assign rooms to floors.
 
     The best order is sought by moving one room at a time to its best place until no move helps
     (sifting), unless the order of wings and platform is given. It starts with the rooms that import
@@ -205,13 +205,13 @@ def layering(between: Arrows, every: Iterable[str]) -> Layering:
 
 
 def sifted(order: list[str], between: Arrows) -> list[str]:
-    """The order from which no move of one room leaves fewer arrows, or imports, running up."""
+    """Return an order in which no move of one room leaves fewer arrows, or imports, running up."""
     better = True
     while better:
         better = False
         for room in sorted(order):
             rest = [other for other in order if other != room]
-            # Where the room stands first, all that import it run up; each room that it then lets
+            # If the room is first, all arrows to it run up; each room that it then
             # pass changes sides.
             costs = [(0, 0)]
             for other in rest:
@@ -231,7 +231,7 @@ def sifted(order: list[str], between: Arrows) -> list[str]:
 
 
 def python_code_lines(text: str) -> int:
-    """How many lines of a Python file hold code."""
+    """Return how many lines of a Python file contain code."""
     strings = {
         line
         for node in ast.walk(ast.parse(text))
@@ -249,7 +249,7 @@ def python_code_lines(text: str) -> int:
 
 
 def typescript_code_lines(text: str) -> int:
-    """How many lines of a TypeScript file hold code; comments that begin a line are left out."""
+    """Return how many lines of a TypeScript file contain code, without whole-line comments."""
     code, inside = 0, False
     for line in map(str.strip, text.splitlines()):
         if inside or line.startswith(("/*", "{/*")):
@@ -269,7 +269,7 @@ TABLE: Mapping[str, str] = {
 
 
 def table(result: Measure) -> str:
-    """The figures with their meaning, and their parts."""
+    """Return the figures with their meaning, and their parts, as text."""
     lines = [f"{getattr(result, key):>8}  {key:<15} {words}" for key, words in TABLE.items()]
     members = [f"{len(circle)} files from {circle[0]}" for circle in result.circle_members]
     inside = [

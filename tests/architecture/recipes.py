@@ -51,11 +51,11 @@ Json = Any
 
 
 class RecipeError(Exception):
-    """A recipe no longer fits the tree; the message says which file it misses, or which text."""
+    """Raised if a recipe no longer fits the tree; names the missing file or text."""
 
 
 class Count(TypedDict):
-    """How many files a recipe edits and adds, tests and generated files apart."""
+    """How many files a recipe edits and adds, without tests and generated files."""
 
     recipe: str
     edited: int
@@ -64,28 +64,28 @@ class Count(TypedDict):
 
 @dataclass(frozen=True)
 class Edit:
-    """`old` becomes `new`. The file must hold `old` exactly once."""
+    """Replace `old` by `new`. The file must contain `old` exactly once."""
 
     old: str
     new: str
 
 
 def after(old: str, added: str) -> Edit:
-    """The edit that writes `added` directly after `old`."""
+    """Return the edit that inserts `added` directly after `old`."""
     return Edit(old, old + added)
 
 
 def before(old: str, added: str) -> Edit:
-    """The edit that writes `added` directly before `old`."""
+    """Return the edit that inserts `added` directly before `old`."""
     return Edit(old, added + old)
 
 
 @dataclass(frozen=True)
 class Recipe:
-    """What a newcomer does by hand: `added` files with their text, and edits of `edited` ones.
+    """The changes that a newcomer makes by hand: `added` files, and edits of `edited` ones.
 
-    All paths are relative to the repository, with slashes. `heading`: of the recipe's section in
-    CONTRIBUTING.md, without its number signs.
+    All paths are relative to the repository, with slashes. `heading`: that of the recipe's section
+    in CONTRIBUTING.md, without its number signs.
     """
 
     name: str
@@ -112,7 +112,7 @@ class Recipe:
         return tree
 
     def unnamed_files(self) -> set[str]:
-        """Files of this recipe that its section of CONTRIBUTING.md does not name.
+        """Return the files of this recipe that its section of CONTRIBUTING.md does not name.
 
         A file is named by its path, an added one also by that of its folder.
         """
@@ -150,23 +150,23 @@ class Recipe:
 
 @dataclass(frozen=True)
 class Tree:
-    """A copy of the tree below `root`, with a recipe applied."""
+    """A copy of the repository's tree below `root`, with a recipe applied."""
 
     recipe: str
     root: Path
 
     def read(self, path: str) -> str:
-        """The text of a file of the copy."""
+        """Return the text of a file of the copy."""
         return (self.root / path).read_text(encoding="utf-8")
 
     def write(self, path: str, text: str) -> None:
-        """Write a file of the copy, and the folders to it."""
+        """Write a file of the copy, creating its folders."""
         target = self.root / path
         target.parent.mkdir(parents=True, exist_ok=True)
         target.write_text(text, encoding="utf-8")
 
     def evaluate(self, script: str) -> Json:
-        """What `script` assigns to `answer`, run as Python in a process that imports the copy.
+        """Return what `script` assigns to `answer`, run in a Python process that imports the copy.
 
         Raises RecipeError with the process's output if it fails.
         """
@@ -180,11 +180,11 @@ class Tree:
         return json.loads(lines[-1])
 
     def run_module(self, module: str, *arguments: str) -> str:
-        """What `python -m module arguments` prints, run inside the copy."""
+        """Return the output of `python -m module arguments`, run inside the copy."""
         return self._run("-m", module, *arguments)
 
     def changed(self) -> tuple[set[str], set[str]]:
-        """The files that were edited and those that were added, generated ones included."""
+        """Return the edited and the added files, including generated ones."""
         edited, added = set[str](), set[str]()
         for file in self.root.rglob("*"):
             if not file.is_file() or "__pycache__" in file.parts:
@@ -198,7 +198,7 @@ class Tree:
         return edited, added
 
     def count(self) -> Count:
-        """How many files differ from the tree that stands here, tests and generated ones apart."""
+        """Count the files that differ from the repository's, without tests and generated ones."""
         edited, added = (sum(not is_apart(path) for path in some) for some in self.changed())
         return {"recipe": self.recipe, "edited": edited, "added": added}
 
@@ -221,13 +221,13 @@ class Tree:
 
 
 def is_apart(path: str) -> bool:
-    """Whether a file does not count: a test, or one that a command generates."""
+    """Return whether a file does not count: a test, or one that a command generates."""
     name = path.rpartition("/")[2]
     return path.startswith("tests/") or ".test." in name or path in GENERATED
 
 
 def section_of(heading: str) -> str:
-    """The section of CONTRIBUTING.md under this heading, up to the next heading.
+    """Return the section of CONTRIBUTING.md under this heading, up to the next heading.
 
     Raises RecipeError if there is none.
     """

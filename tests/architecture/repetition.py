@@ -1,9 +1,9 @@
-"""Lines that stand twice: what a tree repeats to the letter.
+"""Find duplicate lines in a tree.
 
-A line counts when it holds more than punctuation, is not a comment, and is not part of an import.
-Where `RUN` such lines in a row, white space folded, occur at another place too, in the same file or
-a later one, the later lines are *repeated*. Lines of the same shape with other names are not: a
-table of similar entries is data. Generated files and frozen migrations are left out.
+A line counts when it contains more than punctuation, is not a comment, and is not part of an
+import. If `RUN` such lines in a row, white space folded, occur at another place too, in the same
+file or a later one, the later lines are *repeated*. Lines of the same shape with other names are
+not: a table of similar entries is data. Generated files and frozen migrations are left out.
 """
 
 import ast
@@ -25,7 +25,7 @@ Line = tuple[int, str]
 
 @dataclass(frozen=True)
 class Repeat:
-    """A run of `lines` significant lines at `again` that stood at `first` before."""
+    """A run of `lines` significant lines at `again` that occurred at `first` before."""
 
     first: str
     again: str
@@ -33,12 +33,12 @@ class Repeat:
 
 
 def repeats(root: Path) -> list[Repeat]:
-    """Every maximal run that an earlier place of the tree at `root` holds, longest first."""
+    """Return every maximal run that occurred earlier in the tree at `root`, longest first."""
     return found({name: significant(name, text) for name, text in sources(root)})
 
 
 def sources(root: Path) -> Iterator[tuple[str, str]]:
-    """Path from `root` and text of every file that counts, in the order of the paths."""
+    """Yield path from `root` and text of every file that counts, in the order of the paths."""
     for folder in FOLDERS:
         for path in sorted((root / folder).rglob("*")):
             name = path.relative_to(root)
@@ -48,7 +48,7 @@ def sources(root: Path) -> Iterator[tuple[str, str]]:
 
 
 def significant(name: str, text: str) -> list[Line]:
-    """Number and folded text of the lines of a file that count."""
+    """Return number and folded text of the lines of a file that count."""
     imported = _import_lines(name, text)
     folded = ((n, " ".join(line.split())) for n, line in enumerate(text.splitlines(), 1))
     return [
@@ -59,7 +59,7 @@ def significant(name: str, text: str) -> list[Line]:
 
 
 def found(files: Mapping[str, list[Line]]) -> list[Repeat]:
-    """The repeats among significant lines by file, longest first; each line is in at most one."""
+    """Return the repeats among lines by file, longest first; each line is in at most one."""
     seen: dict[tuple[str, ...], tuple[str, int]] = {}
     result = []
     for name, lines in files.items():
@@ -80,7 +80,7 @@ def found(files: Mapping[str, list[Line]]) -> list[Repeat]:
 
 
 def _common(before: list[Line], start: int, lines: list[Line], at: int) -> int:
-    """How many lines from `start` and from `at` are equal, without overlapping themselves."""
+    """Return how many lines from `start` and from `at` are equal, without overlap."""
     length = 0
     while (
         start + length < len(before)
@@ -97,7 +97,7 @@ def _place(name: str, lines: list[Line], at: int) -> str:
 
 
 def _import_lines(name: str, text: str) -> set[int]:
-    """Numbers of the lines that belong to an import."""
+    """Return the numbers of the lines that belong to an import."""
     if name.endswith(".py"):
         return {
             number

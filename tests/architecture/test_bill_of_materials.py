@@ -1,4 +1,4 @@
-"""The bill of materials in the documents is that of the lock files."""
+"""Tests that the bill of materials in the docs matches the lock files."""
 
 import json
 
@@ -6,13 +6,13 @@ from tests.support.bill_of_materials import REPOSITORY, bill_of_materials
 
 
 def test_the_bill_is_that_of_the_locks() -> None:
-    """Made anew, it is the same; so no dependency goes unlisted."""
+    """The stored bill equals a newly generated one, so every dependency is listed."""
     stored = json.loads((REPOSITORY / "docs" / "sbom.cdx.json").read_text(encoding="utf-8"))
     assert stored == bill_of_materials()
 
 
 def test_every_part_can_be_named_and_is_needed() -> None:
-    """Each has a version and an identifier, and somebody depends on it."""
+    """Each part has a version and an identifier, and something depends on it."""
     bill = bill_of_materials()
     refs = {part["bom-ref"] for part in bill["components"]}
     needed = {ref for entry in bill["dependencies"] for ref in entry["dependsOn"]}

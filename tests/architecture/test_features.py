@@ -1,4 +1,4 @@
-"""Features know little of each other: outsiders import what a feature's face offers."""
+"""Tests that features are imported from outside only through the names they export."""
 
 import ast
 from collections.abc import Iterator
@@ -11,7 +11,7 @@ ROUTERS = "app/api/router.py"
 
 
 def imports() -> Iterator[tuple[str, str, list[str]]]:
-    """(importing file, module, its names) for every import of a feature from outside of it."""
+    """Yield (importing file, module, its names) for every import of a feature from outside."""
     for file in sorted((REPOSITORY / "app").glob("**/*.py")):
         path = file.relative_to(REPOSITORY).as_posix()
         own = ".".join(path.split("/")[:4])
@@ -30,7 +30,7 @@ def imports() -> Iterator[tuple[str, str, list[str]]]:
 
 @cache
 def offered(module: str) -> frozenset[str]:
-    """The names in the `__all__` of a package; none where it is no face."""
+    """Return the names in the `__all__` of a package; none if it has none."""
     face = REPOSITORY / module.replace(".", "/") / "__init__.py"
     if not face.is_file():
         return frozenset()
@@ -41,10 +41,10 @@ def offered(module: str) -> frozenset[str]:
 
 
 def test_outsiders_import_what_a_face_offers() -> None:
-    """A package's `__all__` is its face; whatever lies deeper is the feature's own business.
+    """Code outside a feature imports only names in its package's `__all__`.
 
-    A feature's heavy half is a package with a face of its own. Only the routers are taken from
-    where they are made.
+    A feature's heavy half is a package with an `__all__` of its own. Only routers are imported from
+    the modules that create them.
     """
     strangers = [
         f"{file} imports {module}: {', '.join(names) or 'as a whole'}"

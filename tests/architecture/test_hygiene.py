@@ -1,4 +1,4 @@
-"""What must never be committed: this machine, a registry's address, other people's data."""
+"""Tests that no machine path, registry address or other people's data are committed."""
 
 import hashlib
 import json
@@ -11,13 +11,13 @@ import pytest
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 LOCK_FILES = ("requirements.lock", "requirements-dev.lock")
-# Spelled in parts, so that this file does not find itself.
+# Spelled in parts, so that this file does not match itself.
 PRIVATE_FOLDERS = re.compile("/(?:" + "|".join(["root", "work", r"home/\w+", r"Users/\w+"]) + ")/")
 
 
 @pytest.fixture(scope="module")
 def committed() -> list[Path]:
-    """Every file that git would take: asked of `.gitignore` itself, since git may be missing."""
+    """Provide every file that git would track, by the rules of `.gitignore`: git may be missing."""
     rules = (REPOSITORY / ".gitignore").read_text().splitlines()
     ignored = pathspec.GitIgnoreSpec.from_lines([*rules, ".git"])
     return sorted(_not_ignored(REPOSITORY, ignored))
@@ -34,7 +34,7 @@ def _not_ignored(folder: Path, ignored: pathspec.GitIgnoreSpec) -> Iterator[Path
 
 
 def test_no_file_names_a_folder_of_somebodys_machine(committed: list[Path]) -> None:
-    """Paths below a home or work folder exist on one machine only."""
+    """No file contains a path below a home or work folder, which exists on one machine only."""
     found = [
         f"{path.relative_to(REPOSITORY)}:{number}: {line.strip()[:100]}"
         for path in committed
@@ -46,13 +46,13 @@ def test_no_file_names_a_folder_of_somebodys_machine(committed: list[Path]) -> N
 
 @pytest.mark.parametrize("name", LOCK_FILES)
 def test_python_lock_files_name_no_host(name: str) -> None:
-    """Whoever installs decides which index to ask; the hashes decide what is accepted."""
+    """Python lock files name no host: whoever installs chooses the index, and hashes protect it."""
     lines = (REPOSITORY / name).read_text().splitlines()
     assert [line for line in lines if "://" in line or "index-url" in line] == []
 
 
 def test_node_lock_files_name_no_host(committed: list[Path]) -> None:
-    """The same for npm: an integrity for each package, an address for none."""
+    """Node lock files contain an integrity hash for each package and an address for none."""
     locks = [path for path in committed if path.name == "package-lock.json"]
     assert locks, "no package-lock.json was found: this test looks in the wrong place"
     for lock in locks:
@@ -64,19 +64,19 @@ def test_node_lock_files_name_no_host(committed: list[Path]) -> None:
 
 
 def test_there_is_no_second_lock_file(committed: list[Path]) -> None:
-    """uv's own lock file names registry hosts, and two locks disagree sooner or later."""
+    """There is no uv.lock: it names registry hosts, and two locks would disagree sometime."""
     assert [path for path in committed if path.name == "uv.lock"] == []
 
 
 def test_no_shared_data_was_copied_in(committed: list[Path], shared_data: Path) -> None:
-    """Data that tests compare with belong to their publishers: not even under another name."""
+    """No file equals one of the published data, even under another name."""
     theirs = {_digest(path): path for path in shared_data.rglob("*") if _is_content(path)}
     copies = [(path, theirs[_digest(path)]) for path in committed if _digest(path) in theirs]
     assert copies == []
 
 
 def _is_content(path: Path) -> bool:
-    """Empty files and single lines are equal by chance."""
+    """Return whether a file is long enough not to be equal by chance."""
     return path.is_file() and path.stat().st_size > 200
 
 

@@ -1,4 +1,4 @@
-"""The migrations and the models describe the same tables."""
+"""Tests that the migrations and the models describe the same tables."""
 
 from alembic import command
 
@@ -6,5 +6,5 @@ from app.schema_revisions import alembic_config
 
 
 def test_migrations_lead_to_the_models(database_url: str) -> None:
-    """Alembic finds nothing left to do on a migrated database, on either engine."""
+    """Alembic finds no difference to the models on a migrated database, on either engine."""
     command.check(alembic_config(database_url))

@@ -1,4 +1,4 @@
-"""What is packed is all that runs: pages, migrations and study configs included."""
+"""Tests that packages contain everything that runs: pages, migrations and study configs."""
 
 import shutil
 import subprocess
@@ -13,7 +13,7 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 
 @pytest.fixture(scope="module")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with the sdist, and the wheel made from the sdist."""
+    """Provide a folder with the sdist, and the wheel built from the sdist."""
     folder = tmp_path_factory.mktemp("built")
     uv = shutil.which("uv") or str(REPOSITORY / ".uv" / "bin" / "uv")
     result = subprocess.run(
@@ -28,7 +28,7 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def wheel(built: Path) -> set[str]:
-    """The names of the wheel's files."""
+    """Provide the names of the wheel's files."""
     (path,) = built.glob("*.whl")
     with zipfile.ZipFile(path) as archive:
         return set(archive.namelist())
@@ -36,14 +36,14 @@ def wheel(built: Path) -> set[str]:
 
 @pytest.fixture(scope="module")
 def sdist(built: Path) -> set[str]:
-    """The names of the sdist's files, without its top folder."""
+    """Provide the names of the sdist's files, without its top folder."""
     (path,) = built.glob("*.tar.gz")
     with tarfile.open(path) as archive:
         return {member.name.partition("/")[2] for member in archive if member.isfile()}
 
 
 def files(folder: str, pattern: str) -> set[str]:
-    """The repository's files below `folder`, relative to it."""
+    """Return the repository's files below `folder`, relative to it."""
     top = REPOSITORY / folder
     return {path.relative_to(top).as_posix() for path in top.rglob(pattern) if path.is_file()}
 
@@ -61,20 +61,20 @@ def test_the_wheel_brings_the_built_pages(wheel: set[str]) -> None:
 def test_the_wheel_brings_what_is_read_but_not_imported(
     wheel: set[str], folder: str, pattern: str
 ) -> None:
-    """Migrations and study configs are where `app.resources` looks in an installation."""
+    """The wheel contains migrations and study configs where `app.resources` looks for them."""
     wanted = {f"app/_bundled/{folder}/{name}" for name in files(folder, pattern)}
     assert wanted
     assert wanted - wheel == set()
 
 
 def test_the_sdist_brings_the_pages_and_their_sources(sdist: set[str]) -> None:
-    """From an sdist the pages can be rebuilt, and need not be."""
+    """The sdist contains the built pages and everything to rebuild them."""
     assert {
         "frontend/package.json",
         "frontend/package-lock.json",
         "hatch_build.py",
         "build_pages.py",
-        # The console's help pages are made of them.
+        # The console's help pages are built from them.
         "docs/README.md",
         "docs/images/tour.png",
         "study_configs/README.md",
@@ -83,7 +83,7 @@ def test_the_sdist_brings_the_pages_and_their_sources(sdist: set[str]) -> None:
 
 
 def test_no_package_brings_what_is_made_on_the_spot(wheel: set[str], sdist: set[str]) -> None:
-    """Environments, caches, installed packages and studies' data stay where they are."""
+    """No package contains environments, caches, installed packages or studies' data."""
     made = (".venv/", ".uv/", ".cache/", "data/", ".ci/")
     assert [name for name in wheel | sdist if name.startswith(made)] == []
     assert [name for name in wheel | sdist if "node_modules" in name] == []

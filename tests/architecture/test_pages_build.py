@@ -1,6 +1,6 @@
-"""The pages are built when their sources changed, and only then.
+"""Tests that the pages are built only when their sources have changed.
 
-A frontend of one script and no packages stands in for the real one; npm and Node are the real ones.
+A frontend of one script and no packages replaces the real one; npm and Node are the real ones.
 """
 
 import importlib.util
@@ -22,7 +22,7 @@ fs.appendFileSync("../builds", "x");
 
 @pytest.fixture
 def builder() -> ModuleType:
-    """The module `build_pages`, which is no part of any package."""
+    """Provide the module `build_pages`, which is not part of any package."""
     spec = importlib.util.spec_from_file_location("build_pages", REPOSITORY / "build_pages.py")
     assert spec
     assert spec.loader
@@ -33,7 +33,7 @@ def builder() -> ModuleType:
 
 @pytest.fixture
 def frontend(tmp_path: Path) -> Path:
-    """A frontend whose build copies one page and counts how often it ran."""
+    """Provide a frontend whose build copies one page and counts its runs."""
     folder = tmp_path / "frontend"
     (folder / "src").mkdir(parents=True)
     package = {"name": "stand-in", "version": "1.0.0", "scripts": {"build": "node build.js"}}
@@ -54,7 +54,7 @@ def build(builder: ModuleType, frontend: Path) -> tuple[str, int]:
 
 
 def test_unchanged_sources_are_not_built_again(builder: ModuleType, frontend: Path) -> None:
-    """Equal hash, nothing to do; another hash, another build."""
+    """Unchanged sources are not rebuilt, changed ones are."""
     assert build(builder, frontend) == ("first", 1)
     assert build(builder, frontend) == ("first", 1)
     (frontend / "src" / "page.html").write_text("second")
@@ -62,7 +62,7 @@ def test_unchanged_sources_are_not_built_again(builder: ModuleType, frontend: Pa
 
 
 def test_products_are_not_sources(builder: ModuleType, frontend: Path) -> None:
-    """Installed packages, hidden files and compilers' notes leave the hash as it is."""
+    """Installed packages, hidden files and compiler output do not change the sources' hash."""
     before = builder.sources_hash(frontend)
     for name in ("node_modules/a/index.js", "dist/page.js", ".vite/x", "tsconfig.tsbuildinfo"):
         (frontend / name).parent.mkdir(parents=True, exist_ok=True)
@@ -71,7 +71,7 @@ def test_products_are_not_sources(builder: ModuleType, frontend: Path) -> None:
 
 
 def test_names_and_contents_both_count(builder: ModuleType, frontend: Path) -> None:
-    """A renamed file, and text moved from one file into the next, are changes."""
+    """A renamed file, and text moved from one file into the next, change the hash."""
     hashes = {builder.sources_hash(frontend)}
     (frontend / "src" / "page.html").rename(frontend / "src" / "pagf.html")
     hashes.add(builder.sources_hash(frontend))
@@ -85,7 +85,7 @@ def test_names_and_contents_both_count(builder: ModuleType, frontend: Path) -> N
 
 
 def test_the_docs_are_sources(builder: ModuleType, frontend: Path) -> None:
-    """The console shows them as its help; records of decisions are not among it."""
+    """Changed docs change the hash, as the console shows them as help; decision records do not."""
     hashes = {builder.sources_hash(frontend)}
     (frontend.parent / "docs" / "decisions").mkdir(parents=True)
     (frontend.parent / "docs" / "decisions" / "why.md").write_text("because")
@@ -100,7 +100,7 @@ def test_the_docs_are_sources(builder: ModuleType, frontend: Path) -> None:
 def test_a_failed_build_shows_npms_words_and_is_not_done(
     builder: ModuleType, frontend: Path
 ) -> None:
-    """The message carries what npm said, and the next call tries again."""
+    """A failed build shows npm's output and is retried by the next call."""
     build(builder, frontend)
     (frontend / "build.js").write_text("throw new Error('the page is unhappy')")
     for _ in range(2):
@@ -111,7 +111,7 @@ def test_a_failed_build_shows_npms_words_and_is_not_done(
 def test_what_checks_the_pages_is_not_installed_to_build_them(
     builder: ModuleType, frontend: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The build's packages are a part of all, so all are enough for it and not the reverse."""
+    """The build installs only its own packages, and an installation of all packages suffices."""
     asked: list[tuple[str, ...]] = []
     monkeypatch.setattr(builder, "npm", lambda _, *arguments: asked.append(arguments))
     for every_package in (False, False, True, True, False):
@@ -122,6 +122,6 @@ def test_what_checks_the_pages_is_not_installed_to_build_them(
 def test_a_tree_without_a_frontend_has_nothing_to_build(
     builder: ModuleType, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """It is said, not raised: the server runs without pages."""
+    """A tree without a frontend is reported, not an error: the server runs without pages."""
     builder.build_pages(tmp_path / "frontend", tmp_path / "static")
     assert "no pages to build" in capsys.readouterr().err

@@ -1,4 +1,4 @@
-"""The recipes of CONTRIBUTING.md work, and touch no more files than they may."""
+"""Tests that the recipes of CONTRIBUTING.md work and touch no more files than allowed."""
 
 import dataclasses
 from pathlib import Path
@@ -50,7 +50,7 @@ answer = [last.key, last.spec.screen, visit_time(study, known).total > 0]
 
 
 def test_a_questionnaire_is_one_file(tmp_path: Path) -> None:
-    """Studies can ask it and the command line scores it, with nothing else edited."""
+    """A questionnaire added as one file can be used by studies and scored by the command line."""
     tree = QUESTIONNAIRE.apply(tmp_path)
     tree.write("answers.csv", "person,warm,restless\n1,7,1\n2,4,6\n")
     scored = tree.run_module("app.cli", "score", "answers.csv", "--instrument", "comfort")
@@ -169,7 +169,7 @@ answer = {
 
 
 def test_a_task_phase_edits_at_most_five_files(tmp_path: Path) -> None:
-    """A study can use it, the session runs it, tables describe it, and the pages have its words."""
+    """A new task phase edits at most five files and works in studies, sessions and pages."""
     tree = PHASE.apply(tmp_path, TARGET)
     assert tree.evaluate(SESSION_WITH_PHASE) == {
         "step": ["baseline.hand", "Grundmessung mit der Hand", "hand", 60.0, "baseline_hand"],
@@ -202,12 +202,12 @@ EXAMPLE = Recipe(
 
 @pytest.fixture(scope="module")
 def example(tmp_path_factory: pytest.TempPathFactory) -> Tree:
-    """The tree with the example in it."""
+    """Provide the tree with the example applied."""
     return EXAMPLE.apply(tmp_path_factory.mktemp("example"))
 
 
 def test_a_recipe_is_applied_to_a_copy_and_counted(example: Tree) -> None:
-    """The copy runs with the edit in it, and one edited and one added file are counted."""
+    """A recipe's copy runs with its edits, and one edited and one added file are counted."""
     assert example.evaluate("import app.clock; answer = app.clock.WORD") == "new"
     assert example.changed() == (
         {"app/clock.py", "docs/data-dictionary.md"},
@@ -218,7 +218,7 @@ def test_a_recipe_is_applied_to_a_copy_and_counted(example: Tree) -> None:
 
 
 def test_a_recipe_that_no_longer_fits_says_where(tmp_path: Path) -> None:
-    """A text to edit that is not in its file once, and a file to add that is there, are errors."""
+    """A recipe fails if a text to edit is not unique or a file to add exists."""
     strays = {"app/clock.py": [Edit("import timing", "import time")]}
     with pytest.raises(RecipeError, match=r"'import timing' in app/clock.py, which has it 0 times"):
         dataclasses.replace(EXAMPLE, edited=strays).apply(tmp_path)
@@ -227,6 +227,6 @@ def test_a_recipe_that_no_longer_fits_says_where(tmp_path: Path) -> None:
 
 
 def test_a_script_that_fails_shows_its_output(example: Tree) -> None:
-    """What the copy's process wrote is in the error, so that the recipe can be mended."""
+    """The error of a failed script contains the output of the copy's process."""
     with pytest.raises(RecipeError, match=r"No module named 'app.absent'"):
         example.evaluate("import app.absent; answer = 1")

@@ -1,4 +1,4 @@
-"""What a new entry of a registry enables, and how few files it touches.
+"""Tests of what a new entry of each registry enables, and how few files it touches.
 
 Every recipe follows its section of CONTRIBUTING.md in a copy of the tree.
 """
@@ -287,7 +287,7 @@ ALARM = Recipe(
 
 
 def _applied(recipe: Recipe, folder: Path, *, edited: int) -> Tree:
-    """The copy with a recipe in it, which keeps to its limit and to its section."""
+    """Return the copy with a recipe applied, which must keep to its limit and its section."""
     tree = recipe.apply(folder, PAGE_TEXTS)
     count = tree.count()
     assert count["edited"] <= edited, count
@@ -296,18 +296,18 @@ def _applied(recipe: Recipe, folder: Path, *, edited: int) -> Tree:
 
 
 def _enabled(tree: Tree, script: str) -> Json:
-    """The script's answer, in a process that has also written what pages know of registries."""
+    """Return the script's answer, after writing the pages' texts of the registries."""
     return tree.evaluate(f"from app.cli.page_texts import main\nmain()\n{script}")
 
 
 def _texts(tree: Tree, *lines: str) -> None:
-    """What the pages get holds each of these lines."""
+    """Assert that the pages' generated texts contain each of these lines."""
     table = tree.read(PAGE_TEXTS)
     assert [line for line in lines if f"  {line},\n" not in table] == []
 
 
 def test_a_preflight_check_takes_one_edited_file(tmp_path: Path) -> None:
-    """The interface lists it, the session's list makes it, and the cockpit has its words."""
+    """A new pre-flight check edits one file, and interface, session and cockpit have it."""
     tree = _applied(PREFLIGHT_CHECK, tmp_path, edited=1)
     answer = _enabled(
         tree,
@@ -334,7 +334,7 @@ answer = [_line(check, found).model_dump(), Check.model_json_schema()["propertie
 
 
 def test_a_statistical_test_takes_at_most_three_edited_files(tmp_path: Path) -> None:
-    """A study can declare it, a study's measure gets it, and the command prints it."""
+    """A new statistical test edits at most three files, and studies and the command can use it."""
     tree = _applied(STATISTICAL_TEST, tmp_path, edited=3)
     tree.write(
         "table.csv",
@@ -376,7 +376,7 @@ answer = {
 
 
 def test_an_export_format_takes_at_most_two_edited_files(tmp_path: Path) -> None:
-    """The interface and the command offer it, and its button has a name."""
+    """A new export format edits at most two files, and interface, command and page offer it."""
     tree = _applied(EXPORT_FORMAT, tmp_path, edited=2)
     answer = _enabled(
         tree,
@@ -404,7 +404,10 @@ answer = [list(get_args(ExportFormat)), pathlib.Path("still.tsv").read_text().sp
 
 
 def test_a_capture_format_takes_at_most_two_edited_files(tmp_path: Path) -> None:
-    """Its files are recognised and read, refusals name it, and the page lists it."""
+    """A new capture format edits at most two files, and its files are recognised and read.
+
+    Rejections name it, and the page lists it.
+    """
     tree = _applied(CAPTURE_FORMAT, tmp_path, edited=2)
     answer = _enabled(
         tree,
@@ -426,7 +429,7 @@ answer = [read.format, read.motion.frame_count, refused]
 def test_a_column_of_the_participants_page_takes_at_most_three_edited_files(
     tmp_path: Path,
 ) -> None:
-    """The interface has the value, and the table of columns one entry more."""
+    """A new column of the participants page edits at most three files."""
     tree = _applied(PARTICIPANTS_COLUMN, tmp_path, edited=3)
     answer = _enabled(
         tree,
@@ -444,7 +447,7 @@ answer = _participant(row, [], [], None).visits
 
 
 def test_a_figure_takes_one_edited_file(tmp_path: Path) -> None:
-    """The dashboard draws it with its group."""
+    """A new figure edits one file, and the dashboard draws it with its group."""
     tree = _applied(FIGURE, tmp_path, edited=1)
     answer = tree.evaluate("""
 import pandas as pd
@@ -458,7 +461,7 @@ answer = [drawing.key, drawing.group, drawing.n]
 
 
 def test_an_alarm_takes_two_edited_files(tmp_path: Path) -> None:
-    """Its watch raises it with its severity, and the cockpit has its words."""
+    """A new alarm edits two files, is raised with its severity, and has texts in the cockpit."""
     tree = _applied(ALARM, tmp_path, edited=2)
     answer = _enabled(
         tree,

@@ -1,4 +1,4 @@
-"""Code is written once: a limit for the tree, and the counter's own laws."""
+"""Tests that the tree has few duplicate lines, and that they are counted correctly."""
 
 from tests.architecture.repetition import found, repeats, significant
 from tests.architecture.trees import REPOSITORY
@@ -9,28 +9,28 @@ RUN = "".join(f"step_{n}()\n" for n in range(8))
 
 
 def test_the_tree_repeats_few_lines() -> None:
-    """The lines that stand twice to the letter stay below the limit; the message lists them."""
+    """The number of duplicate lines in the tree is below the limit; the message lists them."""
     all_of_them = repeats(REPOSITORY)
     lines = "\n".join(f"{one.lines} lines: {one.first} ~ {one.again}" for one in all_of_them)
     assert sum(one.lines for one in all_of_them) <= MOST_LINES, lines
 
 
 def test_a_run_that_stands_twice_is_found_once() -> None:
-    """Both places are named, and the whole run counts rather than each window of it."""
+    """A run that occurs twice is found once, with both places and its whole length."""
     files = {name: significant(name, text) for name, text in (("a.py", RUN), ("b.py", "x\n" + RUN))}
     (one,) = found(files)
     assert (one.first, one.again, one.lines) == ("a.py:1", "b.py:2", 8)
 
 
 def test_a_file_can_repeat_itself() -> None:
-    """The second place in the same file counts, and a loop of equal lines does not overlap."""
+    """A repetition within one file counts, and equal lines in a row do not overlap themselves."""
     (one,) = found({"a.py": significant("a.py", RUN + "between()\n" + RUN)})
     assert (one.first, one.again, one.lines) == ("a.py:1", "a.py:10", 8)
     assert found({"a.py": significant("a.py", "same()\n" * 7)}) == []
 
 
 def test_what_everybody_writes_does_not_count() -> None:
-    """Imports, comments, blank lines and lone punctuation make no run, in either language."""
+    """Imports, comments, blank lines and lone punctuation do not count, in either language."""
     python = "from a import (\n    b,\n    c,\n    d,\n    e,\n    f,\n    g,\n)\n# note\n\n"
     assert significant("a.py", python) == []
     typescript = 'import {\n  a,\n  b,\n} from "./c";\n// note\n/** doc */\n});\n\n'
@@ -38,6 +38,6 @@ def test_what_everybody_writes_does_not_count() -> None:
 
 
 def test_other_names_are_other_lines() -> None:
-    """Entries of the same shape are data; only equal text is a repetition."""
+    """Lines of the same shape with other names are not a repetition."""
     other = RUN.replace("step", "stage")
     assert found({"a.py": significant("a.py", RUN), "b.py": significant("b.py", other)}) == []

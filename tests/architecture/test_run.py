@@ -1,6 +1,6 @@
-"""`./run` sets up what changed and nothing else, from anywhere, and says so on standard error.
+"""Tests that `./run` sets up only what changed, from any folder, and reports on standard error.
 
-A stand-in for uv records what it is asked to do, so these tests need no network and no time.
+A substitute for uv records its calls, so these tests need no network and little time.
 """
 
 import os
@@ -44,7 +44,8 @@ if sys.argv[1] == "venv":
 elif "--target" in sys.argv:
     pathlib.Path(sys.argv[sys.argv.index("--target") + 1]).mkdir(parents=True)
 """
-# What is installed: it sets up for real, makes pages that are only a stamp, and else says its name.
+# The installed program: it sets up for real, builds pages that are only a stamp, and otherwise
+# prints its name.
 PROGRAM = """#!/bin/sh
 case "$*" in
     *set_up.py*) exec {python} "$@" ;;
@@ -62,7 +63,7 @@ esac
 
 @dataclass(frozen=True)
 class Checkout:
-    """A folder with `run` and its inputs, and a stand-in for uv."""
+    """A folder with `run` and its inputs, and a substitute for uv."""
 
     folder: Path
     tools: Path
@@ -80,7 +81,7 @@ class Checkout:
         )
 
     def calls(self) -> list[str]:
-        """What was done since the last call of this, in no order: two sides share the time."""
+        """Return the steps taken since the last call, sorted: two sides run in parallel."""
         log = self.tools / "calls.log"
         calls = log.read_text().splitlines() if log.exists() else []
         log.unlink(missing_ok=True)
@@ -95,7 +96,7 @@ def append(path: Path, line: str) -> None:
 
 @pytest.fixture
 def checkout(tmp_path: Path) -> Checkout:
-    """A fresh checkout below a folder with spaces and quotes in its name."""
+    """Provide a fresh checkout below a folder with spaces and quotes in its name."""
     folder = tmp_path / "it's a folder"
     tools = tmp_path / "tools"
     folder.mkdir()
@@ -109,7 +110,7 @@ def checkout(tmp_path: Path) -> Checkout:
     python = shlex.quote(sys.executable)
     (tools / "program").write_text(PROGRAM.format(python=python, folder=shlex.quote(str(tools))))
     uv = tools / "uv"
-    # Not a Python script itself: this Python's own path may hold spaces.
+    # Not a Python script itself: this Python's own path may contain spaces.
     uv.write_text(
         f'#!/bin/sh\nexec {shlex.quote(sys.executable)} {shlex.quote(str(script))} "$@"\n'
     )
@@ -118,7 +119,7 @@ def checkout(tmp_path: Path) -> Checkout:
 
 
 def test_the_second_call_sets_nothing_up(checkout: Checkout) -> None:
-    """Setting up is idempotent: what is current is left alone, silently."""
+    """A second call of `./run` sets nothing up and prints nothing about it."""
     first = checkout.run("score")
     assert first.returncode == 0, first.stderr
     assert checkout.calls() == [
@@ -137,7 +138,7 @@ def test_the_second_call_sets_nothing_up(checkout: Checkout) -> None:
 def test_standard_output_and_folder_are_the_commands_own(
     checkout: Checkout, tmp_path: Path
 ) -> None:
-    """Arguments pass through unchanged, relative paths stay relative to the caller."""
+    """Arguments pass through `./run` unchanged, and relative paths stay relative to the caller."""
     result = checkout.run("score", "two words", "*", cwd=tmp_path)
     assert result.stdout == f"reembody|{tmp_path}|score|two words|*|"
     assert "installing the Python packages of requirements.lock" in result.stderr
@@ -159,7 +160,7 @@ def test_options_alone_belong_to_serving(checkout: Checkout) -> None:
 
 
 def test_tests_get_the_development_requirements(checkout: Checkout) -> None:
-    """They contain all that running needs, so running afterwards installs nothing."""
+    """The development requirements suffice for running, so `./run` then installs nothing."""
     assert checkout.run("test", "-k", "x").stdout.endswith("|-m|tests.support.stages|-k|x|")
     assert checkout.run("check", "app").stdout.endswith("|-m|tests.support.checking|app|")
     assert "pip install requirements-dev.lock" in checkout.calls()
@@ -177,7 +178,7 @@ def test_tests_get_the_development_requirements(checkout: Checkout) -> None:
     ],
 )
 def test_a_changed_input_repeats_its_own_step(checkout: Checkout, changed: str, call: str) -> None:
-    """Each step knows what it depends on."""
+    """A changed input repeats only the set-up step that depends on it."""
     checkout.run("score")
     checkout.calls()
     path = checkout.folder / changed
@@ -188,7 +189,7 @@ def test_a_changed_input_repeats_its_own_step(checkout: Checkout, changed: str, 
 
 
 def test_the_side_that_fails_is_heard_and_ends_the_other(checkout: Checkout) -> None:
-    """Pages that cannot be built do not wait for Python's packages; both are done again."""
+    """If the pages cannot be built, the installation of packages is ended; both are repeated."""
     (checkout.tools / "unhappy").touch()
     (checkout.tools / "endless").touch()
     failed = checkout.run("score")
@@ -203,7 +204,7 @@ def test_the_side_that_fails_is_heard_and_ends_the_other(checkout: Checkout) -> 
 
 
 def test_an_interrupted_step_is_repeated(checkout: Checkout) -> None:
-    """A failure ends the call with uv's words, runs nothing, and is not taken for done."""
+    """A failed set-up step ends `./run` with uv's output and is repeated by the next call."""
     checkout.run("score")
     append(checkout.folder / "requirements.lock", "# changed")
     (checkout.tools / "broken").touch()
@@ -218,7 +219,7 @@ def test_an_interrupted_step_is_repeated(checkout: Checkout) -> None:
 
 
 def test_a_moved_folder_is_installed_again(checkout: Checkout, tmp_path: Path) -> None:
-    """The project is installed by reference to its folder, which must follow it."""
+    """After the folder was moved, the project is installed again, by its new path."""
     checkout.run("score")
     checkout.calls()
     moved = Checkout(checkout.folder.rename(tmp_path / "elsewhere"), checkout.tools)
@@ -227,7 +228,7 @@ def test_a_moved_folder_is_installed_again(checkout: Checkout, tmp_path: Path) -
 
 
 def test_without_uv_and_pip_the_remedy_is_named(checkout: Checkout) -> None:
-    """A machine with neither learns what to install."""
+    """On a machine without uv and pip, the message says what to install."""
     python = checkout.tools / "python3"
     python.write_text("#!/bin/sh\nexit 1\n")
     python.chmod(0o755)

@@ -1,4 +1,4 @@
-"""The house keeps its shape: limits for the tree that stands here, and the measure's own laws."""
+"""Tests that the structure of the tree stays within its limits and is measured correctly."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -26,13 +26,13 @@ Build = Callable[[dict[str, str]], Path]
 
 @pytest.fixture(scope="module")
 def present() -> Measure:
-    """The tree that stands here."""
+    """Provide the measures of the current tree."""
     return measure(REPOSITORY)
 
 
 @pytest.fixture
 def build(tmp_path: Path) -> Build:
-    """Makes a small tree of files with these contents."""
+    """Provide a function that creates a small tree of files with these contents."""
 
     def built(files: dict[str, str]) -> Path:
         for folder in ("app/features", "frontend/src"):
@@ -47,12 +47,12 @@ def build(tmp_path: Path) -> Build:
 
 @pytest.mark.parametrize("figure", LIMITS)
 def test_the_house_stays_within_its_limits(present: Measure, figure: str) -> None:
-    """Neither circles nor imports that run back up nor floors nor fragments become more."""
+    """The numbers of circles, upward imports, floors and small files stay within their limits."""
     assert getattr(present, figure) <= LIMITS[figure]
 
 
 def test_every_import_counts_wherever_it_stands(build: Build) -> None:
-    """A lazy import, one for types alone, a relative one and a whole package close circles."""
+    """Lazy, type-only, relative and whole-package imports close circles."""
     root = build(
         {
             "app/__init__.py": "",
@@ -71,7 +71,7 @@ def test_every_import_counts_wherever_it_stands(build: Build) -> None:
 
 
 def test_a_module_that_is_loaded_by_name_is_imported(build: Build) -> None:
-    """`import_module` and `__import__` close circles like any import, and count as running up."""
+    """`import_module` and `__import__` close circles and run up like any import."""
     root = build(
         {
             "app/a.py": "from importlib import import_module\nimport_module('app.b')\n",
@@ -85,7 +85,7 @@ def test_a_module_that_is_loaded_by_name_is_imported(build: Build) -> None:
 
 
 def test_a_module_is_not_its_package(build: Build) -> None:
-    """To import a module is no import of the `__init__` above it, nor is a name in a text."""
+    """Importing a module is no import of the `__init__` above it, nor is a name in a text."""
     root = build(
         {
             "app/room/__init__.py": "from app.room.inner import X",
@@ -97,7 +97,10 @@ def test_a_module_is_not_its_package(build: Build) -> None:
 
 
 def test_pages_import_each_other_in_every_form(build: Build) -> None:
-    """Types, re-exports, `import()`, aliases and folders count; tests and comments do not."""
+    """Types, re-exports, `import()`, aliases and folders count as imports of the pages.
+
+    Tests and comments do not.
+    """
     root = build(
         {
             "frontend/src/a.ts": 'import type {\n  B,\n} from "./b";\nimport "./style.css";',
@@ -129,7 +132,7 @@ def test_circles_are_found_whole_and_apart() -> None:
 
 
 def test_rooms_without_a_loop_stand_above_all_that_they_import() -> None:
-    """Nothing runs back up, and a room stands no higher than it must."""
+    """Rooms without a loop are one floor above the highest room they import."""
     pair = [("file", "file")]
     found = layering({("a", "b"): pair, ("b", "c"): pair, ("a", "c"): pair}, "abcd")
     assert found.upward == []
@@ -137,7 +140,7 @@ def test_rooms_without_a_loop_stand_above_all_that_they_import() -> None:
 
 
 def test_the_lighter_arrow_of_a_loop_runs_back_up() -> None:
-    """Of two arrows the one with fewer imports is set aside, and its imports are named."""
+    """In a loop, the arrow with fewer imports runs up, and its imports are listed."""
     down = [("a/1", "b/1"), ("a/2", "b/1")]
     found = layering({("a", "b"): down, ("b", "a"): [("b/2", "a/1")]}, "ab")
     assert found.upward == [("b/2", "a/1")]
@@ -145,7 +148,10 @@ def test_the_lighter_arrow_of_a_loop_runs_back_up() -> None:
 
 
 def test_wings_are_looked_into_and_stand_on_the_platform(build: Build) -> None:
-    """The platform is a floor; what it imports of a wing, and a loop in a wing, run back up."""
+    """Imports from the platform to a wing, and loops within a wing, run up.
+
+    The platform is a floor.
+    """
     root = build(
         {
             "app/features/__init__.py": "",
@@ -174,7 +180,7 @@ def test_wings_are_looked_into_and_stand_on_the_platform(build: Build) -> None:
 
 
 def test_small_files_are_counted_by_physical_lines(build: Build) -> None:
-    """Fifty lines are small, fifty-one are not, and a package's face is no fragment."""
+    """A file of 50 physical lines is small, one of 51 is not, and `__init__.py` does not count."""
     root = build(
         {
             "app/__init__.py": "",
@@ -190,7 +196,7 @@ def test_small_files_are_counted_by_physical_lines(build: Build) -> None:
 
 
 def test_code_is_neither_blank_nor_comment_nor_docstring() -> None:
-    """A text that is a value is code, line by line; one that stands alone is not."""
+    """Blank lines, comments and docstrings are not code; a multi-line string value is."""
     python = '"""A.\n\nB."""\n\nx = """a\n\n  b"""  # why\n# why\n"""Of x."""\ny = [\n    x,\n]\n'
     assert python_lines(python) == 5
     typescript = "/** A.\n * B.\n */\nconst a = 1; // why\n\n// why\n{/* in JSX */}\nconst b = a;\n"

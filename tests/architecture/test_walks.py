@@ -1,4 +1,4 @@
-"""The four walks arrive on the tree that stands here, and are counted as they say."""
+"""Tests that the four walks complete on the current tree and are counted as defined."""
 
 import sys
 import types
@@ -13,13 +13,13 @@ OURS = Path(app.__file__).parent
 
 
 def test_a_way_there_and_back_is_one_return() -> None:
-    """What a loop repeats counts once; files are named in the order of their first entry."""
+    """Repeated steps of a walk count once, and files are in the order of their first entry."""
     assert walk_of(["a", "b", "c", "b", "c", "b", "a"]) == Walk(["a", "b", "c"], 4, 2)
     assert walk_of([]) == Walk([], 0, 0)
 
 
 def test_functions_are_noted_when_they_are_called() -> None:
-    """A generator once, not each time it goes on; other people's code not at all."""
+    """A call of an `app` function is recorded once, also if a generator is resumed."""
     recorder = Recorder()
     spaces = [_module("one", OURS / "one.py"), _module("two", OURS / "two.py")]
     spaces.append(_module("three", OURS.parent / "three.py"))
@@ -44,7 +44,7 @@ def _module(name: str, file: Path) -> dict[str, types.FunctionType]:
 
 
 def test_the_four_walks_arrive() -> None:
-    """A frame in its CSV, an answer at its score, a command in the log, a capture as BVH."""
+    """All four walks complete: frame to CSV, answer to score, command to event, capture to BVH."""
     walked = walks(REPOSITORY, rounds=1)
     assert set(walked) == {"frame to CSV", "answer to score", "command to event", "capture to BVH"}
     for name, walk in walked.items():

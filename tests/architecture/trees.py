@@ -1,4 +1,4 @@
-"""The tree to look at: the one that stands here, or that of a commit in a temporary folder."""
+"""Provide the tree to examine: the working tree, or that of a commit in a temporary folder."""
 
 import io
 import subprocess
@@ -13,7 +13,7 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 
 @contextmanager
 def tree_of(commit: str | None) -> Iterator[Path]:
-    """The root of a commit's files, or of the working tree if None."""
+    """Yield the root of a commit's files, or of the working tree if None."""
     if commit is None:
         yield REPOSITORY
         return

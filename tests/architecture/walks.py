@@ -1,21 +1,26 @@
-"""Four pieces of data on their way through the running code, and how often they come back.
+"""Follow four pieces of data through the running code and count how often they return to a file.
 
 `drive.py` sends each through the real application in one process (TestClient, real SQLite) and
-notes whose functions are called. What counts, before and after any change alike:
+records whose functions are called. The counting rules:
 
 - an entry is a call of a function, method, lambda or comprehension that is defined in a file of
-  `app`, in any thread: nothing of `app` is left out, neither guards nor clock nor database.
-  Calls from one file into itself are one entry; a coroutine that goes on is no new call.
-- computing that the server gives to a process of its own happens in a thread here.
-- threads that also call functions of `app` while nobody asks anything of the server are left out:
-  they work by a timer.
+  `app`, in any thread: nothing of `app` is left out, neither guards nor clock nor database. Calls
+  within one file are one entry; a resumed coroutine is not a new call.
+
+- computations that the server gives to a separate process run in a thread here.
+
+- threads that also call functions of `app` while the server gets no requests are left out: they are
+  driven by a timer.
+
 - files: how many different ones are entered, in the order of their first entry.
-- steps: the different pairs (file, next file). What a loop repeats counts once, so that figures do
-  not depend on how long the data are.
+
+- steps: the different pairs (file, next file). A repetition in a loop counts once, so that figures
+  do not depend on the length of the data.
+
 - returns: the steps that lead to a file which was entered, and left, before.
 
-The first run, which loads and keeps things, is not counted. Of the next three the one with the
-fewest steps is: threads take turns as they like.
+The first run, which loads and caches things, is not counted. Of the next three the one with the
+fewest steps is: the order of threads varies.
 """
 
 import json
@@ -35,14 +40,14 @@ ROUNDS = 3
 
 @dataclass(frozen=True)
 class Walk:
-    """The files one piece of data entered, in order, and its steps between them."""
+    """The files that one piece of data entered, in order, and its steps between them."""
 
     files: list[str]
     steps: int
     returns: int
 
     def as_json(self) -> dict[str, Any]:
-        """For `json.dumps`."""
+        """Return the walk for `json.dumps`."""
         return {"count": len(self.files), "steps": self.steps, "returns": self.returns} | {
             "files": self.files
         }
@@ -64,7 +69,7 @@ def walk_of(entered: Sequence[str]) -> Walk:
 
 
 def walks(root: Path, rounds: int = ROUNDS) -> dict[str, Walk]:
-    """Each walk through the tree at `root`, by name."""
+    """Run each walk through the tree at `root` and return them by name."""
     environment = {
         name: value for name, value in os.environ.items() if not name.startswith("REEMBODY_")
     }
@@ -83,7 +88,7 @@ def walks(root: Path, rounds: int = ROUNDS) -> dict[str, Walk]:
 
 
 def written(walked: dict[str, Walk]) -> str:
-    """The walks as docs/architecture.md shows them: files in order, those of a folder together."""
+    """Format the walks as docs/architecture.md shows them: files in order, grouped by folder."""
     parts = []
     for name, walk in walked.items():
         way = []

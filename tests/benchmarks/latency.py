@@ -94,7 +94,7 @@ def _trial(run: StreamPair, latency_s: float) -> Trial:
 
 
 def rival(run: StreamPair) -> float:
-    """The usual way: low-pass, correlate velocities, a parabola through the peak; s."""
+    """Return the latency (s) by velocity correlation with a parabolic peak, the usual method."""
     begin_s, end_s = float(run.actual_times_s.min()), float(run.actual_times_s.max())
     grid_s = np.arange(begin_s, end_s, 1.0 / RATE_HZ)
     target = _velocities(run.target_times_s, run.target_rotations, grid_s)

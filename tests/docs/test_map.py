@@ -34,7 +34,7 @@ def test_every_decision_is_on_the_list_of_decisions() -> None:
 
 
 def test_no_link_leads_nowhere() -> None:
-    """Every relative link names a file of the repository, every anchor a heading of its page."""
+    """Every relative link names a file of the repository, and every anchor an existing heading."""
     anchors = {page.path: page.anchors for page in pages()}
     broken = []
     for page in pages():

@@ -136,7 +136,7 @@ def test_a_walk_is_brought_in_and_moves_in_space(
 def test_another_unit_reads_the_file_again(
     server: LiveServer, console: Page, walk: dict[str, Any]
 ) -> None:
-    """What was guessed stands out; a chosen unit changes the size of the body at once."""
+    """A guessed unit is marked, and choosing another one changes the size of the body."""
     open_capture(console, server, walk)
     panel = console.get_by_label("How the file was read", exact=True)
     expect(panel.get_by_text("guessed", exact=True)).to_be_visible()
@@ -167,7 +167,7 @@ def test_a_joint_map_is_changed_undone_and_saved(
     walk: dict[str, Any],
     page_watch: PageWatch,
 ) -> None:
-    """A joint that plays two parts is refused beside it; who saved meanwhile is told."""
+    """A joint mapped to two parts is rejected, and undo and a conflict on saving work."""
     page_watch.allow(r"status of 409")
     open_capture(console, server, walk, "joints")
     hand = console.get_by_role("combobox", name="Left hand")

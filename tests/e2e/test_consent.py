@@ -133,7 +133,7 @@ def test_whoever_cannot_draw_signs_by_keyboard(
 def test_a_sheet_of_paper_is_recorded_by_the_experimenter(
     pages: tuple[Experimenter, Participant],
 ) -> None:
-    """Where it is and why; the participant's tablet goes on to the first form."""
+    """A paper consent is recorded with its place and reason, and the tablet continues."""
     experimenter, participant = pages
     console = experimenter.page
     experimenter.press("Signed on paper")

@@ -64,7 +64,7 @@ def test_help_is_found_read_and_searched_with_the_keyboard(
 def test_the_help_menu_leads_there_and_speaks_german(
     running_server: LiveServer, page_factory: Callable[..., Page]
 ) -> None:
-    """What is around the pages is German; that they are in English is said."""
+    """The help menu opens the English help pages, with German controls and a note."""
     page = page_factory((1280, 800))
     experimenter = Experimenter(page, running_server.url)
     experimenter.log_in()

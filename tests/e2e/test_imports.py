@@ -24,7 +24,7 @@ def test_a_file_is_mapped_checked_and_taken_in(
     screenshot: Callable[[Page, str], object],
     tmp_path: Path,
 ) -> None:
-    """A word without a number stops it; with the number it goes in, and is marked as imported."""
+    """A file with a word instead of a number is imported only after the number is given."""
     file = tmp_path / "answers.csv"
     file.write_text(FILE, encoding="utf-8")
     page = page_factory()

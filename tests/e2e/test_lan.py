@@ -69,7 +69,7 @@ def test_with_the_certificate_the_lab_works_over_https_and_wss(
     lan: LanServer, trusting: ContextFactory, page_watch: PageWatch
 ) -> None:
     """With the certificate, signing in, pairing a tablet and a headset's socket work over TLS."""
-    page_watch.allow(r"status of 401 .*/api/tablet/state")  # a tablet asks before it is paired
+    page_watch.allow(r"status of 401 .*/api/tablet/state")  # sent before pairing
     operator = Experimenter(trusting().new_page(), lan.secure_url)
     operator.log_in()
     assert operator.page.evaluate("window.isSecureContext") is True

@@ -91,7 +91,7 @@ def test_the_tablet_is_accessible(
     screenshot: Callable[[Page, str], object],
     size: tuple[int, int],
 ) -> None:
-    """Pairing, consent, a form: nothing serious, in both orientations, and in German."""
+    """Pairing, consent and a form have no serious violation, in both orientations and languages."""
     page_watch.allow(r"status of 401")
     console = Experimenter(page_factory((1280, 800), "dark"), running_server.url)
     tablet = Participant(page_factory(size), running_server.url)

@@ -56,7 +56,10 @@ def room(
 def test_a_refusal_stops_everything_until_the_session_is_ended(
     room: Room, axe: Callable[[Page], list[str]], screenshot: Callable[[Page, str], object]
 ) -> None:
-    """An alarm at once; no agreement beside it, also after a reload; the reason stands there."""
+    """A refusal raises an alarm and hides the agreement, also after a reload.
+
+    The session is held until it is ended with a reason.
+    """
     console, tablet = room.console, room.tablet
     room.refuses()
     expect(console.get_by_role("alert").first).to_contain_text("Consent refused")

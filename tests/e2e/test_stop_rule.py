@@ -85,7 +85,7 @@ def test_the_session_is_held_until_the_experimenter_decides(
 def test_ending_is_the_first_thing_offered(
     pages: tuple[Experimenter, Participant, str],
 ) -> None:
-    """The session ends with the reason, and the tablet thanks."""
+    """A held session can be ended for the stop rule, and the tablet says thank you."""
     experimenter, participant, _ = pages
     console = experimenter.page
     participant.fill_in({"sickness": "20"})

@@ -1,4 +1,4 @@
-"""One rehearsal on each database, performed once for all tests of this folder."""
+"""Provide one rehearsal on each database, performed once for all tests of this folder."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -33,10 +33,10 @@ PERFORMED = [
 
 @pytest.fixture(scope="module", params=PERFORMED)
 def performed(request: pytest.FixtureRequest) -> Performed:
-    """A finished rehearsal at high speed, on each database; phases are short but in the long form.
+    """Provide a finished rehearsal at high speed, on each database, with short phases.
 
-    Another seed each: what holds does so whatever the participant does. On PostgreSQL phases are
-    too brief for a task with the foot, unless in the long form.
+    Each has another seed: the tests must pass whatever the participant does. On PostgreSQL phases
+    are too brief for a task with the foot, except in the long form.
     """
     long = request.config.getoption("--long")
     brief, short = (LONGER, LONGER) if long else (BRIEF, SHORT)
@@ -53,7 +53,7 @@ def performed(request: pytest.FixtureRequest) -> Performed:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Whoever asks first waits for the whole rehearsal, on a busy machine for minutes."""
+    """Extend the timeout: the first test waits for the whole rehearsal, perhaps for minutes."""
     for item in items:
         if "performed" in getattr(item, "fixturenames", ()):
             item.add_marker(pytest.mark.timeout(900))
@@ -61,7 +61,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.fixture
 def db(performed: Performed) -> Iterator[Session]:
-    """The record of the rehearsal."""
+    """Provide a database session on the rehearsal's record."""
     database = open_database(performed.database_url)
     try:
         with database.reading() as session:
@@ -71,7 +71,7 @@ def db(performed: Performed) -> Iterator[Session]:
 
 
 def _kept_postgres() -> str:
-    """A database that lasts as long as the run: every process reads the same record."""
+    """Return a database that lasts as long as the run: every process reads the same record."""
     cluster = postgres.migrated_cluster()
     with once("rehearsal-database") as mark:
         if mark:

@@ -1,8 +1,8 @@
-"""The oracle: what the headset's side knows it sent, against what the database gives back.
+"""Compare what the headset's side sent with what the database returns.
 
-The ledger is a journal that never forgets: the digest of every frame by (stream, epoch, seq), every
-report, and how far the server acknowledged each stream. Whatever was acknowledged must be stored,
-nothing may be stored twice or altered, and a stream may not have holes.
+The ledger is a journal that keeps everything: the digest of every frame by (stream, epoch, seq),
+every report, and how far the server acknowledged each stream. All acknowledged data must be stored,
+nothing may be duplicated or altered, and a stream may not have holes.
 """
 
 import hashlib
@@ -28,14 +28,14 @@ Key = tuple[str, int]
 
 @dataclass
 class LedgerJournal(Journal):
-    """A journal that also remembers. `sent[key][seq]` is the digest of a frame, or a report."""
+    """A journal that keeps everything. `sent[key][seq]` is the digest of a frame, or a report."""
 
     sent: dict[Key, list[str]] = field(default_factory=dict)
     acked: dict[Key, int] = field(default_factory=dict)
     active_s: dict[Key, list[tuple[int, int, float]]] = field(default_factory=dict)
 
     def add(self, entry: Entry) -> None:
-        """Keep a message; its seqs must follow those before."""
+        """Add a message; its seqs must follow the previous ones."""
         key = (entry.stream, entry.epoch)
         told = self.sent.setdefault(key, [])
         if isinstance(entry.message, bytes):
@@ -55,14 +55,14 @@ class LedgerJournal(Journal):
         super().add(entry)
 
     def acknowledge(self, positions: "Sequence[tuple[str, int, int]]") -> None:  # type: ignore[override]  # a wider argument
-        """Take note of what the server promised."""
+        """Record the positions that the server acknowledged."""
         known = list(positions)
         for stream, epoch, next_seq in known:
             self.acked[stream, epoch] = max(next_seq, self.acked.get((stream, epoch), 0))
         super().acknowledge(known)
 
     def acknowledged_active_s(self, phase_id: int) -> float:
-        """The greatest active time of a phase that the server promised to have."""
+        """Return the greatest active time of a phase that the server acknowledged."""
         return max(
             (
                 active_s
@@ -74,7 +74,7 @@ class LedgerJournal(Journal):
         )
 
     def used_active_s(self, phase_id: int) -> float:
-        """The greatest active time of a phase that the headset ever told."""
+        """Return the greatest active time of a phase that the headset reported."""
         return max(
             (
                 active_s
@@ -92,7 +92,7 @@ class LedgerJournal(Journal):
 
 
 def load_ledger(path: Path) -> LedgerJournal:
-    """A ledger that another process saved: what was sent and acknowledged."""
+    """Load what another process's ledger saved as sent and acknowledged."""
     ledger = LedgerJournal()
     for stream, epoch, told, acked in json.loads(path.read_text()):
         ledger.sent[stream, epoch] = told
@@ -106,7 +106,7 @@ def digests(
     values: NDArray[np.float32],
     phase_id: int,
 ) -> list[str]:
-    """One digest a frame over every bit of it, and the phase it belongs to."""
+    """Return one digest per frame over all its bits, and the phase it belongs to."""
     return [
         hashlib.blake2b(
             times_s[at].tobytes() + flags[at].tobytes() + values[at].tobytes(),
@@ -135,7 +135,7 @@ class Reconciliation:
 
     @property
     def sound(self) -> bool:
-        """Whether the record keeps its promise."""
+        """Return whether nothing is lost, altered, duplicated or missing."""
         return not (self.lost or self.altered or self.duplicated or self.holes)
 
 
@@ -179,7 +179,7 @@ def _stored_reports(db: Session, session_id: str, epoch: int) -> tuple[dict[int,
 def _stored_frames(
     db: Session, session_id: str, stream: str, epoch: int
 ) -> tuple[dict[int, str], int]:
-    """Digests by seq as readers see them, and how many frames the tables hold."""
+    """Return digests by seq as readers see them, and the number of frames in the tables."""
     stored: dict[int, str] = {}
     for phase_id, frames in iter_frames(db, session_id, stream, epoch):
         told = digests(frames.times_s, frames.flags, frames.values, phase_id)

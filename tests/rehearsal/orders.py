@@ -1,4 +1,4 @@
-"""A headset's surroundings without a network: orders by hand, and a server that is a few lines."""
+"""Simulate a headset's server without a network: manual phase orders and a minimal server."""
 
 from dataclasses import dataclass, field
 from typing import Any
@@ -13,7 +13,7 @@ FRAME_S = 1 / 90
 
 
 def order(**changes: Any) -> PhaseOrder:
-    """An order for one second of free movement, after half a second, before a fifth of freeze."""
+    """Return an order for 1 s of free movement, with 0.5 s of preparation and 0.2 s of freeze."""
     usual = PhaseOrder(
         phase_id=1,
         kind="free_roam",
@@ -33,14 +33,14 @@ def order(**changes: Any) -> PhaseOrder:
 
 @dataclass
 class Timeline:
-    """A run drawn frame by frame at 90 Hz; `told` is every report in order."""
+    """A run drawn frame by frame at 90 Hz; `told` contains every report in order."""
 
     run: FreeRun
     t_s: float = 0.0
     told: list[ReportBody] = field(default_factory=list)
 
     def draw(self, seconds: float, *, connected: bool = True) -> None:
-        """Let time pass."""
+        """Draw frames for a given time."""
 
         end_s = self.t_s + seconds
         while self.t_s + FRAME_S < end_s + 1e-9:
@@ -48,18 +48,18 @@ class Timeline:
             self.told += self.run.frame(self.t_s, no_touches, connected=connected)
 
     def follow(self, told: PhaseOrder) -> None:
-        """The server's newest order."""
+        """Apply the server's newest order."""
         self.told += self.run.follow(told, self.t_s)
 
     @property
     def words(self) -> list[str]:
-        """What was reported, by name."""
+        """Return the names of the reports so far."""
         return [report.what for report in self.told if isinstance(report, PhaseReport)]
 
 
 @dataclass
 class InstantServer:
-    """Stands for a connected `TelemetryClient`: one phase, every report acted on at once."""
+    """A substitute for a connected `TelemetryClient`: one phase, reports applied immediately."""
 
     phase: PhaseOrder
     epoch: int = 1
@@ -71,7 +71,7 @@ class InstantServer:
 
     @property
     def state(self) -> HeadsetState:
-        """The state as the server would tell it."""
+        """Return the state as the server would send it."""
         return HeadsetState(
             version=len(self.reports),
             status=self.status,
@@ -84,14 +84,14 @@ class InstantServer:
         )
 
     async def send_batch(self, stream: StreamName, _seq_end: int, message: bytes) -> None:
-        """Keep the digests of the frames."""
+        """Store the digests of the frames."""
 
         batch = decode_batch(message)
         told = digests(batch.times_s, batch.flags, batch.values, batch.header.phase_id)
         self.digests += [f"{stream} {digest}" for digest in told]
 
     async def report(self, body: ReportBody) -> None:
-        """Move the phase on."""
+        """Apply a report to the phase."""
         self.reports.append(body)
         if not isinstance(body, PhaseReport):
             return
@@ -102,7 +102,7 @@ class InstantServer:
             self.status = "completed"
 
     async def at_most_waiting(self, _messages: int) -> None:
-        """Nothing ever waits."""
+        """Return immediately: nothing ever waits."""
 
     async def drained(self) -> None:
-        """Nothing ever waits."""
+        """Return immediately: nothing ever waits."""

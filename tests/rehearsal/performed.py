@@ -1,4 +1,4 @@
-"""A rehearsal that is performed once in a test run, and whose record any process may read."""
+"""Perform a rehearsal once in a test run; any process may read its record."""
 
 import asyncio
 import json
@@ -27,9 +27,9 @@ SUMMARIES_WITHIN_S = 60.0
 
 @dataclass(frozen=True)
 class Lengths:
-    """How long the phases of the shipped study are, in s of active time.
+    """The durations of the shipped study's phases, in s of active time.
 
-    `around_s` is how long a task is prepared, and frozen at its end.
+    `around_s` is the duration of a task's preparation, and of its freeze at the end.
     """
 
     roam_s: float
@@ -38,11 +38,11 @@ class Lengths:
 
     @property
     def key(self) -> str:
-        """Of the study with these lengths."""
+        """Return the key of the study with these durations."""
         return STUDY if self == SHIPPED else f"{STUDY}-{self.task_s:g}-s"
 
     def store(self, server: LiveServer) -> str:
-        """Store the study with these lengths; its key."""
+        """Store the study with these durations and return its key."""
         if self == SHIPPED:
             return STUDY
         text = edited(
@@ -68,7 +68,7 @@ BRIEF = Lengths(6.0, 10.0, 1.0)
 
 @dataclass(frozen=True)
 class Performed:
-    """What is left of a rehearsal: the record, and what its own side knows."""
+    """The results of a rehearsal: the stored record, and what its own side sent and reported."""
 
     lengths: Lengths
     database_url: str
@@ -79,7 +79,7 @@ class Performed:
 
     @property
     def session_id(self) -> str:
-        """The rehearsed session."""
+        """Return the id of the rehearsed session."""
         return str(self.report["session_id"])
 
 
@@ -90,7 +90,7 @@ def performed_once(
     environment: Mapping[str, str],
     lengths: Lengths = SHIPPED,
 ) -> Performed:
-    """Perform `plan` in the first process that asks; `database_url` None is the server's SQLite.
+    """Perform `plan` in the first process that needs it; `database_url` None is SQLite.
 
     The study of the plan is the shipped one, with phases of these `lengths`.
     """
@@ -129,7 +129,7 @@ async def _perform(plan: RehearsalPlan, server: LiveServer, ledger_file: Path) -
 
 
 def _wait_for_summaries(url: str, session_id: str) -> None:
-    """Joint errors are computed in the background once a phase has ended."""
+    """Wait for the joint errors, which are computed in the background after each phase."""
     database, give_up_s = open_database(url), time.monotonic() + SUMMARIES_WITHIN_S
     count = select(func.count(JointErrorRow.phase_id.distinct()))
     try:

@@ -1,4 +1,4 @@
-"""A rehearsal at high speed: the watch finds nothing wrong with it, and its phases are judged."""
+"""Tests that a rehearsal at high speed raises no alarms and that its phases are checked."""
 
 from sqlalchemy import select
 from sqlalchemy.orm import Session
@@ -12,13 +12,13 @@ sits down faster than anybody."""
 
 
 def test_sound_movement_raises_no_alarm(performed: Performed, db: Session) -> None:
-    """Twenty to forty times as fast as life."""
+    """Correct movement at 20 to 40 times real speed raises no alarm."""
     rows = db.scalars(select(AlarmRow).where(AlarmRow.session_id == performed.session_id))
     assert {row.message for row in rows if row.code not in TOLERATED} == set()
 
 
 def test_every_phase_is_judged_and_sound(performed: Performed, db: Session) -> None:
-    """90 frames a second over the whole active time, without a fault in either stream."""
+    """Every phase has 90 frames a second over its active time and no faults in either stream."""
     query = select(PhaseQuality).where(PhaseQuality.session_id == performed.session_id)
     rows = list(db.scalars(query))
     assert len(rows) == 2 * PHASES

@@ -1,4 +1,4 @@
-"""A blinded operator rehearses a study, from the command line against a server that runs."""
+"""Tests of rehearsals by a blinded operator, from the command line with a running server."""
 
 import json
 import threading
@@ -22,7 +22,7 @@ PHASES = TASKS + 1
 
 @pytest.fixture(scope="module")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveServer]:
-    """A server with the short study, blinded."""
+    """Provide a server with the short study, blinded."""
     with LiveServer(tmp_path_factory.mktemp("blinded")) as running:
         key = add_short_study(running)
         with running.client() as admin:
@@ -36,7 +36,7 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveServer]:
 
 
 def rehearse(server: LiveServer, *more: object) -> Result:
-    """As an operator does, whose login is the token of the command."""
+    """Run a rehearsal as an operator does, with the login's token."""
     with server.client() as client:
         credentials = {"username": "admin", "password": ADMIN_PASSWORD}
         client.post("/api/login", json=credentials).raise_for_status()
@@ -53,10 +53,11 @@ def rehearse(server: LiveServer, *more: object) -> Result:
 
 
 def test_a_blinded_operator_rehearses_a_repeated_phase_and_a_withdrawal(server: LiveServer) -> None:
-    """The first participant repeats a phase and withdraws in the next; the second completes.
+    """A blinded operator rehearses a repeated phase with a withdrawal, and a complete session.
 
-    The reports hide every latency. At this speed half of a phase takes less than a busy machine
-    needs to hear the operator: then the withdrawal comes right after it.
+    The first participant repeats a phase and withdraws in the next; the second completes. The
+    reports hide every latency. At this speed half of a phase takes less than a busy machine needs
+    to receive the operator's command: then the withdrawal comes right after it.
     """
     how = ("--participants", 2, "--redo", 1, "--withdraw-during", 2, "--json")
     result = rehearse(server, *how)
@@ -83,7 +84,7 @@ def test_a_blinded_operator_rehearses_a_repeated_phase_and_a_withdrawal(server: 
 
 
 def test_a_rehearsal_that_was_aborted_elsewhere_does_not_end_well(server: LiveServer) -> None:
-    """Its report says so, and so does the exit code."""
+    """A rehearsal that is aborted from a console reports that and exits with code 1."""
     aborting = threading.Thread(target=abort_what_runs, args=(server,))
     aborting.start()
     result = rehearse(server, "--json")
@@ -94,7 +95,7 @@ def test_a_rehearsal_that_was_aborted_elsewhere_does_not_end_well(server: LiveSe
 
 
 def abort_what_runs(server: LiveServer) -> None:
-    """From a console, as soon as a session of the study is under way."""
+    """Abort from a console, as soon as a session of the study is active."""
     give_up_s = time.monotonic() + WITHIN_S
     with server.client() as client:
         credentials = {"username": "admin", "password": ADMIN_PASSWORD}
@@ -132,7 +133,10 @@ def abort_what_runs(server: LiveServer) -> None:
 def test_what_makes_no_sense_is_refused_before_a_session_is_made(
     server: LiveServer, options: tuple[object, ...], words: str
 ) -> None:
-    """In one sentence; also for an operator who must not know the conditions."""
+    """Invalid options are rejected in one sentence before a session is created.
+
+    This holds also for an operator who must not know the conditions.
+    """
     with server.client() as client:
         credentials = {"username": "admin", "password": ADMIN_PASSWORD}
         client.post("/api/login", json=credentials).raise_for_status()
@@ -144,6 +148,6 @@ def test_what_makes_no_sense_is_refused_before_a_session_is_made(
 
 
 def test_the_help_says_how_long_a_rehearsal_takes() -> None:
-    """Before anybody waits for one."""
+    """The help says how long a rehearsal takes."""
     said = " ".join(Invoked("rehearse").run("--help").output.split())
     assert "divided by --speed: 9 minutes with the study that ships" in said

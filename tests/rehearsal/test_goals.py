@@ -1,4 +1,4 @@
-"""From the surface the rules ask for to the movement that goes there."""
+"""Tests of the movement goals that a scripted participant derives from the task rules."""
 
 from app.rehearsal.goals import goal_of
 from app.science.simulation import GoalKind
@@ -18,7 +18,7 @@ RIGHT = Laterality.RIGHT
 
 
 def started(limb: str) -> TaskState:
-    """A task of the shipped study whose clock runs."""
+    """Return a task of the shipped study whose clock runs."""
     tasks = study().tasks
     layout = tasks.layout(limb)
     state, _ = advance(TaskRules(layout, RIGHT).initial(), Command(CommandKind.START, 0.0))
@@ -26,7 +26,7 @@ def started(limb: str) -> TaskState:
 
 
 def touched(state: TaskState, surface: str, part: str) -> TaskState:
-    """The state after a short touch."""
+    """Return the state after a short touch."""
     contact = Contact(surface, part)
     state, _ = advance(state, ContactChange(state.last_s + 0.1, begins=(contact,)))
     state, _ = advance(state, ContactChange(state.last_s + 0.1, ends=(contact,)))
@@ -34,7 +34,7 @@ def touched(state: TaskState, surface: str, part: str) -> TaskState:
 
 
 def test_the_writing_hand_reaches_for_the_face_of_the_current_panel() -> None:
-    """Right-handed people begin at the box on the right."""
+    """A right-handed participant reaches with the right hand, first for the rightmost panel."""
     state = started("hand")
     goal = goal_of(state, RIGHT)
     panel = state.rules.layout.by_key["hand/4/panel"]
@@ -46,7 +46,7 @@ def test_the_writing_hand_reaches_for_the_face_of_the_current_panel() -> None:
 
 
 def test_feet_alternate_from_box_to_box() -> None:
-    """Where either foot counts, people step with one after the other."""
+    """In a foot task the participant steps on successive boxes with alternating feet."""
     state = started("foot")
     first = goal_of(state, RIGHT)
     second = goal_of(touched(state, "foot/4/panel", "RightFoot"), RIGHT)
@@ -56,7 +56,7 @@ def test_feet_alternate_from_box_to_box() -> None:
 
 
 def test_after_the_bar_the_participant_walks_to_the_start_square() -> None:
-    """No foot is asked for: the body goes there."""
+    """After the bar of a foot task, the goal is to walk to the start square."""
     state = started("foot")
     for number in (4, 3, 2, 1):
         state = touched(state, f"foot/{number}/panel", "RightFoot")
@@ -68,6 +68,6 @@ def test_after_the_bar_the_participant_walks_to_the_start_square() -> None:
 
 
 def test_a_frozen_phase_has_no_goal() -> None:
-    """Nothing is asked of anybody in the freeze."""
+    """A phase in its freeze has no goal."""
     state, _ = advance(started("hand"), Command(CommandKind.FREEZE, 1.0))
     assert goal_of(state, RIGHT) is None

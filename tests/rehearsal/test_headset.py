@@ -1,4 +1,4 @@
-"""The scripted headset without a network: the same seed, the same movement."""
+"""Tests of the scripted headset without a network."""
 
 import asyncio
 from typing import cast
@@ -17,7 +17,7 @@ AS_FAST_AS_IT_GOES = 1e9
 
 
 def play(seed: int, phase: PhaseOrder) -> InstantServer:
-    """A whole phase of one seed."""
+    """Run a whole phase with one seed."""
     server = InstantServer(phase)
     person = make_person(np.random.default_rng(seed), None)
     client = cast("TelemetryClient", server)
@@ -26,12 +26,12 @@ def play(seed: int, phase: PhaseOrder) -> InstantServer:
 
 
 def shipped_tasks() -> Tasks:
-    """The boxes of the shipped study."""
+    """Return the boxes of the shipped study."""
     return study().tasks
 
 
 def test_the_same_seed_gives_the_same_movement_and_the_same_touches() -> None:
-    """Bit for bit, frame after frame, in both streams; another seed gives another movement."""
+    """The same seed gives equal frames and reports bit by bit; another seed gives others."""
     phase = order(limb="hand", kind="task", duration_s=8.0, latency_ms=125.0)
     first, again, other = play(3, phase), play(3, phase), play(4, phase)
     assert first.digests == again.digests
@@ -40,7 +40,7 @@ def test_the_same_seed_gives_the_same_movement_and_the_same_touches() -> None:
 
 
 def test_a_foot_phase_walks_back_after_each_task() -> None:
-    """Tasks are completed, and the clock stands from each bar to the start square."""
+    """In a foot phase every completion is followed by a walk back with a stopped clock."""
     phase = order(limb="foot", kind="task", duration_s=20.0)
     played = play(3, phase)
     words = [getattr(report, "what", report.kind) for report in played.reports]
@@ -50,7 +50,7 @@ def test_a_foot_phase_walks_back_after_each_task() -> None:
 
 
 def test_contacts_come_before_the_completion_they_lead_to() -> None:
-    """Whoever reads the reports in order can follow the task; numbers count on from the order."""
+    """Contacts are reported before their completion, and numbers continue those of the order."""
     phase = order(limb="hand", kind="task", duration_s=20.0, completions=4, active_s=0.0)
     reports = play(5, phase).reports
     numbers = [report.number for report in reports if isinstance(report, CompletionReport)]
@@ -61,7 +61,7 @@ def test_contacts_come_before_the_completion_they_lead_to() -> None:
 
 
 def test_a_client_that_takes_over_after_an_odd_number_of_tasks_goes_the_other_way() -> None:
-    """The order turns round with each hand task, whoever counted it."""
+    """A client that takes over after an odd number of tasks uses the reversed order of boxes."""
     phase = order(limb="hand", kind="task", duration_s=20.0)
     there = _first_order(play(5, phase))
     back = _first_order(play(5, phase.model_copy(update={"completions": 1})))

@@ -1,4 +1,4 @@
-"""How joint error went within the phases of a rehearsed session."""
+"""Tests of the course of joint error within the phases of a rehearsed session."""
 
 import numpy as np
 import pytest
@@ -28,7 +28,10 @@ def _courses(performed: Performed, db: Session) -> list[tuple[Phase, JointErrorC
 
 
 def test_every_bin_of_a_task_has_its_five_seconds(performed: Performed, db: Session) -> None:
-    """As the frames tell the active time, walks back left out, to a few frames; no bin is over."""
+    """Every bin of a task contains five seconds of active time, to a few frames.
+
+    Walks back are left out, and there is no extra bin.
+    """
     courses = [course for phase, course in _courses(performed, db) if phase.kind == "task"]
     assert len(courses) == 2 * TASK_PHASES
     task_s = performed.lengths.task_s
@@ -36,12 +39,12 @@ def test_every_bin_of_a_task_has_its_five_seconds(performed: Performed, db: Sess
         frames = np.array(course.samples) / JOINTS
         assert len(frames) == task_s / COURSE_BIN_S
         np.testing.assert_allclose(frames[:-1], COURSE_BIN_S * RATE_HZ, atol=3.0)
-        # What pauses cost or give, up to a frame each, is in the last.
+        # The last bin contains what pauses add or remove, up to a frame each.
         assert frames.sum() == pytest.approx(task_s * RATE_HZ, abs=20.0)
 
 
 def test_the_mean_of_the_bins_is_that_of_the_phase(performed: Performed, db: Session) -> None:
-    """Of every phase, against what was asked for now and a moment ago, to 1e-12 rad."""
+    """The mean of the bins equals that of the phase to 1e-12 rad, for both references."""
     for phase, course in _courses(performed, db):
         means = db.scalars(
             select(JointErrorRow.mean_rad).where(
@@ -60,7 +63,7 @@ def test_the_mean_of_the_bins_is_that_of_the_phase(performed: Performed, db: Ses
 
 
 def test_a_body_without_latency_has_no_error_at_any_time(performed: Performed, db: Session) -> None:
-    """At 350 ms it has some in every bin; both to the wire's precision."""
+    """Joint error is zero in every bin at 0 ms and positive at 350 ms, to the wire's precision."""
     for phase, course in _courses(performed, db):
         if phase.kind == "task" and course.reference == "present":
             values = np.array(course.mean_rad, np.float64)

@@ -1,4 +1,4 @@
-"""Whoever is killed leaves no server behind: neither a rehearsal nor a test run."""
+"""Tests that a killed rehearsal or test run leaves no server behind."""
 
 import os
 import signal
@@ -26,7 +26,7 @@ GENEROUS_S = 120.0
 
 
 def test_a_killed_rehearsal_leaves_no_process(tmp_path: Path) -> None:
-    """In the middle of a phase: its server goes, and with it the server's own processes."""
+    """A rehearsal killed in mid-phase leaves neither its server nor the server's own processes."""
     needs("a server")
     environment = {**os.environ, "TMPDIR": str(tmp_path)}
     with subprocess.Popen(
@@ -43,7 +43,7 @@ def test_a_killed_rehearsal_leaves_no_process(tmp_path: Path) -> None:
 
 
 def test_a_killed_test_run_leaves_no_server(tmp_path: Path) -> None:
-    """The server was forked by another process, which ends with the test run."""
+    """A killed test run leaves no server, although the nursery forked it."""
     needs("a server")
     command = [sys.executable, "-c", TEST_RUN, str(tmp_path)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as run:
@@ -54,7 +54,7 @@ def test_a_killed_test_run_leaves_no_server(tmp_path: Path) -> None:
 
 
 def runs(process: psutil.Process) -> bool:
-    """Whether it has not ended; one that nobody collected has."""
+    """Return whether a process has not ended; one that was not collected has."""
     try:
         return process.is_running() and process.status() != psutil.STATUS_ZOMBIE
     except psutil.NoSuchProcess:
@@ -62,7 +62,7 @@ def runs(process: psutil.Process) -> bool:
 
 
 def group_of(leader: int) -> list[psutil.Process]:
-    """The processes of a group that still run."""
+    """Return the processes of a group that still run."""
     found = []
     for process in psutil.process_iter():
         try:
@@ -74,7 +74,7 @@ def group_of(leader: int) -> list[psutil.Process]:
 
 
 def eventually(happened: Callable[[], bool]) -> None:
-    """Wait for it; fails after a time that only a hung process takes."""
+    """Wait for it; fail after a time that only a hung process takes."""
     give_up_s = time.monotonic() + GENEROUS_S
     while not happened():
         assert time.monotonic() < give_up_s, "a process is still there"

@@ -1,4 +1,4 @@
-"""The latency that a rehearsed session really had: the headset's buffer, seen from its record."""
+"""Tests of the achieved latency of a rehearsed session, computed from its record."""
 
 import pytest
 from sqlalchemy import select
@@ -17,7 +17,7 @@ def _rows(performed: Performed, db: Session) -> list[PhaseLatency]:
 
 
 def test_every_phase_had_the_latency_that_was_ordered(performed: Performed, db: Session) -> None:
-    """Within a tenth of a millisecond wherever the participant moved; else there is a reason."""
+    """Every phase with movement achieved its set latency within 0.1 ms; others give a reason."""
     rows = _rows(performed, db)
     assert len(rows) == PHASES
     for row in rows:
@@ -34,7 +34,7 @@ def test_every_phase_had_the_latency_that_was_ordered(performed: Performed, db: 
 
 
 def test_measuring_again_gives_the_same(performed: Performed, db: Session) -> None:
-    """The stored row follows from the stored frames and from nothing else."""
+    """Measuring again gives the stored result, which depends only on the stored frames."""
     row = _rows(performed, db)[-1]
     again = phase_latency(db, performed.session_id, row.phase_id)
     assert (again.latency_s, again.low_s, again.high_s) == (row.achieved_s, row.low_s, row.high_s)

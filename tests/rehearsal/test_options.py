@@ -1,4 +1,4 @@
-"""The rehearsal goes through practice, a signed consent and a stop rule that is met."""
+"""Tests of a rehearsal with practice, a signed consent and a met stop rule."""
 
 import asyncio
 import re
@@ -13,7 +13,7 @@ SPEED = 12.0
 
 
 def short() -> str:
-    """Short tasks after a practice of full length; anybody meets the stop rule."""
+    """Return a study with short tasks after a full practice and a stop rule that is always met."""
     text = with_options(("stop_at: 15, warn_at: 10", "stop_at: 1"))
     text = text.replace("duration_s: 120", "duration_s: 2")
     text = re.sub("duration_s: 60", "duration_s: 3", text)
@@ -22,7 +22,10 @@ def short() -> str:
 
 
 def test_a_study_with_every_option_is_rehearsed(tmp_path: Path) -> None:
-    """Two completions end the practice; the record holds a signature; the operator goes on."""
+    """In a study with every option, two completions end the practice and consent is signed.
+
+    The operator continues after the stop rule.
+    """
     with LiveServer(tmp_path) as server, server.client() as api:
         ok(api.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
         ok(api.post("/api/studies", json={"yaml": short()}))

@@ -1,4 +1,4 @@
-"""The rehearsal in an avatar that follows by forces: real contacts, real joint errors."""
+"""Tests of rehearsals with a physics avatar: real contacts and real joint errors."""
 
 import asyncio
 import re
@@ -35,7 +35,7 @@ SUMMARIES_WITHIN_S = 60.0
 
 
 def short() -> str:
-    """The shipped study with short phases."""
+    """Return the shipped study with short phases."""
     text = edited(("key: reembodiment-latency", f"key: {KEY}"))
     text = text.replace("duration_s: 120", "duration_s: 1")
     text = text.replace("duration_s: 60", "duration_s: 3")
@@ -43,10 +43,10 @@ def short() -> str:
 
 
 class BuiltHere:
-    """Builds the avatar here, with the boxes of the shipped study."""
+    """Build the avatar in this process, with the boxes of the shipped study."""
 
     async def request_avatar(self, stature_m: float) -> PhysicsBody:
-        """As the server would have built it."""
+        """Return the avatar as the server would build it."""
         tasks = study().tasks
         configuration = default_configuration()
         scene = scene_of(tuple(tasks.layouts().values()))
@@ -55,7 +55,7 @@ class BuiltHere:
 
 
 def play(limb: str, duration_s: float, latency_ms: float = 0.0) -> tuple[InstantServer, Headset]:
-    """A whole phase."""
+    """Run a whole phase."""
     server = InstantServer(
         order(limb=limb, kind="task", duration_s=duration_s, latency_ms=latency_ms)
     )
@@ -69,7 +69,7 @@ def play(limb: str, duration_s: float, latency_ms: float = 0.0) -> tuple[Instant
 
 @pytest.mark.parametrize("limb", ["hand", "foot"])
 def test_the_tasks_can_be_done_by_real_contacts(limb: str) -> None:
-    """Panels turn green under the limb that belongs there, and tasks are completed."""
+    """A physics avatar completes tasks by real contacts of the right limb."""
     server, headset = play(limb, 20.0)
     contacts = [one for one in server.reports if isinstance(one, ContactReport)]
     completions = [one for one in server.reports if isinstance(one, CompletionReport)]
@@ -83,7 +83,7 @@ def test_the_tasks_can_be_done_by_real_contacts(limb: str) -> None:
 
 
 def test_a_body_with_other_legs_stands_on_the_same_floor() -> None:
-    """Its hips are as much higher as its legs are longer, wherever the participant's are."""
+    """An avatar with longer legs stands on the same floor, with proportionally higher hips."""
     built = avatar_model(default_configuration(), 1.8)
     person = build_skeleton(1.6)
     scale = built.body.parts["Hips"].joint_m[1] / person.standing_hips_m
@@ -95,7 +95,7 @@ def test_a_body_with_other_legs_stands_on_the_same_floor() -> None:
 
 
 def test_a_whole_session_is_rehearsed_in_a_physics_avatar(tmp_path: Path) -> None:
-    """It completes; the record names configuration and model, and how far the body was off."""
+    """A session with a physics avatar completes and records configuration and joint errors."""
     with LiveServer(tmp_path) as server, server.client() as api:
         ok(api.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
         ok(api.post("/api/studies", json={"yaml": short()}))
@@ -116,13 +116,13 @@ def test_a_whole_session_is_rehearsed_in_a_physics_avatar(tmp_path: Path) -> Non
     assert built["configuration_hash"] == view["avatar_configuration_hash"]
     assert report.frames_sent == report.frames_stored
     assert report.contacts > 0
-    # The delayed command is followed to a few degrees where nothing stands in the way.
+    # The delayed command is followed to a few degrees if nothing is in the way.
     assert 0.0 < np.median(errors["command"]) < np.radians(5.0)
     assert np.median(errors["present"]) >= np.median(errors["command"])
 
 
 def again(server: LiveServer, study_key: str) -> str:
-    """Which study another rehearsal would use."""
+    """Return the study that another rehearsal would use."""
 
     async def ask() -> str:
         async with AsyncClient(base_url=server.url) as http:
@@ -134,7 +134,7 @@ def again(server: LiveServer, study_key: str) -> str:
 
 
 def summarised(url: str, report: RehearsalReport) -> dict[str, list[float]]:
-    """Reference -> mean angle of every joint in every phase; waits for what is computed."""
+    """Return the mean angles of every joint and phase by reference, when they are computed."""
     database, give_up_s = open_database(url), time.monotonic() + SUMMARIES_WITHIN_S
     query = select(JointErrorRow.phase_id, JointErrorRow.reference, JointErrorRow.mean_rad).where(
         JointErrorRow.session_id == report.session_id, JointErrorRow.axis == "angle"

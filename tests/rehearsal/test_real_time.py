@@ -1,4 +1,4 @@
-"""The real length: a whole session at the pace of life."""
+"""Test of a whole session at real speed."""
 
 import pytest
 
@@ -11,7 +11,7 @@ FRAME_S = 1 / 90
 @pytest.mark.long
 @pytest.mark.timeout(1200)
 def test_a_session_at_the_pace_of_life_loses_nothing_and_keeps_its_clock() -> None:
-    """Six task phases of 60 s, without a reconnect, as an undisturbed session must be."""
+    """A session at real speed loses no frame and keeps its active times, without a reconnect."""
     plan = RehearsalPlan(url="", study=STUDY, speed=1.0, seed=7)
     performed = performed_once("rehearsal-real-time", plan, None, {})
     report = performed.report

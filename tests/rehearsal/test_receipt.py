@@ -1,4 +1,4 @@
-"""The receipt of a whole rehearsed session, beside what its headset knows it sent."""
+"""Tests of the receipt of a rehearsed session, compared with what its headset sent."""
 
 import hashlib
 
@@ -13,19 +13,19 @@ from tests.rehearsal.performed import Performed
 
 @pytest.fixture
 def receipt(performed: Performed, db: Session) -> SessionReceipt:
-    """Made from the record alone."""
+    """Provide the receipt, computed from the record alone."""
     return receipt_of(db, performed.session_id)
 
 
 def test_the_session_is_complete(receipt: SessionReceipt) -> None:
-    """Nothing is missing, nothing was changed, everything follows."""
+    """The receipt of an undisturbed session is complete, without problems and with a valid log."""
     assert receipt.problems == ()
     assert receipt.complete
     assert receipt.chain_ok
 
 
 def test_sent_is_what_the_headset_sent(performed: Performed, receipt: SessionReceipt) -> None:
-    """By stream and epoch, counted on either side."""
+    """The receipt's counts equal what the headset sent, by stream and epoch."""
     told = {(one.stream, one.epoch): (one.sent, one.stored) for one in receipt.streams}
     sent = {key: len(known) for key, known in performed.ledger.sent.items()}
     assert told == {key: (count, count) for key, count in sent.items()}
@@ -36,7 +36,7 @@ def test_sent_is_what_the_headset_sent(performed: Performed, receipt: SessionRec
 def test_every_completion_follows_from_its_contacts(
     performed: Performed, receipt: SessionReceipt
 ) -> None:
-    """In each of the six task phases."""
+    """In each of the six task phases, every completion follows from the stored contacts."""
     assert len(receipt.completions) == 6
     assert all(one.agree for one in receipt.completions)
     rederived = sum(one.rederived for one in receipt.completions)

@@ -1,4 +1,4 @@
-"""A rehearsed session, looked at again: everything lies where the headset said it was."""
+"""Tests that a replay shows every event of a rehearsal at the headset's own time."""
 
 from datetime import timedelta
 
@@ -18,14 +18,17 @@ US = 1e-6
 
 @pytest.fixture
 def phases(performed: Performed, db: Session) -> list[Phase]:
-    """Those of the rehearsal."""
+    """Provide the phases of the rehearsal."""
     query = select(Phase).where(Phase.session_id == performed.session_id)
     return list(db.scalars(query.order_by(Phase.phase_id)))
 
 
 @pytest.mark.one_engine
 def test_what_was_counted_lies_at_the_headsets_own_time(db: Session, phases: list[Phase]) -> None:
-    """Contacts and completions by their active time, through every way back, to the microsecond."""
+    """Contacts and completions are at the headset's time, to the microsecond.
+
+    They are located by their active time, across every walk back.
+    """
     session = session_by_id(db, phases[0].session_id)
     walks = 0
     for phase in phases:
@@ -55,7 +58,7 @@ def test_what_was_counted_lies_at_the_headsets_own_time(db: Session, phases: lis
 def test_the_active_time_of_a_phase_is_that_of_its_stretches(
     db: Session, phases: list[Phase]
 ) -> None:
-    """They follow each other, end within the phase, and add up to what was counted."""
+    """The active intervals of a replayed phase are in order and add up to its active time."""
     session = session_by_id(db, phases[0].session_id)
     assert len(phases) == PHASES
     for phase in phases:
@@ -73,6 +76,6 @@ def test_the_active_time_of_a_phase_is_that_of_its_stretches(
         assert run.begin_utc is not None
         assert run.uncertainty_ms is not None
         assert phase.started_at is not None
-        # The server heard of it afterwards.
+        # The server received it afterwards.
         known = timedelta(milliseconds=run.uncertainty_ms)
         assert run.begin_utc - known <= phase.started_at

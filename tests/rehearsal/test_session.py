@@ -1,4 +1,4 @@
-"""What a rehearsed session leaves behind, on SQLite with a capture and on PostgreSQL without."""
+"""Tests of the record of a rehearsed session, on SQLite with a capture and on PostgreSQL."""
 
 from itertools import pairwise
 from typing import Any, TypeVar
@@ -37,7 +37,7 @@ FRAME_S = 1 / 90
 
 
 def test_every_task_phase_lasts_its_whole_active_time(performed: Performed) -> None:
-    """Three blocks of a hand and a foot phase, each done and as long as ordered to one frame."""
+    """Each of three hand and three foot phases is done and has its set active time to one frame."""
     phases = [phase for phase in performed.view["phases"] if phase["kind"] == "task"]
     assert [phase["limb"] for phase in phases] == ["hand", "foot"] * 3
     assert {phase["status"] for phase in phases} == {"done"}
@@ -47,7 +47,7 @@ def test_every_task_phase_lasts_its_whole_active_time(performed: Performed) -> N
 
 
 def test_the_session_is_complete_and_every_questionnaire_is_scored(performed: Performed) -> None:
-    """Every step is done; each task phase is followed by its questionnaire."""
+    """Every step of the session is done, and each task phase has a scored questionnaire."""
     view = performed.view
     assert view["status"] == "completed"
     assert {step["status"] for step in view["steps"]} == {"done"}
@@ -57,7 +57,7 @@ def test_the_session_is_complete_and_every_questionnaire_is_scored(performed: Pe
 
 
 def test_everything_is_marked_simulated(performed: Performed, db: Session) -> None:
-    """Session, participant and report say that nobody took part."""
+    """Session, participant and report of a rehearsal are marked as simulated."""
     session = session_by_id(db, performed.session_id)
     assert (session.kind, db.get_one(Participant, session.participant_id).kind) == (
         "simulated",
@@ -69,17 +69,17 @@ def test_everything_is_marked_simulated(performed: Performed, db: Session) -> No
 
 
 def test_what_was_sent_is_stored_bit_for_bit(performed: Performed, db: Session) -> None:
-    """By stream, epoch and seq: nothing lost, altered, stored twice or left out."""
+    """All data that the headset sent are stored bit by bit, without loss or duplicates."""
     found = reconcile(db, performed.session_id, performed.ledger)
     assert found.sound
     lengths = performed.lengths
-    # Two streams of 90 frames a second, and what lies between the phases.
+    # Two streams of 90 frames a second, and the frames between the phases.
     least = 2 * 90 * (lengths.roam_s + TASK_PHASES * lengths.task_s)
     assert found.sent == found.acked == found.stored > least
 
 
 def test_the_report_counts_what_the_server_stored(performed: Performed) -> None:
-    """Frames sent and stored agree in both streams, which have the same length."""
+    """The report's frame counts match the stored ones, and both streams have the same length."""
     report = performed.report
     assert report["frames_sent"] == report["frames_stored"]
     assert report["frames_sent"]["target"] == report["frames_sent"]["actual"]
@@ -90,7 +90,7 @@ def test_the_report_counts_what_the_server_stored(performed: Performed) -> None:
 def test_every_task_phase_has_completions_and_the_session_side_contacts(
     performed: Performed,
 ) -> None:
-    """The simulated participant does the tasks, and not without touching a side."""
+    """Every task phase has completions, and the session has side contacts."""
     phases = [phase for phase in performed.view["phases"] if phase["kind"] == "task"]
     assert all(phase["completions"] > 0 for phase in phases)
     assert sum(phase["completions"] for phase in phases) == performed.report["completions"]
@@ -98,7 +98,7 @@ def test_every_task_phase_has_completions_and_the_session_side_contacts(
 
 
 def test_the_event_log_verifies(performed: Performed, db: Session) -> None:
-    """Every hash of the log follows from the one before."""
+    """Every hash of the event log follows from the previous one."""
     checked = verify_chain(events_of(db, performed.session_id))
     assert checked.ok
     assert checked.events == len(performed.events)
@@ -107,19 +107,19 @@ def test_the_event_log_verifies(performed: Performed, db: Session) -> None:
 def test_latency_is_seen_in_the_joint_error_and_costs_the_controller_nothing(
     performed: Performed, db: Session
 ) -> None:
-    """No error at 0 ms, more with every step of latency, and none against the command."""
+    """Joint error is zero at 0 ms and grows with latency; against the command it is zero."""
     for limb in ("hand", "foot"):
         present = [_mean_error_deg(db, performed, limb, ms, "present") for ms in (0, 125, 350)]
         command = [_mean_error_deg(db, performed, limb, ms, "command") for ms in (0, 125, 350)]
         assert present[0] < 1e-9
         assert all(after > before + 0.5 for before, after in pairwise(present))
-        # What is left is the rounding of quaternions to 32 bits.
+        # The remainder is the rounding of quaternions to 32 bits.
         assert max(command) < 1e-4
 
 
 @pytest.mark.one_engine
 def test_walks_back_stop_the_clock(performed: Performed, db: Session) -> None:
-    """A phase spans its active time, its walks back and its pauses, and nothing else."""
+    """A phase's duration is the sum of its active time, its walks back and its pauses."""
     for phase in _task_phases(db, performed):
         events = _clock_events(performed, phase.phase_id)
         begun, ended = events[0]["data"]["client_t_s"], events[-1]["data"]["client_t_s"]
@@ -130,7 +130,7 @@ def test_walks_back_stop_the_clock(performed: Performed, db: Session) -> None:
         ]
         assert ended - begun == pytest.approx(phase.active_s + sum(stood), abs=FRAME_S)
         if phase.limb == "foot":
-            # The last completion may come so late that the walk back is still under way.
+            # The last completion may come so late that the walk back has not ended.
             assert len(stood) >= phase.walk_back_count > 0
             assert ended - begun > phase.active_s + FRAME_S
 
@@ -138,7 +138,7 @@ def test_walks_back_stop_the_clock(performed: Performed, db: Session) -> None:
 def test_the_stored_contacts_lead_to_the_stored_completions(
     performed: Performed, db: Session
 ) -> None:
-    """The task rules, played again over the record, find every completion at its instant."""
+    """Applying the task rules to the stored contacts reproduces every stored completion."""
     session = session_by_id(db, performed.session_id)
     for phase in _task_phases(db, performed):
         rules = TaskRules(_layout(db, session, phase.limb), _hand(db, session))
@@ -168,7 +168,7 @@ def _of(table: type[Row], phase: Phase) -> Select[Row]:
 
 
 def _clock_events(performed: Performed, phase_id: int) -> list[dict[str, Any]]:
-    """The events of a phase's clock as the headset told them, from its start to its freeze."""
+    """Return the events of a phase's clock as the headset reported them, from start to freeze."""
     return [
         event
         for event in performed.events
@@ -205,7 +205,7 @@ def _hand(db: Session, session: StudySession) -> Laterality:
 def _mean_error_deg(
     db: Session, performed: Performed, limb: str, latency_ms: int, reference: str
 ) -> float:
-    """Mean over the joints of the mean angle, in the phase of this limb and latency."""
+    """Return the mean over joints of the mean angle, in the phase of this limb and latency."""
     phase = next(
         phase
         for phase in _task_phases(db, performed)

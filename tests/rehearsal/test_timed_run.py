@@ -1,4 +1,4 @@
-"""A timed phase on the headset's clock: what it reports, and when its time passes."""
+"""Tests of a timed phase on the headset's clock: its reports and its active time."""
 
 import pytest
 
@@ -8,7 +8,7 @@ from tests.rehearsal.orders import FRAME_S, Timeline, order
 
 
 def test_a_phase_prepares_runs_its_time_freezes_and_ends() -> None:
-    """Started after the preparation, up after the duration, ended after the freeze."""
+    """A phase reports its start, time up and end, after preparation, duration and freeze."""
     line = Timeline(FreeRun(order(), 0.0))
     line.draw(2.0)
     assert line.words == ["started", "time_up", "ended"]
@@ -24,14 +24,14 @@ def test_a_phase_prepares_runs_its_time_freezes_and_ends() -> None:
 
 
 def test_active_time_never_passes_the_duration() -> None:
-    """However late the last frame is drawn."""
+    """Active time never exceeds the duration, however late the last frame is drawn."""
     line = Timeline(FreeRun(order(), 0.0))
     line.draw(1.0)
     assert line.run.active_s(1000.0) == 1.0
 
 
 def test_an_operators_pause_stops_the_clock_until_the_resume() -> None:
-    """The time between is not active time, and is told on both sides of it."""
+    """An operator's pause stops the clock until the resume, and both are reported."""
     line = Timeline(FreeRun(order(), 0.0))
     line.draw(1.0)
     line.follow(order(status="running", pausing=True))
@@ -44,7 +44,10 @@ def test_an_operators_pause_stops_the_clock_until_the_resume() -> None:
 
 
 def test_a_broken_connection_stops_the_clock_and_the_preparation() -> None:
-    """Both sides count the same time: what the server cannot see does not pass."""
+    """A broken connection stops the clock and the preparation on the headset too.
+
+    So both sides count the same time.
+    """
     line = Timeline(FreeRun(order(), 0.0))
     line.draw(3.0, connected=False)
     assert line.words == []
@@ -55,7 +58,7 @@ def test_a_broken_connection_stops_the_clock_and_the_preparation() -> None:
 
 
 def test_a_loss_too_short_to_notice_still_pauses_both_sides() -> None:
-    """The server assumed a pause; the headset follows and the operator lets it go on."""
+    """After a loss that only the server noticed, the headset reports the pause and the resume."""
     line = Timeline(FreeRun(order(), 0.0))
     line.draw(1.0)
     line.follow(order(status="paused", active_s=0.4))
@@ -64,7 +67,10 @@ def test_a_loss_too_short_to_notice_still_pauses_both_sides() -> None:
 
 
 def test_a_resume_that_overtook_the_pause_leads_to_both_reports_at_once() -> None:
-    """Else the server would wait for a resume that the headset does not think it owes."""
+    """A resume that arrives with the pause gives both reports immediately and only once.
+
+    Otherwise the server would wait for a resume that the headset would never send.
+    """
     line = Timeline(FreeRun(order(), 0.0))
     line.draw(1.0)
     line.follow(order(status="paused", active_s=0.4, resuming=True))
@@ -80,7 +86,7 @@ def test_a_resume_that_overtook_the_pause_leads_to_both_reports_at_once() -> Non
 def test_a_client_that_takes_over_stands_still_until_the_operator_resumes(
     status: str, words: list[str]
 ) -> None:
-    """It goes on with the active time that is left, and does not start the phase again."""
+    """A client that takes over waits for the resume, then uses only the remaining active time."""
     line = Timeline(FreeRun(order(status=status, active_s=0.75), 0.0))
     line.draw(1.0)
     if status != "paused":
@@ -97,14 +103,14 @@ def test_a_client_that_takes_over_stands_still_until_the_operator_resumes(
 
 
 def test_a_client_that_takes_over_in_the_freeze_only_ends_the_phase() -> None:
-    """Its time was up before."""
+    """A client that takes over during the freeze only reports the end of the phase."""
     line = Timeline(FreeRun(order(status="freezing", active_s=1.0), 0.0))
     line.draw(0.5)
     assert line.words == ["ended"]
 
 
 def test_a_client_that_takes_over_learns_what_the_other_run_had_used_up() -> None:
-    """The server may know more once the loss is noticed; nobody gets the time twice."""
+    """A client that takes over gets the other run's active time, also if updated later."""
     line = Timeline(FreeRun(order(status="running", active_s=0.25), 0.0))
     line.draw(0.1)
     line.follow(order(status="running", active_s=0.5))
