@@ -22,11 +22,11 @@ from app.science.avatar.ik import InverseKinematics
 from tests.benchmarks.report import Figure, Report
 from tests.science.avatar.captured import RATE_HZ
 from tests.science.avatar.ik.vector_files import FOLDER, goals_from, read, simulate
-from tests.science.avatar.ordeals import (
+from tests.science.avatar.stress import (
     STEP_S,
     WALL_FACE_M,
-    driven_into_a_wall,
-    thrown_about,
+    run_random_poses,
+    swing_into_a_wall,
 )
 from tests.support.node import install_packages, run_node
 
@@ -50,7 +50,7 @@ def measure(parts: frozenset[str], duration_s: float | None = None) -> Report:
 
 
 def _wall() -> Iterator[Figure]:
-    found = driven_into_a_wall()
+    found = swing_into_a_wall()
     yield Figure("wall", "speed of the hand before the wall", found.speed_m_s, "m/s")
     yield Figure("wall", "deepest in it", 1e3 * found.deepest_m, "mm", "at most", DEEPEST_MM)
     left_mm = 1e3 * (found.farthest_m - WALL_FACE_M)
@@ -58,7 +58,7 @@ def _wall() -> Iterator[Figure]:
 
 
 def _thrown(hips: Hips) -> Iterator[Figure]:
-    thrown = thrown_about(hips, JUMPS, EVERY)
+    thrown = run_random_poses(hips, JUMPS, EVERY)
     body, health = thrown.body, thrown.body.health
     told = f"hips {hips}"
     yield Figure("thrown", f"{told}: random poses", JUMPS, "poses")

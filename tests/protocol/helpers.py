@@ -17,7 +17,7 @@ from app.science.instruments import Instrument
 
 CONFIGS = Path(__file__).parents[2] / "study_configs"
 SHIPPED = (CONFIGS / "reembodiment-latency.yaml").read_text(encoding="utf-8")
-"""The latency study as it comes with the product."""
+"""The shipped latency study."""
 
 
 def as_delayed_copy(text: str) -> str:
@@ -28,7 +28,7 @@ def as_delayed_copy(text: str) -> str:
 
 
 STUDY = as_delayed_copy(SHIPPED)
-"""The same with a delayed copy: what most tests are about has nothing to do with physics."""
+"""The shipped latency study with a delayed copy, since most tests do not concern physics."""
 
 
 @cache
@@ -40,7 +40,7 @@ def instruments() -> dict[str, Instrument]:
 
 
 BEFORE_RULES = Path(__file__).with_name("study_before_rules.yaml").read_text(encoding="utf-8")
-"""The latency study as it was shipped before studies said when a session counts."""
+"""The latency study as shipped before studies had rules of validity."""
 
 
 def edited(*changes: tuple[str, str]) -> str:

@@ -14,8 +14,8 @@ NAMED_IN = {
     "frontend/src/console/i18n/registries.generated.ts",
     "frontend/src/shared/api/schema.d.ts",
 }
-"""Where a phase may be called by its kind: what a study file can say of it, the table, and the
-generated files."""
+"""Files that may contain a phase kind as a literal: the schema of study files, the table of kinds,
+and generated files."""
 
 
 def test_every_kind_has_its_row() -> None:

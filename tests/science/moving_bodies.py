@@ -17,7 +17,7 @@ from app.science.skeleton.movement import loop, resample
 RATE_HZ = 90.0
 HISTORY_S = 2.0
 Movement = Callable[[FloatArray], FloatArray]
-"""Local rotations (k, 22, 4) at any times (k,), s."""
+"""A function that returns local rotations (k, 22, 4) at times (k,) in seconds."""
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,8 @@ import app.science
 
 SCIENCE = Path(app.science.__file__).parent
 APP, TESTS = SCIENCE.parent, Path(__file__).parents[1]
-MODULES_WITH_FACES = {"app.science.instruments.table"}
-"""Apart from their package because of what they load: pandas."""
+MODULES_WITH_EXPORTS = {"app.science.instruments.table"}
+"""Modules that export names themselves, not through their package, since they load pandas."""
 
 
 def _name(path: Path) -> str:
@@ -25,7 +25,7 @@ HOMES = {_name(path): path for path in SCIENCE.rglob("*.py")}
 
 
 @cache
-def _offered(module: str) -> set[str] | None:
+def _exported_names(module: str) -> set[str] | None:
     """Return what `__all__` lists, or None if the module has none."""
     for node in ast.parse(HOMES[module].read_text(encoding="utf-8")).body:
         if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__":
@@ -57,11 +57,11 @@ def _is_inside(importer: str, module: str) -> bool:
     return f"{importer}.".startswith(f"{package}.") or kernels
 
 
-def _is_offered(module: str, name: str) -> bool:
+def _is_exported(module: str, name: str) -> bool:
     if f"{module}.{name}" in PACKAGES:
         return True
-    if module in PACKAGES or module in MODULES_WITH_FACES:
-        return name in (_offered(module) or ())
+    if module in PACKAGES or module in MODULES_WITH_EXPORTS:
+        return name in (_exported_names(module) or ())
     # A module directly in app.science is public.
     return module.count(".") == 2 and module in HOMES
 
@@ -78,7 +78,7 @@ def test_outsiders_import_exported_names_only() -> None:
         f"{importer}:{line} imports {name} from {module}"
         for importer, path in _importers()
         for module, name, line in _imports(path)
-        if not _is_inside(importer, module) and not _is_offered(module, name)
+        if not _is_inside(importer, module) and not _is_exported(module, name)
     ]
     assert deeper == []
 
@@ -91,4 +91,4 @@ def test_packages_export_what_they_import(package: str) -> None:
     imported = {
         alias.name for node in tree.body if isinstance(node, ast.ImportFrom) for alias in node.names
     }
-    assert imported == (_offered(package) or set())
+    assert imported == (_exported_names(package) or set())

@@ -4,7 +4,7 @@ from typing import Any
 
 Json = dict[str, Any]
 BEYOND_A_DOUBLE = 2**53 + 1
-"""A count of nanoseconds that a double cannot hold: clients must hand it back digit by digit."""
+"""Nanoseconds that a double cannot represent exactly; clients must return every digit."""
 
 CONTACT: Json = {
     "kind": "contact",

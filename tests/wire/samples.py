@@ -21,7 +21,7 @@ CONTACT_REPORT: dict[str, Any] = {
     "end_active_s": 1.5,
     "effect": "side",
 }
-"""The body of a report of a contact, but for the phase it belongs to."""
+"""The body of a contact report without its phase."""
 
 
 def standing(count: int) -> NDArray[np.float32]:

@@ -31,7 +31,7 @@ def make_all() -> dict[str, Json]:
         },
         "refused_batches": {
             "kind": "refused_batches",
-            "fact": "These are no batches; an implementation names the field that is wrong.",
+            "fact": "These batches are invalid; an implementation names the invalid field.",
             "batches": [
                 {"name": name, "field": field, "message_hex": message.hex()}
                 for name, field, message in _invalid_batches()
@@ -39,17 +39,17 @@ def make_all() -> dict[str, Json]:
         },
         "messages_from_client": {
             "kind": "messages_from_client",
-            "fact": "What a client may say: the server reads each text as the message beside it.",
+            "fact": "A client may send these: the server reads each text as the given message.",
             "messages": [_message(*one) for one in FROM_CLIENT],
         },
         "messages_from_server": {
             "kind": "messages_from_server",
-            "fact": "What the server says: a client reads each text as the message beside it.",
+            "fact": "The server sends these: a client reads each text as the given message.",
             "messages": [_message(*one) for one in FROM_SERVER],
         },
         "refused_messages": {
             "kind": "refused_messages",
-            "fact": "Neither side accepts these.",
+            "fact": "Both sides reject these messages.",
             "from_client": [{"name": name, "message": content} for name, content in REFUSED_CLIENT],
             "from_server": [{"name": name, "message": content} for name, content in REFUSED_SERVER],
         },

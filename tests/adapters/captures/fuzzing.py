@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from app.adapters.captures import Capture, CaptureError, Limits, Reading, read_capture
 
 LIMITS = Limits(bytes=400_000, tracks=200, depth=16, values=400_000)
-"""Tight, so that what ignores them is seen at once."""
+"""Low limits, so that a reader that ignores them fails soon."""
 
 _NUMBER = re.compile(rb"-?\d+\.?\d*(?:[eE][-+]?\d+)?")
 _ODD_NUMBERS = (

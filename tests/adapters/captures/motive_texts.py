@@ -23,7 +23,7 @@ class Dialect:
     parents: bool = False
     timecode: bool = False
     states_settings: bool = True
-    """Whether rotation type, units and space stand in the first row."""
+    """Whether the first row states rotation type, units and space."""
     mark: bool = False
     trailing_commas: int = 0
     start: str = "2025-12-25 12.21.50.291 PM"
@@ -32,7 +32,7 @@ class Dialect:
     asset: str = "P01"
     markers: int = 0
     missing: tuple[tuple[int, int], ...] = ()
-    """(frame, bone) without values."""
+    """Pairs (frame, bone) that have no values."""
 
 
 def motive_text(motion: RigMotion, dialect: Dialect) -> str:

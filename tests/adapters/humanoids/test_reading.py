@@ -49,7 +49,7 @@ RIGS = {
         " upperleg01.L lowerleg01.L foot.L toe1-1.L"
     ),
 }
-"""Names of the 14 joints of trunk and left side, as programs give them."""
+"""Names of the 14 joints of trunk and left side in the rigs of several programs."""
 _OTHER_SIDE = (("_l", "_r"), (".L", ".R"), ("_L_", "_R_"), (" L ", " R "))
 HELPERS = {
     "ik_foot_root": None, "ik_foot_l": None, "ik_hand_root": None, "ik_hand_l": None,

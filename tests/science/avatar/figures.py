@@ -15,7 +15,7 @@ from tests.support.humanoid_model import Model, without
 
 STATURE_M = 1.75
 HASH = "0" * 64
-"""What a configuration calls the model."""
+"""The hash by which a configuration names the model."""
 EMPTY = Scene(floor=False)
 
 

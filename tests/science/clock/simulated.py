@@ -89,7 +89,7 @@ ASYMMETRIC: tuple[Scenario, ...] = (
 
 
 SLEWING = replace(_WIFI, name="server slews 350 ppm", slew_ppm=350.0)
-"""Beyond the limits: two bends of the offset, hidden in the round trips."""
+"""A scenario beyond the drift limit: the offset bends twice, hidden in the round trips."""
 
 
 @dataclass(frozen=True, eq=False)

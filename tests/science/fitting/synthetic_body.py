@@ -18,7 +18,7 @@ from app.science.rotations import (
 
 RATE_HZ = 100.0
 WIDTH, DEPTH = 0.24, 0.15
-"""Of the pelvis."""
+"""Width and depth of the pelvis, in metres."""
 _FRONT = np.array((0.0, 0.30 * WIDTH + 0.0109, -(0.24 * DEPTH + 0.0099)))
 _HIP_X = 0.33 * WIDTH + 0.0073
 _THIGH, _SHANK, _UPPER_ARM, _FOREARM, _SHOULDER = 0.43, 0.41, 0.29, 0.26, 0.18

@@ -30,7 +30,7 @@ from app.science.skeleton.joints import JOINT_INDEX
 
 RATE_HZ = 90.0
 FRAMES, BEGIN = 200, 30
-"""Frames of the participant, and the first of them that counts: those before are history."""
+"""Number of the participant's frames, and the first that counts; earlier ones are history."""
 DELAY_FRAMES = 12
 DELAY_S = DELAY_FRAMES / RATE_HZ
 HEAD_LIMIT_DEG = 22.5

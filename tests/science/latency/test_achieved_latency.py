@@ -171,8 +171,8 @@ def test_glitches_and_unusable_samples_decide_nothing(rng: np.random.Generator) 
     actual[:, 7], target[:, 12] = np.inf, 0.0
     times_s = run.actual_times_s.copy()
     times_s[50], times_s[60] = np.nan, times_s[40]
-    spoilt = replace(run, target_rotations=target, actual_rotations=actual, actual_times_s=times_s)
-    got_s, low_s, high_s = found(spoilt)
+    faulty = replace(run, target_rotations=target, actual_rotations=actual, actual_times_s=times_s)
+    got_s, low_s, high_s = found(faulty)
     assert got_s == pytest.approx(0.125, abs=1.0 * MS)
     assert low_s <= 0.125 <= high_s
 

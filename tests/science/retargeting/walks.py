@@ -72,7 +72,7 @@ def _walking(rig: Rig, feet_m: FloatArray, crouch_m: float) -> RigMotion:
     for leg, foot in zip(legs.both, feet_m, strict=True):
         hip, knee, ankle = (positions[:, joint] for joint in (leg.thigh, leg.shin, leg.foot))
         reach = reach_for(hip, knee, ankle, at_rest[leg.foot] + foot, right)
-        assert not reach.short_m.any(), "the made walk is too wide for its legs"
+        assert not reach.short_m.any(), "the legs cannot reach steps of this length"
         world[:, leg.thigh] = multiply(reach.thigh_turns, world[:, leg.thigh])
         world[:, leg.shin] = multiply(reach.shin_turns, world[:, leg.shin])
     return RigMotion(rig, RATE_HZ, root, to_local(rig, world), motion.observed)

@@ -39,7 +39,7 @@ def rows(path: Path) -> list[dict[str, str]]:
     return list(csv.DictReader(path.read_text(encoding="utf-8-sig").splitlines()))
 
 
-def in_pingouin(name: str) -> list[dict[str, str]]:
+def pingouin_table(name: str) -> list[dict[str, str]]:
     """Return the rows of a table in pingouin; skip the test if it is not installed."""
     spec = find_spec("pingouin")
     if spec is None or not spec.submodule_search_locations:

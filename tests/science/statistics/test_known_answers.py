@@ -22,7 +22,7 @@ from app.science.statistics import (
 )
 from app.science.statistics.arrays import complete_rows
 from app.science.statistics.tidy import Cells
-from tests.science.statistics.published import TEACHING, WINE, cells, in_pingouin, rows, wide
+from tests.science.statistics.published import TEACHING, WINE, cells, pingouin_table, rows, wide
 
 
 def test_friedman_of_the_rounding_times(shared_data: Path) -> None:
@@ -58,7 +58,7 @@ def test_anova_with_two_factors_within() -> None:
 
     Pingouin checked these against jamovi.
     """
-    found = cells(in_pingouin("rm_anova2"), "Subject", ["Time", "Metric"], "Performance")
+    found = cells(pingouin_table("rm_anova2"), "Subject", ["Time", "Metric"], "Performance")
     effects = {one.name: one for one in rm_anova(found.values, found.factors).effects}
     published = {
         "Time": (33.85228, 0.25401, 1.0, 1, 9),
@@ -78,7 +78,7 @@ def test_anova_with_one_factor_within_and_missing_values() -> None:
 
     F, p, epsilon, Mauchly's W and p GG.
     """
-    complete, left_out = complete_rows(wide(in_pingouin("rm_anova_wide")))
+    complete, left_out = complete_rows(wide(pingouin_table("rm_anova_wide")))
     assert (complete.shape, left_out) == ((9, 4), 3)
     (effect,) = rm_anova(complete).effects
     assert effect.f == pytest.approx(5.20065, abs=5e-6)
@@ -107,7 +107,7 @@ def test_aligned_ranks_of_a_split_plot(shared_data: Path) -> None:
 
 def test_cronbach_alpha_and_its_interval() -> None:
     """Alpha of pingouin's `cronbach_alpha` (15 people, 10 items) is .592 [.195, .840]."""
-    found = cells(in_pingouin("cronbach_alpha"), "Subj", ["Items"], "Scores")
+    found = cells(pingouin_table("cronbach_alpha"), "Subj", ["Items"], "Scores")
     result = cronbach_alpha(found.values)
     assert found.values.shape == (15, 10)
     assert result.alpha == pytest.approx(0.592, abs=5e-4)
@@ -197,7 +197,7 @@ def test_split_plot_anova_agrees_with_pingouin(
     With groups of unequal sizes the mean within differs, which pingouin takes over subjects; here
     every group counts equally.
     """
-    table = in_pingouin(name)
+    table = pingouin_table(name)
     found = cells(table, "Subject", ["Time"], "Scores")
     group = {row["Subject"]: row["Group"] for row in table}
     result = split_plot_anova(found.values, [group[subject] for subject in found.subjects])

@@ -14,7 +14,7 @@ from app.science.statistics import (
 )
 from app.science.statistics.arrays import complete_rows
 from app.science.statistics.effects import contrasts, greenhouse_geisser, mauchly
-from tests.science.statistics.published import in_pingouin, wide
+from tests.science.statistics.published import pingouin_table, wide
 
 
 def test_two_levels_are_a_paired_t_test() -> None:
@@ -74,7 +74,7 @@ def test_mauchly_agrees_with_pingouin() -> None:
     W .30678, p .16336. R and pingouin put the number of levels, not of contrasts, into the last
     term of p.
     """
-    complete, _ = complete_rows(wide(in_pingouin("rm_anova_wide")))
+    complete, _ = complete_rows(wide(pingouin_table("rm_anova_wide")))
     (effect,) = rm_anova(complete).effects
     assert effect.mauchly_w == pytest.approx(0.30678, abs=5e-6)
     assert effect.mauchly_p == pytest.approx(0.16336, abs=2e-4)

@@ -88,12 +88,12 @@ def captures(shared_data: Path) -> list[Recording]:
 
 def jitter(recording: Recording, rng: np.random.Generator) -> Recording:
     """Return the recording with tracker noise: a hundredth of a degree and 0.3 ms."""
-    spoilt = recording.copy()
+    noisy = recording.copy()
     noise = rng.normal(scale=np.radians(0.01), size=(len(recording), JOINT_COUNT, 3))
     shaken = rot.multiply(rot.from_rotation_vector(noise), recording.rotations.astype(float))
-    spoilt.rotations[:] = shaken
-    spoilt.times_s[:] += rng.normal(scale=0.0003, size=len(recording))
-    return spoilt
+    noisy.rotations[:] = shaken
+    noisy.times_s[:] += rng.normal(scale=0.0003, size=len(recording))
+    return noisy
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from tests.science.stream_quality.recordings import Recording, generated
 USUAL_S = 1.0 / RATE_HZ
 
 
-def judged(recording: Recording, before: Memory | None = None) -> Examination:
+def examined(recording: Recording, before: Memory | None = None) -> Examination:
     """Examine every frame of a recording at an expected rate of 90 Hz."""
     return examine(
         recording.times_s,
@@ -36,7 +36,7 @@ def quality(recording: Recording) -> StreamQuality:
     return assess(recording.times_s, recording.rotations, recording.positions_m)
 
 
-def spoilt(seed: int) -> Recording:
+def with_faults(seed: int) -> Recording:
     """Return a recording with a few faults of every kind."""
     rng = np.random.default_rng(seed)
     bad = generated().copy()
@@ -57,11 +57,11 @@ def spoilt(seed: int) -> Recording:
 @settings(max_examples=60, deadline=None)
 def test_it_does_not_matter_where_a_recording_is_cut(seed: int, cuts: list[int]) -> None:
     """Examining a recording in spans with the carried memory gives the same flags as at once."""
-    whole = spoilt(seed)
-    expected = judged(whole)
+    whole = with_faults(seed)
+    expected = examined(whole)
     parts, before = [], Memory()
     for begin, end in zip([0, *sorted(cuts)], [*sorted(cuts), len(whole)], strict=True):
-        parts.append(judged(whole.part(slice(begin, end)), before))
+        parts.append(examined(whole.part(slice(begin, end)), before))
         before = parts[-1].after
     for name in ("non_finite", "non_unit", "turned", "shifted", "frozen"):
         pieces = np.concatenate([getattr(part, name) for part in parts])
@@ -73,9 +73,9 @@ def test_it_does_not_matter_where_a_recording_is_cut(seed: int, cuts: list[int])
 
 def test_examining_does_not_change_a_recording() -> None:
     """Examining a recording does not change any bit of it."""
-    bad = spoilt(3)
+    bad = with_faults(3)
     before = (bad.times_s.tobytes(), bad.rotations.tobytes(), bad.positions_m.tobytes())
-    judged(bad)
+    examined(bad)
     assert (bad.times_s.tobytes(), bad.rotations.tobytes(), bad.positions_m.tobytes()) == before
 
 
@@ -88,14 +88,14 @@ def test_the_other_sign_of_a_quaternion_is_the_same_rotation() -> None:
 
 def test_precision_of_the_numbers_does_not_matter() -> None:
     """A recording has the same faults in double precision."""
-    bad = spoilt(4)
+    bad = with_faults(4)
     wide = assess(bad.times_s, bad.rotations.astype(float), bad.positions_m.astype(float))
     assert wide == quality(bad)
 
 
 def test_faults_of_runs_add_up() -> None:
     """Two runs together have the faults of both; the gap between them is unknown."""
-    one, other = quality(spoilt(5)), quality(spoilt(6))
+    one, other = quality(with_faults(5)), quality(with_faults(6))
     both = combine([one, other])
     assert both.frames == one.frames + other.frames
     assert both.gaps == one.gaps + other.gaps
@@ -108,7 +108,7 @@ def test_no_frames_have_no_faults() -> None:
     """A recording without frames has no faults and no frame rate."""
     empty = quality(generated().part(slice(0)))
     assert (empty.frames, empty.frame_rate_hz, empty.span_s) == (0, None, 0.0)
-    after = judged(generated().part(slice(0))).after
+    after = examined(generated().part(slice(0))).after
     assert (after.time_s, after.pose, after.watched_s) == (None, None, 0.0)
 
 

@@ -60,7 +60,7 @@ def mirrored(step: ContactChange | Command) -> ContactChange | Command:
     return ContactChange(step.time_s, begins, ends)
 
 
-def essence(event: TaskEvent) -> tuple[object, ...]:
+def comparable(event: TaskEvent) -> tuple[object, ...]:
     """Return an event's values without the part where it is the first of several by name."""
     part = None if event.kind in CHOSEN_BY_NAME else event.part
     return (event.kind, event.time_s, event.active_s, event.task, event.surface, part)
@@ -90,8 +90,8 @@ def test_the_record_gives_the_live_events(name: str, moves: Moves) -> None:
     commands = [step for step in steps if isinstance(step, Command)]
     events = replay(run.state.rules, run.intervals, commands)[1]
     keep = (*PROGRESS, EventKind.OUT_OF_ORDER, EventKind.WRONG_PART, EventKind.TARGET_EARLY)
-    live = [essence(event) for event in run.events if event.kind in keep]
-    assert live == [essence(event) for event in events if event.kind in keep]
+    live = [comparable(event) for event in run.events if event.kind in keep]
+    assert live == [comparable(event) for event in events if event.kind in keep]
 
 
 @given(NAMES, MOVES)
@@ -170,14 +170,14 @@ def test_a_mirrored_left_hander_does_the_same(name: str, moves: Moves) -> None:
     mirror = TaskRun(TaskRules(layout(name), Laterality.LEFT), ())
     for step in steps:
         mirror.apply(mirrored(step))
-    expected = Counter(essence(event) for event in run.events)
+    expected = Counter(comparable(event) for event in run.events)
     swapped = [
         replace(
             e, surface=e.surface and mirrored_name(e.surface), part=e.part and mirrored_name(e.part)
         )
         for e in mirror.events
     ]
-    assert expected == Counter(essence(event) for event in swapped)
+    assert expected == Counter(comparable(event) for event in swapped)
 
 
 @given(NAMES, MOVES)

@@ -17,7 +17,7 @@ LONGEST = 500
 ROWS = [JOINT_INDEX[part] for part in GOAL_PARTS]
 ELBOWS = [JOINT_INDEX[f"{side}LowerArm"] for side in ("Left", "Right")]
 CLIPS = ["cmu_bvh/02_01.bvh", "cmu_bvh/12_02.bvh", "vicon_tracker/ObjectInspection_0.csv"]
-"""A walk, tai chi, somebody who takes things from a table."""
+"""Captures of a walk, of tai chi, and of a person who takes objects from a table."""
 
 
 @pytest.mark.parametrize("file", CLIPS)

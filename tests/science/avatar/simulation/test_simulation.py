@@ -14,8 +14,8 @@ from app.science.avatar.targets.targets import joint_rotations
 from app.science.latency.achieved_latency import achieved_latency
 from app.science.rotations import geodesic_angle, identity
 from tests.science.avatar.captured import LONG, RATE_HZ, REACH, TURN, WALK, captured
-from tests.science.avatar.ordeals import STEP_S, WALL_FACE_M, driven_into_a_wall, thrown_about
 from tests.science.avatar.simulated import angle_of, angles, avatar, follow, model, run
+from tests.science.avatar.stress import STEP_S, WALL_FACE_M, run_random_poses, swing_into_a_wall
 
 HIPS_M = np.array([0.0, 0.954, 0.0])
 TO_THE_RIGHT = np.array([1.0, 0.0, 0.0])
@@ -73,7 +73,7 @@ def test_the_hips_are_never_late(shared_data: Path) -> None:
 
 def test_a_hand_does_not_enter_a_wall() -> None:
     """A hand at 2 m/s enters a wall by at most 5 mm, reported as a contact, and never passes."""
-    found = driven_into_a_wall()
+    found = swing_into_a_wall()
     assert found.speed_m_s > 1.7
     assert found.touched == {"wall"}
     assert found.deepest_m <= 0.005
@@ -81,10 +81,10 @@ def test_a_hand_does_not_enter_a_wall() -> None:
     assert found.least_force_n >= 0.0
 
 
-def _thrown_about(hips: Hips, jumps: int, every: int) -> None:
-    thrown = thrown_about(hips, jumps, every)
-    body = thrown.body
-    assert thrown.always_finite
+def _assert_survives_random_poses(hips: Hips, jumps: int, every: int) -> None:
+    outcome = run_random_poses(hips, jumps, every)
+    body = outcome.body
+    assert outcome.always_finite
     assert body.health.restored == 0
     assert body.health.teleports == jumps // every
     assert body.time_s == round(jumps / RATE_HZ / STEP_S) * STEP_S
@@ -94,14 +94,14 @@ def _thrown_about(hips: Hips, jumps: int, every: int) -> None:
 @pytest.mark.parametrize("hips", ["carried", "welded"])
 def test_random_poses_and_teleports_cause_no_failure(hips: Hips) -> None:
     """500 random poses and 50 teleports into walls cause no failure and no reset."""
-    _thrown_about(hips, 500, 10)
+    _assert_survives_random_poses(hips, 500, 10)
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("hips", ["carried", "welded"])
 def test_many_random_poses_and_teleports_cause_no_failure(hips: Hips) -> None:
     """10,000 random poses and 1,000 teleports of up to 10 m cause no failure and no reset."""
-    _thrown_about(hips, 10_000, 10)
+    _assert_survives_random_poses(hips, 10_000, 10)
 
 
 def test_a_state_that_is_not_finite_is_restored() -> None:

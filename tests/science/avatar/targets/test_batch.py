@@ -10,7 +10,7 @@ from app.science.rotations import FloatArray, from_rotation_vector, multiply, no
 from app.science.skeleton.joints import JOINT_COUNT, JOINT_INDEX
 
 FRAMES = 1300
-"""More than two blocks of what is followed in a row."""
+"""More than two of the blocks in which a batch is computed."""
 
 
 def wild_movement(frames: int = FRAMES, seed: int = 1) -> FloatArray:

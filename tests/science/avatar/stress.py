@@ -1,4 +1,4 @@
-"""Stress tests for the avatar: a fast hand against a wall, and random poses and teleports."""
+"""Stress scenarios of the avatar: a fast hand against a wall, random poses and teleports."""
 
 import math
 from dataclasses import dataclass
@@ -16,11 +16,11 @@ from tests.science.avatar.simulated import EIGHT_BOXES, angles, avatar
 STEP_S = 0.002
 _WALL = SceneBox("wall", (-0.8, 1.4, -0.31), (0.5, 0.6, 0.01))
 WALL_FACE_M = -0.31
-"""Middle of the wall, along z; the hand comes from above it."""
+"""Middle of the wall along z, in metres; the hand approaches from larger z."""
 
 
 @dataclass(frozen=True)
-class AgainstWall:
+class WallImpact:
     """What happened when a hand was driven into a wall.
 
     Attributes:
@@ -38,7 +38,7 @@ class AgainstWall:
     least_force_n: float
 
 
-def driven_into_a_wall() -> AgainstWall:
+def swing_into_a_wall() -> WallImpact:
     """Swing the left arm into a wall of 2 cm at 2 m/s at the hand, and keep pressing."""
     body = avatar(Scene((_WALL,), floor=False))
     hand = body.model.geom("LeftHand/0").id
@@ -57,18 +57,18 @@ def driven_into_a_wall() -> AgainstWall:
         if not touched:
             fastest = max(fastest, (before_m - place_m) / STEP_S)
         before_m, farthest_m = place_m, min(farthest_m, place_m)
-    return AgainstWall(fastest, deepest_m, farthest_m, frozenset(touched), least_n)
+    return WallImpact(fastest, deepest_m, farthest_m, frozenset(touched), least_n)
 
 
 @dataclass(frozen=True, eq=False)
-class ThrownAbout:
-    """A body after random poses, and whether its angles were always finite."""
+class RandomPosesRun:
+    """The result of random poses: the body, and whether its angles were always finite."""
 
     body: PhysicsAvatar
     always_finite: bool
 
 
-def thrown_about(hips: Hips, jumps: int, every: int) -> ThrownAbout:
+def run_random_poses(hips: Hips, jumps: int, every: int) -> RandomPosesRun:
     """Command random poses, and teleport the hips by up to 10 m in every `every`-th frame."""
     rng = np.random.default_rng(6)
     body = avatar(EIGHT_BOXES, hips=hips, fingers=True)
@@ -80,4 +80,4 @@ def thrown_about(hips: Hips, jumps: int, every: int) -> ThrownAbout:
         body.set_targets(rng.uniform(-math.pi, math.pi, len(AXES)))
         body.step_to(frame / RATE_HZ)
         finite = finite and bool(np.isfinite(body.data.qpos).all())
-    return ThrownAbout(body, finite)
+    return RandomPosesRun(body, finite)
