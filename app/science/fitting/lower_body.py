@@ -10,10 +10,9 @@ Knee and ankle lie midway between outer and inner marker. With an outer marker o
 joint's width inwards along the knee's axis. That axis is perpendicular to shank and foot, which are
 at a right angle to each other even where hip, knee and ankle are nearly in line and define no
 plane; the angle by which the foot points outwards is taken from the frames in which the knee is
-well bent.
-The half widths, marker included, are 0.16 and 0.105 of the distance between the outer markers of
-knee and ankle (6.4 cm and 4.2 cm for 40 cm), as measured between inner and outer markers of the two
-people of `Gait.c3d` and `walk.trc`, BMC data set (0.160 to 0.165 and 0.099 to 0.113).
+well bent. The half widths, marker included, are 0.16 and 0.105 of the distance between the outer
+markers of knee and ankle (6.4 cm and 4.2 cm for 40 cm), as measured between inner and outer markers
+of the two people of `Gait.c3d` and `walk.trc`, BMC data set (0.160 to 0.165 and 0.099 to 0.113).
 """
 
 import numpy as np

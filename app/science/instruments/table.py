@@ -41,8 +41,7 @@ def score_csv(instrument: Instrument, text_in: str) -> str:
 
     `text_in`: a header line, then one row for each completed form; columns named like items contain
     answers, empty (or NA) where missing. The result uses commas and \n; scores have every digit of
-    a
-    float and are empty where they have no value. A table with only a header gives only a header.
+    a float and are empty where they have no value. A table with only a header gives only a header.
 
     Raises InstrumentTableError, naming line and column, for: no header, no item column, duplicate
     columns, a row of another length, broken quotes, an invalid answer.

@@ -52,8 +52,7 @@ def path_of(question: Question) -> PlannedPath:
 
     Raises:
         Cannot: A point is outside the scene or inside an obstacle, the path crosses one, or there
-            is
-            no path.
+            is no path.
     """
     points = question.points_m
     try:

@@ -21,8 +21,7 @@ class FigureFilter(BaseModel):
     `rows`: "valid" leaves out what does not count (sessions that were broken off or are not valid
     by the study's rules, superseded and skipped steps), "all" draws it too. `since` and `until`:
     the first and last day, in UTC, on which a session was created. `order`: added latencies in ms
-    in
-    the order of the blocks, as in "0 125 350".
+    in the order of the blocks, as in "0 125 350".
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")

@@ -22,8 +22,7 @@ class Job:
     """An export of one account, its state and its worker process.
 
     `began_ns`, `ended_ns`: monotonic times of the making, without the wait in the queue.
-    `recorded`:
-    whether the copy is on record. `given_up`: whether the export was cancelled.
+    `recorded`: whether the copy is on record. `given_up`: whether the export was cancelled.
     """
 
     owner: str

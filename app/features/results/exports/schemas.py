@@ -31,10 +31,8 @@ class ExportView(BaseModel):
 
     `rows` of `rows_total` rows of movement are written; the other tables are small in comparison.
     `bytes` are on the disk; `bytes_expected` is estimated from the bytes per row so far,
-    `remaining_s`
-    from the time, both None until there are enough rows. `sha256` is that of the file.
-    `expires_at`:
-    when the server removes it.
+    `remaining_s` from the time, both None until there are enough rows. `sha256` is that of the
+    file. `expires_at`: when the server removes it.
     """
 
     id: str

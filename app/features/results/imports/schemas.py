@@ -32,8 +32,7 @@ class Mapping(_Body):
     for each condition. `conditions`: word of the file -> key of a condition of the study. `words`:
     answer in words -> number. Numbers x become multiply * x + add, for scales that start at another
     number. `turned`: items that the file has already reverse-scored; they are reversed back,
-    because
-    the instrument's formulas reverse them.
+    because the instrument's formulas reverse them.
     """
 
     instrument: Short

@@ -15,7 +15,7 @@ import numpy as np
 from app.science.statistics.arrays import FloatArray, IntArray
 from app.science.statistics.errors import StatisticsError
 
-# : A value that can be a level: displayed as text, sorted in its own type's order.
+#: A value that can be a level: displayed as text, sorted in its own type's order.
 Label = str | int | float
 _FEWEST_LEVELS = 2
 

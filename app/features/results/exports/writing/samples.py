@@ -29,13 +29,10 @@ def shortest_doubles(values: NDArray[np.float32]) -> NDArray[np.float64]:
     """Return the doubles, of the same shape, whose shortest text is that of the single `values`.
 
     0.1 in single precision is 0.100000001490116..., but "0.1" already identifies it. Six
-    significant
-    digits identify at most one single-precision number, nine always suffice (Steele and White
-    1990),
-    so each value is rounded to 6, 7, 8 and 9 digits, for all values at once, and the first decimal
-    that converts back to the value is taken. The result is the double nearest to that decimal,
-    whose
-    own shortest text is the decimal: any printer of doubles then prints it.
+    significant digits identify at most one single-precision number, nine always suffice (Steele and
+    White 1990), so each value is rounded to 6, 7, 8 and 9 digits, for all values at once, and the
+    first decimal that converts back to the value is taken. The result is the double nearest to that
+    decimal, whose own shortest text is the decimal: any printer of doubles then prints it.
 
     Zeros keep their sign; values that are not finite are unchanged.
     """
