@@ -118,7 +118,7 @@ def test_writing_and_reading_back_gives_the_same_poses(shared_data: Path) -> Non
 def test_an_invalid_text_is_rejected_with_its_line(
     old: str, new: str, line: int, reason: str
 ) -> None:
-    """Each invalid line is rejected with its number and what is valid."""
+    """Each invalid line raises an error that states its number and what is valid."""
     assert old in _SMALL
     with pytest.raises(BvhError, match=reason) as caught:
         parse_bvh(_SMALL.replace(old, new, 1), metres_per_unit=0.01)

@@ -31,7 +31,7 @@ def test_a_study_names_the_version_of_its_avatar() -> None:
 
 
 def test_a_physics_avatar_needs_a_configuration() -> None:
-    """A physics avatar without a configuration is rejected with the existing configurations."""
+    """A physics avatar without a configuration raises an error that lists the existing ones."""
     text = edited(("avatar: delayed_copy", "avatar: physics"))
     (problem,) = problems(text)
     assert problem.path == "avatar_configuration"
@@ -62,7 +62,7 @@ def test_a_delayed_copy_has_no_configuration() -> None:
 def test_an_unknown_configuration_is_rejected(
     configuration: str, path: str, expected_message: str
 ) -> None:
-    """An unknown configuration is rejected with its place in the file."""
+    """An unknown configuration raises an error that states its place in the file."""
     with pytest.raises(ConfigError) as caught:
         load_study(physics(configuration), instruments=instruments(), avatars=AVATARS)
     (problem,) = caught.value.problems

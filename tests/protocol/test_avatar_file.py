@@ -121,7 +121,7 @@ def test_a_problem_has_its_place(
 
 
 def test_an_unknown_key_is_rejected_with_the_valid_ones() -> None:
-    """An unknown key is rejected with the valid ones, and a misspelt one with its correction."""
+    """The error about an unknown key lists the valid ones, and corrects a misspelt one."""
     text = TEXT.replace('"gravity"', '"gravitiy"', 1).replace("kp_nm_per_rad", "kp", 1)
     with pytest.raises(ConfigError) as caught:
         load_avatar(text)

@@ -72,7 +72,7 @@ def test_the_design_is_that_of_the_study_without_options() -> None:
 def test_impossible_options_are_rejected_at_their_place(
     old: str, new: str, path: str, expected_message: str
 ) -> None:
-    """Impossible stop rules, practices and signatures are rejected with path and remedy."""
+    """Impossible stop rules, practices and signatures give problems with path and remedy."""
     found = [one for one in problems(with_options((old, new))) if one.path.startswith(path)]
     assert found
     assert expected_message in found[0].message

@@ -135,7 +135,7 @@ def test_listed_orders_are_used_as_they_are() -> None:
 def test_an_invalid_list_of_orders_is_rejected_at_its_place(
     text: str, path: str, expected_message: str
 ) -> None:
-    """Missing, repeated and superfluous orders are rejected with their path."""
+    """Missing, repeated and superfluous orders raise an error that names their path."""
     found = [one for one in problems(text) if one.path == path]
     assert found
     assert expected_message in found[0].message

@@ -22,7 +22,7 @@ def test_every_picture_is_drawn_and_shown() -> None:
 
 @pytest.mark.parametrize("name", ["t-pose", "T_pose", "", "photo.jpg"])
 def test_an_unknown_picture_is_rejected(name: str) -> None:
-    """An unknown picture is rejected with its place and the existing ones."""
+    """An unknown picture raises an error that names its place and the existing ones."""
     (problem,) = problems(edited(("![equipment]", f"![{name}]")))
     assert problem.path == "texts.instructions.en"
     assert problem.message == f"There is no picture {name!r}."

@@ -124,7 +124,7 @@ def test_the_hash_of_a_study_without_forms_after_blocks_stays() -> None:
 
 
 def test_an_unknown_instrument_at_the_end_of_a_block_names_its_path() -> None:
-    """An unknown instrument at the end of a block is rejected with its path."""
+    """An unknown instrument at the end of a block raises an error that names its path."""
     old, new = SICKNESS
     (problem,) = problems(edited((old, new.replace("fms", "fmz"))))
     assert problem.path == "procedure.block.after[0].instrument"

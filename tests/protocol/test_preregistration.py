@@ -60,7 +60,7 @@ def test_declaring_changes_the_content_and_not_the_balance() -> None:
 def test_an_impossible_preregistration_is_rejected_at_its_place(
     old: str, new: str, path: str
 ) -> None:
-    """A preregistration that does not fit the study is rejected with path and remedy."""
+    """A preregistration that does not fit the study raises an error that states path and remedy."""
     assert old in SECTION
     (problem,) = problems(STUDY + SECTION.replace(old, new))
     assert (problem.path, bool(problem.remedy)) == (f"preregistration.{path}", True)

@@ -46,7 +46,7 @@ def test_an_older_study_keeps_its_content() -> None:
 
 
 def test_unknown_phases_and_forms_are_rejected_with_the_valid_ones() -> None:
-    """An unknown phase or form is rejected with its path, the value and the valid keys."""
+    """An unknown phase or form raises an error with its path, the value and the valid keys."""
     [phase] = problems(edited((HAND, "{phase: hands}")))
     assert (phase.path, phase.value) == ("valid_when.phases[0].phase", "hands")
     assert phase.valid == ["free_roam", "hand", "foot"]

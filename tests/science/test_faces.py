@@ -47,10 +47,10 @@ def _imports(path: Path) -> Iterator[tuple[str, str, int]]:
 
 
 def _is_inside(importer: str, module: str) -> bool:
-    """Return whether a module may import internals: of its own package, or of kernels.
+    """Return whether a module may import another's internals.
 
-    Kernels call each other's kernels, which no `__init__` can export, as importing one loads the
-    compiler.
+    It may import those of its own package, and kernels may import each other: no `__init__` can
+    export kernels, as importing one loads the compiler.
     """
     package = module if module in PACKAGES else module.rpartition(".")[0]
     kernels = module.endswith("_kernels") and importer.startswith("app.science.")

@@ -162,7 +162,7 @@ def test_unit_check_flags_scaled_and_non_finite() -> None:
 
 @pytest.mark.parametrize("order", ["", "ZZX", "zyx", "XYZX", "ABC"])
 def test_unknown_euler_order_is_rejected(order: str) -> None:
-    """An unknown Euler order is rejected with the valid ones."""
+    """An unknown Euler order raises an error that lists the valid ones."""
     with pytest.raises(rot.RotationError, match="Euler order"):
         rot.from_euler(order, np.zeros((1, max(len(order), 1))))
 

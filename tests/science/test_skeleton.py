@@ -116,7 +116,7 @@ def test_head_is_a_sphere_and_capsules_start_at_their_joints(rng: np.random.Gene
 
 @pytest.mark.parametrize("stature_m", [175.0, 0.0, float("nan"), -1.7])
 def test_impossible_stature_is_rejected(stature_m: float) -> None:
-    """A stature in centimetres, or that is not a number, is rejected with what is valid."""
+    """A stature in centimetres, or that is not a number, raises an error with what is valid."""
     with pytest.raises(SkeletonError, match="in metres"):
         build_skeleton(stature_m)
 

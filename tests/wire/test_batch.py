@@ -116,7 +116,7 @@ def test_the_arrays_are_views_on_the_message() -> None:
     ],
 )
 def test_an_invalid_header_is_rejected_by_field(field: str, value: object, reason: str) -> None:
-    """An invalid header field is rejected with its name and value."""
+    """An invalid header field raises an error that names the field and its value."""
     with pytest.raises(MalformedBatchError, match=reason):
         decode_batch(changed(field, value))
 

@@ -62,7 +62,7 @@ def test_a_batch_is_encoded_and_decoded(vector: dict[str, Any]) -> None:
 
 @pytest.mark.parametrize("vector", entries("refused_batches", "batches"))
 def test_an_invalid_batch_is_rejected_by_field(vector: dict[str, Any]) -> None:
-    """Each invalid batch is rejected with the field that the vector names."""
+    """Each invalid batch raises an error that names the field that the vector names."""
     words = FIELD_WORDS.get(vector["field"], vector["field"])
     with pytest.raises(MalformedBatchError, match=words):
         decode_batch(bytes.fromhex(vector["message_hex"]))

@@ -54,7 +54,7 @@ def assert_survives(seeds: Sequence[bytes], name: str, examples: int) -> None:
 def assert_family_survives(
     seeds: Sequence[tuple[Mapping[str, bytes], bytes]], name: str, examples: int
 ) -> None:
-    """Do the same for formats with companion files, which are damaged in one case of three."""
+    """Read damaged versions of seeds with companion files, damaged in one case of three."""
     for companions, seed in seeds:
         # A seed that is rejected undamaged would only test the first check.
         read_capture(seed, name=name, reading=Reading(companions=companions), limits=LIMITS)

@@ -120,7 +120,7 @@ def test_radians_and_another_axis_up_are_understood() -> None:
 
 
 def test_the_missing_file_is_named() -> None:
-    """An AMC alone is rejected with the name of its ASF, and an ASF alone with its AMC files."""
+    """The error about a single file names the missing one: the ASF of an AMC, or the AMC."""
     with pytest.raises(CaptureError, match=r"give\s+02\.asf with it"):
         read_asf_amc(_AMC.encode(), name="02_01.amc", reading=Reading(), limits=Limits())
     with pytest.raises(CaptureError, match=r"skeleton without movement.*02_01\.amc"):

@@ -132,7 +132,7 @@ def test_ends_of_bones_are_kept() -> None:
 
 
 def test_a_body_of_no_human_size_is_read_with_a_warning() -> None:
-    """A body that has a human size in no unit is read in the nearest one, with a note."""
+    """A body whose size is human in no unit is read in the closest unit, with a note."""
     capture = _read(_TEXT.replace("110", "0.7").replace("OFFSET 0 10", "OFFSET 0 0.1"))
     assert any("Say the unit" in note for note in capture.notes)
 

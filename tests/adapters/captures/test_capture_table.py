@@ -7,7 +7,7 @@ from tests.support.capture_table import PAGE, files, rows
 
 
 def test_every_shared_file_reads_as_documented(shared_data: Path) -> None:
-    """Each shared file loads with the documented numbers or is rejected with the reason."""
+    """Each shared file loads with the documented numbers or raises an error with the reason."""
     documented = [
         line for line in PAGE.read_text(encoding="utf-8").splitlines() if line.startswith("| `")
     ]

@@ -96,7 +96,7 @@ def test_the_published_tracker_is_read(shared_data: Path) -> None:
 
 
 def test_a_gaze_log_is_rejected(shared_data: Path) -> None:
-    """A log of gaze rays is rejected with the columns that a body needs."""
+    """A log of gaze rays raises an error that lists the columns that a body needs."""
     path = shared_data / "logs/uxf/kitchen_laser/10/S001/trackers/Eye_gaze_T003.csv"
     with pytest.raises(CaptureError, match=r"dir_x.*A tracker of movement has pos_x"):
         read_capture(path.read_bytes(), name=path.name)
@@ -147,7 +147,7 @@ def test_times_must_increase() -> None:
     ],
 )
 def test_an_invalid_log_is_rejected_with_its_line(text: str, reason: str, line: int) -> None:
-    """Each invalid line is rejected with its number and content."""
+    """Each invalid line raises an error that states its number and content."""
     with pytest.raises(CaptureError, match=reason) as caught:
         read_capture(text.encode(), name="a.csv")
     assert caught.value.line == line

@@ -228,7 +228,7 @@ _SMALL = Dialect("1.23")
 def test_an_invalid_take_is_rejected_with_its_line(
     change: tuple[str, str], reason: str, line: int
 ) -> None:
-    """Each invalid line is rejected with its number and content."""
+    """Each invalid line raises an error that states its number and content."""
     rng = np.random.default_rng(29)
     text = motive_text(random_motion(rng, random_rig(rng, *motive_body())), _SMALL)
     assert change[0] in text
@@ -238,7 +238,7 @@ def test_an_invalid_take_is_rejected_with_its_line(
 
 
 def test_a_quaternion_that_is_not_a_unit_is_rejected() -> None:
-    """A quaternion of length 3 is rejected with its line."""
+    """A quaternion of length 3 raises an error that states its line."""
     rng = np.random.default_rng(30)
     motion = random_motion(rng, random_rig(rng, *motive_body()))
     lines = motive_text(motion, replace(_SMALL)).splitlines()

@@ -78,7 +78,7 @@ def test_the_angles_are_rotation_vectors(shared_data: Path) -> None:
 
 @pytest.mark.parametrize("take", ["HumanRobotHandover_0", "ObjectInspection_0"])
 def test_the_hip_walks_as_in_the_authors_bvh(shared_data: Path, take: str) -> None:
-    """Each root position of the authors' BVH, which drops frames, is one of ours to 5 mm."""
+    """Each root position of the authors' BVH, which drops frames, occurs in ours, to 5 mm."""
     folder = shared_data / "motion" / "vicon_tracker"
     csv, bvh = (
         read_capture((folder / f"{take}.{kind}").read_bytes(), name=f"{take}.{kind}").motion
@@ -109,7 +109,7 @@ def test_the_hip_walks_as_in_the_authors_bvh(shared_data: Path, take: str) -> No
 def test_an_invalid_table_is_rejected_with_its_line(
     old: str, new: str, reason: str, line: int
 ) -> None:
-    """Each invalid line is rejected with its number and what is valid."""
+    """Each invalid line raises an error that states its number and what is valid."""
     assert old in _TEXT
     with pytest.raises(CaptureError, match=reason) as caught:
         read_capture(_TEXT.replace(old, new, 1).encode(), name="take.csv")

@@ -1,4 +1,4 @@
-"""Files that are no humanoid, or no valid file, are rejected with the place and the reason."""
+"""Files that are no humanoid, or invalid, raise an error with the place and the reason."""
 
 import json
 import math
@@ -31,7 +31,7 @@ def test_a_missing_part_is_named(part: str) -> None:
 
 
 def test_all_missing_parts_are_named() -> None:
-    """A torso is rejected with all twelve missing parts."""
+    """A torso raises an error that lists all twelve missing parts."""
     torso = without("Arm", "Leg", "Hand", "Foot", "Toes")
     error = rejected(humanoid_file(Model(parts=torso, vrm=1)))
     assert all(part in str(error) for part in REQUIRED_PARTS if part[0] in "LR")
@@ -39,7 +39,7 @@ def test_all_missing_parts_are_named() -> None:
 
 
 def test_a_dog_is_no_humanoid() -> None:
-    """A dog is rejected with its missing arms and the names of its bones."""
+    """A dog raises an error that names the missing arms and its bones."""
     message = str(rejected(dog_file()))
     assert "no LeftUpperArm, LeftLowerArm, LeftHand" in message
     assert "front_paw.L" in message
@@ -66,7 +66,7 @@ def test_exchanged_sides_are_found() -> None:
 
 
 def test_a_bone_out_of_order_is_named() -> None:
-    """A map whose hand is above its arm in the hierarchy is rejected with that bone."""
+    """A map whose hand is above its arm in the hierarchy raises an error that names that bone."""
 
     def crossed(document: dict[str, Any]) -> None:
         bones = document["extensions"]["VRMC_vrm"]["humanoid"]["humanBones"]
@@ -115,7 +115,7 @@ def test_impossible_lengths_are_rejected() -> None:
     ],
 )
 def test_files_that_are_no_model_are_rejected(data: bytes, message: str) -> None:
-    """Files with wrong first bytes, header or JSON are rejected with the reason."""
+    """Files with wrong first bytes, header or JSON raise an error that states the reason."""
     assert message in str(rejected(data))
 
 
@@ -171,7 +171,7 @@ def _set(*path: str | int, to: object) -> Edit:
     ],
 )
 def test_inconsistent_values_are_rejected_with_their_place(edit: Edit, place: str) -> None:
-    """Sizes and indices out of range, loops and invalid numbers are rejected with their place."""
+    """Sizes and indices out of range, loops and invalid numbers raise an error with their place."""
     error = rejected(humanoid_file(Model(edit=edit)))
     assert error.place.startswith(place), str(error)
 

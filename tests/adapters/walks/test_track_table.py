@@ -68,7 +68,7 @@ def test_people_are_kept_apart() -> None:
     ],
 )
 def test_invalid_tables_are_rejected_with_their_line(text: str, expected_message: str) -> None:
-    """An invalid row is rejected with its line instead of being guessed or skipped."""
+    """An invalid row raises an error that names its line; it is not guessed or skipped."""
     with pytest.raises(CaptureError, match=expected_message):
         read_tracks(text.encode(), name="a.csv")
 

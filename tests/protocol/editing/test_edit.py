@@ -73,7 +73,7 @@ def changes(draw: st.DrawFn) -> tuple[str, Change]:
 @settings(max_examples=usually(25, at_length=100), deadline=None)
 @given(changes())
 def test_a_change_does_just_what_it_says(case: tuple[str, Change]) -> None:
-    """The edited text gives the changed tree, or the change is rejected with a remedy."""
+    """The edited text gives the changed tree, or the change raises an error with a remedy."""
     text, change = case
     before = read_source(text).tree
     expected = applied(copy.deepcopy(before), change)
@@ -152,7 +152,7 @@ def test_a_new_entry_is_written_like_its_neighbours() -> None:
     ],
 )
 def test_a_change_that_does_not_fit_is_rejected_with_its_path(change: Change) -> None:
-    """A change to a path that the file does not have is rejected with that path."""
+    """A change to a path that the file does not have raises an error that names that path."""
     with pytest.raises(ConfigError) as caught:
         edit_text(STUDY, [change])
     (problem,) = caught.value.problems

@@ -170,7 +170,7 @@ def test_a_bend_beyond_the_limits_costs_at_most_a_round_trip() -> None:
 
 
 def test_readings_of_different_shapes_are_rejected() -> None:
-    """Readings of different shapes are rejected with the shapes, and a limit with its value."""
+    """Readings of different shapes and invalid limits raise an error that states them."""
     with pytest.raises(ClockError, match="all must be"):
         ClockProbes(np.zeros(2), np.zeros(3), np.zeros(2), np.zeros(2))
     with pytest.raises(ClockError, match=r"drift is 0\.0"):

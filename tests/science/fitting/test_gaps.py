@@ -55,14 +55,14 @@ def test_a_leg_never_seen_whole_is_rejected() -> None:
 
 
 def test_markers_of_one_leg_are_no_body() -> None:
-    """Markers of a single leg are rejected with the markers that a body needs."""
+    """Markers of a single leg raise an error that lists the markers that a body needs."""
     names = ("Foot_Marker1", "Foot_Marker2", "Leg_Marker1")
     with pytest.raises(FitError, match=r"Foot_Marker1.*pelvis needs LASI, RASI and SACR"):
         fit_skeleton(MarkerMotion(names, 100.0, np.zeros((10, 3, 3))))
 
 
 def test_a_headset_and_two_controllers_are_no_body() -> None:
-    """Three tracked objects are rejected with the reason and what would suffice."""
+    """Three tracked objects raise an error that states the reason and what would suffice."""
     bodies = BodyMotion(
         ("Head", "LeftHand", "RightHand"),
         np.arange(5) / 90.0, np.zeros((5, 3, 3)), identity(5, 3),

@@ -90,7 +90,7 @@ def test_a_header_alone_gives_a_header() -> None:
     ],
 )
 def test_invalid_tables_are_rejected_with_line_and_column(text: str, expected_message: str) -> None:
-    """An invalid table is rejected with line, column, value and what is valid."""
+    """An invalid table raises an error that states line, column, value and remedy."""
     with pytest.raises(InstrumentTableError, match=expected_message):
         score_csv(KARAS, text)
 

@@ -117,7 +117,7 @@ def test_a_yes_counts_one() -> None:
 
 @pytest.mark.parametrize("value", [0, 8, 3.5, -1, math.inf, "five", True])
 def test_an_answer_off_the_scale_is_rejected(value: object) -> None:
-    """An answer off the scale is rejected with the item, the value and what is valid."""
+    """An answer off the scale raises an error that names item, value and valid range."""
     with pytest.raises(AnswerError, match="whole number from 1 to 7") as caught:
         score_answers(KARAS, {**EXPERT, "q4": value})
     assert (caught.value.item, caught.value.value, caught.value.row) == ("q4", value, None)

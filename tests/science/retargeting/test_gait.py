@@ -82,7 +82,10 @@ def test_steps_do_not_depend_on_where_the_walk_heads(angle_rad: float) -> None:
 
 
 def test_noise_of_a_millimetre_adds_no_lift() -> None:
-    """Noise of a millimetre adds no lift, thanks to hysteresis and a shortest gap of 0.06 s."""
+    """Noise of a millimetre on the positions adds no lift of a foot.
+
+    Hysteresis and a shortest gap of 0.06 s prevent it.
+    """
     rng = np.random.default_rng(11)
     walk = walk_figures(_noisy(_WALK.motion, rng, 0.001), mapped(_BODY))
     assert len(walk.steps) == len(_WALK.lengths_m)
@@ -148,7 +151,7 @@ def test_leg_angles_are_zero_standing_and_grow_with_flexion() -> None:
 
 
 def test_legs_that_are_not_mapped_are_named() -> None:
-    """Walk figures of an upper body are refused with the leg joints that are not mapped."""
+    """Walk figures of an upper body raise an error with the leg joints that are not mapped."""
     upper = {name: name for name in SAME if "Leg" not in name}
     with pytest.raises(RigError, match="no LeftUpperLeg, LeftLowerLeg, RightUpperLeg"):
         legs_of(_BODY, upper)

@@ -51,7 +51,7 @@ def test_a_grid_is_bilinear_and_goes_on_beyond_its_edge() -> None:
     ],
 )
 def test_impossible_grounds_are_rejected(build: object, reason: str) -> None:
-    """An impossible ground is rejected with the reason."""
+    """An impossible ground raises an error that states the reason."""
     assert callable(build)
     with pytest.raises(GroundError, match=reason):
         build()

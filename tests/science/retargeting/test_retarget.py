@@ -139,7 +139,7 @@ def test_resampling_keeps_duration_and_path(rng: np.random.Generator) -> None:
 
 
 def test_a_map_that_does_not_fit_is_rejected(rng: np.random.Generator) -> None:
-    """A joint map with a joint that the capture lacks is rejected with its name."""
+    """A joint map with a joint that the capture lacks raises an error that names it."""
     with pytest.raises(JointMapError, match="no joint 'Bauch'"):
         movement_in_place(
             _own_capture(_swaying(rng)), {"Hips": "Hips", "Spine": "Bauch"}, build_skeleton(1.75)
@@ -203,6 +203,6 @@ def test_any_capture_with_a_body_makes_a_simulated_person(shared_data: Path, fil
 def test_a_capture_without_a_body_makes_no_simulated_person(
     shared_data: Path, file: str, why: str
 ) -> None:
-    """A capture without a body is rejected with the file and the reason."""
+    """A capture without a body raises an error that names the file and states the reason."""
     with pytest.raises(UnusableCapture, match=why):
         make_person(np.random.default_rng(5), shared_data / "motion" / file)

@@ -175,12 +175,12 @@ def test_the_mannequin_faces_forward_in_unreals_axes() -> None:
 
 
 def test_axes_must_span_a_frame() -> None:
-    """Axes that are not perpendicular are rejected with their values."""
+    """Axes that are not perpendicular raise an error that states their values."""
     with pytest.raises(AxesError, match="perpendicular"):
         Axes(up=(0.0, 1.0, 0.0), left=(0.0, 1.0, 0.0))
 
 
 def test_a_map_that_does_not_fit_is_rejected() -> None:
-    """An unknown joint in a joint map is rejected with the existing joints."""
+    """An unknown joint in a joint map raises an error that lists the existing joints."""
     with pytest.raises(JointMapError, match="'Pelvis'"):
         t_pose(own_body(1.7), {**SAME, "Hips": "Pelvis"})

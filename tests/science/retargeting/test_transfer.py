@@ -224,7 +224,7 @@ def test_arrays_of_any_layout_give_the_same(rng: np.random.Generator) -> None:
 
 
 def test_wrong_arrays_are_rejected(rng: np.random.Generator) -> None:
-    """A frame and a movement of another skeleton are rejected with different errors."""
+    """A frame of another skeleton and a movement of one raise different errors."""
     source = own_body(1.7)
     retargeter = Retargeter(source, SAME, own_body(1.9), SAME)
     with pytest.raises(RigError, match=r"\(22, 4\)"):

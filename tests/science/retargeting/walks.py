@@ -54,7 +54,7 @@ def made_walk(rig: Rig, *, step_m: float = 0.6, steps: int = 4, height_m: float 
 
 
 def mapped(rig: Rig) -> Legs:
-    """Return the legs of a rig whose joints are named like the body's."""
+    """Return the mapped legs of a rig whose joints are named like the body's."""
     return legs_of(rig, SAME)
 
 

@@ -94,7 +94,7 @@ def test_full_agreement_has_the_smallest_p_there_is() -> None:
 
 
 def test_too_many_arrangements_give_an_asymptotic_p() -> None:
-    """With nine levels p is asymptotic, and a note gives the reason."""
+    """With nine levels p is asymptotic, and a note states the reason."""
     test = friedman(np.random.default_rng(1).normal(size=(5, 9)))
     assert test.method == "asymptotic"
     assert test.p == test.p_asymptotic
@@ -102,7 +102,7 @@ def test_too_many_arrangements_give_an_asymptotic_p() -> None:
 
 
 def test_data_that_cannot_be_tested_are_rejected() -> None:
-    """Constant rows, one subject, one level and missing values are rejected with what is needed."""
+    """Constant rows, one subject, one level and missing values raise an error with a remedy."""
     with pytest.raises(ConstantData, match="nothing to rank"):
         friedman([[1.0, 1.0], [2.0, 2.0]])
     with pytest.raises(TooFewData, match="1 complete subjects"):

@@ -170,7 +170,7 @@ def test_contrasts_can_be_against_one_level_within_another_factor() -> None:
 
 
 def test_linearly_dependent_terms_are_rejected() -> None:
-    """Linearly dependent terms are rejected with the coefficient that cannot be estimated."""
+    """Linearly dependent terms raise an error with the coefficient that cannot be estimated."""
     with pytest.raises(ModelError, match=r"limb\[b\] cannot be estimated"):
         build_design([factor("block", [1, 2, 1, 2]), factor("limb", ["a", "b", "a", "b"])])
 

@@ -83,7 +83,7 @@ def test_levels_are_ordered_as_people_would(found: list[str], ordered: tuple[str
 
 
 def test_a_level_is_found_by_its_number() -> None:
-    """ "0.0" finds the level "0"; an unknown level is rejected with the existing ones."""
+    """ "0.0" finds the level "0"; an unknown level raises an error that lists the existing ones."""
     assert place_of(("0", "125"), "0.0") == 0
     with pytest.raises(StatisticsError, match="there are: 0, 125"):
         place_of(("0", "125"), "350")
@@ -103,7 +103,7 @@ def test_a_level_is_found_by_its_number() -> None:
 def test_an_invalid_row_is_rejected_with_its_line(
     row: tuple[str, str, str, str | float], words: str
 ) -> None:
-    """An invalid row is rejected with its line, its column and its value."""
+    """An invalid row raises an error that states its line, column and value."""
     with pytest.raises(UnusableTable, match=words):
         _cells([*_ROWS, row])
 

@@ -114,7 +114,7 @@ def test_no_frames_have_no_faults() -> None:
 
 @pytest.mark.parametrize("shape", [(5, 21, 4), (4, 22, 4), (5, 22, 3)])
 def test_arrays_of_different_lengths_are_rejected(shape: tuple[int, ...]) -> None:
-    """Arrays that do not fit together are rejected with their shapes."""
+    """Arrays that do not fit together raise an error that states the shapes."""
     with pytest.raises(QualityError, match="do not match"):
         examine(np.zeros(5), np.zeros(shape), np.zeros((5, 3)))
     with pytest.raises(QualityError, match="do not match"):

@@ -33,7 +33,7 @@ def test_an_unbegun_clock_shows_zero() -> None:
 
 
 def test_time_must_not_go_back() -> None:
-    """A time before the previous one is rejected with both times."""
+    """A time before the previous one raises an error that states both times."""
     clock = ActiveClock().begin(2.0)
     with pytest.raises(ClockError, match=r"back from 2.0 s to 1.0 s"):
         clock.active_s(1.0)

@@ -101,7 +101,7 @@ def test_a_body_far_from_everything_touches_nothing() -> None:
 
 
 def test_arrays_of_wrong_shape_are_rejected() -> None:
-    """Arrays of a wrong shape are rejected with the expected and the given shape."""
+    """Arrays of a wrong shape raise an error that states the expected and the given shape."""
     with pytest.raises(ValueError, match=r"Expected segments of shape \(P, 2, 3\), got \(2, 3\)"):
         touching(ARRAYS, np.zeros((2, 3)), np.zeros(1))
     with pytest.raises(ValueError, match=r"one radius per part: \(4,\), got \(3,\)"):

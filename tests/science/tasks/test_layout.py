@@ -148,7 +148,7 @@ def test_vector_layouts_are_mirror_images_of_themselves() -> None:
     ],
 )
 def test_impossible_hand_layouts_are_rejected(changes: dict[str, Any], message: str) -> None:
-    """An impossible hand layout is rejected with the value and what to do."""
+    """An impossible hand layout raises an error that states the value and what to do."""
     with pytest.raises(LayoutError, match=message):
         hand(**changes)
 

@@ -193,7 +193,7 @@ def test_the_goal_carries_the_lowest_number_that_is_not_green(name: str, moves: 
 
 
 def test_unknown_surfaces_are_rejected() -> None:
-    """An unknown surface is rejected with the valid ones."""
+    """An unknown surface raises an error that lists the valid ones."""
     state = TaskRules(layout("hand"), Laterality.RIGHT).initial()
     with pytest.raises(TaskRuleError, match=r"no surface 'hand/9/panel'. Use one of: hand/1/panel"):
         advance(state, ContactChange(0.0, (Contact("hand/9/panel", "RightHand"),)))

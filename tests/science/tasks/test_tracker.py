@@ -89,6 +89,6 @@ def test_a_rejected_frame_changes_nothing() -> None:
 
 
 def test_tables_of_another_shape_are_rejected() -> None:
-    """A table of another shape is rejected with the expected and the given shape."""
+    """A table of another shape raises an error that states the expected and the given shape."""
     with pytest.raises(ValueError, match=r"Expected near of shape \(21, 2\).*got \(2, 21\)"):
         ContactTracker(KEYS, PARTS).observe(0.0, table(), table().T)

@@ -151,7 +151,7 @@ def test_an_impossible_stature_is_rejected(stature_m: float) -> None:
 
 @pytest.mark.parametrize("missing", REQUIRED_PARTS)
 def test_a_model_without_a_required_part_is_no_humanoid(missing: str) -> None:
-    """A model that lacks a required part is rejected with the name of that part."""
+    """A model that lacks a required part raises an error that names that part."""
     with pytest.raises(BodyError, match=f"no {missing}, so it is not a humanoid"):
         build_body(1.75, parts=_without(missing))
 

@@ -74,7 +74,7 @@ def test_a_piece_does_not_depend_on_order_or_rounding() -> None:
     ],
 )
 def test_points_without_volume_have_no_piece(points: FloatArray) -> None:
-    """No points, a point, a line, a flat sheet and a tiny cloud give no piece."""
+    """No points, coincident, collinear or coplanar points, and a tiny cloud give no piece."""
     assert piece_of(points) is None
 
 

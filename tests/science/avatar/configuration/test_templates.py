@@ -222,7 +222,7 @@ def test_a_configuration_is_edited_part_by_part() -> None:
 def test_a_joint_that_does_not_fit_its_part_is_rejected(
     change: dict[str, object], expected_message: str
 ) -> None:
-    """A single joint that does not match its part is rejected with what is valid."""
+    """A single joint that does not match its part raises an error that states what is valid."""
     with pytest.raises(AvatarSettingsError, match=expected_message) as caught:
         replace(figure_2_4(), **change)  # type: ignore[arg-type]  # the fact
     assert caught.value.problems[0].valid

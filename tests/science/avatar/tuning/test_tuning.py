@@ -219,7 +219,7 @@ def test_a_fully_locked_body_has_nothing_to_tune() -> None:
     [{"heuristic": "guess"}, {"attempts": 0}, {"workers": 0}, {"longest_s": float("nan")}],
 )
 def test_invalid_options_are_rejected(options: dict[str, object]) -> None:
-    """Invalid tuning options are rejected with what is valid."""
+    """Invalid tuning options raise an error that states what is valid."""
     with pytest.raises(TuningError, match="valid"):
         TuningOptions(**options)  # type: ignore[arg-type]  # that is the test
 

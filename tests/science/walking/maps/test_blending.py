@@ -32,7 +32,7 @@ def test_dependencies_count_by_their_own_spread() -> None:
 def test_a_query_without_a_dependency_is_rejected(
     query: Mapping[str, float], expected_message: str
 ) -> None:
-    """A query that lacks a dependency is rejected with its name."""
+    """A query that lacks a dependency raises an error that names it."""
     scaling = scaling_of(NAMES, dependency_rows(np.random.default_rng(1)))
     with pytest.raises(WalkingError, match=expected_message):
         scaling.vector(query)

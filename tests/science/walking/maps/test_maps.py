@@ -162,7 +162,7 @@ def test_an_entry_that_fails_ends_the_run_with_its_error() -> None:
 
 
 def test_a_grid_over_other_parameters_is_rejected() -> None:
-    """A grid of other parameters is rejected with the follower's and its own names."""
+    """A grid of other parameters raises an error that names the follower's and its own names."""
     other = regular_grid((SteeringParameter("sway", "m", 0.0, 1.0),), 3)
     with pytest.raises(WalkingError, match="sway"):
         MapMaker(other)

@@ -16,14 +16,14 @@ LINE = np.stack([np.zeros(5), np.arange(5) * 0.1], axis=-1)
 
 
 def test_a_walk_of_one_point_is_rejected() -> None:
-    """A walk of one sample is rejected with the number of samples that it needs."""
+    """A walk of one sample raises an error that states the number of samples that it needs."""
     with pytest.raises(WalkingError, match=r"1 point.*at least two"):
         Track(TIMES[:1], LINE[:1], "7", "a.csv")
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf])
 def test_positions_that_are_not_finite_are_rejected(bad: float) -> None:
-    """Non-finite positions are rejected with their number and the index of the first."""
+    """Non-finite positions raise an error that states their number and the first index."""
     places = LINE.copy()
     places[2, 1] = bad
     with pytest.raises(WalkingError, match=r"1 sample.*index 2"):
@@ -31,7 +31,7 @@ def test_positions_that_are_not_finite_are_rejected(bad: float) -> None:
 
 
 def test_times_that_do_not_increase_are_rejected() -> None:
-    """A repeated time is rejected with its index."""
+    """A repeated time raises an error that states its index."""
     times = TIMES.copy()
     times[3] = times[2]
     with pytest.raises(WalkingError, match="index 3"):

@@ -50,7 +50,7 @@ def test_a_start_near_an_obstacle_reduces_its_clearance() -> None:
     ],
 )
 def test_an_invalid_outline_is_rejected(corners: list[list[float]], expected_message: str) -> None:
-    """An invalid outline is rejected with its name and the reason."""
+    """An invalid outline raises an error that names it and states the reason."""
     with pytest.raises(SceneError, match=f"'thing'.*{expected_message}"):
         Obstacle("thing", np.array(corners, dtype=np.float64))
 
@@ -64,7 +64,7 @@ def test_an_invalid_outline_is_rejected(corners: list[list[float]], expected_mes
     ],
 )
 def test_an_invalid_place_is_rejected(place: tuple[float, float], expected_message: str) -> None:
-    """A place in an obstacle, out of bounds or not finite is rejected with its name."""
+    """A place in an obstacle, out of bounds or not finite raises an error that names it."""
     with pytest.raises(SceneError, match=f"'goal'.*{expected_message}"):
         Scene("bad", BOUNDS, (TABLE,), {"goal": place})
 
