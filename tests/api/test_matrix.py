@@ -80,43 +80,43 @@ def outsiders(bench: Bench, route: str) -> Iterator[tuple[str, TestClient]]:
 def test_every_route_follows_the_policy_table(bench: Bench) -> None:
     """Every route refuses strangers with 401, wrong roles with 403 and foreign objects with 404."""
     leaks: list[str] = []
-    asked: Counter[str] = Counter()
+    counts: Counter[str] = Counter()
     for route in ROUTES:
         if POLICY[route] == ANYONE:
             continue
         for name, client in outsiders(bench, route):
-            asked["stranger"] += 1
+            counts["stranger"] += 1
             if call(client, route, bench.own).status_code != 401:
                 leaks.append(f"{name}: {route}")
         for role, client in bench.people.items():
-            leaks += [f"{role}: {leak}" for leak in leaks_of(bench, role, client, route, asked)]
-    for what, count in sorted(asked.items()):
+            leaks += [f"{role}: {leak}" for leak in leaks_of(bench, role, client, route, counts)]
+    for what, count in sorted(counts.items()):
         note(33, "every route x role x object", f"asked: {what}", count)
     note(33, "every route x role x object", "leaks", len(leaks))
     assert leaks == []
-    assert sum(asked.values()) >= 4 * len(ROUTES)
+    assert sum(counts.values()) >= 4 * len(ROUTES)
 
 
 def leaks_of(
-    bench: Bench, role: str, client: TestClient, route: str, asked: Counter[str]
+    bench: Bench, role: str, client: TestClient, route: str, counts: Counter[str]
 ) -> Iterator[str]:
     """Yield what a person gets from a route against the policy table."""
     if role not in POLICY[route]:
-        asked["wrong role"] += 1
+        counts["wrong role"] += 1
         expected = 401 if POLICY[route] in (TABLET, HEADSET) else 403
         if call(client, route, bench.own).status_code != expected:
             yield f"{route} in spite of the role"
         return
     if not of_a_study(route):
         return
-    asked["foreign object"] += 1
+    counts["foreign object"] += 1
     there, never = call(client, route, bench.foreign), call(client, route, NOWHERE)
-    told = there.text.replace(bench.foreign.session_id, "?").replace(bench.foreign.key, "?")
+    reported = there.text.replace(bench.foreign.session_id, "?").replace(bench.foreign.key, "?")
     untold = never.text.replace(NOWHERE.session_id, "?").replace(NOWHERE.key, "?")
-    if there.status_code != 404 or told != untold:
+    if there.status_code != 404 or reported != untold:
         yield f"{route} of a foreign study: {there.status_code}"
     if not route.endswith(ENDLESS):
-        asked["own object"] += 1
+        counts["own object"] += 1
         if call(client, route, bench.own).status_code in (401, 403):
             yield f"{route} is refused although the table allows it"
 

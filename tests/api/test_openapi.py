@@ -80,17 +80,17 @@ def operations(bench: Bench) -> Iterator[Any]:
 def use_existing_objects(case: Any, bench: Bench, count: int) -> None:
     """Use ids of existing objects in two of three requests, so that they are found."""
     if count % 3 and case.path_parameters:
-        known = {"key": STUDY, "session_id": bench.session_id, "number": 1}
-        known["content_hash"] = bench.humanoid
-        known["scene_key"] = "car-and-three-racks"
+        expected = {"key": STUDY, "session_id": bench.session_id, "number": 1}
+        expected["content_hash"] = bench.humanoid
+        expected["scene_key"] = "car-and-three-racks"
         if case.method != "DELETE":
-            known["capture_id"] = bench.capture_id
+            expected["capture_id"] = bench.capture_id
         if case.path.startswith("/api/instruments"):
-            known["key"] = "karas2020"
+            expected["key"] = "karas2020"
         if case.path.startswith("/api/avatars"):
-            known["key"] = "standard"
+            expected["key"] = "standard"
         case.path_parameters.update(
-            {name: value for name, value in known.items() if name in case.path_parameters}
+            {name: value for name, value in expected.items() if name in case.path_parameters}
         )
 
 

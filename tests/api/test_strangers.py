@@ -121,9 +121,9 @@ def test_no_answer_repeats_a_secret(lab: Lab, method: str, path: str, body: obje
 @pytest.mark.parametrize(("method", "path"), [*WITH_A_BODY, ("PUT", "/api/me/password")])
 def test_no_answer_repeats_an_unknown_field_name(lab: Lab, method: str, path: str) -> None:
     """An answer does not repeat unknown field names, which may be a pasted password."""
-    told = error(lab.operator.request(method, path, json={SECRET: 1}), 422, "invalid_input")
-    assert SECRET not in json.dumps(told)
-    paths = [one["path"] for one in told["details"]]
+    refusal = error(lab.operator.request(method, path, json={SECRET: 1}), 422, "invalid_input")
+    assert SECRET not in json.dumps(refusal)
+    paths = [one["path"] for one in refusal["details"]]
     assert "(an unknown field)" in paths
     assert len(set(paths)) > 1
 
@@ -134,9 +134,9 @@ def test_excessive_json_is_refused_with_a_remedy(lab: Lab, body: bytes) -> None:
     """JSON with huge numbers or deep nesting is refused with a remedy, signed in or not."""
     for client, path in ((lab.stranger(), "/api/login"), (lab.operator, "/api/studies/check")):
         answer = client.post(path, content=body, headers=JSON)
-        told = error(answer, 422, "invalid_input")
-        assert "the request" in told["message"]
-        assert told["remedy"]
+        refusal = error(answer, 422, "invalid_input")
+        assert "the request" in refusal["message"]
+        assert refusal["remedy"]
 
 
 @pytest.mark.one_engine
@@ -185,10 +185,10 @@ def test_surrogate_pairs_and_escaped_backslashes_are_accepted(lab: Lab) -> None:
 def test_an_address_with_invalid_text_is_refused(lab: Lab, bad: str) -> None:
     """A NUL or invalid UTF-8 in the path or query of any route is refused."""
     for method, path in routes(lab):
-        asked = [f"{re.sub(r'[{][a-z_]+[}]', 'x', path)}?name={bad}&{bad}=1"]
+        addresses = [f"{re.sub(r'[{][a-z_]+[}]', 'x', path)}?name={bad}&{bad}=1"]
         if "{" in path:
-            asked.append(re.sub(r"\{\w+\}", bad, path))
-        for address in asked:
+            addresses.append(re.sub(r"\{\w+\}", bad, path))
+        for address in addresses:
             error(lab.operator.request(method, address), 422, "invalid_input")
     for page in ("/", "/tablet", "/assets/x"):
         error(lab.stranger().get(f"{page}?{bad}"), 422, "invalid_input")
@@ -223,8 +223,8 @@ def test_a_headset_message_with_invalid_text_is_refused(lab: Lab, bad: str) -> N
         "/api/vr/stream", subprotocols=[SUBPROTOCOL, f"bearer.{token}"]
     ) as socket:
         socket.send_text(f'{{"type": "hello", "protocol": 1, "client": "{bad}"}}')
-        told: Json = socket.receive_json()
-        assert told["code"] == "invalid_input"
+        reply: Json = socket.receive_json()
+        assert reply["code"] == "invalid_input"
         assert socket.receive()["code"] == 4400
 
 

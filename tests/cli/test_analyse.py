@@ -106,9 +106,9 @@ def test_the_text_output_has_means_tests_and_methods(tmp_path: Path) -> None:
 def test_the_same_seed_gives_the_same_intervals(tmp_path: Path) -> None:
     """The seed determines the bootstrap intervals and nothing else."""
     path = _written(tmp_path, _lines())
-    one, again = (_COMMAND.figures(path, *_FACTOR) for _ in range(2))
+    one, repeated = (_COMMAND.figures(path, *_FACTOR) for _ in range(2))
     other = _COMMAND.figures(path, *_FACTOR, "--seed", 2)
-    assert one == again
+    assert one == repeated
     assert one["means"] != other["means"]
     assert one["friedman"] == other["friedman"]
 
@@ -124,23 +124,23 @@ def test_the_order_of_rows_and_the_separator_do_not_matter(tmp_path: Path) -> No
     )
     assert spreadsheet == plain
     for key in ("friedman", "pairwise", "page"):
-        told = [
+        reported = [
             {name: value for name, value in one.items() if "ci" not in name}
             for one in ([plain[key]] if isinstance(plain[key], dict) else plain[key])
         ]
-        again = [
+        repeated = [
             {name: value for name, value in one.items() if "ci" not in name}
             for one in ([turned[key]] if isinstance(turned[key], dict) else turned[key])
         ]
-        assert again == told
+        assert repeated == reported
 
 
-@pytest.mark.parametrize("gone", ["P5,350,3,ok", "P5,350,NA,ok", "P5,350,,ok"])
-def test_a_missing_value_excludes_its_subject(tmp_path: Path, gone: str) -> None:
+@pytest.mark.parametrize("removed", ["P5,350,3,ok", "P5,350,NA,ok", "P5,350,,ok"])
+def test_a_missing_value_excludes_its_subject(tmp_path: Path, removed: str) -> None:
     """A missing value excludes its subject listwise (Friedman) and pairwise (Wilcoxon)."""
     lines = [line for line in _lines() if line != "P5,350,3,ok"]
-    if "3" not in gone.split(",")[2]:
-        lines.append(gone)
+    if "3" not in removed.split(",")[2]:
+        lines.append(removed)
     figures = _COMMAND.figures(_written(tmp_path, lines), *_FACTOR)
     assert (figures["n"], figures["design"]["subjects"]) == (4, 5)
     assert [one["n"] for one in figures["pairwise"]] == [5, 4, 4]
@@ -187,8 +187,8 @@ def test_an_invalid_row_is_refused_by_its_line(
     """An invalid row is refused with its line, column and value, and exit code 2."""
     text = "\n".join(_lines())
     assert change[0] in text
-    said = _COMMAND.refusal(_written(tmp_path, [text.replace(*change)]), *_FACTOR)
-    assert all(word in said for word in words), said
+    output = _COMMAND.refusal(_written(tmp_path, [text.replace(*change)]), *_FACTOR)
+    assert all(word in output for word in words), output
 
 
 @pytest.mark.parametrize(

@@ -10,9 +10,9 @@ def _said(capsys: pytest.CaptureFixture[str], error: Exception, *, with_valid: b
     with pytest.raises(SystemExit) as left, reported(OSError, with_valid=with_valid):
         raise error
     assert left.value.code == UNUSABLE
-    out, said = capsys.readouterr()
+    out, output = capsys.readouterr()
     assert out == ""
-    return said
+    return output
 
 
 def test_an_error_is_reported_with_its_remedy(
@@ -45,8 +45,8 @@ def test_message_and_remedy_each_end_with_one_full_stop(
     capsys: pytest.CaptureFixture[str], end: str
 ) -> None:
     """Message and remedy each end with one full stop, whether or not they were written with one."""
-    said = _said(capsys, NotFound(f"it is gone{end}", remedy="Bring it back"))
-    assert said == f"reembody: it is gone{end or '.'} Bring it back.\n"
+    output = _said(capsys, NotFound(f"it is gone{end}", remedy="Bring it back"))
+    assert output == f"reembody: it is gone{end or '.'} Bring it back.\n"
 
 
 def test_an_expected_error_is_reported_by_its_message(capsys: pytest.CaptureFixture[str]) -> None:

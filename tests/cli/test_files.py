@@ -79,11 +79,11 @@ Frame Time: 0.01
 def test_a_missing_file_is_named_in_a_sentence(what: str, folder: Path) -> None:
     """A missing file is reported in one sentence with its folder and without an error number."""
     command, arguments = what.split()[:-1], READ[what]
-    said = Invoked(command[0]).refusal(*command[1:], *arguments)
-    assert f"there is no file {MISSING} in {folder}" in said
-    assert "Errno" not in said
-    assert ".." not in said
-    assert said.count("\n") == 1
+    output = Invoked(command[0]).refusal(*command[1:], *arguments)
+    assert f"there is no file {MISSING} in {folder}" in output
+    assert "Errno" not in output
+    assert ".." not in output
+    assert output.count("\n") == 1
 
 
 @pytest.mark.parametrize(

@@ -16,5 +16,7 @@ print(while_starting[0] > usual[0], gc.get_threshold() == usual, gc.get_freeze_c
 
 def test_gc_is_relaxed_while_starting_only() -> None:
     """Garbage is collected rarely while starting, then as usual without the startup objects."""
-    said = subprocess.run([sys.executable, "-c", TOLD], capture_output=True, check=True, text=True)
-    assert said.stdout.split() == ["True", "True", "True"]
+    result = subprocess.run(
+        [sys.executable, "-c", TOLD], capture_output=True, check=True, text=True
+    )
+    assert result.stdout.split() == ["True", "True", "True"]

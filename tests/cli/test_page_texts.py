@@ -21,12 +21,14 @@ def test_every_text_is_there_in_both_languages() -> None:
 
 
 @pytest.mark.parametrize(
-    ("en", "de", "said"),
+    ("en", "de", "message"),
     [("", "Uhr", "empty in 'en'"), ("Clock", " ", "empty in 'de'"), ("{{a}}", "{{b}}", "['b']")],
 )
-def test_words_lacking_a_language_or_placeholder_are_refused(en: str, de: str, said: str) -> None:
+def test_words_lacking_a_language_or_placeholder_are_refused(
+    en: str, de: str, message: str
+) -> None:
     """Words that lack a language, or have a placeholder in only one, are refused."""
-    with pytest.raises(ValueError, match=re.escape(said)):
+    with pytest.raises(ValueError, match=re.escape(message)):
         Words(en=en, de=de)
 
 

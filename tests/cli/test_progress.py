@@ -24,12 +24,12 @@ def immediately(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def said_within(capsys: pytest.CaptureFixture[str], words: str) -> str:
     """Collect standard error until it contains these words, and return it."""
-    said, give_up_s = "", time.monotonic() + GENEROUS_S
-    while words not in said:
-        assert time.monotonic() < give_up_s, said
-        said += capsys.readouterr().err
+    output, give_up_s = "", time.monotonic() + GENEROUS_S
+    while words not in output:
+        assert time.monotonic() < give_up_s, output
+        output += capsys.readouterr().err
         time.sleep(0.01)
-    return said
+    return output
 
 
 def test_progress_is_reported_once_per_step(
@@ -37,14 +37,14 @@ def test_progress_is_reported_once_per_step(
 ) -> None:
     """Each step is reported once on a line of its own, with the rows of its table added up."""
     with Activity("exporting: opening the database") as activity:
-        said = said_within(capsys, "opening the database")
+        output = said_within(capsys, "opening the database")
         count = activity.rows("restoring")
         count("events", 2)
         count("events", 3)
-        said += said_within(capsys, "events, 5 rows")
-    assert said.splitlines()[0] == "reembody: exporting: opening the database"
-    assert said.splitlines()[-1] == "reembody: restoring: events, 5 rows"
-    assert said.count("opening") == 1
+        output += said_within(capsys, "events, 5 rows")
+    assert output.splitlines()[0] == "reembody: exporting: opening the database"
+    assert output.splitlines()[-1] == "reembody: restoring: events, 5 rows"
+    assert output.count("opening") == 1
 
 
 def test_on_a_terminal_the_line_is_overwritten_and_erased(
@@ -53,14 +53,14 @@ def test_on_a_terminal_the_line_is_overwritten_and_erased(
     """On a terminal the progress line is overwritten, and erased before any other output."""
     monkeypatch.setattr("sys.stderr.isatty", lambda: True)
     with Activity("first") as activity:
-        said = said_within(capsys, "first")
+        message = said_within(capsys, "first")
         with activity.silent():
             activity.now("second")
             time.sleep(0.05)
-            asked = capsys.readouterr().err
+            query = capsys.readouterr().err
         said_within(capsys, "second")
-    assert said == f"{ERASE_LINE}first"
-    assert asked == ERASE_LINE
+    assert message == f"{ERASE_LINE}first"
+    assert query == ERASE_LINE
     assert capsys.readouterr().err == ERASE_LINE
 
 

@@ -87,13 +87,13 @@ def codes(data: Path) -> list[str]:
 def test_a_path_that_is_not_a_file_is_described(data: Path, tmp_path: Path) -> None:
     """A folder, device or dangling link given as a backup or list of erasures is described."""
     (tmp_path / "away").symlink_to(tmp_path / "gone")
-    said = {
+    expected = {
         Path("/dev/zero"): "/dev/zero is not a regular file",
         tmp_path: f"{tmp_path} is a folder, where a file is needed",
         tmp_path / "away": "is a link that leads to no file",
         tmp_path / "missing": "there is no file missing in",
     }
-    for path, words in said.items():
+    for path, words in expected.items():
         assert words in RESTORE.refusal(path)
         with pytest.raises(NotFound, match=re.escape(words)):
             read_list(path)
@@ -106,9 +106,9 @@ def test_an_invalid_head_is_refused_before_the_database_is_opened(
 ) -> None:
     """An invalid head is refused before the database is opened and without creating a folder."""
     monkeypatch.setattr(progress, "FIRST_UPDATE_S", 0.0)
-    said = Invoked("verify").refusal("--head", head)
-    assert "is not the head of an audit trail" in said
-    assert "opening" not in said
+    output = Invoked("verify").refusal("--head", head)
+    assert "is not the head of an audit trail" in output
+    assert "opening" not in output
     assert not data.exists()
 
 
@@ -119,8 +119,8 @@ def test_a_restore_without_a_list_of_erasures_warns(earlier: Earlier, data: Path
     assert "has no list of erasures" in result.stderr
     assert "--erasures FILE" in result.stderr
     assert codes(data) == [earlier.code]
-    told = RESTORE.figures(earlier.backup, "--replace", "--erasures", earlier.erasures)
-    assert told["erasures_reapplied"] == 1
+    reply = RESTORE.figures(earlier.backup, "--replace", "--erasures", earlier.erasures)
+    assert reply["erasures_reapplied"] == 1
     assert earlier.code not in codes(data)
     assert (data / "erasures.jsonl").read_text() == earlier.erasures.read_text()
 

@@ -86,10 +86,13 @@ def test_the_output_files_have_the_avatars_movement(clip: Path, tmp_path: Path) 
 
 def test_locking_the_feet_reduces_their_slide(clip: Path) -> None:
     """Locking the feet reduces their slide, which is reported for the output."""
-    free, held = _figures(clip, "--to", "165cm"), _figures(clip, "--to", "165cm", "--lock-feet")
+    free, locked = (
+        _figures(clip, "--to", "165cm"),
+        _figures(clip, "--to", "165cm", "--lock-feet"),
+    )
     assert isinstance(free["foot_slide_m_s"], float)
-    assert isinstance(held["foot_slide_m_s"], float)
-    assert held["foot_slide_m_s"] < 1e-6 < free["foot_slide_m_s"]
+    assert isinstance(locked["foot_slide_m_s"], float)
+    assert locked["foot_slide_m_s"] < 1e-6 < free["foot_slide_m_s"]
 
 
 def test_the_avatar_follows_the_ground(clip: Path, tmp_path: Path) -> None:
@@ -105,18 +108,18 @@ def test_the_avatar_follows_the_ground(clip: Path, tmp_path: Path) -> None:
 def test_the_text_output_is_a_table_with_units(clip: Path, tmp_path: Path) -> None:
     """The text output has conventions, steps, slide, unmapped joints and the file written."""
     out = tmp_path / "out.bvh"
-    said = _run(clip, "--to", "165cm", "--lock-feet", "--out", out).stdout
+    message = _run(clip, "--to", "165cm", "--lock-feet", "--out", out).stdout
     for words in ("unit", "guessed", "step length, mean", "m/s", "with feet held", "unmapped"):
-        assert words in said
-    assert f"written: {out}" in said
+        assert words in message
+    assert f"written: {out}" in message
 
 
 def test_a_joint_map_can_be_given(clip: Path, tmp_path: Path) -> None:
     """A joint map can be given; joints that it leaves out are listed as unmapped."""
     rig = reference_avatar(1.75)
-    told = {name: name for name in rig.names if name != "UpperChest"}
+    joint_map = {name: name for name in rig.names if name != "UpperChest"}
     path = tmp_path / "map.json"
-    path.write_text(json.dumps(told))
+    path.write_text(json.dumps(joint_map))
     figures = _figures(clip, "--to", "165cm", "--joint-map", path)
     assert figures["unmapped_joints"] == ["UpperChest"]
 
@@ -174,22 +177,22 @@ def test_broken_files_are_refused_and_nothing_is_written(
     """A broken file is refused with its name and the position, and nothing is written."""
     path, out = tmp_path / "broken.bvh", tmp_path / "out.bvh"
     path.write_bytes(content)
-    said = _refusal(path, "--to", "165cm", "--out", out)
-    assert str(path) in said
-    assert reason in said
+    output = _refusal(path, "--to", "165cm", "--out", out)
+    assert str(path) in output
+    assert reason in output
     assert not out.exists()
 
 
 def test_an_invalid_joint_map_is_refused(clip: Path, tmp_path: Path) -> None:
     """A joint map with an unknown clip joint or body joint, or not an object, is refused."""
     path = tmp_path / "map.json"
-    for told, reason in (
+    for joint_map, reason in (
         ({"Hips": "Pelvis"}, "no joint 'Pelvis'"),
         ({"Hips": "Hips", "Tail": "Spine"}, "not a joint of the body"),
         (["Hips"], "one object"),
         ({"Hips": 3}, "one object"),
     ):
-        path.write_text(json.dumps(told))
+        path.write_text(json.dumps(joint_map))
         assert reason in _refusal(clip, "--to", "165cm", "--joint-map", path)
 
 
@@ -214,9 +217,9 @@ def test_table_1_is_reproduced() -> None:
     assert [list(row) for row in rows] == [["joint", "printed", "computed", "difference_deg"]] * 22
     apart = [row["joint"] for row in rows if row["difference_deg"] > 0.01]
     assert apart == ["pelvis"]
-    said = _run("--check", "table1").stdout
-    assert "21 of 22 rows agree" in said
-    assert "the source contradicts itself" in said
+    output = _run("--check", "table1").stdout
+    assert "21 of 22 rows agree" in output
+    assert "the source contradicts itself" in output
 
 
 @pytest.mark.parametrize(

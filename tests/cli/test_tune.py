@@ -34,9 +34,9 @@ def installation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.delenv("REEMBODY_DATABASE_URL", raising=False)
     (tmp_path / "data").mkdir()
     arm = replace(default_configuration(), locked_groups=_HELD)
-    wish = NewAvatar(key="arm", title="Arm", origin="by_hand", configuration=file_of(arm))
+    request = NewAvatar(key="arm", title="Arm", origin="by_hand", configuration=file_of(arm))
     with opened_database("test") as database, database.writing() as db:
-        create_avatar(db, "tester", wish, Clock().utc_now())
+        create_avatar(db, "tester", request, Clock().utc_now())
     return tmp_path
 
 
@@ -75,8 +75,8 @@ def test_a_tuned_configuration_is_written_and_stored_as_versions(installation: P
     assert written.configuration.locked_groups == tuple(
         name for name in written.configuration.locked_groups if name in _HELD
     )
-    again = _figures("--avatar", "arm", "--heuristic", "inertia", "--save", "arm-tuned")
-    assert again["saved"] == "arm-tuned, version 2"
+    repeated = _figures("--avatar", "arm", "--heuristic", "inertia", "--save", "arm-tuned")
+    assert repeated["saved"] == "arm-tuned, version 2"
 
 
 @pytest.mark.usefixtures("installation")
@@ -154,9 +154,9 @@ def test_an_avatar_with_a_humanoid_model_is_tuned() -> None:
 @pytest.mark.usefixtures("installation")
 def test_an_unknown_avatar_is_refused_with_the_existing_ones() -> None:
     """An unknown avatar is refused with the existing ones, including the shipped one."""
-    said = _refusal("--avatar", "nobody")
-    assert "nobody" in said
-    assert "arm, standard" in said
+    output = _refusal("--avatar", "nobody")
+    assert "nobody" in output
+    assert "arm, standard" in output
 
 
 @pytest.mark.parametrize(

@@ -8,5 +8,5 @@ from app.cli.commands import app
 
 def test_the_version_is_printed() -> None:
     """`reembody --version` prints only the version."""
-    told = CliRunner().invoke(app, ["--version"])
-    assert (told.exit_code, told.output) == (0, f"reembody {__version__}\n")
+    result = CliRunner().invoke(app, ["--version"])
+    assert (result.exit_code, result.output) == (0, f"reembody {__version__}\n")

@@ -79,12 +79,12 @@ def test_the_same_walks_and_seed_fit_the_same_model(lab: Path) -> None:
     """The same walks and seed fit the same model."""
     walks = sorted(lab.glob("walker-[0-2]-*.csv"))
     out, people = lab / "again.npz", lab / "people.csv"
-    again = _figures("fit", *walks, "--out", out, "--people", people, *QUICK)
+    repeated = _figures("fit", *walks, "--out", out, "--people", people, *QUICK)
     first, second = (
         _figures("sample", path, "--length", 2, "--stature", 1.8, "--seed", 5)
         for path in (lab / "model.npz", out)
     )
-    assert len(again["content_hash"]) == 64
+    assert len(repeated["content_hash"]) == 64
     assert first == second
 
 
@@ -120,19 +120,19 @@ def test_other_people_are_predicted(lab: Path) -> None:
     assert scores["walks"] == 3
     assert set(scores["models"]) == {"stat", "adapt", "prob"}
     assert all(0.0 < one["crps_s"] < 3.0 for one in scores["models"].values())
-    known = lab / "walker-0-0.csv"
-    assert "fitted on 0" in _refusal("evaluate", lab / "model.npz", known, "--people", people)
-    even = _run("evaluate", lab / "model.npz", known, "--people", people, "--even-fitted")
+    existing = lab / "walker-0-0.csv"
+    assert "fitted on 0" in _refusal("evaluate", lab / "model.npz", existing, "--people", people)
+    even = _run("evaluate", lab / "model.npz", existing, "--people", people, "--even-fitted")
     assert even.exit_code == 0
     assert "CRPS" in even.stdout
 
 
 def _fit(lab: Path, *arguments: object) -> str:
     out = lab / "refused.npz"
-    said = _refusal("fit", *arguments, "--out", out, *QUICK)
+    output = _refusal("fit", *arguments, "--out", out, *QUICK)
     assert not out.exists()
     assert not list(lab.glob(".refused*"))
-    return said
+    return output
 
 
 def test_invalid_walks_are_refused(lab: Path) -> None:

@@ -24,8 +24,8 @@ def authority() -> Authority:
     return new_authority(LAB_PC, datetime.now(UTC))
 
 
-def client_accepts(authority: Authority, hosts: tuple[Host, ...], asked: Host) -> bool:
-    """Return whether a TLS client that trusts the authority accepts a server as `asked`.
+def client_accepts(authority: Authority, hosts: tuple[Host, ...], requested: Host) -> bool:
+    """Return whether a TLS client that trusts the authority accepts a server as `requested`.
 
     Performs a whole handshake in memory between Python's own (OpenSSL's) client and a server with a
     certificate for `hosts`.
@@ -40,7 +40,7 @@ def client_accepts(authority: Authority, hosts: tuple[Host, ...], asked: Host) -
         cadata=authority.certificate.public_bytes(Encoding.PEM).decode("ascii")
     )
     there, back = ssl.MemoryBIO(), ssl.MemoryBIO()
-    asking = client.wrap_bio(back, there, server_hostname=str(asked))
+    asking = client.wrap_bio(back, there, server_hostname=str(requested))
     answering = server.wrap_bio(there, back, server_side=True)
     for _ in range(4):
         for side in (asking, answering):
@@ -53,10 +53,10 @@ def client_accepts(authority: Authority, hosts: tuple[Host, ...], asked: Host) -
     return asking.version() is not None
 
 
-def library_accepts(authority: Authority, hosts: tuple[Host, ...], asked: Host) -> bool:
-    """Return whether `cryptography`'s own verifier (RFC 5280) accepts a server as `asked`."""
+def library_accepts(authority: Authority, hosts: tuple[Host, ...], requested: Host) -> bool:
+    """Return whether `cryptography`'s own verifier (RFC 5280) accepts a server as `requested`."""
     leaf = new_leaf(authority, hosts, datetime.now(UTC)).certificate
-    subject = x509.DNSName(asked) if isinstance(asked, str) else x509.IPAddress(asked)
+    subject = x509.DNSName(requested) if isinstance(requested, str) else x509.IPAddress(requested)
     builder = PolicyBuilder().store(Store([authority.certificate])).time(datetime.now(UTC))
     try:
         builder.build_server_verifier(subject).verify(leaf, [])
@@ -151,8 +151,8 @@ def test_only_the_machines_own_public_address_is_permitted() -> None:
 
 def test_an_authority_survives_being_stored(authority: Authority) -> None:
     """An authority read back from its PEM is the same; a key of another certificate is refused."""
-    again = authority_from_pem(authority.as_pem())
-    assert fingerprint(again.certificate) == fingerprint(authority.certificate)
+    repeated = authority_from_pem(authority.as_pem())
+    assert fingerprint(repeated.certificate) == fingerprint(authority.certificate)
     other = new_authority(LAB_PC, NOW)
     mixed = other.as_pem().partition(b"-----BEGIN CERTIFICATE")[0] + (
         authority.certificate.public_bytes(Encoding.PEM)

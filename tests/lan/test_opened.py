@@ -23,9 +23,9 @@ def test_this_machine_alone_needs_three_lines() -> None:
 
 def test_a_server_without_encryption_warns() -> None:
     """A server without encryption prints a warning in capitals with the option to use."""
-    told = addresses(Reach(mode="without_tls", urls=("http://192.168.7.20:8321",)), "data")
-    assert "WITHOUT ENCRYPTION" in told
-    assert "--lan" in told
+    reported = addresses(Reach(mode="without_tls", urls=("http://192.168.7.20:8321",)), "data")
+    assert "WITHOUT ENCRYPTION" in reported
+    assert "--lan" in reported
 
 
 @pytest.mark.parametrize("at_terminal", [True, False])
@@ -37,10 +37,10 @@ def test_the_network_is_printed_with_its_fingerprint(
     assert plan.certificates is not None
     identity = plan.certificates.current(LAB_PC)
     monkeypatch.setattr("sys.stdout.isatty", lambda: at_terminal)
-    told = addresses(plan.reach(LAB_PC, identity), "data")
+    reported = addresses(plan.reach(LAB_PC, identity), "data")
     shown = identity.authority_fingerprint or ""
-    assert shown[:47] in told
-    assert shown[48:] in told
-    assert "Tablet     https://192.168.7.20:8443/tablet" in told
-    assert "http://192.168.7.20:8080" in told
-    assert ("█" in told) is at_terminal
+    assert shown[:47] in reported
+    assert shown[48:] in reported
+    assert "Tablet     https://192.168.7.20:8443/tablet" in reported
+    assert "http://192.168.7.20:8080" in reported
+    assert ("█" in reported) is at_terminal

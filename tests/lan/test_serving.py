@@ -78,10 +78,10 @@ def test_signing_out_over_https_deletes_the_cookie(lan: LanServer) -> None:
     """Signing out over HTTPS deletes the cookie with the attributes that browsers require."""
     with lan.secure_client() as client:
         ok(client.post("/api/login", json=CREDENTIALS))
-        gone = client.post("/api/logout").headers["set-cookie"].lower()
-        assert gone.startswith("__host-reembody_login=")
-        assert "secure" in gone
-        assert "path=/" in gone
+        removed = client.post("/api/logout").headers["set-cookie"].lower()
+        assert removed.startswith("__host-reembody_login=")
+        assert "secure" in removed
+        assert "path=/" in removed
         assert ok(client.get("/api/me"))["account"] is None
 
 
@@ -98,7 +98,7 @@ def test_a_refused_socket_writes_nothing_in_the_log(caplog: pytest.LogCaptureFix
             await send({"type": body, "body": b"sl", "more_body": True})
             await send({"type": body, "body": b"ow"})
 
-    async def asked() -> list[bytes]:
+    async def refused_answers() -> list[bytes]:
         sockets = bind(("127.0.0.1",), 0, "--port")
         port = sockets[0].getsockname()[1]
         config = uvicorn.Config(refusing, ws=SocketProtocol, lifespan="off", log_config=None)
@@ -116,7 +116,7 @@ def test_a_refused_socket_writes_nothing_in_the_log(caplog: pytest.LogCaptureFix
         return answers
 
     with caplog.at_level(logging.WARNING):
-        body, no_body = asyncio.run(asked())
+        body, no_body = asyncio.run(refused_answers())
     assert body.startswith(b"HTTP/1.1 429 ")
     assert body.endswith(b"\r\n\r\nslow")
     assert no_body.startswith(b"HTTP/1.1 403 ")
@@ -193,20 +193,20 @@ def test_terminal_console_and_help_page_show_the_same_network(lan: LanServer) ->
     """Terminal, console and help page show the same addresses and fingerprint."""
     with lan.client() as client:
         ok(client.post("/api/login", json=CREDENTIALS))
-        told = ok(client.get("/api/network"))
+        reply = ok(client.get("/api/network"))
         shown = ok(
             client.post(
                 f"/api/sessions/{pair_headset(client)[0]}/pairings", json={"device": "tablet"}
             )
         )
-    assert told["mode"] == "lan"
-    assert [one["url"] for one in told["addresses"]] == [lan.secure_url]
-    assert told["help"]["url"] == lan.help_url
-    fingerprint = told["certificate"]["fingerprint"]
+    assert reply["mode"] == "lan"
+    assert [one["url"] for one in reply["addresses"]] == [lan.secure_url]
+    assert reply["help"]["url"] == lan.help_url
+    fingerprint = reply["certificate"]["fingerprint"]
     assert fingerprint[:47] in lan.log
     assert fingerprint[48:] in lan.log
     assert fingerprint[:11] in httpx2.get(lan.help_url).text
-    assert told["cable"] == {
+    assert reply["cable"] == {
         "command": f"adb reverse tcp:{lan.port} tcp:{lan.port}",
         "url": f"http://localhost:{lan.port}",
     }

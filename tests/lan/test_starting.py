@@ -58,18 +58,18 @@ def test_a_port_in_use_is_reported(tmp_path: Path) -> None:
         taken.bind(("127.0.0.1", 0))
         taken.listen()
         port = taken.getsockname()[1]
-        said = command(
+        result = command(
             {"REEMBODY_DATA_DIR": str(tmp_path / "data")},
             *("serve", "--port", free_port(), "--lan"),
             *("--lan-host", "127.0.0.1", "--lan-port", port),
             *("--help-port", free_port()),
         )
-    assert said.code == 2
-    assert f"port {port}" in said.err
-    assert "--lan-port" in said.err
+    assert result.code == 2
+    assert f"port {port}" in result.err
+    assert "--lan-port" in result.err
     assert not (tmp_path / "data" / "reembody.sqlite").exists()
 
 
 def _command(server: LanServer, *arguments: str) -> dict[str, str]:
-    told: dict[str, str] = command({"REEMBODY_DATA_DIR": str(server.data_dir)}, *arguments).json
-    return told
+    reported: dict[str, str] = command({"REEMBODY_DATA_DIR": str(server.data_dir)}, *arguments).json
+    return reported

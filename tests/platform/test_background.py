@@ -198,8 +198,8 @@ def test_an_export_that_breaks_its_queue_fails(
 
 def health(lab: Lab) -> dict[str, Any]:
     """Return the public health check."""
-    told: dict[str, Any] = lab.stranger().get("/api/health").json()
-    return told
+    reply: dict[str, Any] = lab.stranger().get("/api/health").json()
+    return reply
 
 
 def alarms(lab: Lab, session_id: str) -> set[str]:

@@ -161,9 +161,9 @@ def test_new_work_is_refused_while_storage_fails(
         lab.stranger().post("/api/devices/pair", json={"code": code}),
     ]
     for answer in refused:
-        told = error(answer, 503, "not_durable")
-        assert FULL.message in told["message"]
-        assert told["remedy"] == FULL.remedy
+        problem = error(answer, 503, "not_durable")
+        assert FULL.message in problem["message"]
+        assert problem["remedy"] == FULL.remedy
     assert lab.view(view["id"])["status"] == "planned"
     health = lab.stranger().get("/api/health").json()
     assert (health["status"], health["storage"]) == ("ok", "failing")
@@ -181,9 +181,9 @@ def test_a_lock_of_another_program_is_reported_until_released(small_lab: tuple[L
     with closing(sqlite3.connect(file, isolation_level=None)) as other:
         other.execute("BEGIN IMMEDIATE")
         for _ in range(2):
-            told = error(lab.try_command(view, "note", text="hello"), 503, "not_durable")
-            assert LOCKED.message in told["message"]
-            assert LOCKED.remedy in told["remedy"]
+            problem = error(lab.try_command(view, "note", text="hello"), 503, "not_durable")
+            assert LOCKED.message in problem["message"]
+            assert LOCKED.remedy in problem["remedy"]
         assert lab.stranger().get("/api/health").json()["storage_reason"] == LOCKED.message
         assert lab.view(view["id"])["notes"] == []
         other.execute("ROLLBACK")
@@ -217,5 +217,5 @@ def test_a_damaged_database_is_reported_as_such(lab: Lab, monkeypatch: pytest.Mo
         raise DatabaseError("SELECT", {}, origin)
 
     monkeypatch.setattr(type(lab.database), "reading", fail)
-    told = error(lab.stranger().get("/api/health"), 503, "not_durable")
-    assert DAMAGED.message in told["message"]
+    problem = error(lab.stranger().get("/api/health"), 503, "not_durable")
+    assert DAMAGED.message in problem["message"]

@@ -28,12 +28,12 @@ def test_a_backup_holds_every_row_of_every_table(database: Database, tmp_path: P
     """A backup that is read back contains every row of every table of the database."""
     done = make(database, tmp_path / "all.reembody")
     copy = open_database(f"sqlite:///{tmp_path / 'all.reembody'}")
-    held = contents(copy.engine)
-    del held["backup_manifest"]
+    copied = contents(copy.engine)
+    del copied["backup_manifest"]
     with database.engine.connect() as connection:
         names = {table.name for table in tables_of(connection)}
     copy.close()
-    assert held.keys() == names
+    assert copied.keys() == names
     expected = contents(database.engine)
     if not database.is_sqlite:
         # SQLite stores neither time zones nor booleans; both are compared as SQLite stores them.
@@ -47,7 +47,7 @@ def test_a_backup_holds_every_row_of_every_table(database: Database, tmp_path: P
             ]
             for name, rows in expected.items()
         }
-    assert held == expected
+    assert copied == expected
     assert done.rows == ROWS * len(names)
     assert done.size_bytes == (tmp_path / "all.reembody").stat().st_size
 

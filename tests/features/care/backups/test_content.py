@@ -46,7 +46,7 @@ def forged(path: Path, *statements: str) -> Path:
 
 
 @pytest.mark.parametrize(
-    ("statement", "said"),
+    ("statement", "message"),
     [
         ("CREATE TABLE more (x INTEGER PRIMARY KEY)", "the table more is unknown to this program"),
         ("ALTER TABLE accounts ADD COLUMN more TEXT", "column accounts.more is unknown to this"),
@@ -67,12 +67,12 @@ def forged(path: Path, *statements: str) -> Path:
     ],
 )
 def test_unknown_tables_and_invalid_values_are_refused(
-    sqlite: Database, tmp_path: Path, statement: str, said: str
+    sqlite: Database, tmp_path: Path, statement: str, message: str
 ) -> None:
     """A backup with unknown tables, columns, views, triggers or invalid values is not restored."""
     make(sqlite, tmp_path / "all.reembody")
     before = contents(sqlite.engine)
-    with pytest.raises(InvalidInput, match=said):
+    with pytest.raises(InvalidInput, match=message):
         put_back(sqlite, forged(tmp_path / "all.reembody", statement), replace=True)
     assert contents(sqlite.engine) == before
     assert not (tmp_path / "kept").exists()
@@ -90,7 +90,7 @@ def lab(tmp_path: Path) -> Iterator[Lab]:
 
 
 @pytest.mark.parametrize(
-    ("statement", "said"),
+    ("statement", "message"),
     [
         ("UPDATE accounts SET role = 'superadmin'", "role 'superadmin'"),
         ("UPDATE session_events SET actor = 'nobody' WHERE seq = 1", "chain of session"),
@@ -99,7 +99,7 @@ def lab(tmp_path: Path) -> Iterator[Lab]:
     ],
 )
 def test_unknown_roles_and_broken_chains_are_refused(
-    lab: Lab, database_url: str, tmp_path: Path, statement: str, said: str
+    lab: Lab, database_url: str, tmp_path: Path, statement: str, message: str
 ) -> None:
     """A backup with an unknown role or a broken chain is refused on both engines.
 
@@ -109,11 +109,11 @@ def test_unknown_roles_and_broken_chains_are_refused(
     backup = forged(tmp_path / "all.reembody", statement)
     target = open_database(database_url)
     options = {"even_though_active": True, "replace": True}
-    with pytest.raises(InvalidInput, match=said):
+    with pytest.raises(InvalidInput, match=message):
         put_back(target, backup, content=RestoredContent(), **options)
     with target.reading() as db:
         assert db.scalar(text("SELECT count(*) FROM accounts")) == 0
-    if "role" not in said:
+    if "role" not in message:
         put_back(target, backup, content=RestoredContent(even_though_altered=True), **options)
         with target.reading() as db:
             assert db.scalar(text("SELECT count(*) FROM accounts")) == 1
@@ -261,12 +261,12 @@ def test_content_that_this_program_cannot_have_written_is_refused(
     Its checksums match. The error names table, row and value. Content that cannot be read is
     refused even where an altered record is accepted.
     """
-    statement, said = LIES[lie]
+    statement, message = LIES[lie]
     database, whole = backed_up
     backup = forged(Path(shutil.copy(whole, tmp_path)), statement)
     before = contents(database.engine)
-    for even_though_altered in [False] if said in ONLY_ALTERED else [False, True]:
-        with pytest.raises(InvalidInput, match=said) as refused:
+    for even_though_altered in [False] if message in ONLY_ALTERED else [False, True]:
+        with pytest.raises(InvalidInput, match=message) as refused:
             put_back(
                 database,
                 backup,

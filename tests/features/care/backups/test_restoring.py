@@ -159,8 +159,8 @@ def test_a_running_application_continues_with_the_restored_data(
     put_back(fresh_lab.database, tmp_path / "all.reembody", replace=True)
     assert fresh_lab.view(kept["id"])["participant_code"] == "before"
     assert fresh_lab.operator.get(f"/api/sessions/{later['id']}").status_code == 404
-    again = fresh_lab.join(participant_code="later")
-    assert again["slot"] == later["slot"]
+    rejoined = fresh_lab.join(participant_code="later")
+    assert rejoined["slot"] == later["slot"]
     started = fresh_lab.command(kept, "start")
     assert started["status"] == "active"
 

@@ -73,12 +73,12 @@ def test_an_unreadable_file_is_not_treated_as_damaged(
     file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int
 ) -> None:
     """A database file that the system does not let us read is left in place, not quarantined."""
-    honest = Path.open
+    original = Path.open
 
     def refusing(self: Path, *arguments: object, **more: object) -> object:
         if self.name == "reembody.sqlite":
             raise OSError(number, "refused", str(self))
-        return honest(self, *arguments, **more)  # type: ignore[call-overload]  # passed on as it came
+        return original(self, *arguments, **more)  # type: ignore[call-overload]  # passed on as it came
 
     with monkeypatch.context() as patch:
         patch.setattr(Path, "open", refusing)
@@ -114,7 +114,7 @@ def test_damage_that_makes_messages_undecodable_is_damage(file: Path, tmp_path: 
 
 
 @pytest.mark.parametrize(
-    ("statement", "said"),
+    ("statement", "message"),
     [
         ("UPDATE accounts SET role = CAST(x'61ff62' AS TEXT)", UNREADABLE),
         ("UPDATE accounts SET created_at = '2026-13-01 00:00:00'", "accounts.created_at"),
@@ -131,11 +131,11 @@ def test_damage_that_makes_messages_undecodable_is_damage(file: Path, tmp_path: 
     ],
 )
 def test_content_that_this_program_never_writes_is_damage(
-    file: Path, statement: str, said: str
+    file: Path, statement: str, message: str
 ) -> None:
     """Content that this program never writes counts as damage, even if SQLite's check passes."""
     edited(file, statement)
-    assert said in (damage_of(file) or "")
+    assert message in (damage_of(file) or "")
 
 
 @pytest.mark.parametrize("at", [16, 18, 19, 21, 44, 56])

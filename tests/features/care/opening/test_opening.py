@@ -130,12 +130,12 @@ def test_a_damaged_database_is_quarantined_and_not_replaced_silently(tmp_path: P
         assert "./run restore FILE" in refused.value.remedy
         assert "--new-database" in refused.value.remedy
         assert not file.exists()
-    (held,) = (tmp_path / "quarantine").glob("*/reembody.sqlite")
-    assert held.read_bytes() == damaged
+    (quarantined,) = (tmp_path / "quarantine").glob("*/reembody.sqlite")
+    assert quarantined.read_bytes() == damaged
     prepare_database(settings, CLOCK, new_database=True)
     prepare_database(settings, CLOCK)
     assert found(settings.resolved_database_url).revision == NEWEST
-    assert held.read_bytes() == damaged
+    assert quarantined.read_bytes() == damaged
 
 
 def test_the_newest_backup_is_named(tmp_path: Path) -> None:

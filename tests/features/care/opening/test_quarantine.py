@@ -39,14 +39,14 @@ def test_an_interrupted_move_is_finished(
     file: Path, tmp_path: Path, moved: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A move to quarantine that was interrupted after any file is finished by the next start."""
-    before, honest, done = contents_of(tmp_path), Path.rename, 0
+    before, original, done = contents_of(tmp_path), Path.rename, 0
 
     def interrupted(self: Path, target: Path) -> Path:
         nonlocal done
         if done == moved:
             raise KeyboardInterrupt
         done += 1
-        return honest(self, target)
+        return original(self, target)
 
     with monkeypatch.context() as patch:
         patch.setattr(Path, "rename", interrupted)

@@ -89,11 +89,11 @@ def test_a_second_owner_is_refused_with_details_of_the_first(settings: Settings)
     """
     with own_data(settings, port=8321), pytest.raises(Owned) as refused:
         own_data(settings, port=8400)
-    said = refused.value.message
-    assert f"the server with the process id {os.getpid()} on port 8321" in said
-    assert os.uname().nodename in said
-    assert "since 20" in said
-    assert "nothing was changed" in said
+    message = refused.value.message
+    assert f"the server with the process id {os.getpid()} on port 8321" in message
+    assert os.uname().nodename in message
+    assert "since 20" in message
+    assert "nothing was changed" in message
     assert "REEMBODY_DATA_DIR" in refused.value.remedy
     with own_data(settings) as own:
         assert own.owner.port is None
@@ -235,11 +235,11 @@ def test_a_lock_without_its_text_still_counts(settings: Settings) -> None:
     """A lock file without text, as a full disk leaves it, still refuses a second owner."""
     settings.data_dir.mkdir()
     owner = Owner.myself("serve", 1)
-    held = FolderLock(settings.data_dir, owner)
+    folder_lock = FolderLock(settings.data_dir, owner)
     (settings.data_dir / NAME).write_text("")
     with pytest.raises(Owned, match="in use by another process of Reembody"):
         own_data(settings)
-    held.release()
+    folder_lock.release()
 
 
 def test_a_data_folder_that_is_a_file_is_refused(tmp_path: Path) -> None:

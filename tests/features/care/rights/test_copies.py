@@ -45,8 +45,8 @@ def test_every_kind_of_copy_is_recorded(site: Site, tmp_path: Path) -> None:
     assert made[0]["place"] == str(tmp_path / "all.reembody")
     assert made[0]["bytes"] == (tmp_path / "all.reembody").stat().st_size
     assert made[3]["place"] == "downloaded by admin"
-    held = participant_of(site, visit.session_id)["copies"]
-    assert {one["id"] for one in made} <= {one["id"] for one in held}
+    of_participant = participant_of(site, visit.session_id)["copies"]
+    assert {one["id"] for one in made} <= {one["id"] for one in of_participant}
 
 
 def test_an_erasure_lists_the_copies_that_may_contain_the_data(site: Site) -> None:

@@ -47,8 +47,8 @@ def test_the_newest_value_counts_and_every_earlier_one_is_kept(site: Site) -> No
     correct(site, visit, form, item, 5)
     after = correct(site, visit, form, item, 7)
     assert after["answers"] == {**form["answers"], item: 7.0}
-    told = [(one["previous"], one["value"]) for one in after["corrections"]]
-    assert told == [(1.0, 5.0), (5.0, 7.0)]
+    reported = [(one["previous"], one["value"]) for one in after["corrections"]]
+    assert reported == [(1.0, 5.0), (5.0, 7.0)]
     assert after["corrections"][0]["reason"] == "They said so afterwards."
     with site.database.reading() as db:
         given = db.get_one(Answer, (form["submission_id"], item))

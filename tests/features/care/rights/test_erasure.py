@@ -162,8 +162,8 @@ def test_an_erasure_is_refused_while_a_session_runs(site: Site) -> None:
     error(site.operator.post(path, json={**body, "reason_code": "bored"}), 422, "invalid_input")
     assert participant_of(site, visit.session_id)["erasure"] is None
     erase(site, visit)
-    again = {**body, "confirm": participant_of(site, visit.session_id)["code"]}
-    error(site.operator.post(path, json=again), 409, "conflict")
+    repeated = {**body, "confirm": participant_of(site, visit.session_id)["code"]}
+    error(site.operator.post(path, json=repeated), 409, "conflict")
 
 
 def test_no_data_can_be_added_after_an_erasure(site: Site) -> None:

@@ -24,29 +24,32 @@ def frames_of(site: Site, session_id: str) -> tuple[int, int]:
             or 0
             for table in (TelemetryBatch, TelemetryChunk)
         )
-        told = db.scalar(
+        reported = db.scalar(
             select(func.sum(TelemetryStream.frames_stored)).where(
                 TelemetryStream.session_id == session_id,
                 TelemetryStream.stream.in_(("target", "actual")),
             )
         )
-    return stored, told or 0
+    return stored, reported or 0
 
 
 def test_movement_after_a_withdrawal_is_refused(site: Site) -> None:
     """Movement sent after a withdrawal is refused; other sessions are unaffected."""
     visit, other = make_visit(site, "gone-1"), make_visit(site, "stays-1")
-    with site.headset(visit.headset_token) as headset, site.headset(other.headset_token) as beside:
+    with (
+        site.headset(visit.headset_token) as headset,
+        site.headset(other.headset_token) as neighbour,
+    ):
         site.command(visit.session_id, "withdraw", reason="enough")
-        state = headset.hear("state", lambda told: told["status"] == "withdrawn")
+        state = headset.hear("state", lambda reported: reported["status"] == "withdrawn")
         assert state["recording"] is False
-        for one in (headset, beside):
+        for one in (headset, neighbour):
             one.say(message(standing(9), epoch=one.epoch, seq_first=0))
         refusal = headset.hear("error")
         assert refusal["code"] == "withdrawn"
         assert "withdrawn" in refusal["message"]
         assert "discard" in refusal["remedy"]
-        beside.acknowledged("target", 9)
+        neighbour.acknowledged("target", 9)
     assert frames_of(site, visit.session_id) == (2 * FRAMES, 2 * FRAMES)
     assert frames_of(site, other.session_id) == (2 * FRAMES + 9, 2 * FRAMES + 9)
 

@@ -172,9 +172,9 @@ def in_bytes(visit: Visit, data: bytes) -> int:
         printed = f"{height_m(visit.code):.2f}".encode()
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             for name in archive.namelist():
-                held = archive.read(name)
-                count += in_bytes(visit, held) + in_bytes(visit, name.encode())
-                count += held.count(printed)
+                member = archive.read(name)
+                count += in_bytes(visit, member) + in_bytes(visit, name.encode())
+                count += member.count(printed)
     return count
 
 
@@ -214,9 +214,9 @@ def _places(visit: Visit, column: Column[Any], dialect: str) -> Iterator[ColumnE
     if isinstance(column.type, LargeBinary):
         find = func.instr if dialect == "sqlite" else func.position
         for needle in visit.needles:
-            wanted = literal(needle)
-            yield find(column, wanted) if dialect == "sqlite" else find(wanted.op("IN")(column))
+            expected = literal(needle)
+            yield find(column, expected) if dialect == "sqlite" else find(expected.op("IN")(column))
     elif isinstance(column.type, String | JSON):
-        held = cast(column, String)
+        as_text = cast(column, String)
         find = func.instr if dialect == "sqlite" else func.strpos
-        yield find(held, literal(visit.code))
+        yield find(as_text, literal(visit.code))

@@ -24,8 +24,8 @@ def usage(lab: Lab) -> Json:
                 for seed, stream in enumerate(StreamName):
                     values = moving_values(frames, seed)
                     store_chunks(db, session.id, stream, range(frames), values)
-    told: Json = ok(lab.operator.get("/api/storage", params={"anew": True}))
-    return told
+    reply: Json = ok(lab.operator.get("/api/storage", params={"anew": True}))
+    return reply
 
 
 def test_every_table_is_in_exactly_one_group() -> None:
@@ -47,10 +47,10 @@ def test_the_parts_add_up_to_the_database_size(lab: Lab, usage: Json) -> None:
         assert (usage["method"], inside) == ("dbstat", pages * size)
     else:
         with lab.database.reading() as db:
-            told = db.scalar(text("SELECT pg_total_relation_size('telemetry_chunks')"))
+            reported = db.scalar(text("SELECT pg_total_relation_size('telemetry_chunks')"))
         assert usage["method"] == "pg_total_relation_size"
-        assert told is not None
-        assert parts["samples"] >= told
+        assert reported is not None
+        assert parts["samples"] >= reported
 
 
 def test_a_sessions_size_follows_its_recorded_movement(usage: Json) -> None:
@@ -87,13 +87,13 @@ def test_a_full_disk_is_reported_with_no_sessions_left(lab: Lab, usage: Json) ->
     storage = lab.context.storage
     before, storage.free_bytes = storage.free_bytes, lambda _: 1000
     try:
-        told: Json = ok(lab.operator.get("/api/storage"))
+        reply: Json = ok(lab.operator.get("/api/storage"))
     finally:
         storage.free_bytes = before
-    assert told["disk"]["is_low"] is True
-    (study,) = (row for row in told["studies"] if row["key"] == STUDY)
+    assert reply["disk"]["is_low"] is True
+    (study,) = (row for row in reply["studies"] if row["key"] == STUDY)
     assert study["room_for"] in (0, None)
-    assert told["measured_at"] == usage["measured_at"]
+    assert reply["measured_at"] == usage["measured_at"]
 
 
 def test_without_dbstat_the_total_is_still_reported(
@@ -104,11 +104,11 @@ def test_without_dbstat_the_total_is_still_reported(
     PostgreSQL measures its sizes in another way and is not affected.
     """
     monkeypatch.setattr(tables, "_DBSTAT", text("SELECT name, pgsize FROM no_dbstat"))
-    told: Json = ok(lab.operator.get("/api/storage", params={"anew": True}))
-    parts = {part["place"]: part["bytes"] for part in told["parts"]}
+    reply: Json = ok(lab.operator.get("/api/storage", params={"anew": True}))
+    parts = {part["place"]: part["bytes"] for part in reply["parts"]}
     if usage["engine"] != "sqlite":
-        assert told["method"] == "pg_total_relation_size"
+        assert reply["method"] == "pg_total_relation_size"
         return
-    assert told["method"] == "page_counts"
+    assert reply["method"] == "page_counts"
     assert parts["database"] > 0
     assert not parts.keys() & FAMILIES.keys()

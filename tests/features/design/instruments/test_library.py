@@ -27,9 +27,9 @@ EXPERT = dict(
 )
 
 
-def score(lab: Lab, **wish: object) -> Json:
+def score(lab: Lab, **fields: object) -> Json:
     """Return the scores of a form that is not stored."""
-    result: Json = ok(lab.operator.post("/api/instruments/score", json=wish))
+    result: Json = ok(lab.operator.post("/api/instruments/score", json=fields))
     return result
 
 
@@ -95,10 +95,10 @@ def test_a_score_without_value_names_the_missing_items(lab: Lab) -> None:
     assert (ease["value"], ease["missing"], ease["filled_in"]) == (None, ["tense"], "(2 - ?) / 2")
     assert (twice["value"], twice["missing"]) == (None, ["tense"])
     assert [one["item"] for one in result["problems"]] == ["tense"]
-    wish: Json = {"yaml": OWN, "answers": {"stranger": 1}}
-    error(lab.operator.post("/api/instruments/score", json=wish), 422, "invalid_input")
-    wish = {"answers": {}}
-    error(lab.operator.post("/api/instruments/score", json=wish), 422, "invalid_input")
+    request: Json = {"yaml": OWN, "answers": {"stranger": 1}}
+    error(lab.operator.post("/api/instruments/score", json=request), 422, "invalid_input")
+    request = {"answers": {}}
+    error(lab.operator.post("/api/instruments/score", json=request), 422, "invalid_input")
 
 
 def test_a_stored_study_keeps_its_instruments_wording(fresh_lab: Lab) -> None:
@@ -120,5 +120,5 @@ def test_a_stored_study_keeps_its_instruments_wording(fresh_lab: Lab) -> None:
     ok(fresh_lab.operator.post(f"/api/studies/{STUDY}/versions", json=body))
     diff = ok(fresh_lab.operator.get(f"/api/studies/{STUDY}/diff?from=1&to=2"))
     assert [one["key"] for one in diff["instruments"]] == ["karas2020"]
-    again = ok(fresh_lab.operator.post("/api/instruments", json={"yaml": changed}))
-    assert again["stored_versions"] == 2
+    repeated = ok(fresh_lab.operator.post("/api/instruments", json={"yaml": changed}))
+    assert repeated["stored_versions"] == 2

@@ -91,8 +91,8 @@ def test_a_dry_run_of_slot_0_matches_the_first_session(fresh_lab: Lab) -> None:
 def test_a_dry_run_of_any_slot_and_order(lab: Lab, yaml: str) -> None:
     """A dry run works for slots beyond the current ledger and for every order of the design."""
 
-    def run(**wish: object) -> Json:
-        body = {"yaml": yaml, **wish}
+    def run(**fields: object) -> Json:
+        body = {"yaml": yaml, **fields}
         view: Json = ok(lab.operator.post("/api/studies/timeline", json=body))
         return view
 

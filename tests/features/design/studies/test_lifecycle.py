@@ -66,15 +66,15 @@ def test_every_version_can_be_read(fresh_lab: Lab) -> None:
 
 def test_a_duplicate_is_an_independent_study(fresh_lab: Lab) -> None:
     """A duplicated study has its own key and title and the same comments."""
-    wish = {"key": "second", "title": {"en": "A second study"}}
-    copy = ok(fresh_lab.operator.post(f"{PATH}/duplicate", json=wish))
+    request = {"key": "second", "title": {"en": "A second study"}}
+    copy = ok(fresh_lab.operator.post(f"{PATH}/duplicate", json=request))
     assert (copy["key"], copy["title"], copy["version"]) == ("second", "A second study", 1)
     kept = [line for line in yaml_of(fresh_lab).splitlines() if line.startswith("#")]
     assert [line for line in kept if line not in copy["yaml"]] == []
     assert ok(fresh_lab.operator.get(PATH))["version"] == 1
-    error(fresh_lab.operator.post(f"{PATH}/duplicate", json=wish), 409, "conflict")
-    wish = {"key": "Not a key"}
-    error(fresh_lab.operator.post(f"{PATH}/duplicate", json=wish), 422, "invalid_config")
+    error(fresh_lab.operator.post(f"{PATH}/duplicate", json=request), 409, "conflict")
+    request = {"key": "Not a key"}
+    error(fresh_lab.operator.post(f"{PATH}/duplicate", json=request), 422, "invalid_config")
 
 
 def test_an_archived_study_refuses_new_sessions(fresh_lab: Lab) -> None:

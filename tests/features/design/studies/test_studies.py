@@ -99,8 +99,8 @@ def test_checking_stores_nothing(lab: Lab, yaml: str) -> None:
 def test_the_same_content_is_the_same_version(fresh_lab: Lab) -> None:
     """A file that differs only in comments is the same version; other content is a new one."""
     study = ok(fresh_lab.operator.get(f"/api/studies/{STUDY}"))
-    again = _version(fresh_lab, "# a comment\n" + study["yaml"])
-    assert again["versions"] == study["versions"]
+    same = _version(fresh_lab, "# a comment\n" + study["yaml"])
+    assert same["versions"] == study["versions"]
     changed = _version(fresh_lab, edit(study["yaml"], ("Acting", "Playing")))
     assert [version["number"] for version in changed["versions"]] == [1, 2]
     assert changed["content_hash"] != study["content_hash"]

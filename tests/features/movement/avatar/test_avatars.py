@@ -101,8 +101,8 @@ def test_the_same_content_is_not_saved_twice_in_a_row(fresh_lab: Lab) -> None:
     """Saving the newest content again makes no version, even if based on an older one."""
     new(fresh_lab, "soft")
     save(fresh_lab, "soft", CAST, 1)
-    again = save(fresh_lab, "soft", CAST, 1)
-    assert len(again["versions"]) == 2
+    repeated = save(fresh_lab, "soft", CAST, 1)
+    assert len(repeated["versions"]) == 2
 
 
 def test_saving_on_an_outdated_version_is_refused(fresh_lab: Lab) -> None:
@@ -159,26 +159,26 @@ def test_a_downloaded_configuration_can_be_loaded(fresh_lab: Lab) -> None:
     assert answer.headers["content-type"] == "application/json"
     assert answer.text == avatar_text(SOFT)
     assert load_avatar(answer.text).configuration == SOFT
-    told = ok(fresh_lab.operator.post(f"{PATH}/check", json={"text": answer.text}))
-    assert (told["ok"], told["problems"], told["known"]) == (True, [], [["soft", 1]])
-    assert told["configuration"] == as_json(SOFT)
+    reply = ok(fresh_lab.operator.post(f"{PATH}/check", json={"text": answer.text}))
+    assert (reply["ok"], reply["problems"], reply["known"]) == (True, [], [["soft", 1]])
+    assert reply["configuration"] == as_json(SOFT)
     body = {
         "key": "copy",
         "title": "Copy",
         "origin": "loaded",
-        "configuration": told["configuration"],
+        "configuration": reply["configuration"],
     }
     copy = ok(fresh_lab.operator.post(PATH, json=body))
-    assert copy["newest"]["content_hash"] == told["content_hash"]
+    assert copy["newest"]["content_hash"] == reply["content_hash"]
 
 
 @pytest.mark.one_engine
 def test_checking_an_invalid_file_reports_its_lines(fresh_lab: Lab) -> None:
     """Checking an invalid configuration file reports its problems with path and line."""
     text = avatar_text(SOFT).replace('"carried"', '"loose"')
-    told = ok(fresh_lab.operator.post(f"{PATH}/check", json={"text": text}))
-    assert (told["ok"], told["configuration"]) == (False, None)
-    (problem,) = told["problems"]
+    reply = ok(fresh_lab.operator.post(f"{PATH}/check", json={"text": text}))
+    assert (reply["ok"], reply["configuration"]) == (False, None)
+    (problem,) = reply["problems"]
     assert (problem["path"], problem["line"]) == ("hips", 8)
 
 
@@ -236,16 +236,16 @@ def test_the_canonical_form_is_what_is_stored(fresh_lab: Lab) -> None:
     with fresh_lab.database.reading() as db:
         row = db.get_one(AvatarVersion, ("soft", 1))
     assert row.canonical_json == loaded(SOFT).canonical_json
-    told = {name: value for name, value in as_json(SOFT).items() if value is not None}
-    assert json.loads(row.canonical_json) == told
+    reported = {name: value for name, value in as_json(SOFT).items() if value is not None}
+    assert json.loads(row.canonical_json) == reported
 
 
 def test_a_tuning_report_is_stored_with_its_version(fresh_lab: Lab) -> None:
     """The report of a tuning is stored with its version; other versions have none."""
     report = {"heuristic": "pd", "axes": [{"name": "HeadX", "overshoot_percent": 2.5}]}
-    wish = NewAvatarVersion(based_on=1, origin="tuned", configuration=file_of(SOFT))
+    request = NewAvatarVersion(based_on=1, origin="tuned", configuration=file_of(SOFT))
     with fresh_lab.database.writing() as db:
-        add_avatar_version(db, "system", "standard", wish, Clock().utc_now(), report=report)
+        add_avatar_version(db, "system", "standard", request, Clock().utc_now(), report=report)
     view = ok(fresh_lab.operator.get(f"{PATH}/standard"))
     assert (view["newest"]["report"], view["newest"]["origin"]) == (report, "tuned")
     assert ok(fresh_lab.operator.get(f"{PATH}/standard/versions/1"))["report"] is None

@@ -24,8 +24,8 @@ def test_a_models_etag_is_its_hash(fresh_lab: Lab) -> None:
     assert answer.text == avatar_model(SHIPPED, 1.7).mjcf
     tag = answer.headers["etag"]
     assert tag == f'"{hashlib.sha256(answer.content).hexdigest()}"'
-    again = fresh_lab.operator.get(path, headers={"if-none-match": f'"other", W/{tag}'})
-    assert (again.status_code, again.content, again.headers["etag"]) == (304, b"", tag)
+    repeated = fresh_lab.operator.get(path, headers={"if-none-match": f'"other", W/{tag}'})
+    assert (repeated.status_code, repeated.content, repeated.headers["etag"]) == (304, b"", tag)
     taller = fresh_lab.operator.get(f"{PATH}/standard/model?stature_m=1.8")
     assert taller.headers["etag"] != tag
 
@@ -58,8 +58,8 @@ def test_an_impossible_stature_is_refused(fresh_lab: Lab) -> None:
 
 def test_locking_keeps_the_rest_of_the_model() -> None:
     """Locking a group at another angle changes the model but not its masses."""
-    held = lock(SHIPPED, "left_fingers", {"LeftIndexProximalZ": 0.5})
-    flat, bent = (avatar_model(one, 1.7) for one in (CAST, held))
+    locked = lock(SHIPPED, "left_fingers", {"LeftIndexProximalZ": 0.5})
+    flat, bent = (avatar_model(one, 1.7) for one in (CAST, locked))
     assert flat.mjcf != bent.mjcf
     assert flat.masses == bent.masses
 
@@ -71,7 +71,7 @@ def test_writing_a_model_does_not_load_mujoco() -> None:
         "from app.science.avatar.mjcf import default_configuration;"
         "avatar_model(default_configuration(), 1.7); print('mujoco' in sys.modules)"
     )
-    told = subprocess.run(
+    result = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=120
     )
-    assert told.stdout.strip() == "False"
+    assert result.stdout.strip() == "False"

@@ -37,9 +37,9 @@ def test_a_session_keeps_its_studys_avatar_version(fresh_lab: Lab) -> None:
 def test_a_study_cannot_name_an_unknown_avatar(fresh_lab: Lab) -> None:
     """A study that names an unknown avatar fails the check and is not stored."""
     body = {"yaml": study("{key: hard, version: 1}")}
-    told = ok(fresh_lab.operator.post("/api/studies/check", json=body))
-    assert [one["path"] for one in told["problems"]] == ["avatar_configuration.key"]
-    assert told["problems"][0]["valid"] == ["standard"]
+    reply = ok(fresh_lab.operator.post("/api/studies/check", json=body))
+    assert [one["path"] for one in reply["problems"]] == ["avatar_configuration.key"]
+    assert reply["problems"][0]["valid"] == ["standard"]
     refusal = error(fresh_lab.operator.post("/api/studies", json=body), 422, "invalid_config")
     assert refusal["details"][0]["path"] == "avatar_configuration.key"
 

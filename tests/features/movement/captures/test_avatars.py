@@ -28,26 +28,26 @@ def walk(lab: Lab) -> Json:
 
 def test_a_walk_keeps_its_steps_on_every_avatar(lab: Lab, walk: Json) -> None:
     """A walk has the same foot lifts at the same times on every avatar, scaled to its legs."""
-    told = ok(lab.operator.get(f"/api/captures/{walk['id']}/verification?{AVATARS}"))
-    assert (told["frames"], told["rate_hz"], told["lock_feet"]) == (150, 30.0, False)
-    assert len(told["times_s"]) == 150
-    source = told["source"]
+    reply = ok(lab.operator.get(f"/api/captures/{walk['id']}/verification?{AVATARS}"))
+    assert (reply["frames"], reply["rate_hz"], reply["lock_feet"]) == (150, 30.0, False)
+    assert len(reply["times_s"]) == 150
+    source = reply["source"]
     assert len(source["steps"]) >= 7
     assert source["mean_step_length_m"] == pytest.approx(SPEED_M_S, rel=0.02)
     assert source["mean_step_height_m"] == pytest.approx(LIFT_M, rel=0.05)
-    assert [avatar["name"] for avatar in told["avatars"]] == ["130cm", "165cm", "190cm"]
-    assert told["lifts_agree"] is True
-    assert told["largest_timing_difference_s"] <= 2 / 30
-    for avatar in told["avatars"]:
+    assert [avatar["name"] for avatar in reply["avatars"]] == ["130cm", "165cm", "190cm"]
+    assert reply["lifts_agree"] is True
+    assert reply["largest_timing_difference_s"] <= 2 / 30
+    for avatar in reply["avatars"]:
         assert avatar["lifts_agree"] is True
         assert avatar["stature_m"] == pytest.approx(float(avatar["name"][:-2]) / 100)
         assert avatar["length_ratio"] == pytest.approx(avatar["leg_ratio"], rel=0.05)
         assert (avatar["slide_before_m_s"], avatar["lowered_m"]) == (None, None)
         for path in avatar["toe_paths"]:
             assert len(path["forward_m"]) == len(path["height_m"]) == 150
-    lengths = [avatar["mean_step_length_m"] for avatar in told["avatars"]]
+    lengths = [avatar["mean_step_length_m"] for avatar in reply["avatars"]]
     assert lengths == sorted(lengths)
-    assert told["unmapped_body_joints"] == ["UpperChest"]
+    assert reply["unmapped_body_joints"] == ["UpperChest"]
 
 
 def test_locked_feet_slide_less(lab: Lab, walk: Json) -> None:
@@ -105,8 +105,8 @@ def test_without_legs_there_is_no_verification(fresh_lab: Lab) -> None:
     """A verification without mapped legs is refused and names the joints to map."""
     view = uploaded(fresh_lab.operator, walk_bvh())
     path = f"/api/captures/{view['id']}"
-    told = ok(fresh_lab.operator.get(f"{path}/joint-map"))
-    upper = {joint: name for joint, name in told["joint_map"].items() if "Leg" not in joint}
+    reply = ok(fresh_lab.operator.get(f"{path}/joint-map"))
+    upper = {joint: name for joint, name in reply["joint_map"].items() if "Leg" not in joint}
     ok(fresh_lab.operator.put(f"{path}/joint-map", json={"joint_map": upper, "version": 0}))
     answer = fresh_lab.operator.get(f"{path}/verification?avatars=165cm")
     refusal = error(answer, 422, "invalid_input")

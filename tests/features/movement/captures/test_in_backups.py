@@ -20,9 +20,9 @@ def test_a_restored_capture_is_the_file_that_was_uploaded(
     monkeypatch.setattr(contents, "PIECE_BYTES", 4096)
     walk = walk_bvh(2_000)
     view = uploaded(fresh_lab.operator, walk)
-    told = ok(fresh_lab.operator.get(f"/api/captures/{view['id']}/joint-map"))
-    wish = {"joint_map": told["joint_map"], "version": 0}
-    ok(fresh_lab.operator.put(f"/api/captures/{view['id']}/joint-map", json=wish))
+    reply = ok(fresh_lab.operator.get(f"/api/captures/{view['id']}/joint-map"))
+    request = {"joint_map": reply["joint_map"], "version": 0}
+    ok(fresh_lab.operator.put(f"/api/captures/{view['id']}/joint-map", json=request))
     make(fresh_lab.database, tmp_path / "all.reembody")
     other = open_database(fresh_sqlite(tmp_path / "other.sqlite"))
     put_back(other, tmp_path / "all.reembody")
@@ -36,4 +36,4 @@ def test_a_restored_capture_is_the_file_that_was_uploaded(
     assert len(sizes) > 1
     assert max(sizes) == 4096
     assert row.summary["names"] == view["summary"]["names"]
-    assert saved.joint_map == told["joint_map"]
+    assert saved.joint_map == reply["joint_map"]

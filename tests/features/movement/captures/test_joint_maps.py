@@ -16,25 +16,25 @@ def joint_map_path(view: Json) -> str:
 def test_a_joint_map_is_proposed_from_names(fresh_lab: Lab) -> None:
     """A joint map is proposed from joint names, and lists what is unmapped on both sides."""
     view = uploaded(fresh_lab.operator, walk_bvh())
-    told = ok(fresh_lab.operator.get(joint_map_path(view)))
-    assert (told["version"], told["chosen"], told["by"]) == (0, False, None)
-    assert told["joint_map"]["LeftUpperLeg"] == "LeftUpLeg"
-    assert told["sources"]["LeftUpperLeg"] == "name"
-    assert told["joint_map"] == told["proposal"]
-    assert told["unmapped_body_joints"] == ["UpperChest"]
-    assert told["unmapped_rig_joints"] == []
-    assert told["rig_joints"] == view["summary"]["names"]
-    assert (told["usable"], told["missing"], told["captures"]) == (True, [], 1)
+    reply = ok(fresh_lab.operator.get(joint_map_path(view)))
+    assert (reply["version"], reply["chosen"], reply["by"]) == (0, False, None)
+    assert reply["joint_map"]["LeftUpperLeg"] == "LeftUpLeg"
+    assert reply["sources"]["LeftUpperLeg"] == "name"
+    assert reply["joint_map"] == reply["proposal"]
+    assert reply["unmapped_body_joints"] == ["UpperChest"]
+    assert reply["unmapped_rig_joints"] == []
+    assert reply["rig_joints"] == view["summary"]["names"]
+    assert (reply["usable"], reply["missing"], reply["captures"]) == (True, [], 1)
 
 
 def test_a_saved_joint_map_applies_to_every_capture_of_the_skeleton(fresh_lab: Lab) -> None:
     """A saved joint map applies to every capture of the same skeleton and keeps its versions."""
     first = uploaded(fresh_lab.operator, walk_bvh())
     second = uploaded(fresh_lab.operator, walk_bvh(60), "short.bvh")
-    told = ok(fresh_lab.operator.get(joint_map_path(first)))
-    changed = {k: v for k, v in told["joint_map"].items() if k != "LeftToes"}
-    wish = {"joint_map": changed, "version": 0}
-    saved = ok(fresh_lab.operator.put(joint_map_path(first), json=wish))
+    reply = ok(fresh_lab.operator.get(joint_map_path(first)))
+    changed = {k: v for k, v in reply["joint_map"].items() if k != "LeftToes"}
+    request = {"joint_map": changed, "version": 0}
+    saved = ok(fresh_lab.operator.put(joint_map_path(first), json=request))
     assert (saved["version"], saved["chosen"], saved["by"]) == (1, True, "account:admin")
     assert saved["joint_map"] == changed
     assert saved["unmapped_body_joints"] == ["UpperChest", "LeftToes"]
@@ -44,7 +44,7 @@ def test_a_saved_joint_map_applies_to_every_capture_of_the_skeleton(fresh_lab: L
     assert ok(fresh_lab.operator.get(joint_map_path(second))) == saved
     back = ok(fresh_lab.operator.delete(f"{joint_map_path(second)}?version=1"))
     assert (back["version"], back["chosen"]) == (2, False)
-    assert back["joint_map"] == told["joint_map"]
+    assert back["joint_map"] == reply["joint_map"]
     with fresh_lab.database.reading() as db:
         rows = db.query(SavedJointMap).order_by(SavedJointMap.version).all()
     assert [(row.version, row.chosen) for row in rows] == [(1, True), (2, False)]
@@ -55,10 +55,10 @@ def test_a_saved_joint_map_applies_to_every_capture_of_the_skeleton(fresh_lab: L
 def test_saving_on_an_outdated_version_is_refused(fresh_lab: Lab) -> None:
     """Saving a joint map based on an outdated version is refused with the newest number."""
     view = uploaded(fresh_lab.operator, walk_bvh())
-    told = ok(fresh_lab.operator.get(joint_map_path(view)))
-    wish = {"joint_map": told["joint_map"], "version": 0}
-    ok(fresh_lab.operator.put(joint_map_path(view), json=wish))
-    refusal = error(fresh_lab.operator.put(joint_map_path(view), json=wish), 409, "stale")
+    reply = ok(fresh_lab.operator.get(joint_map_path(view)))
+    request = {"joint_map": reply["joint_map"], "version": 0}
+    ok(fresh_lab.operator.put(joint_map_path(view), json=request))
+    refusal = error(fresh_lab.operator.put(joint_map_path(view), json=request), 409, "stale")
     assert (refusal["value"], refusal["valid"]) == (0, 1)
     error(fresh_lab.operator.delete(f"{joint_map_path(view)}?version=0"), 409, "stale")
 
@@ -67,13 +67,15 @@ def test_saving_on_an_outdated_version_is_refused(fresh_lab: Lab) -> None:
 def test_an_invalid_joint_map_is_refused(fresh_lab: Lab) -> None:
     """A joint map with unknown, duplicate or missing joints is refused with every problem."""
     view = uploaded(fresh_lab.operator, walk_bvh())
-    told = ok(fresh_lab.operator.get(joint_map_path(view)))
-    wrong = {**told["joint_map"], "Tail": "Spine", "Head": "Hut", "LeftHand": "RightHand"}
+    reply = ok(fresh_lab.operator.get(joint_map_path(view)))
+    wrong = {**reply["joint_map"], "Tail": "Spine", "Head": "Hut", "LeftHand": "RightHand"}
     del wrong["Hips"]
-    wish = {"joint_map": wrong, "version": 0}
-    refusal = error(fresh_lab.operator.put(joint_map_path(view), json=wish), 422, "invalid_input")
+    request = {"joint_map": wrong, "version": 0}
+    refusal = error(
+        fresh_lab.operator.put(joint_map_path(view), json=request), 422, "invalid_input"
+    )
     assert {"Tail", "Head", "LeftHand", "RightHand", "Hips"} <= {
         one["path"] for one in refusal["details"]
     }
-    assert refusal["valid"]["joints"] == told["rig_joints"]
+    assert refusal["valid"]["joints"] == reply["rig_joints"]
     assert ok(fresh_lab.operator.get(joint_map_path(view)))["version"] == 0

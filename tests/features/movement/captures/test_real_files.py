@@ -22,8 +22,8 @@ def test_an_amc_comes_with_its_asf(fresh_lab: Lab, shared_data: Path) -> None:
     path = f"/api/captures/{view['id']}"
     assert fresh_lab.operator.get(f"{path}/file").content == amc
     assert fresh_lab.operator.get(f"{path}/file?companion=true").content == asf
-    told = ok(fresh_lab.operator.get(f"{path}/verification?avatars=165cm"))
-    assert told["lifts_agree"] is True
+    reply = ok(fresh_lab.operator.get(f"{path}/verification?avatars=165cm"))
+    assert reply["lifts_agree"] is True
 
 
 def test_markers_are_shown_with_their_fitted_skeleton(fresh_lab: Lab, shared_data: Path) -> None:

@@ -48,9 +48,9 @@ def test_an_uploaded_capture_is_described_and_downloaded_unchanged(fresh_lab: La
 def test_the_same_content_is_stored_once(fresh_lab: Lab) -> None:
     """Uploading the same content under another name returns the first capture."""
     first = upload(fresh_lab.operator, WALK)
-    again = upload(fresh_lab.operator, WALK, "copy.bvh")
-    assert (first.status_code, again.status_code) == (201, 200)
-    assert again.json() == first.json()
+    repeated = upload(fresh_lab.operator, WALK, "copy.bvh")
+    assert (first.status_code, repeated.status_code) == (201, 200)
+    assert repeated.json() == first.json()
     assert counted(fresh_lab)[0] == 1
 
 
@@ -74,8 +74,8 @@ def test_a_chosen_unit_rereads_the_file(fresh_lab: Lab) -> None:
     view = uploaded(fresh_lab.operator, WALK)
     assert view["summary"]["conventions"]["length"]["origin"] == "guessed"
     path = f"/api/captures/{view['id']}"
-    wish = {"reading": {"metres_per_unit": 0.0254}, "title": " A walk "}
-    changed = ok(fresh_lab.operator.patch(path, json=wish))
+    request = {"reading": {"metres_per_unit": 0.0254}, "title": " A walk "}
+    changed = ok(fresh_lab.operator.patch(path, json=request))
     assert changed["title"] == "A walk"
     assert changed["reading"] == {"metres_per_unit": 0.0254, "up": None}
     assert changed["summary"]["conventions"]["length"]["origin"] == "chosen"

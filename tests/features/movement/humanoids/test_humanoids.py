@@ -71,9 +71,9 @@ def test_an_uploaded_model_is_described_and_downloaded_unchanged(fresh_lab: Lab)
 
 def test_the_same_file_is_stored_once(fresh_lab: Lab) -> None:
     """Uploading the same file under another name returns the first model."""
-    first, again = upload(fresh_lab), upload(fresh_lab, name="copy.glb")
-    assert (first.status_code, again.status_code) == (201, 200)
-    assert first.json() == again.json()
+    first, repeated = upload(fresh_lab), upload(fresh_lab, name="copy.glb")
+    assert (first.status_code, repeated.status_code) == (201, 200)
+    assert first.json() == repeated.json()
     assert counted(fresh_lab) == (1, 1)
 
 

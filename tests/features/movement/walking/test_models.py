@@ -27,8 +27,8 @@ def model(walking_lab: Lab) -> Json:
     """Return a small model fitted to generated walkers."""
     ok(walking_lab.operator.post("/api/walking/scenes", json={"text": FLOOR}))
     origin = {"kind": "population", "population": "students", "people": 3, "repetitions": 1}
-    wish = {"title": "Students", "origin": origin | {"scene": "floor"}}
-    walks = ok(walking_lab.operator.post("/api/walking/walk-sets", json=wish))
+    request = {"title": "Students", "origin": origin | {"scene": "floor"}}
+    walks = ok(walking_lab.operator.post("/api/walking/walk-sets", json=request))
     return fitted(walking_lab, walks["id"])
 
 
@@ -58,9 +58,9 @@ def test_a_models_summary_states_its_data(walking_lab: Lab, model: Json) -> None
 def test_a_prediction_is_a_distribution_of_durations(walking_lab: Lab, model: Json) -> None:
     """A prediction for a path is a distribution of durations that depends only on the seed."""
     path = f"/api/walking/models/{model['id']}/prediction"
-    asked = {"scene": RACKS, "points_m": [[2.05, 2.05], [0, 0]], "planned": True, "count": 60}
+    query = {"scene": RACKS, "points_m": [[2.05, 2.05], [0, 0]], "planned": True, "count": 60}
     first, other = (
-        ok(walking_lab.operator.post(path, json=asked | {"seed": seed})) for seed in (1, 2)
+        ok(walking_lab.operator.post(path, json=query | {"seed": seed})) for seed in (1, 2)
     )
     assert first["durations_s"] == sorted(first["durations_s"])
     assert len(first["durations_s"]) == 60
@@ -78,18 +78,18 @@ def test_a_prediction_is_a_distribution_of_durations(walking_lab: Lab, model: Js
 def test_a_slice_is_part_of_the_map(walking_lab: Lab, model: Json) -> None:
     """A slice of the model has values within the map's range; an unknown axis is refused."""
     path = f"/api/walking/models/{model['id']}/slice"
-    asked = {
+    query = {
         "dependencies": {"length_m": 2.0, "turning_per_m": 0.0, "stature_m": 1.8},
         "held": "acceleration",
         "value": 0.7,
     }
-    found = ok(walking_lab.operator.post(path, json=asked))
+    found = ok(walking_lab.operator.post(path, json=query))
     assert (found["x"]["name"], found["y"]["name"]) == ("velocity", "angular")
     values = np.array(found["suitability"])
     assert values.shape == (3, 3)
     assert 0.0 <= values.min() <= values.max() <= found["largest"] + 1e-5
     refusal = error(
-        walking_lab.operator.post(path, json=asked | {"held": "mood"}), 422, "invalid_input"
+        walking_lab.operator.post(path, json=query | {"held": "mood"}), 422, "invalid_input"
     )
     assert "velocity, acceleration, angular" in refusal["remedy"]
 
@@ -98,15 +98,15 @@ def test_a_slice_is_part_of_the_map(walking_lab: Lab, model: Json) -> None:
 def test_impossible_paths_are_refused(walking_lab: Lab, model: Json) -> None:
     """A path through or into an obstacle, out of bounds or without length is refused."""
     path = f"/api/walking/models/{model['id']}/prediction"
-    for points, planned, told in (
+    for points, planned, reported in (
         ([[0, 0], [0, 3]], False, "through obstacle 'rack 3'"),
         ([[0, 0], [0, 1.2]], True, "inside obstacle 'rack 3'"),
         ([[0, 0], [9, 0]], True, "outside the scene's bounds"),
         ([[0, 0], [0, 0]], True, "the same place"),
     ):
-        asked = {"scene": RACKS, "points_m": points, "planned": planned}
-        refusal = error(walking_lab.operator.post(path, json=asked), 422, "invalid_input")
-        assert told in refusal["message"]
+        query = {"scene": RACKS, "points_m": points, "planned": planned}
+        refusal = error(walking_lab.operator.post(path, json=query), 422, "invalid_input")
+        assert reported in refusal["message"]
 
 
 def test_tracks_of_people_are_fitted(walking_lab: Lab) -> None:
@@ -125,7 +125,7 @@ def test_tracks_of_people_are_fitted(walking_lab: Lab) -> None:
 
 @pytest.mark.one_engine
 @pytest.mark.parametrize(
-    ("data", "told"),
+    ("data", "expected"),
     [
         (table(bad_line=9), "line 9"),
         (b"id,time_s,x_m,y_m\nA,0,0,0\n", "at least two"),
@@ -133,10 +133,12 @@ def test_tracks_of_people_are_fitted(walking_lab: Lab) -> None:
         (b"id,time_s,y_m\nA,0,0\n", "no column x"),
     ],
 )
-def test_an_invalid_table_of_tracks_is_refused(walking_lab: Lab, data: bytes, told: str) -> None:
+def test_an_invalid_table_of_tracks_is_refused(
+    walking_lab: Lab, data: bytes, expected: str
+) -> None:
     """An invalid table of tracks is refused with the reason, and nothing is stored."""
     before = counted(walking_lab)
-    assert told in error(upload_tracks(walking_lab, data), 422, "invalid_input")["message"]
+    assert expected in error(upload_tracks(walking_lab, data), 422, "invalid_input")["message"]
     assert counted(walking_lab) == before
 
 
@@ -156,16 +158,16 @@ def test_one_person_is_too_few(walking_lab: Lab) -> None:
 def test_a_fit_is_stopped_and_resumed(walking_lab: Lab) -> None:
     """A fit can be stopped and then resumed, each only once."""
     walks = ok(upload_tracks(walking_lab, table(people=2)))
-    held = threading.Event()
-    walking_lab.context.part(FitQueue)._maker.submit(held.wait)
-    wish = {"title": "Again", "walk_set_id": walks["id"], "options": SMALL}
-    begun = ok(walking_lab.operator.post("/api/walking/models", json=wish))
-    path = f"/api/walking/models/{begun['id']}"
-    assert begun["progress"]["stage"] == "waiting"
+    released = threading.Event()
+    walking_lab.context.part(FitQueue)._maker.submit(released.wait)
+    request = {"title": "Again", "walk_set_id": walks["id"], "options": SMALL}
+    started = ok(walking_lab.operator.post("/api/walking/models", json=request))
+    path = f"/api/walking/models/{started['id']}"
+    assert started["progress"]["stage"] == "waiting"
     stopped = ok(walking_lab.operator.post(f"{path}/stop"))
-    held.set()
+    released.set()
     assert stopped["state"] == "stopped"
     error(walking_lab.operator.post(f"{path}/stop"), 409, "not_now")
     ok(walking_lab.operator.post(f"{path}/resume"))
-    assert settled(walking_lab, begun["id"])["state"] == "ready"
+    assert settled(walking_lab, started["id"])["state"] == "ready"
     error(walking_lab.operator.post(f"{path}/resume"), 409, "not_now")

@@ -45,14 +45,14 @@ def table(people: int = 3, walks: int = 3, bad_line: int | None = None) -> bytes
 
 def upload_tracks(lab: Lab, data: bytes, **query: Any) -> Any:
     """Upload a table of tracks and return the response."""
-    asked = {"name": "tracks.csv", "title": "Corridor", **query}
-    return lab.operator.post("/api/walking/walk-sets/tracks", params=asked, content=data)
+    request = {"name": "tracks.csv", "title": "Corridor", **query}
+    return lab.operator.post("/api/walking/walk-sets/tracks", params=request, content=data)
 
 
 def fitted(lab: Lab, set_id: str, **options: Any) -> Json:
     """Order a model of a walk set and return it once its fit has ended."""
-    wish = {"title": "A model", "walk_set_id": set_id, "options": SMALL | options}
-    model: Json = ok(lab.operator.post("/api/walking/models", json=wish))
+    request = {"title": "A model", "walk_set_id": set_id, "options": SMALL | options}
+    model: Json = ok(lab.operator.post("/api/walking/models", json=request))
     return settled(lab, model["id"])
 
 

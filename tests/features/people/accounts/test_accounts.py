@@ -136,13 +136,13 @@ def test_a_first_start_generates_a_password_and_reports_it_once(
     database_url: str, tmp_path: Path
 ) -> None:
     """Without REEMBODY_ADMIN_PASSWORD the first start generates a password and reports it once."""
-    told: list[str] = []
+    reported: list[str] = []
     settings = Settings(data_dir=tmp_path, database_url=database_url, admin_password=None)
     for _ in range(2):
-        with TestClient(create_app(settings, on_first_password=told.append)) as client:
-            assert len(told) == 1
-            ok(log_in(client, password=told[0]))
-    assert len(told[0]) >= 16
+        with TestClient(create_app(settings, on_first_password=reported.append)) as client:
+            assert len(reported) == 1
+            ok(log_in(client, password=reported[0]))
+    assert len(reported[0]) >= 16
 
 
 @pytest.mark.one_engine
@@ -150,14 +150,14 @@ def test_a_configured_password_is_never_printed_or_logged(
     database_url: str, tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     """A password set by REEMBODY_ADMIN_PASSWORD is never printed or logged."""
-    told: list[str] = []
+    reported: list[str] = []
     secret = SecretStr(PASSWORD)
     settings = Settings(data_dir=tmp_path, database_url=database_url, admin_password=secret)
     with caplog.at_level(logging.DEBUG):
-        app = create_app(settings, on_first_password=told.append)
+        app = create_app(settings, on_first_password=reported.append)
         with TestClient(app) as client:
             ok(log_in(client))
-    assert told == []
+    assert reported == []
     assert PASSWORD not in caplog.text
     assert PASSWORD not in repr(settings)
 
@@ -178,8 +178,8 @@ def test_a_session_survives_a_restart(database_url: str) -> None:
     with running_lab(database_url) as lab:
         view = lab.command(lab.join(), "start")
     with running_lab(database_url) as lab:
-        again = lab.view(view["id"])
-    assert again == view
+        after_restart = lab.view(view["id"])
+    assert after_restart == view
 
 
 def test_a_running_phase_is_paused_after_a_restart(database_url: str) -> None:

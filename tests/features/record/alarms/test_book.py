@@ -10,9 +10,9 @@ def test_an_alarm_is_raised_once_however_often_it_is_reported() -> None:
     """An alarm is raised once; later reports update its condition and keep its start time."""
     book = OpenAlarms(3.0)
     first = list(book.report(GAP, at(0.0)))
-    again = list(book.report(Condition("gap", "a longer gap", "target", 2.0, "s"), at(1.0)))
+    repeated = list(book.report(Condition("gap", "a longer gap", "target", 2.0, "s"), at(1.0)))
     (alarm,) = book.open
-    assert ([change.state for change in first], again) == (["raised"], [])
+    assert ([change.state for change in first], repeated) == (["raised"], [])
     assert (alarm.condition.value, alarm.since) == (2.0, at(0.0).utc)
 
 

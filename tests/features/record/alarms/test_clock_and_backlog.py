@@ -64,7 +64,7 @@ def test_a_clock_uncertainty_above_ten_milliseconds_raises_an_alarm(
     watched = quiet()
     watched.watch.probed(reading(0.0, trip_s), at(0.0))
     watched.check(0.5)
-    assert [code for code, _ in watched.told] == codes
+    assert [code for code, _ in watched.reported] == codes
 
 
 @pytest.mark.parametrize("useless", [unanswered(1.0), reading(1.0, -0.5)])
@@ -75,12 +75,12 @@ def test_a_clock_without_a_usable_probe_is_unknown(useless: Probed) -> None:
         watched.watch.probed(useless, at(float(second)))
         watched.check(second + 0.5)
         watched.check(second + 1.0)
-    assert watched.told == []
+    assert watched.reported == []
     watched.wait(15.0, 0.5)
-    assert watched.told == [("clock_unknown", "raised")]
+    assert watched.reported == [("clock_unknown", "raised")]
     watched.watch.probed(reading(16.0, 0.001), at(16.0))
     watched.wait(15.5, 4.0)
-    assert watched.told == [("clock_unknown", "raised"), ("clock_unknown", "cleared")]
+    assert watched.reported == [("clock_unknown", "raised"), ("clock_unknown", "cleared")]
 
 
 def produced(frames: int, epoch: int = 1) -> Produced:
@@ -109,10 +109,10 @@ def test_the_backlog_is_what_was_made_but_not_stored(time_scale: float) -> None:
     watched.watch.backlog.stored(stored(900))
     assert watched.watch.signal(at(10.0))["behind_s"] == pytest.approx(10.0, abs=0.1)
     watched.check(10.5)
-    assert ("backlog", "raised") not in watched.told
+    assert ("backlog", "raised") not in watched.reported
     watched.watch.produced(produced(2 * frames + 900))
     watched.check(11.0)
-    assert ("backlog", "raised") in watched.told
+    assert ("backlog", "raised") in watched.reported
     watched.watch.backlog.stored(stored(2 * frames + 900))
     assert watched.watch.signal(at(11.0))["behind_s"] == 0.0
 
@@ -133,6 +133,6 @@ def test_data_waiting_for_the_disk_raise_the_backlog_alarm() -> None:
     for second in range(1, 12):
         watched.watch.backlog.submitted(at(float(second)).monotonic_s)
         watched.check(float(second), reading=False)
-    assert ("backlog", "raised") in watched.told
+    assert ("backlog", "raised") in watched.reported
     watched.watch.backlog.acknowledged(at(11.0).monotonic_s, waiting=False)
     assert watched.watch.signal(at(11.0))["behind_s"] == 0.0

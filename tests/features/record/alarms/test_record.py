@@ -60,8 +60,8 @@ def test_an_alarm_is_open_from_its_raising_to_its_clearing(
     assert (alarm.since, alarm.cleared_at) == (at(1.0).utc, None)
     assert store_change(db, session.id, cleared(GAP, 5.0))
     assert open_alarms(db, session.id) == []
-    (told,) = alarm_history(db, session)
-    assert (told.since, told.cleared_at, told.outcome) == (at(1.0).utc, at(5.0).utc, None)
+    (stored,) = alarm_history(db, session)
+    assert (stored.since, stored.cleared_at, stored.outcome) == (at(1.0).utc, at(5.0).utc, None)
 
 
 def test_a_repeated_change_is_stored_once(db: Session, session: StudySession) -> None:
@@ -82,10 +82,10 @@ def test_the_alarm_history_lists_the_newest_first(db: Session, session: StudySes
         cleared(SILENT, 9.0),
     ):
         store_change(db, session.id, change)
-    told = alarm_history(db, session)
-    assert [one.code for one in told] == ["gap", "silent", "gap"]
+    history = alarm_history(db, session)
+    assert [one.code for one in history] == ["gap", "silent", "gap"]
     ends = [None, at(9.0).utc, at(5.0).utc]
-    assert [one.cleared_at for one in told] == ends
+    assert [one.cleared_at for one in history] == ends
     assert [one.code for one in open_alarms(db, session.id)] == ["gap"]
 
 

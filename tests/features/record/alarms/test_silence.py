@@ -25,7 +25,7 @@ def test_silence_stops_the_phase_once_after_three_seconds() -> None:
     watched = running()
     ended_s = watched.play(SECOND)
     watched.wait(ended_s, 3.5)
-    assert watched.told == [("silent", "raised")]
+    assert watched.reported == [("silent", "raised")]
     assert lost_at(watched) == [pytest.approx(ended_s + 3.0, abs=0.5)]
     watched.watch.update_state(state(phase=order(status="paused")), at(ended_s + 3.5))
     watched.wait(ended_s + 3.5, 60.0)
@@ -41,7 +41,7 @@ def test_a_phase_that_was_resumed_without_frames_is_stopped_again() -> None:
     watched.watch.update_state(state(phase=order(status="running")), at(ended_s + 1.0))
     watched.wait(ended_s + 1.0, 1.0)
     assert len(lost_at(watched)) == 2
-    assert watched.told == [("silent", "raised")]
+    assert watched.reported == [("silent", "raised")]
 
 
 def test_the_silence_alarm_is_cleared_when_frames_arrive() -> None:
@@ -49,7 +49,7 @@ def test_the_silence_alarm_is_cleared_when_frames_arrive() -> None:
     watched = running()
     silent_s = watched.wait(watched.play(SECOND), 10.0)
     watched.play(TREMBLING.part(slice(90, 540)), begin_s=silent_s)
-    assert ("silent", "cleared") in watched.told
+    assert ("silent", "cleared") in watched.reported
 
 
 def test_silence_raises_no_alarm_while_nothing_is_recorded() -> None:
@@ -57,12 +57,12 @@ def test_silence_raises_no_alarm_while_nothing_is_recorded() -> None:
     watched = Watched()
     watched.watch.update_state(state(recording=False), at(0.0))
     watched.wait(0.0, 10.0)
-    assert watched.told == []
+    assert watched.reported == []
     watched.watch.update_state(state(), at(10.0))
     watched.wait(10.0, 2.5)
-    assert watched.told == []
+    assert watched.reported == []
     watched.wait(12.5, 1.0)
-    assert watched.told == [("silent", "raised")]
+    assert watched.reported == [("silent", "raised")]
 
 
 def test_a_delayed_check_does_not_count_as_silence() -> None:
@@ -71,10 +71,10 @@ def test_a_delayed_check_does_not_count_as_silence() -> None:
     ended_s = watched.play(SECOND)
     watched.check(ended_s + 60.0)
     watched.wait(ended_s + 60.0, 2.5)
-    assert watched.told == []
+    assert watched.reported == []
     assert lost_at(watched) == []
     watched.wait(ended_s + 62.5, 1.0)
-    assert ("silent", "raised") in watched.told
+    assert ("silent", "raised") in watched.reported
 
 
 def test_no_silence_is_reported_while_the_server_does_not_read() -> None:
@@ -84,7 +84,7 @@ def test_no_silence_is_reported_while_the_server_does_not_read() -> None:
     for turn in range(1, 20):
         watched.check(ended_s + 0.5 * turn, reading=False)
     assert lost_at(watched) == []
-    assert "silent" not in {code for code, _ in watched.told}
+    assert "silent" not in {code for code, _ in watched.reported}
 
 
 def test_frames_on_another_socket_of_the_session_count() -> None:
@@ -93,7 +93,7 @@ def test_frames_on_another_socket_of_the_session_count() -> None:
     for turn in range(1, 30):
         watched.watch.silence.frame_arrived(at(0.5 * turn).monotonic_s)
         watched.check(0.5 * turn)
-    assert watched.told == []
+    assert watched.reported == []
 
 
 @pytest.mark.parametrize(("time_scale", "limit_s"), [(1.0, 3.0), (20.0, 30.0), (100.0, 30.0)])
@@ -101,16 +101,16 @@ def test_an_accelerated_client_may_be_silent_for_longer(time_scale: float, limit
     """A client that runs faster than real time is reported as silent only after 30 seconds."""
     watched = running(time_scale=time_scale)
     watched.wait(0.0, limit_s - 0.5)
-    assert watched.told == [("clock_unknown", "raised")] * (limit_s > 16.0)
+    assert watched.reported == [("clock_unknown", "raised")] * (limit_s > 16.0)
     watched.wait(limit_s - 0.5, 0.5)
-    assert watched.told[-1] == ("silent", "raised")
+    assert watched.reported[-1] == ("silent", "raised")
 
 
 def test_the_silence_limit_can_be_set() -> None:
     """The limit after which a headset counts as silent can be set."""
     watched = Watched(limits=WatchLimits(silent_s=0.2, check_every_s=0.05))
     watched.wait(0.0, 0.25)
-    assert watched.told == [("silent", "raised")]
+    assert watched.reported == [("silent", "raised")]
 
 
 def test_a_silent_headset_has_a_frame_rate_of_zero() -> None:

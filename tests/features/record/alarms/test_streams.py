@@ -16,7 +16,7 @@ MINUTE = there_and_back(TREMBLING)
 UPSIDE_DOWN = np.array((0.0, 1.0, 0.0, 0.0))
 
 
-def told(recording: Recording, time_scale: float = 1.0) -> set[tuple[str, str | None]]:
+def raised_alarms(recording: Recording, time_scale: float = 1.0) -> set[tuple[str, str | None]]:
     """Return (code, stream) of every alarm raised by a recording, without those of the clock."""
     watched = Watched(time_scale)
     watched.play(recording)
@@ -28,7 +28,7 @@ def told(recording: Recording, time_scale: float = 1.0) -> set[tuple[str, str | 
 @pytest.mark.parametrize("sound", [generated(1), generated(2), MINUTE])
 def test_valid_movement_raises_no_alarm_at_any_speed(sound: Recording, time_scale: float) -> None:
     """Valid movement raises no alarm, in real time or a hundred times faster."""
-    assert told(sound, time_scale) == set()
+    assert raised_alarms(sound, time_scale) == set()
 
 
 @pytest.mark.parametrize("time_scale", [1.0, 20.0])
@@ -37,7 +37,7 @@ def test_each_fault_raises_its_alarm_and_no_other(time_scale: float) -> None:
     both = set(StreamName)
 
     def raised_by(bad: Recording) -> set[str]:
-        found = told(bad, time_scale)
+        found = raised_alarms(bad, time_scale)
         assert {stream for _, stream in found} == both
         return {code for code, _ in found}
 
@@ -80,7 +80,7 @@ def test_a_display_rate_is_not_a_low_frame_rate(from_hz: int, to_hz: int, raised
     slow = MINUTE.copy()
     slow.times_s[:2000] = np.arange(2000) / from_hz
     slow.times_s[2000:] = slow.times_s[1999] + (1.0 + np.arange(len(slow) - 2000)) / to_hz
-    assert (("low_frame_rate", StreamName.TARGET) in told(slow)) is raised
+    assert (("low_frame_rate", StreamName.TARGET) in raised_alarms(slow)) is raised
 
 
 def test_short_gaps_are_counted_without_an_alarm() -> None:
@@ -90,7 +90,7 @@ def test_short_gaps_are_counted_without_an_alarm() -> None:
         stuttering.times_s[first:] += 0.05
     watched = Watched()
     watched.play(stuttering)
-    assert {code for code, _ in watched.told} <= {"clock_unknown"}
+    assert {code for code, _ in watched.reported} <= {"clock_unknown"}
     signal = watched.watch.signal(at(60.0))
     assert signal["gaps"] == 5
     assert signal["gap_s"] == pytest.approx(5 * (0.05 + 1 / 90), abs=0.02)
@@ -116,7 +116,7 @@ def test_resent_frames_are_checked_once() -> None:
         for _ in range(2):
             watched.changes += watched.watch.batch(batch(MINUTE, first, 9), at(first / 90))
         watched.changes += watched.watch.batch(batch(MINUTE, first + 50, 9), at(first / 90))
-    assert watched.told == []
+    assert watched.reported == []
     assert watched.watch.signal(at(10.0))["frame_rate_hz"] == pytest.approx(90.0, abs=0.5)
 
 
@@ -143,7 +143,7 @@ def test_late_frames_of_an_earlier_epoch_raise_no_alarm() -> None:
             batch(MINUTE, 900 + first, epoch=2, seq_first=first), at(0)
         )
         watched.changes += watched.watch.batch(batch(MINUTE, first, epoch=1), at(0))
-    assert watched.told == []
+    assert watched.reported == []
 
 
 def test_invalid_frames_give_a_signal_of_valid_json() -> None:
@@ -155,6 +155,6 @@ def test_invalid_frames_give_a_signal_of_valid_json() -> None:
     odd.positions_m[rng.random(len(odd)) < 0.1] = 3e38
     watched = Watched()
     watched.play(odd)
-    told = [(one.condition.value, one.condition.client_t_s) for one in watched.changes]
-    json.dumps([watched.watch.signal(at(10.0)), told], allow_nan=False)
-    assert told
+    values = [(one.condition.value, one.condition.client_t_s) for one in watched.changes]
+    json.dumps([watched.watch.signal(at(10.0)), values], allow_nan=False)
+    assert values

@@ -116,7 +116,7 @@ class Watched:
         self.watch = QualityWatch.of(welcome(self.time_scale), self.limits, at(0.0))
 
     @property
-    def told(self) -> list[tuple[str, str]]:
+    def reported(self) -> list[tuple[str, str]]:
         """Every change as (code, state), in order."""
         return [(change.condition.code, change.state) for change in self.changes]
 

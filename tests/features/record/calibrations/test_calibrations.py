@@ -28,8 +28,8 @@ def add(lab: Lab, **changes: object) -> Json:
 
 def listed(lab: Lab) -> list[Json]:
     """Return every measurement, as listed by the interface."""
-    told: list[Json] = ok(lab.operator.get("/api/calibrations"))
-    return told
+    reply: list[Json] = ok(lab.operator.get("/api/calibrations"))
+    return reply
 
 
 def test_a_calibration_is_stored_in_seconds(fresh_lab: Lab) -> None:

@@ -47,24 +47,24 @@ def test_the_avatar_model_has_the_stature_and_the_studys_surfaces(
     MuJoCo loads it, and the configuration and both hashes are in the record.
     """
     token = fresh_lab.headset_token(session["id"])
-    told = ok(request_avatar(fresh_lab, token, {"stature_m": STATURE_M}))
-    assert told["stature_m"] == 1.732
-    assert told["configuration_hash"] == session["avatar_configuration_hash"]
-    file = AvatarFile.model_validate(told["configuration"])
-    assert loaded(configuration_of(file)).content_hash == told["configuration_hash"]
-    assert told["configuration"]["locked_groups"] == ["left_fingers"]
-    model = mujoco.MjModel.from_xml_string(told["mjcf"])
+    reply = ok(request_avatar(fresh_lab, token, {"stature_m": STATURE_M}))
+    assert reply["stature_m"] == 1.732
+    assert reply["configuration_hash"] == session["avatar_configuration_hash"]
+    file = AvatarFile.model_validate(reply["configuration"])
+    assert loaded(configuration_of(file)).content_hash == reply["configuration_hash"]
+    assert reply["configuration"]["locked_groups"] == ["left_fingers"]
+    model = mujoco.MjModel.from_xml_string(reply["mjcf"])
     tasks = shipped_study().tasks
     surfaces = [one.key for layout in tasks.layouts().values() for one in layout.surfaces]
     assert {model.geom(name).name for name in surfaces} == set(surfaces)
     (event,) = (one for one in fresh_lab.events(session["id"]) if one["type"] == "avatar_built")
-    assert event["data"]["configuration_hash"] == told["configuration_hash"]
+    assert event["data"]["configuration_hash"] == reply["configuration_hash"]
     assert "1.732" not in json.dumps(event)
     with fresh_lab.database.reading() as db:
         (content,) = contents_of(db, session["id"], "avatar")
         body = content_body(content)
     assert isinstance(body, dict)
-    assert (body["mjcf"], body["model_hash"]) == (told["mjcf"], told["model_hash"])
+    assert (body["mjcf"], body["model_hash"]) == (reply["mjcf"], reply["model_hash"])
     assert body["stature_m"] == 1.732
 
 
@@ -130,10 +130,10 @@ def test_an_avatar_takes_its_body_from_a_humanoid_model(fresh_lab: Lab) -> None:
     new(fresh_lab, "soft", skin)
     ok(fresh_lab.operator.post("/api/studies", json={"yaml": study("{key: soft, version: 1}")}))
     view = ok(fresh_lab.operator.post(f"/api/studies/{KEY}/sessions", json={"kind": "test"}))
-    told = ok(request_avatar(fresh_lab, fresh_lab.headset_token(view["id"]), {"stature_m": 1.7}))
-    body = PhysicsAvatar(told["mjcf"])
+    reply = ok(request_avatar(fresh_lab, fresh_lab.headset_token(view["id"]), {"stature_m": 1.7}))
+    body = PhysicsAvatar(reply["mjcf"])
     assert body.model.nmesh > 0
     assert "LeftRingDistal" in body.parts
     assert "LeftLittleDistal" not in body.parts
     hips = float(body.data.xpos[body.model.body("Hips").id][1])
-    assert hips == pytest.approx(told["standing_hips_m"])
+    assert hips == pytest.approx(reply["standing_hips_m"])

@@ -106,10 +106,10 @@ def test_a_headset_that_falls_asleep_stops_its_phase(
         detected_s, slept_s = fall_asleep(quick_site, headset, session_id, 2.5)
     print_figure(capsys, f"silent for {slept_s:.1f} s, limit 1 s: noticed after {detected_s:.2f} s")
     assert 1.0 <= detected_s < 1.0 + 2.0
-    told = alarms(quick_site, session_id)
-    silent = next(one for one in reversed(told) if one["code"] == "silent")
+    reported = alarms(quick_site, session_id)
+    silent = next(one for one in reversed(reported) if one["code"] == "silent")
     assert silent["outcome"].startswith("The headset is connected but has sent no movement for")
-    (gap,) = [one for one in told if (one["code"], one["stream"]) == ("gap", "actual")]
+    (gap,) = [one for one in reported if (one["code"], one["stream"]) == ("gap", "actual")]
     assert gap["value"] == pytest.approx(slept_s, abs=0.1)
     event = next(
         event

@@ -68,8 +68,8 @@ def test_a_freed_slot_is_the_next_to_be_taken(fresh_lab: Lab, end: str, outcome:
     """The slot of a withdrawn or aborted session goes to the next one; both attempts are kept."""
     views = [fresh_lab.join() for _ in range(3)]
     fresh_lab.command(fresh_lab.command(views[1], "start"), end, reason="headset broke")
-    again = fresh_lab.join()
-    assert again["sequence"] == views[1]["sequence"]
+    next_session = fresh_lab.join()
+    assert next_session["sequence"] == views[1]["sequence"]
     slot = ledger(fresh_lab)["slots"][1]
     outcomes = [attempt["outcome"] for attempt in slot["attempts"]]
     assert (slot["state"], outcomes) == ("open", [outcome, "open"])

@@ -94,16 +94,18 @@ def test_every_scheme_stays_balanced(
 
         views = run_concurrently(join, [{}] * joins)
         joined = imbalance([view["sequence"] for view in views], orders)
-        gone = views[:: joins // dropouts][:dropouts]
-        run_concurrently(lambda view: withdraw(client, view), gone)
-        again = run_concurrently(join, [{}] * dropouts)
-        held = [*(view for view in views if view not in gone), *again]
-        refilled = imbalance([view["sequence"] for view in held], orders)
+        withdrawn = views[:: joins // dropouts][:dropouts]
+        run_concurrently(lambda view: withdraw(client, view), withdrawn)
+        rejoined = run_concurrently(join, [{}] * dropouts)
+        current = [*(view for view in views if view not in withdrawn), *rejoined]
+        refilled = imbalance([view["sequence"] for view in current], orders)
         # One ahead if the last block is not full, none if it is.
         expected = int(joins % orders > 0)
         assert (name, joined, refilled) == (name, expected, expected)
-        assert sorted(view["slot"]["index"] for view in held) == list(range(joins))
-        assert {view["slot"]["index"] for view in again} == {one["slot"]["index"] for one in gone}
+        assert sorted(view["slot"]["index"] for view in current) == list(range(joins))
+        assert {view["slot"]["index"] for view in rejoined} == {
+            one["slot"]["index"] for one in withdrawn
+        }
         if "explicit" not in text:
             check_carry_over(client, key, levels)
 

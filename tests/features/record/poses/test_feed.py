@@ -46,12 +46,12 @@ def contact(seq: int) -> Report:
 
 def test_a_pose_is_the_newest_frame_of_its_batch() -> None:
     """A pose message has the newest frame of its batch, bit by bit, after the documented header."""
-    told = encode_pose(batch(12, StreamName.ACTUAL))
-    assert len(told) == HEADER.size + 4 * 91
-    magic, stream, flags, count, phase_id, seq, t_s = struct.unpack_from("<4sBBHIQd", told)
+    reported = encode_pose(batch(12, StreamName.ACTUAL))
+    assert len(reported) == HEADER.size + 4 * 91
+    magic, stream, flags, count, phase_id, seq, t_s = struct.unpack_from("<4sBBHIQd", reported)
     assert (magic, stream, flags, count, phase_id, seq) == (MAGIC, 2, 1, 91, 3, 17)
     assert t_s == 17 / 90.0
-    assert np.array_equal(np.frombuffer(told, "<f4", 91, HEADER.size), batch(12).values[-1])
+    assert np.array_equal(np.frombuffer(reported, "<f4", 91, HEADER.size), batch(12).values[-1])
 
 
 def test_a_slow_console_gets_only_the_newest_pose() -> None:

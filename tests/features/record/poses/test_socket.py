@@ -42,9 +42,9 @@ def batch(seq: int, stream: StreamName = StreamName.TARGET) -> Batch:
     return decode_batch(message(standing(1), stream=stream, seq_first=seq))
 
 
-def seq_of(told: bytes) -> int:
+def seq_of(pose: bytes) -> int:
     """Return the seq of the frame in a pose message."""
-    return int(HEADER.unpack_from(told)[5])
+    return int(HEADER.unpack_from(pose)[5])
 
 
 def blinded_session(lab: Lab) -> str:
@@ -86,8 +86,8 @@ def test_both_figures_and_the_touches_reach_an_open_console(lab: Lab) -> None:
         feed.take(batch(5), 1.0)
         assert seq_of(socket.receive_bytes()) == 5
         feed.take(batch(6, StreamName.ACTUAL), 1.0)
-        told = socket.receive_bytes()
-        assert (seq_of(told), HEADER.unpack_from(told)[1]) == (6, 2)
+        reported = socket.receive_bytes()
+        assert (seq_of(reported), HEADER.unpack_from(reported)[1]) == (6, 2)
         feed.report(contact(3))
         touches = socket.receive_json()
         assert touches["type"] == "touches"

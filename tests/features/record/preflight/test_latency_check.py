@@ -53,8 +53,8 @@ def measure(lab: Lab, session_id: str, *flagged: bool) -> None:
 
 def latency_of(lab: Lab, session_id: str) -> Json:
     """Return the latency check of a session's pre-flight."""
-    told = ok(lab.operator.get(f"/api/sessions/{session_id}/preflight"))
-    (check,) = (one for one in told["checks"] if one["key"] == "latency")
+    reply = ok(lab.operator.get(f"/api/sessions/{session_id}/preflight"))
+    (check,) = (one for one in reply["checks"] if one["key"] == "latency")
     assert isinstance(check, dict)
     return check
 

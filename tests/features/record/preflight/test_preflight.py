@@ -17,8 +17,8 @@ SOUND = {"frame_rate_hz": 89.9, "usual_rate_hz": 90.0, "clock_uncertainty_ms": 1
 
 def checks_of(lab: Lab, session_id: str) -> dict[str, Json]:
     """Return the checks of a session by key."""
-    told = ok(lab.operator.get(f"/api/sessions/{session_id}/preflight"))
-    return {check["key"]: check for check in told["checks"]}
+    reply = ok(lab.operator.get(f"/api/sessions/{session_id}/preflight"))
+    return {check["key"]: check for check in reply["checks"]}
 
 
 def codes_of(lab: Lab, session_id: str) -> dict[str, str]:
@@ -42,9 +42,9 @@ def wear(lab: Lab, session_id: str, **signal: float | None) -> None:
 def test_the_checks_of_a_session_that_nobody_has_prepared(lab: Lab) -> None:
     """Without devices, their checks fail, checks that need them wait, and all others pass."""
     session_id = lab.join()["id"]
-    told = ok(lab.operator.get(f"/api/sessions/{session_id}/preflight"))
-    assert (told["clear"], told["asks"]) == (False, True)
-    checks = {check["key"]: check for check in told["checks"]}
+    reply = ok(lab.operator.get(f"/api/sessions/{session_id}/preflight"))
+    assert (reply["clear"], reply["asks"]) == (False, True)
+    checks = {check["key"]: check for check in reply["checks"]}
     assert [(key, check["status"], check["code"]) for key, check in checks.items()] == [
         ("tablet", "fail", "tablet.unpaired"),
         ("headset", "fail", "headset.unpaired"),
@@ -182,8 +182,8 @@ def test_a_study_changed_in_the_database_fails_its_checks(fresh_lab: Lab) -> Non
 def test_an_override_goes_on_record_with_its_reason_and_the_finding(lab: Lab) -> None:
     """An override is recorded with the check's key, its finding, the reason and the account."""
     session_id = lab.join()["id"]
-    told = ok(override(lab, session_id, "headset", "  on loan until noon "))
-    assert told["status"] == "overridden"
+    reply = ok(override(lab, session_id, "headset", "  on loan until noon "))
+    assert reply["status"] == "overridden"
     check = checks_of(lab, session_id)["headset"]
     assert check["status"] == "overridden"
     assert check["override"]["reason"] == "on loan until noon"
@@ -227,8 +227,8 @@ def test_failed_checks_do_not_prevent_the_start(lab: Lab) -> None:
 def test_overriding_a_passed_check_records_nothing(lab: Lab) -> None:
     """Overriding a check that now passes returns its state and records nothing."""
     view = lab.join()
-    told = ok(override(lab, view["id"], "language"))
-    assert (told["status"], told["override"]) == ("ok", None)
+    reply = ok(override(lab, view["id"], "language"))
+    assert (reply["status"], reply["override"]) == ("ok", None)
     assert [one["type"] for one in lab.events(view["id"])].count("check_overridden") == 0
 
 
@@ -249,6 +249,6 @@ def test_an_invalid_override_is_refused(lab: Lab) -> None:
 def test_sessions_without_participants_need_no_overrides(lab: Lab, kind: str) -> None:
     """Simulated, test and expert sessions have the same checks, but need no overrides."""
     session_id = lab.join(kind=kind)["id"]
-    told = ok(lab.operator.get(f"/api/sessions/{session_id}/preflight"))
-    assert told["asks"] is False
-    assert len(told["checks"]) == 11
+    reply = ok(lab.operator.get(f"/api/sessions/{session_id}/preflight"))
+    assert reply["asks"] is False
+    assert len(reply["checks"]) == 11

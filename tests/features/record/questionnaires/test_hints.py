@@ -45,13 +45,13 @@ def test_an_ordinary_form_has_no_hint(lab: Lab, session_id: str, tablet: TestCli
 def test_identical_answers_give_a_hint_to_the_operator_only(
     lab: Lab, session_id: str, tablet: TestClient
 ) -> None:
-    """Identical answers throughout give the operator a hint; the tablet is told nothing."""
+    """Identical answers throughout give the operator a hint; the tablet shows nothing of it."""
     receipt = ok(send(tablet, filled(due(tablet), ALL_FOUR)))
     assert hints(lab, session_id) == [{"kind": "alike", "items": 14, "value": 4.0}]
     assert lab.view(session_id)["scores"][0]["scores"]["ownership"] is not None
-    told = json.dumps([receipt, ok(tablet.get("/api/tablet/state"))])
-    assert "hint" not in told
-    assert "alike" not in told
+    reply = json.dumps([receipt, ok(tablet.get("/api/tablet/state"))])
+    assert "hint" not in reply
+    assert "alike" not in reply
 
 
 @pytest.mark.one_engine
@@ -92,10 +92,10 @@ def hints_on(instrument: Instrument, value: float) -> list[str]:
 def test_no_symptoms_at_all_gives_no_hint(lab: Lab) -> None:
     """The lowest rating throughout gives a hint on Karas 2020, but not on a list of symptoms."""
     with lab.database.reading() as db:
-        known = {key: instrument_of(row) for key, row in newest_instruments(db).items()}
-    assert hints_on(known["ssq"], 0.0) == []
-    assert hints_on(known["ssq"], 3.0) == ["alike"]
-    assert hints_on(known["karas2020"], 1.0) == ["alike"]
+        existing = {key: instrument_of(row) for key, row in newest_instruments(db).items()}
+    assert hints_on(existing["ssq"], 0.0) == []
+    assert hints_on(existing["ssq"], 3.0) == ["alike"]
+    assert hints_on(existing["karas2020"], 1.0) == ["alike"]
 
 
 def test_times_and_changes_are_exported_by_item(
@@ -112,6 +112,6 @@ def test_times_and_changes_are_exported_by_item(
         frame = answers_table(db, STUDY, "people")
     rows = frame[frame["session_id"] == session_id].to_dict("records")
     names = ("response_s", "changes", "answered_after_s")
-    told = {row["item"]: [row[name] for name in names] for row in rows}
-    assert told["q1"] == [2.25, 3, 4.5]
-    assert [isna(value) for value in told["q2"]] == [True, True, False]
+    reported = {row["item"]: [row[name] for name in names] for row in rows}
+    assert reported["q1"] == [2.25, 3, 4.5]
+    assert [isna(value) for value in reported["q2"]] == [True, True, False]

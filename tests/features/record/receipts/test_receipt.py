@@ -39,10 +39,10 @@ def test_a_receipt_is_json_and_text(stored: StoredSession) -> None:
     """A receipt's JSON and text both have the verdict and the counts of every stream."""
     stored.change(lambda db: db.execute(delete(TelemetryChunk).where(TelemetryChunk.epoch == 2)))
     receipt = stored.receipt()
-    told = json.loads(json.dumps(receipt.as_json()))
-    assert told["complete"] is False
+    reply = json.loads(json.dumps(receipt.as_json()))
+    assert reply["complete"] is False
     assert {"stream": "target", "epoch": 2, "sent": 100, "stored": 0, "missing": 100}.items() <= (
-        told["streams"][-1].items()
+        reply["streams"][-1].items()
     )
     text = receipt_text(receipt)
     assert text.startswith(f"NOT COMPLETE  session {stored.session_id}")

@@ -67,8 +67,8 @@ def test_a_repeated_command_changes_nothing(
     """A command repeated with the same id gets the same answer and has no further effect."""
     command_id = str(uuid.uuid4())
     first = lab.command(planned, kind, command_id=command_id, **words)
-    again = lab.command(planned, kind, command_id=command_id, **words)
-    assert again == first
+    second = lab.command(planned, kind, command_id=command_id, **words)
+    assert second == first
     assert len(lab.events(planned["id"])) == 1
     assert contents(lab, planned["id"], "note") == (kind == "note")
 

@@ -31,8 +31,8 @@ def tablet(lab: Lab, view: Json) -> TestClient:
 
 def record(lab: Lab, view: Json) -> Json:
     """Return the consent record as the printable page reads it."""
-    told: Json = ok(lab.operator.get(f"/api/sessions/{view['id']}/consent"))
-    return told
+    reply: Json = ok(lab.operator.get(f"/api/sessions/{view['id']}/consent"))
+    return reply
 
 
 @pytest.mark.one_engine
@@ -48,7 +48,7 @@ def test_the_tablet_receives_the_consents_statements(tablet: TestClient) -> None
 
 @pytest.mark.one_engine
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "expected"),
     [
         ({"ticked": [0]}, "not ticked"),
         ({"ticked": []}, "not ticked"),
@@ -61,13 +61,13 @@ def test_the_tablet_receives_the_consents_statements(tablet: TestClient) -> None
     ],
 )
 def test_an_incomplete_consent_is_refused(
-    lab: Lab, view: Json, tablet: TestClient, change: Json, said: str | None
+    lab: Lab, view: Json, tablet: TestClient, change: Json, expected: str | None
 ) -> None:
     """An incomplete or invalid consent is refused, and nothing is stored."""
     answer = tablet.post("/api/tablet/consent", json={**GIVEN, **change})
     assert answer.status_code == 422
-    if said is not None:
-        assert said in error(answer, 422, "invalid_input")["message"]
+    if expected is not None:
+        assert expected in error(answer, 422, "invalid_input")["message"]
     assert record(lab, view) is None
     assert lab.view(view["id"])["version"] == view["version"]
 
@@ -78,15 +78,15 @@ def test_a_consent_is_stored_once_with_its_text_and_version(
     """A consent is stored once, with study version, text, statements and signature."""
     for _ in range(2):
         assert ok(tablet.post("/api/tablet/consent", json=GIVEN))["screen"] == "form"
-    told = record(lab, view)
+    reported = record(lab, view)
     study = ok(lab.operator.get(f"/api/studies/{KEY}"))
-    assert (told["study_version"], told["content_hash"]) == (1, study["content_hash"])
-    assert told["text"].startswith("Thank you for coming.")
-    assert told["text_matches"] is True
-    assert [one["ticked"] for one in told["statements"]] == [True, True, False]
-    assert (told["signature"], told["name"], told["mode"]) == (PATH, None, "tablet")
-    assert (told["records"], told["erased"], told["simulated"]) == (1, False, False)
-    assert told["by"].startswith("tablet:")
+    assert (reported["study_version"], reported["content_hash"]) == (1, study["content_hash"])
+    assert reported["text"].startswith("Thank you for coming.")
+    assert reported["text_matches"] is True
+    assert [one["ticked"] for one in reported["statements"]] == [True, True, False]
+    assert (reported["signature"], reported["name"], reported["mode"]) == (PATH, None, "tablet")
+    assert (reported["records"], reported["erased"], reported["simulated"]) == (1, False, False)
+    assert reported["by"].startswith("tablet:")
 
 
 def test_the_event_log_has_only_the_hash_of_a_consent(
@@ -114,9 +114,9 @@ def test_a_typed_name_replaces_a_drawn_signature(lab: Lab, view: Json, tablet: T
     """A typed name is accepted instead of a drawn signature, and stored with the language."""
     ok(tablet.put("/api/tablet/language", json={"language": "de"}))
     ok(tablet.post("/api/tablet/consent", json={**GIVEN, "signature": None, "name": " Ada L. "}))
-    told = record(lab, view)
-    assert (told["name"], told["signature"], told["language"]) == ("Ada L.", None, "de")
-    assert told["text"].startswith("Danke, dass Sie")
+    reported = record(lab, view)
+    assert (reported["name"], reported["signature"], reported["language"]) == ("Ada L.", None, "de")
+    assert reported["text"].startswith("Danke, dass Sie")
 
 
 @pytest.mark.one_engine
@@ -137,9 +137,13 @@ def test_a_consent_on_paper_is_recorded_with_its_place(lab: Lab, view: Json) -> 
     )
     after = lab.command(view, "complete_step", step_index=0, paper_consent=sheet)
     assert after["current"]["index"] == 1
-    told = record(lab, after)
-    assert (told["mode"], told["paper"], told["by"]) == ("paper", sheet, "account:admin")
-    assert {one["ticked"] for one in told["statements"]} == {None}
+    reported = record(lab, after)
+    assert (reported["mode"], reported["paper"], reported["by"]) == (
+        "paper",
+        sheet,
+        "account:admin",
+    )
+    assert {one["ticked"] for one in reported["statements"]} == {None}
 
 
 @pytest.mark.one_engine
@@ -174,8 +178,8 @@ def test_an_erased_consent_has_no_signature(lab: Lab, view: Json, tablet: TestCl
         query = select(SessionContent).where(SessionContent.session_id == view["id"])
         for row in db.scalars(query):
             row.body = row.salt = None
-    told = record(lab, view)
-    assert (told["erased"], told["signature"], told["name"]) == (True, None, None)
+    reported = record(lab, view)
+    assert (reported["erased"], reported["signature"], reported["name"]) == (True, None, None)
 
 
 @pytest.mark.one_engine

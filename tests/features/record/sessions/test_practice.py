@@ -67,8 +67,8 @@ def test_a_task_never_ends_early() -> None:
         state = after(state, c.Skip(content=WORDS))
     state = after(state, c.BeginPhase(headset_connected=True))
     for what, active_s in (("started", 0.0), ("paused", 20.0)):
-        told = c.Report(what=what, phase_id=2, client_t_s=1.0, active_s=active_s, completions=9)
-        state = after(state, told)
+        reported = c.Report(what=what, phase_id=2, client_t_s=1.0, active_s=active_s, completions=9)
+        state = after(state, reported)
     early = c.Report(what="time_up", phase_id=2, client_t_s=1.0, active_s=20.0, completions=99)
     with pytest.raises(Refused):
         decide(PLAN, state, early)
@@ -90,10 +90,10 @@ def test_the_server_counts_the_completed_tasks_of_a_practice(lab: Lab) -> None:
         socket.send_json({"type": "hello", "protocol": 1, "client": "x", "epoch": None})
         assert socket.receive_json()["type"] == "welcome"
         lab.command(lab.view(view["id"]), "begin_phase")
-        told = socket.receive_json()
-        while told["type"] != "state" or told["phase"] is None:
-            told = socket.receive_json()
-        assert (told["phase"]["kind"], told["phase"]["until_completions"]) == ("practice", 2)
+        reply = socket.receive_json()
+        while reply["type"] != "state" or reply["phase"] is None:
+            reply = socket.receive_json()
+        assert (reply["phase"]["kind"], reply["phase"]["until_completions"]) == ("practice", 2)
         bodies = [
             _phase("started", 0.0),
             _completion(1, 5.0),
@@ -107,8 +107,8 @@ def test_the_server_counts_the_completed_tasks_of_a_practice(lab: Lab) -> None:
         while lab.view(view["id"])["phases"][0]["status"] != "done":
             socket.receive_json()
     with lab.database.reading() as db:
-        told = select(ClientReport.seq).where(ClientReport.session_id == view["id"])
-        assert list(db.scalars(told.where(ClientReport.accepted.is_(False)))) == [2]
+        reply = select(ClientReport.seq).where(ClientReport.session_id == view["id"])
+        assert list(db.scalars(reply.where(ClientReport.accepted.is_(False)))) == [2]
         row = db.scalars(select(Phase).where(Phase.session_id == view["id"])).one()
         assert (row.kind, row.block, row.condition, row.active_s) == ("practice", None, None, 11.0)
         stored = select(Completion.number).where(Completion.session_id == view["id"])

@@ -124,9 +124,9 @@ def test_shortfalls_are_listed_in_the_order_of_the_steps() -> None:
             replace(one, active_s=12.5) if one.step == short else one for one in state.ended_phases
         ),
     )
-    known = delays(state)
-    known[state.ended_phases[-1].phase_id] = PhaseDelay(0.1, None)
-    found = judged(RULES, PLAN, state, known)
+    existing = delays(state)
+    existing[state.ended_phases[-1].phase_id] = PhaseDelay(0.1, None)
+    found = judged(RULES, PLAN, state, existing)
     assert [(one.code, one.step) for one in found] == [
         ("phase_skipped", TASKS[0].key),
         ("phase_short", PLAN[short].key),

@@ -22,8 +22,8 @@ def test_experts_have_their_own_ledger(fresh_lab: Lab) -> None:
 def test_an_expert_is_in_the_list_of_sessions(fresh_lab: Lab) -> None:
     """An expert's session is listed with its own kind and not as simulated."""
     fresh_lab.join(kind="expert")
-    (told,) = ok(fresh_lab.operator.get(f"/api/studies/{STUDY}/sessions?kind=expert"))
-    assert (told["kind"], told["simulated"]) == ("expert", False)
+    (reported,) = ok(fresh_lab.operator.get(f"/api/studies/{STUDY}/sessions?kind=expert"))
+    assert (reported["kind"], reported["simulated"]) == ("expert", False)
 
 
 @pytest.mark.one_engine

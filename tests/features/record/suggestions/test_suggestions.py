@@ -5,18 +5,18 @@ import pytest
 from tests.features.lab import STUDY, Json, Lab, error, ok
 
 
-def advise(lab: Lab, **wish: object) -> Json:
+def advise(lab: Lab, **fields: object) -> Json:
     """Store a suggestion for the shipped study."""
     stored: Json = ok(
-        lab.operator.post(f"/api/studies/{STUDY}/suggestions", json={"body": "Longer", **wish})
+        lab.operator.post(f"/api/studies/{STUDY}/suggestions", json={"body": "Longer", **fields})
     )
     return stored
 
 
 def all_of(lab: Lab) -> list[Json]:
     """Return every suggestion for the shipped study."""
-    told: list[Json] = ok(lab.operator.get(f"/api/studies/{STUDY}/suggestions"))
-    return told
+    reply: list[Json] = ok(lab.operator.get(f"/api/studies/{STUDY}/suggestions"))
+    return reply
 
 
 def decide(lab: Lab, suggestion: Json, **decision: object) -> Json:
@@ -47,7 +47,7 @@ def test_a_suggestion_belongs_to_a_session_and_a_step(fresh_lab: Lab) -> None:
 
 @pytest.mark.one_engine
 @pytest.mark.parametrize(
-    ("wish", "status", "code"),
+    ("fields", "status", "code"),
     [
         ({"about": "block9.hand"}, 422, "invalid_input"),
         ({"version": 7}, 422, "invalid_input"),
@@ -57,9 +57,9 @@ def test_a_suggestion_belongs_to_a_session_and_a_step(fresh_lab: Lab) -> None:
         ({"surprise": 1}, 422, "invalid"),
     ],
 )
-def test_an_invalid_suggestion_is_refused(lab: Lab, wish: Json, status: int, code: str) -> None:
+def test_an_invalid_suggestion_is_refused(lab: Lab, fields: Json, status: int, code: str) -> None:
     """A suggestion about an unknown step, version or session, or without text, is refused."""
-    body = {"body": "Longer", **wish}
+    body = {"body": "Longer", **fields}
     answer = lab.operator.post(f"/api/studies/{STUDY}/suggestions", json=body)
     assert error(answer, status, answer.json()["error"]["code"])
     assert answer.json()["error"]["code"].startswith(code)
@@ -75,8 +75,8 @@ def test_a_suggestion_is_decided_once(fresh_lab: Lab) -> None:
     assert adopted["decided_by"] == "account:admin"
     assert decide(fresh_lab, second, status="declined")["adopted_in"] is None
     path = f"/api/suggestions/{first['id']}/decision"
-    again = fresh_lab.operator.post(path, json={"status": "declined"})
-    assert error(again, 409, "conflict")["value"] == "adopted"
+    repeated = fresh_lab.operator.post(path, json={"status": "declined"})
+    assert error(repeated, 409, "conflict")["value"] == "adopted"
 
 
 @pytest.mark.one_engine

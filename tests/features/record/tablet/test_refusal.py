@@ -11,12 +11,12 @@ from tests.features.lab import STUDY, Json, Lab, error, ok
 REASON = "Refused consent"
 
 
-def wish(*, refused: bool = True, step_index: int = 0) -> Json:
+def refusal_request(*, refused: bool = True, step_index: int = 0) -> Json:
     """Return the request that one press on the tablet sends."""
     return {"wish_id": str(uuid.uuid4()), "step_index": step_index, "refused": refused}
 
 
-def said(tablet: Any, body: Json) -> Json:
+def send_refusal(tablet: Any, body: Json) -> Json:
     """Send a refusal request and return the tablet's screen after it."""
     screen: Json = ok(tablet.put("/api/tablet/refusal", json=body))
     return screen
@@ -41,7 +41,7 @@ def types(lab: Lab, view: Json) -> list[str]:
 def test_a_refusal_reaches_the_operator_and_holds_the_session(lab: Lab) -> None:
     """A refusal raises an alarm, is recorded and holds the session, and the tablet asks no more."""
     view, tablet = at_consent(lab)
-    screen = said(tablet, wish())
+    screen = send_refusal(tablet, refusal_request())
     assert (screen["screen"], screen["is_refused"]) == ("refused", True)
     assert (screen["text"], screen["consent"], screen["next"]) == (None, None, None)
     now = lab.view(view["id"])
@@ -58,7 +58,7 @@ def test_a_refusal_reaches_the_operator_and_holds_the_session(lab: Lab) -> None:
 def test_a_refused_session_cannot_be_continued(lab: Lab) -> None:
     """After a refusal neither the operator nor another page of the tablet can continue."""
     view, tablet = at_consent(lab)
-    said(tablet, wish())
+    send_refusal(tablet, refusal_request())
     now = lab.view(view["id"])
     sheet = {"place": "Folder A", "reason": "They agreed after all"}
     for kind, fields in (
@@ -78,7 +78,7 @@ def test_a_refused_session_cannot_be_continued(lab: Lab) -> None:
 def test_ending_a_refused_session_frees_its_slot(fresh_lab: Lab) -> None:
     """Ending a refused session frees its slot, and the tablet shows no debriefing."""
     view, tablet = at_consent(fresh_lab)
-    said(tablet, wish())
+    send_refusal(tablet, refusal_request())
     ended = fresh_lab.command(fresh_lab.view(view["id"]), "withdraw", reason=REASON)
     assert (ended["status"], ended["refusal"], ended["alarms"]) == ("withdrawn", None, [])
     screen = ok(tablet.get("/api/tablet/state"))
@@ -91,9 +91,9 @@ def test_ending_a_refused_session_frees_its_slot(fresh_lab: Lab) -> None:
 def test_a_repeated_refusal_request_counts_once(lab: Lab) -> None:
     """A repeated refusal request counts once, even if it arrives after the retraction."""
     view, tablet = at_consent(lab)
-    first, back = wish(), wish(refused=False)
+    first, back = refusal_request(), refusal_request(refused=False)
     for body in (first, first, back, first, back):
-        screen = said(tablet, body)
+        screen = send_refusal(tablet, body)
     assert screen["screen"] == "consent"
     assert types(lab, view) == ["session_started", "consent_refused", "refusal_retracted"]
     assert codes(lab.view(view["id"])) == {"refusal_retracted": "warning"}
@@ -103,8 +103,8 @@ def test_a_repeated_refusal_request_counts_once(lab: Lab) -> None:
 def test_a_participant_who_retracts_a_refusal_may_consent(lab: Lab) -> None:
     """A participant who retracts the refusal sees the consent and may give it."""
     view, tablet = at_consent(lab)
-    said(tablet, wish())
-    screen = said(tablet, wish(refused=False))
+    send_refusal(tablet, refusal_request())
+    screen = send_refusal(tablet, refusal_request(refused=False))
     assert (screen["screen"], screen["is_refused"]) == ("consent", False)
     assert lab.view(view["id"])["allowed"][0] == "complete_step"
     ok(tablet.post("/api/tablet/consent", json={"step_index": 0}))
@@ -122,7 +122,7 @@ def test_the_operator_reopens_the_consent_with_a_reason(lab: Lab) -> None:
     """The operator may reopen a refused consent with a reason, which does not give it."""
     view, tablet = at_consent(lab)
     error(lab.try_command(view, "reopen_consent", reason="again"), 409, "not_now")
-    said(tablet, wish())
+    send_refusal(tablet, refusal_request())
     now = lab.view(view["id"])
     error(lab.try_command(now, "reopen_consent"), 422, "invalid_input")
     after = lab.command(now, "reopen_consent", reason="The participant changed their mind")
@@ -137,11 +137,11 @@ def test_the_operator_reopens_the_consent_with_a_reason(lab: Lab) -> None:
 def test_another_tablet_shows_the_refusal(lab: Lab) -> None:
     """Another tablet of the session shows the refusal and may retract it."""
     view, tablet = at_consent(lab)
-    said(tablet, wish())
+    send_refusal(tablet, refusal_request())
     other = lab.tablet(view["id"])
     assert ok(other.get("/api/tablet/state"))["screen"] == "refused"
-    assert said(other, wish())["screen"] == "refused"
-    assert said(other, wish(refused=False))["screen"] == "consent"
+    assert send_refusal(other, refusal_request())["screen"] == "refused"
+    assert send_refusal(other, refusal_request(refused=False))["screen"] == "consent"
     assert types(lab, view).count("consent_refused") == 1
 
 
@@ -152,7 +152,7 @@ def test_a_late_refusal_holds_the_session_at_its_current_step(lab: Lab) -> None:
     sheet = {"place": "Folder A", "reason": "The tablet is offline"}
     lab.command(view, "complete_step", paper_consent=sheet)
     form = ok(tablet.get("/api/tablet/state"))["administration"]
-    assert said(tablet, wish())["screen"] == "refused"
+    assert send_refusal(tablet, refusal_request())["screen"] == "refused"
     now = lab.view(view["id"])
     assert (now["current"]["index"], codes(now)) == (1, {"consent_refused": "critical"})
     filled_in = {
@@ -172,7 +172,7 @@ def test_a_server_restart_keeps_refusals_and_questions(fresh_lab: Lab) -> None:
     """A restart of the server keeps the alarms of a refusal and a question."""
     view, tablet = at_consent(fresh_lab)
     ok(tablet.put("/api/tablet/question", json={"asked": True}))
-    said(tablet, wish())
+    send_refusal(tablet, refusal_request())
     stop_running_clocks(fresh_lab.context)
     after = fresh_lab.view(view["id"])
     assert after["refusal"] is not None
@@ -186,7 +186,7 @@ def test_a_blinded_operator_sees_the_refusal(fresh_lab: Lab) -> None:
     blinded = yaml.replace("operator: false", "operator: true")
     ok(fresh_lab.operator.post(f"/api/studies/{STUDY}/versions", json={"yaml": blinded}))
     view, tablet = at_consent(fresh_lab)
-    said(tablet, wish())
+    send_refusal(tablet, refusal_request())
     now = fresh_lab.view(view["id"])
     assert (now["blinded"], codes(now)) == (True, {"consent_refused": "critical"})
     assert now["refusal"]["step"] == 0
@@ -197,7 +197,7 @@ def test_a_refusal_after_the_end_is_not_accepted(lab: Lab) -> None:
     """A refusal after the end of a session is not accepted, and the tablet shows the end."""
     view, tablet = at_consent(lab)
     lab.command(view, "abort", reason="fire alarm")
-    error(tablet.put("/api/tablet/refusal", json=wish()), 409, "not_now")
+    error(tablet.put("/api/tablet/refusal", json=refusal_request()), 409, "not_now")
     assert ok(tablet.get("/api/tablet/state"))["screen"] == "finished"
 
 
@@ -205,7 +205,9 @@ def test_a_refusal_after_the_end_is_not_accepted(lab: Lab) -> None:
 def test_only_a_consent_can_be_refused(lab: Lab) -> None:
     """A refusal of a step that is not a consent is not accepted."""
     view, tablet = at_consent(lab)
-    refusal = error(tablet.put("/api/tablet/refusal", json=wish(step_index=1)), 409, "not_now")
+    refusal = error(
+        tablet.put("/api/tablet/refusal", json=refusal_request(step_index=1)), 409, "not_now"
+    )
     assert (refusal["value"], refusal["valid"]) == (1, [0])
     assert lab.view(view["id"])["version"] == view["version"]
 

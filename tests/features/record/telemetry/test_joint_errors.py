@@ -151,5 +151,7 @@ def test_a_server_without_physics_loads_no_compiler() -> None:
         "import sys, app.main, app.features.record.telemetry.summaries; "
         "print([name for name in ('numba', 'llvmlite', 'mujoco') if name in sys.modules])"
     )
-    told = subprocess.run([sys.executable, "-c", lines], capture_output=True, text=True, check=True)
-    assert told.stdout.strip() == "[]"
+    result = subprocess.run(
+        [sys.executable, "-c", lines], capture_output=True, text=True, check=True
+    )
+    assert result.stdout.strip() == "[]"

@@ -42,10 +42,10 @@ def summarise(lab: Lab, *expected: Phase) -> dict[int, PhaseLatency]:
     """Run the summariser until these phases have latency rows; return all rows by phase."""
     summariser = Summariser(lab.context)
     summariser.start()
-    wanted = {phase.phase_id for phase in expected}
+    target = {phase.phase_id for phase in expected}
     rows: dict[int, PhaseLatency] = {}
     deadline_s = time.monotonic() + 30.0
-    while time.monotonic() < deadline_s and not wanted <= set(rows):
+    while time.monotonic() < deadline_s and not target <= set(rows):
         time.sleep(0.05)
         with lab.database.reading() as db:
             query = select(PhaseLatency).where(PhaseLatency.session_id == expected[0].session_id)

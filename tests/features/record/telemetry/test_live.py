@@ -49,22 +49,22 @@ def shrug() -> FloatArray:
 
 def test_live_errors_are_of_the_raw_rotations_of_a_delayed_copy() -> None:
     """A delayed copy's live error is that of its rotations, here at one shoulder only."""
-    told = live_errors_deg(LiveTelemetry(), shrug(), identity(JOINT_COUNT))
-    assert told.pop("LeftShoulder") == pytest.approx(20.0, abs=0.01)
-    assert max(told.values()) < 0.1
+    reported = live_errors_deg(LiveTelemetry(), shrug(), identity(JOINT_COUNT))
+    assert reported.pop("LeftShoulder") == pytest.approx(20.0, abs=0.01)
+    assert max(reported.values()) < 0.1
 
 
 def test_a_physics_avatars_live_errors_are_against_its_commanded_angles() -> None:
     """A physics avatar's live error is against its commanded angles, as in the stored rows."""
     pose = shrug()
     live = LiveTelemetry(hinges=HingeReference(ANATOMIC))
-    wanted = TargetAngles(ANATOMIC).follow(pose).unclamped_rad
-    told = live_errors_deg(live, pose, joint_rotations(wanted, pose[0]))
-    assert {joint for joint, error in told.items() if error is None} == {
+    expected = TargetAngles(ANATOMIC).follow(pose).unclamped_rad
+    reported = live_errors_deg(live, pose, joint_rotations(expected, pose[0]))
+    assert {joint for joint, error in reported.items() if error is None} == {
         "LeftShoulder",
         "RightShoulder",
     }
-    assert max(error for error in told.values() if error is not None) < 0.1
+    assert max(error for error in reported.values() if error is not None) < 0.1
     late = live_errors_deg(
         LiveTelemetry(hinges=HingeReference(ANATOMIC)), pose, identity(JOINT_COUNT)
     )

@@ -46,10 +46,10 @@ def test_every_row_is_stored_as_given(lab: Lab, count: int) -> None:
 def test_existing_rows_are_updated_only_in_the_moving_columns(lab: Lab) -> None:
     """New rows are inserted; of existing ones only the columns in `moving` are updated."""
     session_id = str(lab.join()["id"])
-    first, again = rows(lab, session_id, 3, 7), rows(lab, session_id, 5, 9)
+    first, repeated = rows(lab, session_id, 3, 7), rows(lab, session_id, 5, 9)
     with lab.database.writing() as db:
         insert_rows(db, TABLE, first)
-        insert_rows(db, TABLE, [{**row, "produced": 8} for row in again], moving=("next_seq",))
+        insert_rows(db, TABLE, [{**row, "produced": 8} for row in repeated], moving=("next_seq",))
     columns = select(TABLE.c.next_seq, TABLE.c.produced).where(TABLE.c.session_id == session_id)
     with lab.database.reading() as db:
         found = db.execute(columns.order_by(TABLE.c.epoch)).all()

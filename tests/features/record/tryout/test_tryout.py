@@ -31,15 +31,15 @@ def test_a_failed_tryout_reports_why_and_revokes_its_login(fresh_lab: Lab) -> No
     lab = fresh_lab
     assert ok(lab.operator.get("/api/tryout")) is None
     error(lab.operator.delete("/api/tryout"), 404, "not_found")
-    wish = {"language": "fr"}
-    error(lab.operator.post(f"/api/studies/{STUDY}/tryout", json=wish), 422, "invalid_input")
+    request = {"language": "fr"}
+    error(lab.operator.post(f"/api/studies/{STUDY}/tryout", json=request), 422, "invalid_input")
     with lab.database.reading() as db:
         account = db.query(Account).filter_by(username="admin").one()
     caller = Caller(account.id, account.username, account.role)
     desk = lab.context.part(TryoutRunner)
     desk.begin(caller, STUDY, "en", NOBODY)
-    again = lab.operator.post(f"/api/studies/{STUDY}/tryout", json={"language": "en"})
-    refusal = error(again, 409, "conflict")
+    repeated = lab.operator.post(f"/api/studies/{STUDY}/tryout", json={"language": "en"})
+    refusal = error(repeated, 409, "conflict")
     assert "one at a time" in refusal["valid"]
     view = _until_over(desk, caller)
     assert view["state"] == "failed"

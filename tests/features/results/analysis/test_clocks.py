@@ -152,10 +152,10 @@ def test_a_run_after_a_restart_within_a_run_keeps_utc(database: Database) -> Non
     session_id = _session(database)
     restarting = replace(WIFI, server_step_s=-SERVER_STARTS_S)
     probes = _stored(database, session_id, restarting).probes
-    behind = np.arange(len(probes)) > 400
+    later = np.arange(len(probes)) > 400
     with database.writing() as db:
-        again = _later(probes.select(behind), 0.0, 1000.0, 1000.0)
-        store_probes(db, session_id, again, epoch=2)
+        repeated = _later(probes.select(later), 0.0, 1000.0, 1000.0)
+        store_probes(db, session_id, repeated, epoch=2)
     with database.reading() as db:
         clocks = run_clocks(db, session_id)
     at = np.array([float(probes.client_sent_s[500])])
@@ -253,5 +253,5 @@ def test_the_clock_tables_have_probes_and_segments(database: Database) -> None:
     assert rows["offset_s"].to_numpy() == pytest.approx(5000.0, abs=1e-6)
     first = rows.iloc[0]
     half_utc, _ = clock.to_utc(np.array([0.5 * (first["from_s"] + first["to_s"])]))
-    told = first["from_utc"] + 0.5 * (first["to_utc"] - first["from_utc"])
-    assert abs((pd.Timestamp(half_utc[0], tz="UTC") - told).total_seconds()) < 1e-5
+    reported = first["from_utc"] + 0.5 * (first["to_utc"] - first["from_utc"])
+    assert abs((pd.Timestamp(half_utc[0], tz="UTC") - reported).total_seconds()) < 1e-5

@@ -103,8 +103,8 @@ def test_every_figure_says_what_it_shows(two_people: DashboardFigures) -> None:
         assert f"n = {entry.n}" in entry.caption
         template = entry.figure["layout"]["template"]["layout"]
         assert template["paper_bgcolor"] == "rgba(0, 0, 0, 0)"
-        told = [trace for trace in entry.figure["data"] if trace.get("hoverinfo") != "skip"]
-        assert all("hovertemplate" in trace for trace in told)
+        reported = [trace for trace in entry.figure["data"] if trace.get("hoverinfo") != "skip"]
+        assert all("hovertemplate" in trace for trace in reported)
         titles = [axis["title"]["text"] for axis in _axes(entry.figure) if "title" in axis]
         bars = entry.figure["layout"].get("coloraxis", {}).get("colorbar", {})
         titles += [bars["title"]["text"]] if bars else []

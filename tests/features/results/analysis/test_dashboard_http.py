@@ -64,14 +64,14 @@ def test_filtered_figures_rows_and_statistics_over_http(client: TestClient) -> N
     Rows are recorded as a copy, and repeated requests get the cached drawing.
     """
     path = f"/api/studies/{STUDY}/dashboard"
-    asked = {"kind": "simulated", "participant": ["SIM-0002"], "limb": "hand"}
-    view = client.get(path, params=asked).json()
+    query = {"kind": "simulated", "participant": ["SIM-0002"], "limb": "hand"}
+    view = client.get(path, params=query).json()
     assert (view["n_sessions"], view["filter"]["participant"]) == (1, ["SIM-0002"])
-    assert client.get(path, params=asked).json()["drawn_at"] == view["drawn_at"]
+    assert client.get(path, params=query).json()["drawn_at"] == view["drawn_at"]
     assert client.get(path, params={"limbs": "hand"}).status_code == 422
     assert client.get(path, params={"since": "yesterday"}).status_code == 422
 
-    rows = client.get(f"{path}/completions/rows", params=asked)
+    rows = client.get(f"{path}/completions/rows", params=query)
     assert rows.headers["content-type"] == "text/csv; charset=utf-8"
     assert "_completions_simulated_" in rows.headers["content-disposition"]
     assert b"SIMULATED DATA" in rows.content
@@ -79,7 +79,7 @@ def test_filtered_figures_rows_and_statistics_over_http(client: TestClient) -> N
     assert b"SIM-0001" not in rows.content
     copies = client.get(f"/api/studies/{STUDY}/copies").json()
     assert any("rows of the figure completions" in copy["place"] for copy in copies)
-    refused = client.get(f"{path}/nothing/rows", params=asked)
+    refused = client.get(f"{path}/nothing/rows", params=query)
     assert refused.status_code == 404
     assert "completions" in refused.text
 
@@ -93,12 +93,12 @@ def test_filtered_figures_rows_and_statistics_over_http(client: TestClient) -> N
 def test_one_group_of_figures_can_be_requested(client: TestClient) -> None:
     """One group of figures can be requested; an unknown group is refused."""
     path = f"/api/studies/{STUDY}/dashboard"
-    asked = {"kind": "simulated", "group": "tasks"}
-    view = client.get(path, params=asked).json()
+    query = {"kind": "simulated", "group": "tasks"}
+    view = client.get(path, params=query).json()
     assert {one["group"] for one in view["figures"]} == {"tasks"}
     assert (view["n_sessions"], view["filter"]["limb"]) == (2, None)
     assert view["choices"]["limbs"] == ["hand", "foot"]
-    assert client.get(path, params={**asked, "group": "colours"}).status_code == 422
+    assert client.get(path, params={**query, "group": "colours"}).status_code == 422
 
 
 def test_a_dashboard_shows_people_unless_another_kind_is_requested(client: TestClient) -> None:

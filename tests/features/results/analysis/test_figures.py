@@ -169,9 +169,9 @@ def test_the_joint_error_map_states_clipped_shares() -> None:
     figure = drawing.as_json()
     assert figure is not None
     (heat,) = figure["data"]
-    told = dict(zip(heat["x"], heat["customdata"][0], strict=True))
-    assert told["Head"] == "<br>clipped in 21.0 % of samples"
-    assert told["Neck"] == "<br>clipped in 0.0 % of samples"
+    reported = dict(zip(heat["x"], heat["customdata"][0], strict=True))
+    assert reported["Head"] == "<br>clipped in 21.0 % of samples"
+    assert reported["Neck"] == "<br>clipped in 0.0 % of samples"
     assert "in 1.1 % of the samples, Head most often (21.0 %)" in drawing.caption
     assert "before their limits" in joint_error_drawing(pd.DataFrame(rows)).caption
     plain = joint_error_map_drawing(pd.DataFrame(_errors(10.0, "P-1", 125.0)))

@@ -85,16 +85,16 @@ def test_the_overview_shows_the_observed_direction(database: Database) -> None:
         found = answers_of(read_material(db, STUDY, "people"))
     line = _measure(found, "karas2020_agency").glance[0]
     assert (line.trend, line.way) == ("p = 1.000", "rises")
-    told = _result(found, "karas2020_agency", "trend_hand")
-    assert "The prediction is not supported" in told.sentence
+    reported = _result(found, "karas2020_agency", "trend_hand")
+    assert "The prediction is not supported" in reported.sentence
 
 
 @pytest.mark.one_engine
 def test_a_constant_measure_has_no_direction(database: Database) -> None:
     """A measure that does not change has no direction and p = 1."""
     found = _found(database, 4)
-    told = _result(found, "completions", "trend_hand")
-    assert "By ranks the measure neither rises nor falls with latency." in told.sentence
+    reported = _result(found, "completions", "trend_hand")
+    assert "By ranks the measure neither rises nor falls with latency." in reported.sentence
     line = _measure(found, "completions").glance[0]
     assert (line.differ, line.first, line.trend, line.way) == (None, None, "p = 1.000", None)
 

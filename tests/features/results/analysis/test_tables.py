@@ -175,16 +175,16 @@ def test_joint_errors_have_their_clipped_share(database: Database) -> None:
     with database.writing() as db:
         db.execute(update(JointErrorRow).where(head).values(clipped_share=0.25))
     rows = _read(database, "joint_errors")
-    known = rows["clipped_share"].notna()
-    assert known.equals(rows["joint"].eq("Head") & rows["axis"].eq("x"))
-    assert set(rows["clipped_share"][known]) == {0.25}
+    existing = rows["clipped_share"].notna()
+    assert existing.equals(rows["joint"].eq("Head") & rows["axis"].eq("x"))
+    assert set(rows["clipped_share"][existing]) == {0.25}
 
 
 def test_answers_stand_as_given_and_scores_follow_from_them(database: Database) -> None:
     """The raw answers of Karas 2020, table 7.2 (hand, 0 ms), score 8, 7, 4 and 1.04."""
     raw = [2, 1, 1, 5, 1, 7, 7, 2, 1, 6, 1, 3, 4, 4]
-    known = {f"q{number}": answer for number, answer in enumerate(raw, start=1)}
-    _build(database, SessionSpec("P-0001", likert=lambda _, item: known.get(item, 3)))
+    existing = {f"q{number}": answer for number, answer in enumerate(raw, start=1)}
+    _build(database, SessionSpec("P-0001", likert=lambda _, item: existing.get(item, 3)))
     answers = _read(database, "answers")
     first = answers[(answers["block"] == 1) & (answers["limb"] == "hand")]
     assert dict(zip(first["item"], first["value_number"], strict=True))["q4"] == 5.0

@@ -21,7 +21,7 @@ class Made:
     """An export that was made once for several tests, with the progress that it reported."""
 
     done: Exported
-    told: list[str]
+    progress: list[str]
     tree: dict[str, bytes]
 
 
@@ -39,9 +39,9 @@ def simulated(filled: Database, tmp_path_factory: pytest.TempPathFactory) -> Mad
 
 def made(filled: Database, kind: str, tmp_path_factory: pytest.TempPathFactory) -> Made:
     """Export the sessions of a kind, recording the reported progress."""
-    told: list[str] = []
+    progress: list[str] = []
     out = tmp_path_factory.mktemp("exported") / "out"
-    return Made(export(filled, out, kind=kind, progress=told.append), told, tree_of(out))
+    return Made(export(filled, out, kind=kind, progress=progress.append), progress, tree_of(out))
 
 
 def test_an_export_has_every_file(people: Made) -> None:
@@ -129,8 +129,8 @@ def test_an_earlier_export_is_replaced(filled: Database, tmp_path: Path) -> None
 @pytest.mark.one_engine
 def test_progress_reports_each_file(people: Made) -> None:
     """Progress reports each file once, the README last."""
-    assert set(people.told) == set(people.tree)
-    assert people.told[-1] == "README.txt"
+    assert set(people.progress) == set(people.tree)
+    assert people.progress[-1] == "README.txt"
 
 
 def _kind_of(db: Session, *specs: SessionSpec) -> str:

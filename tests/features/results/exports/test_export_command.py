@@ -25,9 +25,9 @@ def installation(database_url: str, monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.usefixtures("installation")
 def test_the_command_writes_a_folder_and_reports_its_content(tmp_path: Path) -> None:
     """The export command uses the default kind and reports kind, counts, folder and audit head."""
-    said = export_to_folder(STUDY, tmp_path / "out", Activity(""))
+    output = export_to_folder(STUDY, tmp_path / "out", Activity(""))
     files = sum(path.is_file() for path in (tmp_path / "out").rglob("*"))
-    counts, head = said.splitlines()
+    counts, head = output.splitlines()
     assert counts == f"1 session(s) of kind simulated in {files} files: {tmp_path / 'out'}"
     assert head.startswith("audit head ")
     assert head.removeprefix("audit head ") in (tmp_path / "out" / "README.txt").read_text()

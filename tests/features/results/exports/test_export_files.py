@@ -52,8 +52,8 @@ def _fill(lab: Lab) -> None:
             store_chunks(db, first.id, stream, range(FRAMES), moving_values(FRAMES, seed))
 
 
-def _order(client: TestClient, **wish: object) -> Json:
-    body = {"kind": "people", **wish}
+def _order(client: TestClient, **fields: object) -> Json:
+    body = {"kind": "people", **fields}
     made: Json = ok(client.post(f"/api/studies/{STUDY}/exports", json=body))
     return made
 
@@ -99,12 +99,12 @@ def test_an_export_file_is_downloaded_whole_or_in_parts(site: Lab) -> None:
     streamed = b"".join(study_archive(site.database, STUDY, "people", now=now))
     with (
         zipfile.ZipFile(io.BytesIO(whole.content)) as made,
-        zipfile.ZipFile(io.BytesIO(streamed)) as known,
+        zipfile.ZipFile(io.BytesIO(streamed)) as existing,
     ):
         assert made.testzip() is None
-        assert made.namelist() == known.namelist()
+        assert made.namelist() == existing.namelist()
         for name in set(made.namelist()) - {"README.txt"}:
-            assert made.read(name) == known.read(name), name
+            assert made.read(name) == existing.read(name), name
     # It is recorded once, however often it is downloaded.
     assert [(copy.sessions, copy.bytes) for copy in _copies(site)] == [(2, done["bytes"])]
 

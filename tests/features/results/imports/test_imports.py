@@ -61,8 +61,8 @@ def test_published_scores_are_reproduced(lab: Lab, shared_data: Path) -> None:
     assert (dry["shift"]["multiply"], dry["shift"]["add"]) == (5.0, -5.0)
     mapping |= {"multiply": 5.0, "add": -5.0}
     dry = check(lab, text, mapping)
-    told = (dry["n_problems"], dry["forms"], dry["participants"], dry["skipped_rows"])
-    assert told == (0, 64, 16, 1)
+    reported = (dry["n_problems"], dry["forms"], dry["participants"], dry["skipped_rows"])
+    assert reported == (0, 64, 16, 1)
     made = ok(import_answers(lab, text, mapping))
     assert (made["forms"], made["participants"]) == (64, 16)
     (result,) = [
@@ -125,8 +125,8 @@ def test_the_same_file_is_refused_until_it_is_undone(lab: Lab) -> None:
     text = tidy(["P1,x,3", "P1,y,4"])
     mapping = look(lab, text, instrument="fms")["proposal"]
     first = ok(import_answers(lab, text, mapping))
-    again = error(import_answers(lab, text, mapping), 409, "conflict")
-    assert again["details"][0]["import_id"] == first["id"]
+    repeated = error(import_answers(lab, text, mapping), 409, "conflict")
+    assert repeated["details"][0]["import_id"] == first["id"]
     assert look(lab, text, instrument="fms")["same_file"]["id"] == first["id"]
     undone = ok(lab.operator.post(f"{URL}/{first['id']}/undo", json={"reason": "wrong scale"}))
     assert (undone["forms"], undone["undone_reason"]) == (0, "wrong scale")
@@ -188,9 +188,9 @@ def test_imported_answers_belong_to_the_participant_of_the_same_code(lab: Lab) -
     person = next(one["id"] for one in people if one["code"] == code)
     of = f"/api/studies/{STUDY}/participants/{person}"
     with zipfile.ZipFile(io.BytesIO(lab.operator.get(f"{of}/access").content)) as copy:
-        told = json.loads(copy.read("imported.json"))
+        reply = json.loads(copy.read("imported.json"))
         assert not any(name.startswith("imported/") for name in copy.namelist())
-    assert [one["answers"]["sickness"] for one in told] == [3.0]
+    assert [one["answers"]["sickness"] for one in reply] == [3.0]
     body = {"confirm": code, "reason_code": "requested"}
     erased = ok(lab.operator.post(f"{of}/erasure", json=body))
     assert erased["removed"]["imported_forms"] == 1

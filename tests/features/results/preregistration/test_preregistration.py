@@ -93,11 +93,11 @@ def test_the_declared_test_is_run_and_deviations_are_listed(database: Database) 
     assert view.result is not None
     assert view.result.n == 4
     assert view.result.sentence.startswith("L = ")
-    told = codes_of(view)
-    assert "n_short" in told
-    assert "left_out_by_hand" not in told
-    assert "declared_late" not in told
-    assert told[-1] == "exploratory"
+    reported = codes_of(view)
+    assert "n_short" in reported
+    assert "left_out_by_hand" not in reported
+    assert "declared_late" not in reported
+    assert reported[-1] == "exploratory"
 
 
 @pytest.mark.one_engine
@@ -107,8 +107,8 @@ def test_changes_after_the_first_session_are_listed(database: Database) -> None:
     visit(database, "P2", "aborted")
     declare(database, SECTION.replace("    - {rule: complete_session}\n", ""), days=1)
     visit(database, "P3")
-    told = codes_of(view_of(database))
-    assert {"declared_late", "declaration_changed", "left_out_by_hand", "n_short"} <= set(told)
+    reported = codes_of(view_of(database))
+    assert {"declared_late", "declaration_changed", "left_out_by_hand", "n_short"} <= set(reported)
 
 
 @pytest.mark.one_engine

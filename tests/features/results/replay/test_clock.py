@@ -9,14 +9,14 @@ from app.features.results.replay.clock import ClockReport, PhaseClock, Run, Wall
 NOON = datetime(2026, 3, 2, 12, 0, tzinfo=UTC)
 
 
-def reports_of(*said: tuple[int, str, float, float]) -> list[ClockReport]:
+def reports_of(*reports: tuple[int, str, float, float]) -> list[ClockReport]:
     """Return reports given as (run, what, client's time, active time)."""
-    return [ClockReport(*one, cause="operator") for one in said]
+    return [ClockReport(*one, cause="operator") for one in reports]
 
 
-def clock(*said: tuple[int, str, float, float], offsets_s: dict[int, float]) -> PhaseClock:
+def clock(*reports: tuple[int, str, float, float], offsets_s: dict[int, float]) -> PhaseClock:
     """Return the clock of a phase of one minute with these reports."""
-    return PhaseClock(offsets_s, (), stretches(reports_of(*said), offsets_s, 60.0), 1.0)
+    return PhaseClock(offsets_s, (), stretches(reports_of(*reports), offsets_s, 60.0), 1.0)
 
 
 def test_a_pause_stops_active_time_but_not_the_phases_time() -> None:

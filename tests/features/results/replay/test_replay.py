@@ -110,8 +110,8 @@ def test_replayed_errors_are_the_joint_errors_of_the_frames(lab: Lab, phase: Pha
         ((_, actual),) = phase_frames(db, phase.session_id, StreamName.ACTUAL, phase.phase_id)
     angles = joint_errors(target.rotations, actual.rotations).values_rad[..., 0]
     every = round(RATE_HZ / shown.header["error_rate_hz"])
-    wanted = angles[::every]
-    np.testing.assert_allclose(shown.errors_rad[: len(wanted)], wanted, atol=1e-6)
+    expected = angles[::every]
+    np.testing.assert_allclose(shown.errors_rad[: len(expected)], expected, atol=1e-6)
     assert shown.errors_rad.max() > 0.05
 
 
@@ -129,13 +129,13 @@ def test_unrecorded_time_is_a_gap(lab: Lab, phase: Phase) -> None:
     shown = placed(lab, phase)
     ((begin_s, end_s),) = shown.header["gaps"]
     assert (begin_s, end_s) == (pytest.approx(179 / 90, abs=1e-3), 4.0)
-    known: NDArray[np.bool_] = np.isfinite(shown.bodies["actual"].sum(axis=(1, 2)))
-    moments_s = np.arange(known.size) / shown.header["rate_hz"]
+    existing: NDArray[np.bool_] = np.isfinite(shown.bodies["actual"].sum(axis=(1, 2)))
+    moments_s = np.arange(existing.size) / shown.header["rate_hz"]
     half_step_s = 0.5 / shown.header["rate_hz"]
     inside = (moments_s > begin_s + half_step_s) & (moments_s < end_s - half_step_s)
     outside = (moments_s <= begin_s) | (moments_s >= end_s)
-    assert not known[inside].any()
-    assert known[outside & (moments_s < 539 / 90)].all()
+    assert not existing[inside].any()
+    assert existing[outside & (moments_s < 539 / 90)].all()
 
 
 @pytest.mark.one_engine
