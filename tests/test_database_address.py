@@ -54,7 +54,7 @@ SECRET = "tiger-in-the-tank"
         ("sqlite:///:memory:?uri=1", "options after a question mark (uri)"),
     ],
 )
-def test_an_address_that_cannot_be_one_is_refused_without_its_secret(url: str, said: str) -> None:
+def test_an_invalid_url_is_rejected_without_its_password(url: str, said: str) -> None:
     """An invalid URL is rejected wherever it is opened, without printing its password."""
     for read in (database_address, make_engine, shown_address):
         with pytest.raises(InvalidInput) as refused:
@@ -66,7 +66,7 @@ def test_an_address_that_cannot_be_one_is_refused_without_its_secret(url: str, s
 
 
 @given(st.text(max_size=60))
-def test_whatever_is_written_there_is_read_or_refused(rest: str) -> None:
+def test_any_text_is_parsed_as_a_url_or_rejected(rest: str) -> None:
     """Any text given as a database URL is either parsed or rejected with the same error."""
     for scheme in ("", "postgresql://", "postgresql://u:p@", "sqlite:///", "sqlite://"):
         with suppress(InvalidInput):
@@ -82,7 +82,7 @@ def test_whatever_is_written_there_is_read_or_refused(rest: str) -> None:
         ("sqlite:////srv/my data/lab.sqlite", "/srv/my data/lab.sqlite"),
     ],
 )
-def test_an_address_is_shown_without_role_and_password(url: str, shown: str) -> None:
+def test_a_url_is_printed_without_role_and_password(url: str, shown: str) -> None:
     """A URL is printed without role and password."""
     assert shown_address(url) == shown
 
@@ -108,7 +108,7 @@ def test_the_file_that_is_opened_is_the_one_that_is_locked(
     assert file.resolve() == Path(opened).resolve()
 
 
-def test_a_folder_with_a_question_mark_is_refused_before_anything_is_made(tmp_path: Path) -> None:
+def test_a_folder_with_a_question_mark_is_rejected(tmp_path: Path) -> None:
     """A folder with a question mark is rejected before anything is created.
 
     The path in the URL would end there, and the database be created elsewhere.
@@ -121,9 +121,7 @@ def test_a_folder_with_a_question_mark_is_refused_before_anything_is_made(tmp_pa
 
 
 @pytest.mark.parametrize("name", ["REEMBODY_DATABASE_URL", "REEMBODY_DATA_DIR"])
-def test_a_variable_that_is_set_but_empty_is_refused(
-    name: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_empty_variable_is_rejected(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """An environment variable that is set but empty is rejected.
 
     It would create an empty database in an unexpected place.
@@ -133,7 +131,7 @@ def test_a_variable_that_is_set_but_empty_is_refused(
         read_settings()
 
 
-def test_settings_that_cannot_be_read_name_the_variable_and_no_value(
+def test_invalid_settings_are_reported_without_values(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Invalid settings are reported by variable without their values."""
@@ -157,7 +155,7 @@ def test_settings_that_cannot_be_read_name_the_variable_and_no_value(
         ("tls", "show"),
     ],
 )
-def test_each_command_says_it_in_a_sentence_and_leaves_with_2(
+def test_each_command_reports_an_invalid_url_and_exits_with_2(
     command: tuple[str, ...], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     """Each command reports an invalid URL in one sentence and exits with code 2.
@@ -203,7 +201,7 @@ def database(cluster: Cluster, name: str, *, encoding: str = "UTF8") -> Iterator
         ("UTF8", "DROP SCHEMA public", "the role postgres has no schema"),
     ],
 )
-def test_a_database_that_cannot_hold_the_record_is_refused_before_anything(
+def test_a_database_with_an_unsuitable_encoding_is_rejected(
     encoding: str, statement: str, said: str, tmp_path: Path
 ) -> None:
     """A database with an unsuitable encoding is rejected before anything is created in it.
@@ -230,7 +228,7 @@ def test_a_database_that_cannot_hold_the_record_is_refused_before_anything(
     assert tables == (0,)
 
 
-def test_a_server_that_is_not_there_is_said_in_a_sentence(tmp_path: Path) -> None:
+def test_an_unreachable_database_server_is_reported(tmp_path: Path) -> None:
     """An unreachable database server is reported in one sentence, without the password.
 
     The message names what to check.

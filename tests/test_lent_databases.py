@@ -14,7 +14,7 @@ def number_of(database: Database) -> int:
         return int(connection.exec_driver_sql(query).scalar_one())
 
 
-def test_rows_go() -> None:
+def test_a_reused_database_has_no_rows() -> None:
     """A reused database has no rows and a new name, even if a connection stayed open."""
     with fresh_postgres() as first:
         stayed = open_database(first)
@@ -39,7 +39,7 @@ def test_rows_go() -> None:
         "CREATE SEQUENCE left_behind",
     ],
 )
-def test_a_database_that_differs_is_not_lent_again(change: str) -> None:
+def test_a_database_that_differs_is_not_reused(change: str) -> None:
     """A database with another schema, revision or object is not reused."""
     with fresh_postgres() as first:
         database = open_database(first)

@@ -26,7 +26,7 @@ def contents(file: Path) -> tuple[set[str], list[object]]:
 
 
 @pytest.mark.parametrize("revision", [all_revisions()[3], all_revisions()[-1]])
-def test_a_new_file_is_what_the_steps_lead_to(tmp_path: Path, revision: str) -> None:
+def test_a_new_file_equals_the_result_of_the_migrations(tmp_path: Path, revision: str) -> None:
     """A new file has the schema and settings that the migrations give, and no rows."""
     migrate_file(tmp_path / "steps.sqlite", revision)
     for name in ("first.sqlite", "again.sqlite"):
@@ -35,7 +35,7 @@ def test_a_new_file_is_what_the_steps_lead_to(tmp_path: Path, revision: str) -> 
     assert {one.suffix for one in tmp_path.iterdir()} == {".sqlite"}
 
 
-def test_a_new_file_takes_the_place_of_none(tmp_path: Path) -> None:
+def test_a_new_file_replaces_no_existing_one(tmp_path: Path) -> None:
     """An existing file is not replaced by a new one."""
     there = tmp_path / "reembody.sqlite"
     there.write_bytes(b"somebody's")

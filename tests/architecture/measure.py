@@ -211,8 +211,8 @@ def sifted(order: list[str], between: Arrows) -> list[str]:
         better = False
         for room in sorted(order):
             rest = [other for other in order if other != room]
-            # If the room is first, all arrows to it run up; each room that it then
-            # pass changes sides.
+            # If the room is first, all arrows to it run up; each room that then moves before it
+            # changes sides.
             costs = [(0, 0)]
             for other in rest:
                 arrives, leaves = between.get((other, room), []), between.get((room, other), [])

@@ -5,13 +5,13 @@ import json
 from tests.support.bill_of_materials import REPOSITORY, bill_of_materials
 
 
-def test_the_bill_is_that_of_the_locks() -> None:
+def test_the_bill_matches_the_lock_files() -> None:
     """The stored bill equals a newly generated one, so every dependency is listed."""
     stored = json.loads((REPOSITORY / "docs" / "sbom.cdx.json").read_text(encoding="utf-8"))
     assert stored == bill_of_materials()
 
 
-def test_every_part_can_be_named_and_is_needed() -> None:
+def test_every_component_is_identified_and_needed() -> None:
     """Each part has a version and an identifier, and something depends on it."""
     bill = bill_of_materials()
     refs = {part["bom-ref"] for part in bill["components"]}

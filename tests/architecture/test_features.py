@@ -40,7 +40,7 @@ def offered(module: str) -> frozenset[str]:
     return frozenset()
 
 
-def test_outsiders_import_what_a_face_offers() -> None:
+def test_features_are_imported_through_their_all() -> None:
     """Code outside a feature imports only names in its package's `__all__`.
 
     A feature's heavy half is a package with an `__all__` of its own. Only routers are imported from

@@ -48,7 +48,7 @@ def files(folder: str, pattern: str) -> set[str]:
     return {path.relative_to(top).as_posix() for path in top.rglob(pattern) if path.is_file()}
 
 
-def test_the_wheel_brings_the_built_pages(wheel: set[str]) -> None:
+def test_the_wheel_contains_the_built_pages(wheel: set[str]) -> None:
     """Every file of the built pages is in the wheel."""
     pages = {f"app/static/{name}" for name in files("app/static", "*")}
     assert any(name.endswith(".html") for name in pages)
@@ -58,7 +58,7 @@ def test_the_wheel_brings_the_built_pages(wheel: set[str]) -> None:
 @pytest.mark.parametrize(
     ("folder", "pattern"), [("migrations", "*.py"), ("study_configs", "*.y*ml")]
 )
-def test_the_wheel_brings_what_is_read_but_not_imported(
+def test_the_wheel_contains_migrations_and_study_configs(
     wheel: set[str], folder: str, pattern: str
 ) -> None:
     """The wheel contains migrations and study configs where `app.resources` looks for them."""
@@ -67,7 +67,7 @@ def test_the_wheel_brings_what_is_read_but_not_imported(
     assert wanted - wheel == set()
 
 
-def test_the_sdist_brings_the_pages_and_their_sources(sdist: set[str]) -> None:
+def test_the_sdist_contains_the_pages_and_their_sources(sdist: set[str]) -> None:
     """The sdist contains the built pages and everything to rebuild them."""
     assert {
         "frontend/package.json",
@@ -82,7 +82,7 @@ def test_the_sdist_brings_the_pages_and_their_sources(sdist: set[str]) -> None:
     assert "app/static/.build-hash" in sdist
 
 
-def test_no_package_brings_what_is_made_on_the_spot(wheel: set[str], sdist: set[str]) -> None:
+def test_no_package_contains_local_files(wheel: set[str], sdist: set[str]) -> None:
     """No package contains environments, caches, installed packages or studies' data."""
     made = (".venv/", ".uv/", ".cache/", "data/", ".ci/")
     assert [name for name in wheel | sdist if name.startswith(made)] == []

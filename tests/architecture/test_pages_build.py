@@ -53,7 +53,7 @@ def build(builder: ModuleType, frontend: Path) -> tuple[str, int]:
     return page, len((frontend.parent / "builds").read_text())
 
 
-def test_unchanged_sources_are_not_built_again(builder: ModuleType, frontend: Path) -> None:
+def test_unchanged_sources_are_not_rebuilt(builder: ModuleType, frontend: Path) -> None:
     """Unchanged sources are not rebuilt, changed ones are."""
     assert build(builder, frontend) == ("first", 1)
     assert build(builder, frontend) == ("first", 1)
@@ -61,7 +61,7 @@ def test_unchanged_sources_are_not_built_again(builder: ModuleType, frontend: Pa
     assert build(builder, frontend) == ("second", 2)
 
 
-def test_products_are_not_sources(builder: ModuleType, frontend: Path) -> None:
+def test_build_products_are_not_sources(builder: ModuleType, frontend: Path) -> None:
     """Installed packages, hidden files and compiler output do not change the sources' hash."""
     before = builder.sources_hash(frontend)
     for name in ("node_modules/a/index.js", "dist/page.js", ".vite/x", "tsconfig.tsbuildinfo"):
@@ -97,7 +97,7 @@ def test_the_docs_are_sources(builder: ModuleType, frontend: Path) -> None:
     assert len(hashes) == 3
 
 
-def test_a_failed_build_shows_npms_words_and_is_not_done(
+def test_a_failed_build_shows_npms_output_and_is_retried(
     builder: ModuleType, frontend: Path
 ) -> None:
     """A failed build shows npm's output and is retried by the next call."""
@@ -108,7 +108,7 @@ def test_a_failed_build_shows_npms_words_and_is_not_done(
             build(builder, frontend)
 
 
-def test_what_checks_the_pages_is_not_installed_to_build_them(
+def test_the_build_installs_only_its_own_packages(
     builder: ModuleType, frontend: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The build installs only its own packages, and an installation of all packages suffices."""

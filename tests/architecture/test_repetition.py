@@ -15,7 +15,7 @@ def test_the_tree_repeats_few_lines() -> None:
     assert sum(one.lines for one in all_of_them) <= MOST_LINES, lines
 
 
-def test_a_run_that_stands_twice_is_found_once() -> None:
+def test_a_run_that_occurs_twice_is_found_once() -> None:
     """A run that occurs twice is found once, with both places and its whole length."""
     files = {name: significant(name, text) for name, text in (("a.py", RUN), ("b.py", "x\n" + RUN))}
     (one,) = found(files)
@@ -29,7 +29,7 @@ def test_a_file_can_repeat_itself() -> None:
     assert found({"a.py": significant("a.py", "same()\n" * 7)}) == []
 
 
-def test_what_everybody_writes_does_not_count() -> None:
+def test_imports_and_comments_are_not_repetitions() -> None:
     """Imports, comments, blank lines and lone punctuation do not count, in either language."""
     python = "from a import (\n    b,\n    c,\n    d,\n    e,\n    f,\n    g,\n)\n# note\n\n"
     assert significant("a.py", python) == []
@@ -37,7 +37,7 @@ def test_what_everybody_writes_does_not_count() -> None:
     assert significant("a.ts", typescript) == []
 
 
-def test_other_names_are_other_lines() -> None:
+def test_lines_with_other_names_are_not_repetitions() -> None:
     """Lines of the same shape with other names are not a repetition."""
     other = RUN.replace("step", "stage")
     assert found({"a.py": significant("a.py", RUN), "b.py": significant("b.py", other)}) == []

@@ -135,9 +135,7 @@ def test_the_second_call_sets_nothing_up(checkout: Checkout) -> None:
     assert again.stdout == first.stdout
 
 
-def test_standard_output_and_folder_are_the_commands_own(
-    checkout: Checkout, tmp_path: Path
-) -> None:
+def test_arguments_and_paths_pass_through_unchanged(checkout: Checkout, tmp_path: Path) -> None:
     """Arguments pass through `./run` unchanged, and relative paths stay relative to the caller."""
     result = checkout.run("score", "two words", "*", cwd=tmp_path)
     assert result.stdout == f"reembody|{tmp_path}|score|two words|*|"
@@ -188,7 +186,7 @@ def test_a_changed_input_repeats_its_own_step(checkout: Checkout, changed: str, 
     assert checkout.calls() == [call]
 
 
-def test_the_side_that_fails_is_heard_and_ends_the_other(checkout: Checkout) -> None:
+def test_a_failed_build_ends_the_installation(checkout: Checkout) -> None:
     """If the pages cannot be built, the installation of packages is ended; both are repeated."""
     (checkout.tools / "unhappy").touch()
     (checkout.tools / "endless").touch()

@@ -46,12 +46,12 @@ def build(tmp_path: Path) -> Build:
 
 
 @pytest.mark.parametrize("figure", LIMITS)
-def test_the_house_stays_within_its_limits(present: Measure, figure: str) -> None:
+def test_the_structure_stays_within_its_limits(present: Measure, figure: str) -> None:
     """The numbers of circles, upward imports, floors and small files stay within their limits."""
     assert getattr(present, figure) <= LIMITS[figure]
 
 
-def test_every_import_counts_wherever_it_stands(build: Build) -> None:
+def test_every_kind_of_import_counts(build: Build) -> None:
     """Lazy, type-only, relative and whole-package imports close circles."""
     root = build(
         {
@@ -70,7 +70,7 @@ def test_every_import_counts_wherever_it_stands(build: Build) -> None:
     ]
 
 
-def test_a_module_that_is_loaded_by_name_is_imported(build: Build) -> None:
+def test_loading_a_module_by_name_is_an_import(build: Build) -> None:
     """`import_module` and `__import__` close circles and run up like any import."""
     root = build(
         {
@@ -118,7 +118,7 @@ def test_pages_import_each_other_in_every_form(build: Build) -> None:
     }
 
 
-def test_circles_are_found_whole_and_apart() -> None:
+def test_circles_are_strongly_connected_components() -> None:
     """Two loops that share a node are one circle; one that merely leads to another is not."""
     graph = {
         "a": {"b", "c"},
@@ -131,7 +131,7 @@ def test_circles_are_found_whole_and_apart() -> None:
     assert circles(graph) == [["a", "b", "c"], ["d", "e"]]
 
 
-def test_rooms_without_a_loop_stand_above_all_that_they_import() -> None:
+def test_rooms_without_a_loop_are_above_their_imports() -> None:
     """Rooms without a loop are one floor above the highest room they import."""
     pair = [("file", "file")]
     found = layering({("a", "b"): pair, ("b", "c"): pair, ("a", "c"): pair}, "abcd")
@@ -147,7 +147,7 @@ def test_the_lighter_arrow_of_a_loop_runs_back_up() -> None:
     assert found.floor_of == {"a": 2, "b": 1}
 
 
-def test_wings_are_looked_into_and_stand_on_the_platform(build: Build) -> None:
+def test_wings_are_measured_inside_and_above_the_platform(build: Build) -> None:
     """Imports from the platform to a wing, and loops within a wing, run up.
 
     The platform is a floor.

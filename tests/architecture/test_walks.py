@@ -12,13 +12,13 @@ from tests.architecture.walks import Walk, walk_of, walks
 OURS = Path(app.__file__).parent
 
 
-def test_a_way_there_and_back_is_one_return() -> None:
+def test_repeated_steps_of_a_walk_count_once() -> None:
     """Repeated steps of a walk count once, and files are in the order of their first entry."""
     assert walk_of(["a", "b", "c", "b", "c", "b", "a"]) == Walk(["a", "b", "c"], 4, 2)
     assert walk_of([]) == Walk([], 0, 0)
 
 
-def test_functions_are_noted_when_they_are_called() -> None:
+def test_functions_are_recorded_when_called() -> None:
     """A call of an `app` function is recorded once, also if a generator is resumed."""
     recorder = Recorder()
     spaces = [_module("one", OURS / "one.py"), _module("two", OURS / "two.py")]
@@ -43,7 +43,7 @@ def _module(name: str, file: Path) -> dict[str, types.FunctionType]:
     return space
 
 
-def test_the_four_walks_arrive() -> None:
+def test_the_four_walks_complete() -> None:
     """All four walks complete: frame to CSV, answer to score, command to event, capture to BVH."""
     walked = walks(REPOSITORY, rounds=1)
     assert set(walked) == {"frame to CSV", "answer to score", "command to event", "capture to BVH"}

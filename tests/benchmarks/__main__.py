@@ -39,18 +39,20 @@ def parser() -> argparse.ArgumentParser:
     """Return the parser of the command line."""
     made = argparse.ArgumentParser(
         prog="./run bench",
-        description="Measure.",
+        description="Run a benchmark and print its figures.",
         epilog=EPILOGUE,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    made.add_argument("name", choices=NAMES, help="which benchmark")
+    made.add_argument("name", choices=NAMES, help="the benchmark to run")
     made.add_argument("--json", action="store_true", help="print the figures as JSON")
     made.add_argument("--only", action="append", metavar="PART", help="this part; may be repeated")
     duration = made.add_mutually_exclusive_group()
-    duration.add_argument("--seconds", type=float, help="how long a load lasts, where there is one")
-    duration.add_argument("--minutes", type=float, help="the same in minutes")
-    made.add_argument("--runs", type=int, help="how often, where all is done several times")
-    made.add_argument("--write", action="store_true", help="store what the product ships of it")
+    duration.add_argument("--seconds", type=float, help="duration of the load, if there is one")
+    duration.add_argument("--minutes", type=float, help="duration of the load in minutes")
+    made.add_argument("--runs", type=int, help="number of runs, if there are several")
+    made.add_argument(
+        "--write", action="store_true", help="store the result that the product ships"
+    )
     made.add_argument("--against", metavar="COMMIT", help="compare with COMMIT, in pairs of runs")
     made.add_argument("--pairs", type=int, default=PAIRS, help=f"how many pairs ({PAIRS})")
     return made

@@ -287,7 +287,7 @@ def test_a_server_starts_on_postgresql(tmp_path: Path, postgres_url: str) -> Non
         _opens(running)
 
 
-def test_every_command_of_reembody_has_a_sample_that_runs() -> None:
+def test_every_command_has_an_example_that_runs() -> None:
     """Every command of `reembody` has an example in the docs that the usual run executes."""
     shown = {
         command.words[1]
@@ -299,7 +299,7 @@ def test_every_command_of_reembody_has_a_sample_that_runs() -> None:
     assert sorted(_names(CLI) - shown) == []
 
 
-def test_hardly_anything_is_shown_and_not_run() -> None:
+def test_few_commands_are_shown_without_being_run() -> None:
     """At most a quarter of the commands in the docs are shown without being run."""
     not_run = [command for command in commands() if command.fate is Fate.NOT_RUN]
     assert len(not_run) <= len(commands()) / 4
@@ -311,7 +311,7 @@ def _checked() -> list[Command]:
 
 
 @pytest.mark.parametrize("page", sorted({command.page for command in _checked()}))
-def test_what_the_commands_of_a_page_name_is_there(page: str) -> None:
+def test_everything_that_a_pages_commands_name_exists(page: str) -> None:
     """Commands, options, tests, benchmarks, modules and scripts that a page names exist."""
     wrong = [
         f"{command.page}:{command.line}: {command.text}: {problem}"

@@ -46,7 +46,7 @@ def test_every_word_has_one_entry_in_both_languages() -> None:
 
 
 @pytest.mark.parametrize("row", entries(), ids=lambda row: row[0])
-def test_what_the_glossary_says_is_in_the_code_is_there(row: list[str]) -> None:
+def test_the_glossarys_names_exist_in_the_code(row: list[str]) -> None:
     """Every path and name that the glossary gives for the code exists there."""
     for name in SPAN.findall(row[3]):
         if "/" in name:
@@ -55,7 +55,7 @@ def test_what_the_glossary_says_is_in_the_code_is_there(row: list[str]) -> None:
             assert re.search(rf"\b{re.escape(name)}\b", code()), f"{row[0]}: no source says {name}"
 
 
-def test_what_the_glossary_says_is_in_the_csv_is_there() -> None:
+def test_the_glossarys_names_exist_in_the_csv() -> None:
     """Every name that the glossary gives for CSV is a table or column of the export."""
     there = {*TABLES, *(column.name for column in CODEBOOK)}
     named = {name for row in entries() for name in SPAN.findall(row[4])}
@@ -70,7 +70,7 @@ def test_every_table_of_the_export_is_a_word_of_the_glossary() -> None:
     assert sorted(set(TABLES) - named - parts) == []
 
 
-def test_the_words_that_stay_are_really_used() -> None:
+def test_older_words_are_still_used() -> None:
     """Every older word in the glossary's list is still used in the code."""
     text = GLOSSARY.read_text(encoding="utf-8").partition("## Older words that stay")[2]
     rows = [line.strip("|").split(" |")[0] for line in text.splitlines() if line.startswith("| `")]

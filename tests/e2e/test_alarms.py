@@ -13,7 +13,7 @@ from tests.features.record.headset.streaming import in_free_movement, materialis
 from tests.support.browser import in_both_schemes
 
 
-def test_an_alarm_comes_up_and_goes_away(
+def test_an_alarm_is_raised_and_cleared(
     headset_site: Site,
     page_factory: Callable[..., Page],
     axe: Callable[[Page], list[str]],

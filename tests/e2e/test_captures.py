@@ -96,9 +96,7 @@ def stage(page: Page) -> Locator:
     return canvas
 
 
-def test_a_walk_is_brought_in_and_moves_in_space(
-    server: LiveServer, console: Page, tmp_path: Path
-) -> None:
+def test_an_uploaded_walk_is_shown_in_3d(server: LiveServer, console: Page, tmp_path: Path) -> None:
     """A dropped file is listed, drawn in 3-D, scrubbed by keyboard, renamed and deleted."""
     file = tmp_path / "brought.bvh"
     file.write_bytes(walk_bvh(FRAMES + 1))
@@ -133,7 +131,7 @@ def test_a_walk_is_brought_in_and_moves_in_space(
     expect(console.get_by_text("The first walk")).to_have_count(0)
 
 
-def test_another_unit_reads_the_file_again(
+def test_choosing_another_unit_rereads_the_file(
     server: LiveServer, console: Page, walk: dict[str, Any]
 ) -> None:
     """A guessed unit is marked, and choosing another one changes the size of the body."""
@@ -222,7 +220,7 @@ def test_a_walk_is_verified_on_three_avatars(
     assert len(read_bvh(taken, metres_per_unit=0.01).rotations) == FRAMES
 
 
-def test_a_file_that_cannot_be_read_says_where(
+def test_an_unreadable_file_shows_line_and_reason(
     server: LiveServer, console: Page, tmp_path: Path, page_watch: PageWatch
 ) -> None:
     """An unreadable file shows the line, reason and remedy; an AMC asks for its ASF."""

@@ -14,7 +14,7 @@ from tests.features.record.headset.site import Site
 PRESSED_EVERY_MS = 800.0
 
 
-def test_a_start_needs_a_reason_and_the_boxes_light_up(
+def test_a_start_needs_a_reason_and_the_movement_is_drawn(
     headset_site: Site,
     page_factory: Callable[..., Page],
     axe: Callable[[Page], list[str]],

@@ -61,7 +61,7 @@ def sign(page: Page) -> None:
         page.mouse.up()
 
 
-def test_a_drawn_signature_is_filed_as_it_was_given(
+def test_a_drawn_signature_is_recorded(
     pages: tuple[Experimenter, Participant],
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
@@ -111,7 +111,7 @@ def test_a_drawn_signature_is_filed_as_it_was_given(
     console.emulate_media(media="screen")
 
 
-def test_whoever_cannot_draw_signs_by_keyboard(
+def test_consent_can_be_signed_by_keyboard(
     pages: tuple[Experimenter, Participant],
 ) -> None:
     """A participant can consent by keyboard alone, typing their name."""

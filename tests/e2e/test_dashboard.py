@@ -19,7 +19,7 @@ def _falling(step: Step, _: str) -> int:
     return 6 - int((step.latency_ms or 0.0) / 100.0)
 
 
-def test_figures_are_chosen_by_the_address_and_saved(
+def test_figures_are_filtered_by_the_url_and_saved(
     live_server: LiveServer,
     page_factory: Callable[..., Page],
     axe: Callable[[Page], list[str]],

@@ -38,7 +38,7 @@ PRESS_AT = """(at_ms) => {
 }"""
 
 
-def test_a_form_sent_fifty_times_at_once_is_stored_once(
+def test_a_form_sent_fifty_times_in_parallel_is_stored_once(
     headset_site: Site, page_factory: Callable[..., Page], page_watch: PageWatch
 ) -> None:
     """A form sent fifty times in parallel by one browser is stored once, with one receipt."""
@@ -67,7 +67,7 @@ def as_set(receipts: list[list[Any]]) -> set[tuple[int, str]]:
     return {(status, receipt) for status, receipt in receipts}
 
 
-def test_of_two_tablets_with_one_code_one_holds_the_session(
+def test_of_two_tablets_with_one_code_one_is_paired(
     headset_site: Site, page_factory: Callable[..., Page], page_watch: PageWatch
 ) -> None:
     """Of two tablets with one code only one is paired, and a new code moves the session.

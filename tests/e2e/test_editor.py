@@ -106,7 +106,7 @@ def test_a_study_from_template_to_second_version(
     screenshot(page, "study-versions")
 
 
-def test_what_is_not_saved_is_not_lost(writer: Writer) -> None:
+def test_unsaved_changes_are_not_lost(writer: Writer) -> None:
     """Leaving with unsaved changes asks first, and returning offers to keep or discard them."""
     page = writer.page
     writer.open_tab(STUDY, "edit")
@@ -193,7 +193,7 @@ def test_editor_and_library_are_accessible(
 
 
 @pytest.mark.parametrize("size", [(1366, 1024), (1024, 1366), (1180, 820), (820, 1180)])
-def test_many_steps_fit_under_a_finger(
+def test_all_answers_of_a_long_scale_are_large_enough_to_touch(
     running_server: LiveServer, page_factory: Callable[..., Page], size: tuple[int, int]
 ) -> None:
     """All 21 answers of the sickness scale are visible and at least 44 px wide and high."""

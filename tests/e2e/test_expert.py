@@ -24,7 +24,7 @@ def experimenter(running_server: LiveServer, page_factory: Callable[..., Page]) 
     return person
 
 
-def test_what_an_expert_advises_reaches_the_study(
+def test_an_experts_suggestion_reaches_the_study(
     experimenter: Experimenter,
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
@@ -82,7 +82,7 @@ def test_a_measurement_of_the_equipment_is_recorded_and_retired(
     screenshot(page, "equipment")
 
 
-def test_heights_that_differ_are_asked_about(
+def test_differing_heights_are_questioned(
     experimenter: Experimenter, running_server: LiveServer
 ) -> None:
     """Heights that differ by more than 10 cm are questioned once, then saved as entered."""

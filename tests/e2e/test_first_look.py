@@ -54,7 +54,7 @@ def test_no_device_is_sent_to_its_own_localhost(
     screenshot(page, f"pairing-headset-only-here-{scheme}-{size[0]}")
 
 
-def test_an_unpaired_tablet_complains_of_nothing(
+def test_an_unpaired_tablet_logs_no_error(
     running_server: LiveServer, page_factory: Callable[..., Page]
 ) -> None:
     """An unpaired tablet asks for its code, and the browser's console stays empty."""
@@ -65,7 +65,7 @@ def test_an_unpaired_tablet_complains_of_nothing(
 
 
 @pytest.mark.parametrize("address", ["nothing-here", "studies", "sessions/a/b/c/d"])
-def test_an_address_that_leads_nowhere_says_so(
+def test_an_unknown_url_shows_page_not_found(
     experimenter: Experimenter, screenshot: Screenshot, address: str
 ) -> None:
     """A URL of no page says so and links to the studies."""
@@ -77,7 +77,7 @@ def test_an_address_that_leads_nowhere_says_so(
     expect(page.get_by_role("heading", name="Studies", exact=True)).to_be_visible()
 
 
-def test_a_long_code_is_not_cut_in_silence(experimenter: Experimenter) -> None:
+def test_a_code_that_is_too_long_is_reported(experimenter: Experimenter) -> None:
     """A participant code that is too long stays in the field, with the maximum length."""
     page = experimenter.page
     experimenter.open_tab(STUDY)
@@ -87,7 +87,7 @@ def test_a_long_code_is_not_cut_in_silence(experimenter: Experimenter) -> None:
     expect(page.get_by_text("At most 40 characters")).to_be_visible()
 
 
-def test_a_loader_keeps_still_where_motion_is_not_wanted(
+def test_a_loader_does_not_move_if_motion_is_reduced(
     running_server: LiveServer, page_factory: Callable[..., Page]
 ) -> None:
     """The dots of a loader do not move if the user prefers reduced motion."""

@@ -9,7 +9,7 @@ from tests.support.browser import in_both_schemes
 from tests.support.server import LiveServer
 
 
-def test_help_is_found_read_and_searched_with_the_keyboard(
+def test_help_is_opened_and_searched_by_keyboard(
     running_server: LiveServer,
     page_factory: Callable[..., Page],
     axe: Callable[[Page], list[str]],
@@ -61,7 +61,7 @@ def test_help_is_found_read_and_searched_with_the_keyboard(
     is_sound("dictionary-820")
 
 
-def test_the_help_menu_leads_there_and_speaks_german(
+def test_the_help_menu_is_german(
     running_server: LiveServer, page_factory: Callable[..., Page]
 ) -> None:
     """The help menu opens the English help pages, with German controls and a note."""

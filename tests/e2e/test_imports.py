@@ -17,7 +17,7 @@ FILE = "code;condition;fms\n" + "".join(
 )
 
 
-def test_a_file_is_mapped_checked_and_taken_in(
+def test_a_file_is_mapped_checked_and_imported(
     shared_server: LiveServer,
     page_factory: Callable[..., Page],
     axe: Callable[[Page], list[str]],

@@ -88,7 +88,7 @@ def test_with_the_certificate_the_lab_works_over_https_and_wss(
     assert operator.page.evaluate(GREETED, [socket, protocols, hello]) == "welcome"
 
 
-def test_without_it_the_device_is_refused_and_helped(
+def test_without_the_certificate_the_help_page_explains_what_to_do(
     lan: LanServer, new_context: ContextFactory, page_watch: PageWatch
 ) -> None:
     """Without the certificate the browser refuses https, and the help page explains what to do."""

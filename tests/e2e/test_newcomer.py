@@ -23,7 +23,7 @@ def fresh_server(tmp_path: Path) -> Iterator[LiveServer]:
         yield server
 
 
-def test_a_newcomer_sees_a_session_and_takes_its_data(
+def test_a_newcomer_watches_a_session_and_downloads_its_data(
     fresh_server: LiveServer,
     page_factory: Callable[..., Page],
     axe: Callable[[Page], list[str]],

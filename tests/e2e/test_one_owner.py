@@ -24,7 +24,7 @@ from tests.support.browser import PageWatch
 from tests.support.server import LiveServer, free_port
 
 
-def test_the_console_goes_on_beside_a_second_server_that_is_refused(
+def test_a_refused_second_server_does_not_change_the_console(
     headset_site: Site, page_factory: Callable[..., Page]
 ) -> None:
     """A second server that is refused on the same folder does not change a running cockpit."""
@@ -50,7 +50,7 @@ def test_the_console_goes_on_beside_a_second_server_that_is_refused(
     assert "server_restarted" not in str(headset_site.view(session_id))
 
 
-def test_a_full_disk_is_said_on_the_page_and_an_export_can_be_deleted(
+def test_a_full_disk_raises_an_alarm_and_an_export_can_be_deleted(
     tmp_path: Path,
     page_factory: Callable[..., Page],
     page_watch: PageWatch,

@@ -40,7 +40,7 @@ def admin(lab: BlindedLab, page_factory: Pages) -> Page:
     return console.page
 
 
-def test_an_operator_joins_by_a_link_and_runs_blind(
+def test_an_invited_operator_never_sees_the_condition(
     lab: BlindedLab, admin: Page, page_factory: Pages
 ) -> None:
     """An invited operator gets an account that runs sessions and never shows the condition."""
@@ -63,7 +63,7 @@ def test_an_operator_joins_by_a_link_and_runs_blind(
     expect(admin.get_by_text("by weekend")).to_be_visible()
 
 
-def test_a_login_that_is_ended_shuts_its_open_page_at_once(
+def test_ending_a_login_asks_its_open_page_to_sign_in(
     lab: BlindedLab, admin: Page, page_factory: Pages, page_watch: PageWatch
 ) -> None:
     """When a login is ended, its open cockpit asks to sign in again and keeps the entered text."""
@@ -88,7 +88,7 @@ def test_a_login_that_is_ended_shuts_its_open_page_at_once(
     expect(operator.get_by_text("Live", exact=True)).to_be_visible(timeout=PATIENCE_MS)
 
 
-def test_showing_a_condition_asks_why_and_is_on_record(lab: BlindedLab, admin: Page) -> None:
+def test_showing_a_condition_needs_a_reason_and_is_logged(lab: BlindedLab, admin: Page) -> None:
     """An admin sees a blinded order only after giving a reason, which the event log records."""
     admin.goto(lab.session("P-SHOWN"))
     admin.get_by_role("button", name="Show condition").click()
@@ -102,7 +102,7 @@ def test_showing_a_condition_asks_why_and_is_on_record(lab: BlindedLab, admin: P
     expect(admin.get_by_text("condition shown to the lab")).to_be_visible()
 
 
-def test_a_link_that_cannot_be_used_says_why(
+def test_an_invalid_invitation_link_says_why(
     lab: BlindedLab, admin: Page, page_factory: Pages, page_watch: PageWatch
 ) -> None:
     """Used, revoked and unknown invitation links say so, also to somebody who is signed in."""
@@ -141,7 +141,7 @@ def test_the_only_admin_cannot_be_closed(
     expect(admin.get_by_text("Give somebody else the role admin first")).to_be_visible()
 
 
-def test_a_page_that_is_not_for_a_role_says_so(lab: BlindedLab, page_factory: Pages) -> None:
+def test_a_page_that_a_role_may_not_open_says_so(lab: BlindedLab, page_factory: Pages) -> None:
     """A page that a role may not open says so, and an analyst's cockpit has no controls."""
     analyst = page_factory()
     make_account(analyst, lab.invitation("analyst"), "reader")
@@ -156,7 +156,7 @@ def test_a_page_that_is_not_for_a_role_says_so(lab: BlindedLab, page_factory: Pa
 
 
 @pytest.mark.parametrize("scheme", ["light", pytest.param("dark", marks=pytest.mark.long)])
-def test_the_pages_of_people_are_accessible(
+def test_the_account_pages_are_accessible(
     lab: BlindedLab, page_factory: Pages, axe: Axe, screenshot: Screenshot, scheme: ColorScheme
 ) -> None:
     """The pages and dialogs of accounts and invitations have no serious violation."""

@@ -53,7 +53,7 @@ def room(
         yield Room(running_server, api, page_factory(), page_factory((1180, 820)))
 
 
-def test_a_refusal_stops_everything_until_the_session_is_ended(
+def test_a_refusal_holds_the_session_until_it_is_ended(
     room: Room, axe: Callable[[Page], list[str]], screenshot: Callable[[Page, str], object]
 ) -> None:
     """A refusal raises an alarm and hides the agreement, also after a reload.
@@ -83,7 +83,7 @@ def test_a_refusal_stops_everything_until_the_session_is_ended(
     assert room.log() == ["session_started", "consent_refused", "session_ended"]
 
 
-def test_whoever_changes_their_mind_reads_the_consent_again(room: Room) -> None:
+def test_a_changed_mind_leads_back_to_the_consent(room: Room) -> None:
     """A participant who changes their mind sees the consent again and may agree.
 
     They do so on the tablet, or the experimenter shows it again.
@@ -105,7 +105,7 @@ def test_whoever_changes_their_mind_reads_the_consent_again(room: Room) -> None:
     assert room.log() == ["session_started", *said, *said, "step_completed"]
 
 
-def test_a_refusal_without_a_network_arrives_when_it_is_back(
+def test_a_refusal_without_a_network_is_sent_later(
     room: Room, screenshot: Callable[[Page, str], object], page_watch: PageWatch
 ) -> None:
     """A refusal without a network is sent once when the network is back.
@@ -147,7 +147,7 @@ def test_a_question_calls_the_experimenter(
     assert room.log() == ["session_started", "question_asked", "question_closed"]
 
 
-def test_no_key_of_the_experimenter_is_a_consent(
+def test_no_key_press_of_the_experimenter_records_a_consent(
     room: Room, screenshot: Callable[[Page, str], object], page_watch: PageWatch
 ) -> None:
     """No key press of the experimenter records a consent; a paper sheet needs place and reason."""

@@ -36,7 +36,7 @@ def phases(headset_site: Site) -> list[Phase]:
         return list(found)
 
 
-def test_a_phase_is_replayed_in_step_with_what_happened(
+def test_a_replay_is_synchronised_with_its_events(
     headset_site: Site,
     phases: list[Phase],
     page_factory: Callable[..., Page],

@@ -82,7 +82,7 @@ def test_the_session_is_held_until_the_experimenter_decides(
     expect(tablet.get_by_role("heading", name=WAIT)).to_have_count(0)
 
 
-def test_ending_is_the_first_thing_offered(
+def test_a_held_session_can_be_ended(
     pages: tuple[Experimenter, Participant, str],
 ) -> None:
     """A held session can be ended for the stop rule, and the tablet says thank you."""
@@ -97,7 +97,7 @@ def test_ending_is_the_first_thing_offered(
     expect(participant.page.get_by_role("heading", name="Thank you")).to_be_visible()
 
 
-def test_the_warning_is_seen_and_nothing_stops(
+def test_a_warning_stops_nothing(
     pages: tuple[Experimenter, Participant, str],
 ) -> None:
     """A score between the limits warns the operator and stops nothing."""

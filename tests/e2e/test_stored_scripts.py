@@ -76,7 +76,7 @@ def _note(view: dict[str, Any]) -> dict[str, Any]:
     return {**about, "text": EVIL}
 
 
-def test_nothing_that_was_written_is_run(
+def test_entered_scripts_are_never_executed(
     running_server: LiveServer, page_factory: Callable[..., Page], page_watch: PageWatch
 ) -> None:
     """Scripts in titles, labels, answers, notes, invitations and suggestions are never executed."""

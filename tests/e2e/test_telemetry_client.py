@@ -24,7 +24,7 @@ BACKLOG_FRAMES = 54_000
 @pytest.mark.parametrize(
     ("mode", "stream_s"), [("worker", 5), pytest.param("page", 10, marks=pytest.mark.long)]
 )
-def test_what_is_streamed_arrives_bit_by_bit(
+def test_streamed_data_arrive_bit_by_bit(
     wear: Wear, headset_site: Site, mode: Mode, stream_s: int
 ) -> None:
     """Streaming at real speed stores every frame and report bit by bit, with few disk writes."""
@@ -49,7 +49,7 @@ def test_what_is_streamed_arrives_bit_by_bit(
     )
 
 
-def test_a_server_that_is_killed_gets_everything_once(wear: Wear, headset_site: Site) -> None:
+def test_a_killed_server_gets_everything_once(wear: Wear, headset_site: Site) -> None:
     """After two SIGKILLs of the server in mid-stream, nothing is lost or stored twice."""
     headset = wear()
     epoch = headset.open()
@@ -68,7 +68,7 @@ def test_a_server_that_is_killed_gets_everything_once(wear: Wear, headset_site: 
 
 
 @pytest.mark.long
-def test_ten_minutes_offline_are_drained(wear: Wear, headset_site: Site) -> None:
+def test_ten_minutes_offline_are_sent_later(wear: Wear, headset_site: Site) -> None:
     """54,000 frames of each stream wait on disk, not in the browser's memory, and all arrive."""
     headset = wear(mode="page")
     epoch = headset.open()
@@ -97,7 +97,7 @@ def test_ten_minutes_offline_are_drained(wear: Wear, headset_site: Site) -> None
     )
 
 
-def test_a_full_journal_holds_the_producer(wear: Wear, headset_site: Site) -> None:
+def test_a_full_journal_blocks_the_producer(wear: Wear, headset_site: Site) -> None:
     """At the journal's limit the producer waits, the status says so, and nothing is lost."""
     headset = wear(journalBytes=MEBIBYTE)
     epoch = headset.open()
@@ -119,7 +119,7 @@ def test_a_full_journal_holds_the_producer(wear: Wear, headset_site: Site) -> No
     headset.wait_for("bench.client.status.level === 'clear'")
 
 
-def test_a_replaced_headset_hears_it_in_the_servers_words(wear: Wear, headset_site: Site) -> None:
+def test_a_replaced_headset_reports_the_servers_reason(wear: Wear, headset_site: Site) -> None:
     """A replaced headset reports the server's reason and keeps its journal."""
     headset = wear()
     headset.open()

@@ -27,7 +27,7 @@ MANY = 6000
 
 
 @pytest.mark.parametrize(("mode", "flush_every_s"), [("page", 600.0), ("worker", 0.25)])
-def test_a_page_that_is_left_takes_its_journal_to_disk(
+def test_a_page_that_is_left_writes_its_journal_to_disk(
     wear: Wear,
     headset_site: Site,
     new_context: ContextFactory,
@@ -52,7 +52,7 @@ def test_a_page_that_is_left_takes_its_journal_to_disk(
 
 
 @pytest.mark.long
-def test_a_page_that_crashes_delivers_under_its_old_number(
+def test_a_crashed_page_sends_its_journal_under_its_old_epoch(
     wear: Wear, headset_site: Site, new_context: ContextFactory
 ) -> None:
     """A page that crashed offline sends its journal after a restart, under its old epoch."""
@@ -64,7 +64,7 @@ def test_a_page_that_crashes_delivers_under_its_old_number(
     check_both_lives(again, headset_site, first, certain)
 
 
-def test_a_browser_that_is_killed_delivers_under_its_old_number(
+def test_a_killed_browser_sends_its_journal_under_its_old_epoch(
     wear: Wear, headset_site: Site, browser: Browser, tmp_path: Path
 ) -> None:
     """A killed browser finds its journal on disk and sends it under the old epoch."""

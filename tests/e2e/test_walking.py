@@ -18,7 +18,7 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveServer]:
         yield server
 
 
-def test_a_drawn_path_is_answered(
+def test_a_drawn_path_gets_a_distribution_of_durations(
     server: LiveServer,
     new_context: ContextFactory,
     axe: Callable[[Page], list[str]],

@@ -159,7 +159,7 @@ def go_on(server: LiveServer, session_id: str) -> None:
 
 
 @pytest.mark.parametrize("engine", ["sqlite", pytest.param("postgresql", marks=pytest.mark.long)])
-def test_a_server_is_stopped_for_a_restore_and_goes_on_with_what_was_restored(
+def test_a_restore_needs_a_stopped_server_and_brings_the_backups_data(
     tmp_path: Path, engine: str
 ) -> None:
     """A restore is refused while a server runs; after it, all data are those of the backup."""
@@ -201,7 +201,7 @@ def join(client: httpx2.Client, study: str, code: str) -> str:
     return str(view["id"])
 
 
-def test_a_restore_waits_for_active_sessions_to_end(
+def test_a_restore_is_refused_while_sessions_are_active(
     live_server: LiveServer, tmp_path: Path
 ) -> None:
     """A restore is refused while sessions are active, lists them, and changes nothing."""
@@ -226,7 +226,7 @@ def test_a_restore_waits_for_active_sessions_to_end(
         assert client.get(f"/api/sessions/{session_id}").json()["status"] == "active"
 
 
-def test_a_full_disk_leaves_no_half_backup(live_server: LiveServer, tmp_path: Path) -> None:
+def test_a_full_disk_leaves_no_partial_backup(live_server: LiveServer, tmp_path: Path) -> None:
     """A backup to a full disk fails with a message and leaves no file; the server is unaffected."""
     for at, limit in enumerate((50_000, 300_000, 420_000)):
         place = tmp_path / f"usb{at}"

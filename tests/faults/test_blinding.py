@@ -194,7 +194,7 @@ async def _run(server: LiveServer) -> tuple[Spy, Spy]:
         (b'"client_t_s": 137.256, "fps"', False),
     ],
 )
-def test_the_search_knows_a_condition_from_a_time_of_day(*, sent: bytes, tells: bool) -> None:
+def test_the_search_finds_latencies_and_no_other_numbers(*, sent: bytes, tells: bool) -> None:
     """Latencies are found in every unit and notation; digits inside other numbers are not."""
     assert bool(CANARIES.search(sent)) is tells
 
@@ -221,7 +221,7 @@ QUICK_ROLES = ("operator", "experimenter")
 
 
 @pytest.mark.one_engine
-def test_nobody_who_must_not_know_gets_a_condition_by_any_way_out(fresh_lab: Lab) -> None:
+def test_no_output_reveals_a_hidden_condition(fresh_lab: Lab) -> None:
     """No route, archive, socket or error reveals a condition to a role that must not know it.
 
     Routes that draw figures or run statistics are covered by the benchmark.
@@ -240,7 +240,7 @@ def test_nobody_who_must_not_know_gets_a_condition_by_any_way_out(fresh_lab: Lab
 
 
 @pytest.mark.one_engine
-def test_a_copy_with_a_condition_of_an_open_session_is_on_record(fresh_lab: Lab) -> None:
+def test_a_copy_with_an_open_sessions_condition_is_audited(fresh_lab: Lab) -> None:
     """The audit trail records each copy that contains the condition of an open session.
 
     An entry for an export, a file or a participant's own copy names the session, the account and
@@ -263,7 +263,7 @@ def test_a_copy_with_a_condition_of_an_open_session_is_on_record(fresh_lab: Lab)
     assert [one["by"] for one in events if one["type"] == "blinding_lifted"] == ["account:admin"]
 
 
-def test_an_order_is_not_known_from_a_session_that_gave_its_slot_up(fresh_lab: Lab) -> None:
+def test_a_session_that_gave_up_its_slot_does_not_reveal_the_order(fresh_lab: Lab) -> None:
     """The order of a session that gave up its slot stays hidden until the slot is completed.
 
     Showing the condition of that session does not reveal it either.
@@ -280,7 +280,7 @@ def test_an_order_is_not_known_from_a_session_that_gave_its_slot_up(fresh_lab: L
     assert shown["sequence"] == fresh_lab.view(given_up)["sequence"] is not None
 
 
-def test_every_column_that_could_tell_a_condition_is_emptied_or_known_to_be_harmless() -> None:
+def test_every_column_named_after_a_condition_is_emptied_or_harmless() -> None:
     """Every column named after a condition, latency, order or hash is emptied or harmless."""
     telling = re.compile("condition|latency|order|hash|slot|delay|lag")
     told = {

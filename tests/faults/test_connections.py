@@ -94,7 +94,7 @@ def sound(server: LiveServer, outcome: Outcome, ledger: LedgerJournal) -> bool:
         return reconcile(db, outcome.session_id, ledger).sound
 
 
-def test_a_cut_connection_pauses_the_phase_and_the_headset_goes_on_as_the_same_run(
+def test_a_cut_connection_pauses_the_phase_and_keeps_the_epoch(
     live_server: LiveServer,
 ) -> None:
     """A cut connection pauses a hand or foot phase; the same epoch continues to its full time."""
@@ -128,7 +128,7 @@ def test_an_outage_of_the_network_costs_no_active_time(live_server: LiveServer) 
     assert sound(live_server, outcome, ledger)
 
 
-def test_a_headset_that_starts_again_goes_on_with_the_time_that_is_left(
+def test_a_restarted_headset_continues_with_the_remaining_time(
     live_server: LiveServer,
 ) -> None:
     """A restarted headset gets a new epoch and continues the phase for its remaining time.
@@ -174,7 +174,7 @@ def both_runs(first: LedgerJournal, second: LedgerJournal) -> LedgerJournal:
     return replace(first, sent={**first.sent, **second.sent}, acked={**first.acked, **second.acked})
 
 
-def test_a_form_sent_again_after_a_crash_is_stored_once(tmp_path: Path) -> None:
+def test_a_form_resent_after_a_crash_is_stored_once(tmp_path: Path) -> None:
     """A form that is resent after a lost response or a server crash is stored exactly once.
 
     Every attempt returns the same receipt.

@@ -87,7 +87,7 @@ def refusal(server: LiveServer) -> str:
         (damage_log, "kill"),
     ],
 )
-def test_it_is_put_away_and_a_backup_brings_everything_back(
+def test_a_damaged_database_is_quarantined_and_restored(
     tmp_path: Path, damage: Callable[[LiveServer], None], how_it_ends: str
 ) -> None:
     """A damaged database is quarantined unchanged, and a restored backup replaces it."""
@@ -112,7 +112,7 @@ def test_it_is_put_away_and_a_backup_brings_everything_back(
     assert checksums(place) == before
 
 
-def test_an_empty_database_is_begun_by_who_says_so(tmp_path: Path) -> None:
+def test_a_new_database_is_created_only_on_request(tmp_path: Path) -> None:
     """An operator may explicitly create a new database; later starts then need no option."""
     server = LiveServer(tmp_path / "live").start()
     server.stop()
@@ -125,7 +125,7 @@ def test_an_empty_database_is_begun_by_who_says_so(tmp_path: Path) -> None:
         assert_signs_in(client)
 
 
-def test_a_damaged_backup_helps_nobody_and_harms_nobody(tmp_path: Path) -> None:
+def test_a_damaged_backup_is_rejected(tmp_path: Path) -> None:
     """A damaged backup is rejected before a database is created."""
     server = LiveServer(tmp_path / "live").start()
     reembody(server, "backup", tmp_path / "all.reembody")
@@ -140,7 +140,7 @@ def test_a_damaged_backup_helps_nobody_and_harms_nobody(tmp_path: Path) -> None:
     assert not file_of(server).exists()
 
 
-def test_a_torn_log_is_an_ordinary_start(tmp_path: Path) -> None:
+def test_a_torn_log_is_not_damage(tmp_path: Path) -> None:
     """A write-ahead log torn by a power failure is not treated as damage."""
     server = LiveServer(tmp_path / "live").start()
     write_much(server)
@@ -154,7 +154,7 @@ def test_a_torn_log_is_an_ordinary_start(tmp_path: Path) -> None:
     assert not (server.data_dir / "quarantine").exists()
 
 
-def test_a_newer_programs_database_is_refused_and_left_alone(tmp_path: Path) -> None:
+def test_a_newer_programs_database_is_refused_unchanged(tmp_path: Path) -> None:
     """A database of a newer program is refused unchanged, with its schema and the remedy."""
     server = LiveServer(tmp_path / "live").start()
     server.stop()

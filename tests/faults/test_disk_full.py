@@ -30,7 +30,7 @@ DISK_MIB, ENOUGH_BYTES = 48, 256 * 1024
 WAIT_S = 30.0
 
 
-def test_a_server_that_may_not_write_says_so_and_goes_on_when_it_may(
+def test_a_server_that_cannot_write_reports_it_and_recovers(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """A server whose files cannot grow (RLIMIT_FSIZE) for 3 s loses nothing acknowledged."""
@@ -56,7 +56,7 @@ def test_a_server_that_may_not_write_says_so_and_goes_on_when_it_may(
     check_recorded(server, headsets, watch.reason)
 
 
-def test_on_a_full_disk_what_frees_space_still_works(tmp_path: Path) -> None:
+def test_operations_that_free_space_work_on_a_full_disk(tmp_path: Path) -> None:
     """On a completely full disk, operations that free space still work.
 
     Logging in, removing an export, ending a session and erasing all work, nothing new starts, and

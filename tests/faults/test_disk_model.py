@@ -66,7 +66,7 @@ def started() -> list[Event]:
     ]
 
 
-def test_what_a_sync_covers_is_there_in_every_mood(started: list[Event]) -> None:
+def test_synced_data_survive_in_every_mood(started: list[Event]) -> None:
     """Synced data exist in every mood of the disk; a name exists only if its folder was synced."""
     rng = np.random.default_rng(1)
     for mood in MOODS:
@@ -76,7 +76,7 @@ def test_what_a_sync_covers_is_there_in_every_mood(started: list[Event]) -> None
     assert unnamed.after_power_loss(rng, "everything") == {"a": b"1" * 1536}
 
 
-def test_every_sector_holds_a_version_it_had_and_all_mixtures_come_up(started: list[Event]) -> None:
+def test_every_sector_has_one_of_its_versions_in_all_mixtures(started: list[Event]) -> None:
     """Each of three sectors under two writes holds one of its versions, and all mixtures occur."""
     disk = disk_after(
         [*started, event("write", 5, b"2" * 1536), event("write", 6, b"3" * 600, offset=300)]
@@ -105,7 +105,7 @@ def test_a_sync_covers_only_what_had_returned_before_it_began(started: list[Even
     assert again.certain()["a"] == b"2" * 512 + b"1" * 1024
 
 
-def test_a_file_has_a_size_it_had(started: list[Event]) -> None:
+def test_a_file_has_one_of_its_sizes(started: list[Event]) -> None:
     """A truncated and extended file has one of its sizes; unwritten parts are zeros or noise."""
     cut = replace(event("truncate", 5), size=512)
     disk = disk_after([*started, cut, event("write", 6, b"2" * 512, offset=1024)])
@@ -116,7 +116,7 @@ def test_a_file_has_a_size_it_had(started: list[Event]) -> None:
     assert latest == b"1" * 512 + bytes(512) + b"2" * 512
 
 
-def test_a_removed_file_may_come_back_until_its_folder_is_synced(started: list[Event]) -> None:
+def test_a_removed_file_may_reappear_until_its_folder_is_synced(started: list[Event]) -> None:
     """A removed file, such as SQLite's log, may reappear until its folder is synced."""
     gone = [*started, event("unlink", 5)]
     rng = np.random.default_rng(1)
@@ -143,7 +143,7 @@ def test_the_tracer_sees_every_change_of_every_thread_and_process(tmp_path: Path
     assert [one.ended for one in events if one.ended == NEVER] == []
 
 
-def test_an_exit_code_comes_through_the_tracer(tmp_path: Path) -> None:
+def test_the_tracer_returns_the_exit_code(tmp_path: Path) -> None:
     """The tracer returns the exit code of a command that failed or was killed."""
     skip_without_tracing(tmp_path)
     for script, code in (("exit 3", 3), ("kill -9 $$", 128 + 9)):
@@ -151,7 +151,7 @@ def test_an_exit_code_comes_through_the_tracer(tmp_path: Path) -> None:
         assert subprocess.run(command, check=False, cwd=REPOSITORY, timeout=60).returncode == code
 
 
-def test_promises_are_read_from_the_bytes_however_they_are_cut() -> None:
+def test_promises_are_read_from_bytes_in_any_pieces() -> None:
     """An acknowledgement sent whole or in pieces counts as made when its last byte is sent."""
     head = b"HTTP/1.1 101 Switching Protocols\r\nupgrade: websocket\r\n\r\n"
     welcome = b'{"type": "welcome", "session_id": "s", "positions": []}'

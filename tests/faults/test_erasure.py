@@ -165,9 +165,7 @@ def test_no_byte_of_an_erased_participant_is_left(
     note(30, f"withdrawal, erasure ({engine})", "canary residuals", residuals)
 
 
-def test_what_cannot_be_overwritten_at_once_is_at_the_next_start(
-    tmp_path: Path, elsewhere: Path
-) -> None:
+def test_pending_overwriting_is_done_at_the_next_start(tmp_path: Path, elsewhere: Path) -> None:
     """Data that cannot be overwritten while a session runs are overwritten at the next start.
 
     The database file is not rewritten during the other session, and the pending work survives a
@@ -231,7 +229,7 @@ def in_a_new_installation(folder: Path, visit: Visit, backup: Path, listed: Path
     return sum(in_files(visit, server.data_dir.rglob("*")).values())
 
 
-def test_an_older_file_put_in_the_databases_place_is_erased_at_the_start(tmp_path: Path) -> None:
+def test_an_older_database_file_is_erased_at_the_start(tmp_path: Path) -> None:
     """An older database file copied into place is erased at the start from the list of erasures."""
     older = tmp_path / "older.sqlite"
     with installed(tmp_path / "live", "sqlite") as site:
@@ -254,7 +252,7 @@ def test_an_older_file_put_in_the_databases_place_is_erased_at_the_start(tmp_pat
         assert "made again" in site.server.log
 
 
-def test_a_list_that_was_lost_is_made_again_from_the_table(tmp_path: Path) -> None:
+def test_a_lost_list_of_erasures_is_rebuilt(tmp_path: Path) -> None:
     """A lost list of erasures is rebuilt from the table at every start, with ids only."""
     with installed(tmp_path / "live", "sqlite") as site:
         visit = make_visit(site)

@@ -87,7 +87,7 @@ def crashes(rng: np.random.Generator, count: int) -> int:
     return wrong
 
 
-def test_every_malformed_message_is_refused_by_its_own_error() -> None:
+def test_a_malformed_message_raises_only_its_own_error() -> None:
     """A malformed message only ever raises the error for malformed input."""
     found = crashes(np.random.default_rng(21), SHORT)
     note(21, f"malformed messages ({SHORT:,})", "crashes", found)
@@ -104,7 +104,7 @@ def test_a_million_malformed_messages() -> None:
 
 
 @pytest.mark.timeout(120)
-def test_a_healthy_session_does_not_notice(live_server: LiveServer) -> None:
+def test_malformed_messages_do_not_affect_other_sessions(live_server: LiveServer) -> None:
     """While one headset sends malformed messages, the server and another session are unaffected."""
     (healthy,) = pair_headsets(live_server, 1)
     before = live_server.pid

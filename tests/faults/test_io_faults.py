@@ -55,7 +55,9 @@ def tried(source: Path, operation: str, most: int) -> list[dict[str, Any]]:
         ),
     ],
 )
-def test_a_disk_that_refuses_is_said_in_words(source: Path, operation: str, most: int) -> None:
+def test_a_failed_disk_call_is_reported_without_loss(
+    source: Path, operation: str, most: int
+) -> None:
     """A failed disk call is reported without loss of acknowledged data or a traceback.
 
     No healthy database is moved, and no unknown file is left.

@@ -31,7 +31,7 @@ SHORT = Lengths(15.0, 10.0, 2.5)
 
 
 @pytest.mark.timeout(900)
-def test_kills_lose_nothing_and_every_phase_goes_on(
+def test_kills_lose_nothing_and_every_phase_continues(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """A session whose server is killed from set-up to the last phase completes without loss."""

@@ -25,7 +25,7 @@ def phase_of(run: Run) -> PhaseState:
 
 
 @pytest.mark.parametrize("cause", ASSUMED)
-def test_a_walk_back_that_began_before_the_loss_is_taken(cause: str) -> None:
+def test_a_walk_back_that_began_before_the_loss_is_accepted(cause: str) -> None:
     """A walk back that began before the loss is accepted, and its end restarts the clock.
 
     No operator has to resume the phase.
@@ -46,7 +46,7 @@ def test_a_phase_whose_time_was_up_before_the_loss_ends(cause: str) -> None:
     assert run.state.phase is None
 
 
-def test_the_operators_early_resume_is_forgotten_with_the_assumed_pause() -> None:
+def test_an_early_resume_is_dropped_with_the_assumed_pause() -> None:
     """An operator's early resume is dropped when the assumed pause proves to be wrong.
 
     The headset was never paused, so it sends no resume.
@@ -57,7 +57,7 @@ def test_the_operators_early_resume_is_forgotten_with_the_assumed_pause() -> Non
     assert not phase_of(run).resuming
 
 
-def test_a_pause_that_somebody_made_is_not_corrected() -> None:
+def test_a_reported_pause_is_not_corrected() -> None:
     """A pause that the headset itself reported is not corrected by later reports."""
     run = Run().begin(FOOT)
     run.report("paused", 20.0)

@@ -27,7 +27,7 @@ LONGEST_WRITE_S = 5.0
         pytest.param("EXCLUSIVE", 30.0, marks=[pytest.mark.long, pytest.mark.timeout(600)]),
     ],
 )
-def test_a_locked_database_costs_nothing_but_time(
+def test_a_locked_database_loses_nothing(
     tmp_path: Path, lock: str, lasts_s: float, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """A locked database delays streams, a late headset and requests, and everything is stored."""

@@ -72,7 +72,7 @@ def test_no_honest_headset_is_doubted(site: Site) -> None:
     assert tell(honest(site, HONEST), "honest") == []
 
 
-def test_a_lie_is_on_the_receipt_and_before_the_operator(site: Site) -> None:
+def test_a_doubt_is_on_the_receipt_and_raises_an_alarm(site: Site) -> None:
     """A doubt is named on the receipt, invalidates the phase and raises an alarm that says so."""
     told = play(site, 1, "8 s in a moment")
     Summariser(site.context)._run(told.session_id, 1, tuple(SUMMARIES))
@@ -88,7 +88,7 @@ def test_a_lie_is_on_the_receipt_and_before_the_operator(site: Site) -> None:
     assert (row["status"], bool(row["valid"])) == ("done", False)
 
 
-def test_a_wrong_count_is_corrected_by_a_later_honest_one(site: Site) -> None:
+def test_a_wrong_count_is_corrected_by_a_later_true_one(site: Site) -> None:
     """A frame count beyond reason is corrected by a later true one, and no frame is missing."""
     told = play(site, 3, "more made than can be, then the truth")
     with site.context.database.reading() as db:
@@ -105,7 +105,7 @@ def test_a_wrong_count_is_corrected_by_a_later_honest_one(site: Site) -> None:
     assert all(one.missing == 0 for one in receipt.streams)
 
 
-def test_a_run_of_the_highest_number_locks_nobody_out(site: Site) -> None:
+def test_the_highest_epoch_does_not_block_later_runs(site: Site) -> None:
     """After a client claimed the highest epoch, later runs get unused epochs."""
     session_id = site.join(step=HAND)
     with site.context.database.writing() as db:
@@ -119,7 +119,7 @@ def test_a_run_of_the_highest_number_locks_nobody_out(site: Site) -> None:
         assert {one.kind for one in doubts_of(db, session_id)} == {"epoch", "observed"}
 
 
-def test_who_takes_over_is_not_told_more_than_the_phase_has(site: Site) -> None:
+def test_a_client_that_takes_over_gets_no_impossible_active_time(site: Site) -> None:
     """A client that takes over is not given the impossible active time of an earlier batch."""
     told = play(site, 4, "a batch far ahead of time")
     assert told.believed is False

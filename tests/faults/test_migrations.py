@@ -86,7 +86,7 @@ def known_of(bench: Bench) -> Iterator[Callable[[Step], Known]]:
 
 
 @pytest.mark.parametrize("step", STEPS, ids="-".join)
-def test_a_step_stopped_at_a_statement_can_be_taken_again(
+def test_a_step_stopped_at_a_statement_can_be_retried(
     bench: Bench, known_of: Callable[[Step], Known], step: Step
 ) -> None:
     """A step stopped after a statement or before the commit leaves the old schema for a retry."""
@@ -147,14 +147,14 @@ def test_a_step_keeps_every_row(known_of: Callable[[Step], Known], step: Step) -
         ]
 
 
-def test_a_killed_migration_can_be_taken_again(bench: Bench) -> None:
+def test_a_killed_migration_can_be_retried(bench: Bench) -> None:
     """A migration from the first revision to the newest can be retried after a SIGKILL."""
     kill_often(bench, KILLS)
 
 
 @pytest.mark.long
 @pytest.mark.timeout(1200)
-def test_a_migration_killed_many_times(bench: Bench) -> None:
+def test_a_migration_killed_many_times_can_be_retried(bench: Bench) -> None:
     """A migration can be retried after each of many SIGKILLs at random moments."""
     kill_often(bench, MANY_KILLS)
 

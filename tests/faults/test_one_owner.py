@@ -43,7 +43,7 @@ def times(request: pytest.FixtureRequest) -> int:
     return LONG if request.config.getoption("--long") else SHORT
 
 
-def test_of_two_servers_started_at_once_one_serves(tmp_path: Path, times: int) -> None:
+def test_of_two_servers_started_simultaneously_one_serves(tmp_path: Path, times: int) -> None:
     """Of two servers started simultaneously one serves and the other exits with a message.
 
     A running session gets no event from it.
@@ -67,7 +67,7 @@ def test_of_two_servers_started_at_once_one_serves(tmp_path: Path, times: int) -
     assert added == 0
 
 
-def test_a_second_server_leaves_a_running_phase_and_an_export_alone(
+def test_a_second_server_affects_no_phase_and_no_export(
     live_server: LiveServer, times: int
 ) -> None:
     """A second server is refused without affecting a running phase or an export.
@@ -151,7 +151,7 @@ def test_commands_that_write_are_refused_and_those_that_read_are_not(
     assert event_count(live_server, session_id) == before
 
 
-def test_no_second_name_leads_to_the_database_of_a_running_server(
+def test_a_running_servers_database_is_refused_under_another_name(
     live_server: LiveServer, tmp_path: Path
 ) -> None:
     """A running server's database is refused under an SQLite URI or through a hard link.
@@ -204,7 +204,7 @@ def test_a_database_of_postgres_has_one_server(tmp_path: Path) -> None:
                 pass
 
 
-def test_a_server_that_was_killed_is_followed_at_once(tmp_path: Path) -> None:
+def test_a_server_starts_immediately_after_a_kill(tmp_path: Path) -> None:
     """A server can be started immediately after its predecessor was killed.
 
     The lock ends with its process, with or without workers.

@@ -47,7 +47,7 @@ def press_many_times(lab: Lab, times: int) -> Counter[str]:
     return found
 
 
-def test_one_of_two_operators_wins_and_the_other_sees_it(lab: Lab) -> None:
+def test_one_of_two_simultaneous_starts_succeeds(lab: Lab) -> None:
     """Of two simultaneous starts one succeeds, and the other is told of the winner's event."""
     found = press_many_times(lab, SHORT)
     note(25, f"two operators press start (x{SHORT})", "double starts", found["double"])
@@ -57,7 +57,7 @@ def test_one_of_two_operators_wins_and_the_other_sees_it(lab: Lab) -> None:
 
 @pytest.mark.long
 @pytest.mark.timeout(900)
-def test_one_of_two_operators_wins_a_thousand_times(lab: Lab) -> None:
+def test_a_thousand_simultaneous_starts_each_succeed_once(lab: Lab) -> None:
     """A thousand pairs of simultaneous starts each start the session exactly once."""
     found = press_many_times(lab, LONG)
     note(25, f"two operators press start (x{LONG})", "double starts", found["double"])

@@ -43,7 +43,7 @@ def recording(can_trace: None, tmp_path_factory: pytest.TempPathFactory) -> Reco
     return streamed(folder, 3, lambda proof: proof.acks > 80, (4.0, 16.0, 64.0))
 
 
-def test_no_ack_leaves_before_the_flush_that_makes_it_true(
+def test_no_ack_is_sent_before_its_flush(
     recording: Recording, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """The data of every acknowledgement are covered by a completed fsync when its send begins."""
@@ -54,7 +54,7 @@ def test_no_ack_leaves_before_the_flush_that_makes_it_true(
     assert proof.early == 0
 
 
-def test_no_power_loss_takes_what_was_acknowledged(
+def test_no_power_loss_loses_acknowledged_data(
     recording: Recording, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """A power loss around any kind of call, in any mood of the disk, loses nothing acknowledged."""
@@ -66,7 +66,7 @@ def test_no_power_loss_takes_what_was_acknowledged(
 
 @pytest.mark.long
 @pytest.mark.timeout(3600)
-def test_a_thousand_power_losses_take_nothing(
+def test_a_thousand_power_losses_lose_nothing(
     can_trace: None, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """A thousand power losses in a run with several checkpoints lose nothing acknowledged."""
@@ -79,7 +79,7 @@ def test_a_thousand_power_losses_take_nothing(
     check(crashes)
 
 
-def test_the_oracle_sees_acks_that_come_before_the_flush(recording: Recording) -> None:
+def test_the_check_detects_acks_before_their_flush(recording: Recording) -> None:
     """The check finds lost data if every acknowledgement is moved before its flush."""
     careless = recording.with_earlier_acks()
     assert experiment.prove_acks(careless).early > 50
@@ -88,7 +88,7 @@ def test_the_oracle_sees_acks_that_come_before_the_flush(recording: Recording) -
 
 
 @pytest.mark.parametrize("level", ["NORMAL", pytest.param("OFF", marks=pytest.mark.long)])
-def test_the_oracle_sees_a_database_that_does_not_flush(
+def test_the_check_detects_a_database_that_does_not_flush(
     can_trace: None, tmp_path: Path, level: str
 ) -> None:
     """The check finds lost data of a real server with `synchronous` below FULL."""

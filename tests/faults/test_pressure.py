@@ -68,7 +68,7 @@ def watched_memory(server: LiveServer) -> Iterator[list[int]]:
 
 @pytest.mark.timeout(120)
 @pytest.mark.parametrize("burst_s", [2.0, pytest.param(5.0, marks=pytest.mark.long)])
-def test_a_burst_is_taken_without_loss(live_server: LiveServer, burst_s: float) -> None:
+def test_a_burst_is_stored_without_loss(live_server: LiveServer, burst_s: float) -> None:
     """A burst from four headsets at ten times their rate is queued and stored without loss."""
     headsets = [
         StreamingHeadset(one.session_id, one.token, TimedLedger())
@@ -113,7 +113,7 @@ async def _burst_one(server: LiveServer, headset: StreamingHeadset, burst_s: flo
 
 
 @pytest.mark.timeout(120)
-def test_consoles_that_do_not_read_hold_nobody_up(live_server: LiveServer) -> None:
+def test_consoles_that_do_not_read_delay_no_headset(live_server: LiveServer) -> None:
     """Ten live streams that are never read lose only their own events and slow down no headset."""
     (headset,) = pair_headsets(live_server, 1)
     (other,) = pair_headsets(live_server, 1)

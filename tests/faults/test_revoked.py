@@ -84,7 +84,7 @@ def shut_out_after_s(reader: Reader, end: Callable[[], object]) -> float:
     return reader.ended_s - before_s
 
 
-def test_a_login_that_ends_takes_its_open_pages_with_it(server: LiveServer) -> None:
+def test_ending_a_login_closes_its_streams(server: LiveServer) -> None:
     """Logging out, or an admin's ending of logins, closes a live stream; then requests get 401."""
     with signed_in(server) as admin:
         session_id = joined(admin)
@@ -101,7 +101,7 @@ def test_a_login_that_ends_takes_its_open_pages_with_it(server: LiveServer) -> N
             note(31, "login ended", f"{way}: stream closed after, s", took_s)
 
 
-def test_a_tablet_that_is_unpaired_is_shut_out(server: LiveServer) -> None:
+def test_unpairing_a_tablet_closes_its_stream(server: LiveServer) -> None:
     """Unpairing a tablet closes its stream, and its next request gets 401."""
     with signed_in(server) as admin, server.client() as tablet:
         session_id = joined(admin)

@@ -23,7 +23,7 @@ NOTICED_WITHIN_S = 60.0
 """A server that hardly gets a processor takes its own standing still into account, and waits."""
 
 
-def test_a_headset_that_falls_asleep_follows_the_pause_and_gets_its_whole_time(
+def test_a_silent_headset_is_paused_and_gets_its_whole_time(
     tmp_path: Path,
 ) -> None:
     """A headset without frames is paused in hand and foot phases, without loss of time or data.

@@ -72,7 +72,7 @@ async def _still_open(reader: asyncio.StreamReader) -> bool:
 
 
 @pytest.mark.timeout(120)
-def test_five_hundred_slow_clients_hold_nobody_up(lan: LanServer) -> None:
+def test_five_hundred_slow_clients_delay_no_other(lan: LanServer) -> None:
     """500 connections with endless heads are closed in time while a normal client is served."""
     bare_s, under_s, borne_s = asyncio.run(_attacked(lan))
     p95_bare, p95_under = (float(np.percentile(each, 95)) for each in (bare_s, under_s))
@@ -114,7 +114,7 @@ def _answer_to(port: int, request: bytes, patience_s: float) -> bytes:
 
 @pytest.mark.timeout(120)
 @pytest.mark.long
-def test_whoever_owes_a_request_is_told_and_closed(lan: LanServer) -> None:
+def test_an_unfinished_request_is_closed(lan: LanServer) -> None:
     """An unfinished head or body gets 408; silence and an unfinished handshake are just closed."""
     head = b"POST /api/login HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
     half_body = head + b"Content-Length: 500\r\n\r\n{"
@@ -135,7 +135,7 @@ def test_whoever_owes_a_request_is_told_and_closed(lan: LanServer) -> None:
 
 @pytest.mark.timeout(120)
 @pytest.mark.long
-def test_a_large_file_may_take_its_time(lan: LanServer) -> None:
+def test_a_slow_large_upload_is_read_to_its_end(lan: LanServer) -> None:
     """A capture sent at 140 kB/s for longer than a usual body may take is read to its end."""
     with lan.client() as client:
         credentials = {"username": "admin", "password": ADMIN_PASSWORD}
@@ -173,7 +173,7 @@ def test_an_endless_head_is_refused(lan: LanServer) -> None:
     assert answer.startswith(b"HTTP/1.1 431")
 
 
-def test_a_large_body_in_pieces_is_not_mistaken_for_a_head(lan: LanServer) -> None:
+def test_a_large_body_in_pieces_is_not_taken_for_a_head(lan: LanServer) -> None:
     """A large body in many segments is not taken for a head, and the connection stays usable."""
     body = b'{"username": "' + b"a" * (3 * MOST_HEAD_BYTES) + b'"}'
     with lan.client() as client:
@@ -197,7 +197,7 @@ def test_a_large_body_in_pieces_is_not_mistaken_for_a_head(lan: LanServer) -> No
     connection.close()
 
 
-def test_the_greediest_makes_room(lan: LanServer) -> None:
+def test_the_oldest_unfinished_request_is_closed_at_the_limit(lan: LanServer) -> None:
     """At the limit of unfinished requests, the oldest is closed and the newest is served."""
     waiting = [
         socket.create_connection(("127.0.0.1", lan.port), timeout=5)

@@ -28,7 +28,7 @@ def command(lab: Lab, view: Json, kind: str, **fields: object) -> Response:
 
 
 @pytest.mark.parametrize("kind", ["abort", "withdraw"])
-def test_a_session_ends_at_the_first_try_whatever_is_written(lab: Lab, kind: str) -> None:
+def test_a_stop_succeeds_at_the_first_try(lab: Lab, kind: str) -> None:
     """One stop among 50 simultaneous commands on a session succeeds at the first try."""
     view = lab.command(lab.join(kind="test"), "start")
     together = threading.Barrier(THREADS)
@@ -53,7 +53,7 @@ def test_a_session_ends_at_the_first_try_whatever_is_written(lab: Lab, kind: str
 
 
 @pytest.mark.parametrize("kind", ["abort", "withdraw"])
-def test_a_stop_needs_no_version_and_any_old_one_will_do(lab: Lab, kind: str) -> None:
+def test_a_stop_needs_no_current_version(lab: Lab, kind: str) -> None:
     """Aborting or withdrawing needs only a reason: the version may be missing or outdated."""
     for version in ({}, {"expected_version": 0}):
         view = lab.command(lab.join(kind="test"), "start")
@@ -63,7 +63,7 @@ def test_a_stop_needs_no_version_and_any_old_one_will_do(lab: Lab, kind: str) ->
         assert after["status"] in ("aborted", "withdrawn")
 
 
-def test_what_moves_a_session_on_still_needs_the_newest_version(lab: Lab) -> None:
+def test_a_skip_needs_the_newest_version(lab: Lab) -> None:
     """A skip is rejected if it is based on an outdated version or has no version."""
     view = lab.command(lab.join(kind="test"), "start")
     lab.command(view, "note", text="written meanwhile")
@@ -73,7 +73,7 @@ def test_what_moves_a_session_on_still_needs_the_newest_version(lab: Lab) -> Non
     assert "expected_version" in str(error(refused, 422, "invalid_input"))
 
 
-def test_a_pause_is_taken_on_any_version(lab: Lab) -> None:
+def test_a_pause_is_accepted_on_any_version(lab: Lab) -> None:
     """A pause is accepted on an outdated version, so that a note does not delay it."""
     view = lab.skip_to(lab.join(kind="test"), "free_roam")
     lab.context.hub.headset_joined(view["id"])

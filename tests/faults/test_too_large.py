@@ -57,7 +57,7 @@ def test_too_large_a_body_is_refused(lan: LanServer) -> None:
     note(22, "bodies", "refused above (bytes)", limit)
 
 
-def test_a_stranger_who_sends_on_is_let_go(lan: LanServer) -> None:
+def test_an_anonymous_body_is_not_read_after_413(lan: LanServer) -> None:
     """After a 413, no more of an anonymous client's body is read and the connection is closed."""
     with socket.create_connection(("127.0.0.1", lan.port), timeout=30) as connection:
         connection.sendall(

@@ -90,7 +90,7 @@ def stepped(database_url: str, wall: WallClock) -> Iterator[Lab]:
         yield lab
 
 
-def test_durations_do_not_care_what_the_wall_clock_does(stepped: Lab, wall: WallClock) -> None:
+def test_durations_do_not_depend_on_the_wall_clock(stepped: Lab, wall: WallClock) -> None:
     """Setting the wall clock in mid-phase changes no active time and makes no interval negative."""
     view = stepped.skip_to(stepped.join(), "free_roam")
     offered = ["reembody.v1", f"bearer.{stepped.headset_token(view['id'])}"]

@@ -11,13 +11,13 @@ TOLERATED = {"clock_uncertain", "jump"}
 sits down faster than anybody."""
 
 
-def test_sound_movement_raises_no_alarm(performed: Performed, db: Session) -> None:
+def test_correct_movement_raises_no_alarm(performed: Performed, db: Session) -> None:
     """Correct movement at 20 to 40 times real speed raises no alarm."""
     rows = db.scalars(select(AlarmRow).where(AlarmRow.session_id == performed.session_id))
     assert {row.message for row in rows if row.code not in TOLERATED} == set()
 
 
-def test_every_phase_is_judged_and_sound(performed: Performed, db: Session) -> None:
+def test_every_phase_is_checked_and_has_no_faults(performed: Performed, db: Session) -> None:
     """Every phase has 90 frames a second over its active time and no faults in either stream."""
     query = select(PhaseQuality).where(PhaseQuality.session_id == performed.session_id)
     rows = list(db.scalars(query))

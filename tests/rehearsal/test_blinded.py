@@ -83,7 +83,7 @@ def test_a_blinded_operator_rehearses_a_repeated_phase_and_a_withdrawal(server: 
     assert "  phase 1: is repeated from its beginning" in said
 
 
-def test_a_rehearsal_that_was_aborted_elsewhere_does_not_end_well(server: LiveServer) -> None:
+def test_an_aborted_rehearsal_exits_with_1(server: LiveServer) -> None:
     """A rehearsal that is aborted from a console reports that and exits with code 1."""
     aborting = threading.Thread(target=abort_what_runs, args=(server,))
     aborting.start()
@@ -130,7 +130,7 @@ def abort_what_runs(server: LiveServer) -> None:
         (("--study", "none"), "there is no study 'none'"),
     ],
 )
-def test_what_makes_no_sense_is_refused_before_a_session_is_made(
+def test_invalid_options_are_rejected_before_a_session_is_created(
     server: LiveServer, options: tuple[object, ...], words: str
 ) -> None:
     """Invalid options are rejected in one sentence before a session is created.

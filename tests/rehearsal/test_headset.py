@@ -60,7 +60,7 @@ def test_contacts_come_before_the_completion_they_lead_to() -> None:
     assert effects.count("green") == 4
 
 
-def test_a_client_that_takes_over_after_an_odd_number_of_tasks_goes_the_other_way() -> None:
+def test_the_order_is_reversed_after_an_odd_number_of_tasks() -> None:
     """A client that takes over after an odd number of tasks uses the reversed order of boxes."""
     phase = order(limb="hand", kind="task", duration_s=20.0)
     there = _first_order(play(5, phase))

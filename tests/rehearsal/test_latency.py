@@ -16,7 +16,7 @@ def _rows(performed: Performed, db: Session) -> list[PhaseLatency]:
     return list(db.scalars(query.order_by(PhaseLatency.phase_id)))
 
 
-def test_every_phase_had_the_latency_that_was_ordered(performed: Performed, db: Session) -> None:
+def test_every_phase_achieved_its_set_latency(performed: Performed, db: Session) -> None:
     """Every phase with movement achieved its set latency within 0.1 ms; others give a reason."""
     rows = _rows(performed, db)
     assert len(rows) == PHASES

@@ -68,7 +68,7 @@ def play(limb: str, duration_s: float, latency_ms: float = 0.0) -> tuple[Instant
 
 
 @pytest.mark.parametrize("limb", ["hand", "foot"])
-def test_the_tasks_can_be_done_by_real_contacts(limb: str) -> None:
+def test_a_physics_avatar_completes_tasks_by_real_contacts(limb: str) -> None:
     """A physics avatar completes tasks by real contacts of the right limb."""
     server, headset = play(limb, 20.0)
     contacts = [one for one in server.reports if isinstance(one, ContactReport)]
@@ -82,7 +82,7 @@ def test_the_tasks_can_be_done_by_real_contacts(limb: str) -> None:
     assert headset.completions == len(completions)
 
 
-def test_a_body_with_other_legs_stands_on_the_same_floor() -> None:
+def test_an_avatar_with_longer_legs_stands_on_the_same_floor() -> None:
     """An avatar with longer legs stands on the same floor, with proportionally higher hips."""
     built = avatar_model(default_configuration(), 1.8)
     person = build_skeleton(1.6)

@@ -10,7 +10,7 @@ FRAME_S = 1 / 90
 
 @pytest.mark.long
 @pytest.mark.timeout(1200)
-def test_a_session_at_the_pace_of_life_loses_nothing_and_keeps_its_clock() -> None:
+def test_a_session_at_real_speed_loses_nothing() -> None:
     """A session at real speed loses no frame and keeps its active times, without a reconnect."""
     plan = RehearsalPlan(url="", study=STUDY, speed=1.0, seed=7)
     performed = performed_once("rehearsal-real-time", plan, None, {})

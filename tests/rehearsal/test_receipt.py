@@ -24,7 +24,9 @@ def test_the_session_is_complete(receipt: SessionReceipt) -> None:
     assert receipt.chain_ok
 
 
-def test_sent_is_what_the_headset_sent(performed: Performed, receipt: SessionReceipt) -> None:
+def test_the_receipt_counts_what_the_headset_sent(
+    performed: Performed, receipt: SessionReceipt
+) -> None:
     """The receipt's counts equal what the headset sent, by stream and epoch."""
     told = {(one.stream, one.epoch): (one.sent, one.stored) for one in receipt.streams}
     sent = {key: len(known) for key, known in performed.ledger.sent.items()}

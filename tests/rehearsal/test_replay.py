@@ -24,7 +24,9 @@ def phases(performed: Performed, db: Session) -> list[Phase]:
 
 
 @pytest.mark.one_engine
-def test_what_was_counted_lies_at_the_headsets_own_time(db: Session, phases: list[Phase]) -> None:
+def test_contacts_and_completions_are_at_the_headsets_time(
+    db: Session, phases: list[Phase]
+) -> None:
     """Contacts and completions are at the headset's time, to the microsecond.
 
     They are located by their active time, across every walk back.
@@ -55,9 +57,7 @@ def test_what_was_counted_lies_at_the_headsets_own_time(db: Session, phases: lis
     assert walks > 0
 
 
-def test_the_active_time_of_a_phase_is_that_of_its_stretches(
-    db: Session, phases: list[Phase]
-) -> None:
+def test_the_active_intervals_add_up_to_the_active_time(db: Session, phases: list[Phase]) -> None:
     """The active intervals of a replayed phase are in order and add up to its active time."""
     session = session_by_id(db, phases[0].session_id)
     assert len(phases) == PHASES

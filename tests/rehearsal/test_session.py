@@ -104,7 +104,7 @@ def test_the_event_log_verifies(performed: Performed, db: Session) -> None:
     assert checked.events == len(performed.events)
 
 
-def test_latency_is_seen_in_the_joint_error_and_costs_the_controller_nothing(
+def test_joint_error_grows_with_latency_except_against_the_command(
     performed: Performed, db: Session
 ) -> None:
     """Joint error is zero at 0 ms and grows with latency; against the command it is zero."""
@@ -135,7 +135,7 @@ def test_walks_back_stop_the_clock(performed: Performed, db: Session) -> None:
             assert ended - begun > phase.active_s + FRAME_S
 
 
-def test_the_stored_contacts_lead_to_the_stored_completions(
+def test_the_stored_contacts_reproduce_the_stored_completions(
     performed: Performed, db: Session
 ) -> None:
     """Applying the task rules to the stored contacts reproduces every stored completion."""

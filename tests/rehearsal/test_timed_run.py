@@ -23,7 +23,7 @@ def test_a_phase_prepares_runs_its_time_freezes_and_ends() -> None:
     assert line.run.ended
 
 
-def test_active_time_never_passes_the_duration() -> None:
+def test_active_time_never_exceeds_the_duration() -> None:
     """Active time never exceeds the duration, however late the last frame is drawn."""
     line = Timeline(FreeRun(order(), 0.0))
     line.draw(1.0)
@@ -57,7 +57,7 @@ def test_a_broken_connection_stops_the_clock_and_the_preparation() -> None:
     assert line.run.active_s(line.t_s) == pytest.approx(0.5, abs=2 * FRAME_S)
 
 
-def test_a_loss_too_short_to_notice_still_pauses_both_sides() -> None:
+def test_a_loss_that_only_the_server_noticed_pauses_the_headset() -> None:
     """After a loss that only the server noticed, the headset reports the pause and the resume."""
     line = Timeline(FreeRun(order(), 0.0))
     line.draw(1.0)
@@ -66,7 +66,7 @@ def test_a_loss_too_short_to_notice_still_pauses_both_sides() -> None:
     assert line.words == ["started", "paused", "resumed"]
 
 
-def test_a_resume_that_overtook_the_pause_leads_to_both_reports_at_once() -> None:
+def test_a_resume_with_the_pause_gives_both_reports() -> None:
     """A resume that arrives with the pause gives both reports immediately and only once.
 
     Otherwise the server would wait for a resume that the headset would never send.
@@ -83,9 +83,7 @@ def test_a_resume_that_overtook_the_pause_leads_to_both_reports_at_once() -> Non
     ("status", "words"),
     [("running", ["paused"]), ("walk_back", ["walk_back_ended", "paused"]), ("paused", [])],
 )
-def test_a_client_that_takes_over_stands_still_until_the_operator_resumes(
-    status: str, words: list[str]
-) -> None:
+def test_a_client_that_takes_over_waits_for_the_resume(status: str, words: list[str]) -> None:
     """A client that takes over waits for the resume, then uses only the remaining active time."""
     line = Timeline(FreeRun(order(status=status, active_s=0.75), 0.0))
     line.draw(1.0)
@@ -109,7 +107,7 @@ def test_a_client_that_takes_over_in_the_freeze_only_ends_the_phase() -> None:
     assert line.words == ["ended"]
 
 
-def test_a_client_that_takes_over_learns_what_the_other_run_had_used_up() -> None:
+def test_a_client_that_takes_over_gets_the_used_active_time() -> None:
     """A client that takes over gets the other run's active time, also if updated later."""
     line = Timeline(FreeRun(order(status="running", active_s=0.25), 0.0))
     line.draw(0.1)

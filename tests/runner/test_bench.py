@@ -90,7 +90,7 @@ def test_only_benchmarks_are_offered() -> None:
     assert not {"__main__", "against", "report", "codecs", "walking_maps"} & set(NAMES)
 
 
-def test_short_forms_are_of_parts_that_there_are() -> None:
+def test_short_forms_name_existing_parts() -> None:
     """Each short form names existing parts of an existing benchmark."""
     assert set(SHORT) <= set(NAMES)
     for name, words in SHORT.items():
@@ -112,20 +112,22 @@ def test_the_interval_is_of_order_statistics(count: int, low: int, confidence: f
     assert found.confidence == pytest.approx(confidence)
 
 
-def test_a_limit_is_met_from_its_side() -> None:
+def test_a_limit_is_an_upper_or_a_lower_one() -> None:
     """ "At most" and "at least" make a peer a limit that a value meets or not; a rival is none."""
     peers = ("at most", "at least", "bare mj_step")
     rows = [Figure("p", "n", 2.0, "s", peer, 3.0).as_json() for peer in peers]
     assert [(row["limit"], row["met"]) for row in rows] == [(3.0, True), (3.0, False), (None, None)]
 
 
-def test_keys_of_a_benchmarks_own_stand_beside_its_figures() -> None:
+def test_a_benchmarks_own_keys_are_added_to_the_report() -> None:
     """Keys of a benchmark's own are added to the report at the top level."""
     told = Report("desk", beside={"pairs": 6}).as_json()
     assert set(told) == {"benchmark", "machine", "figures", "pairs"}
 
 
-def test_a_commit_is_written_out_without_a_trace(repository: Path, tmp_path: Path) -> None:
+def test_checking_out_a_commit_changes_nothing_in_the_repository(
+    repository: Path, tmp_path: Path
+) -> None:
     """Checking out a commit writes its files and leaves the repository unchanged."""
     before = git(repository, "status", "--short")
     name = check_out(repository, "HEAD", tmp_path / "tree")
@@ -184,7 +186,7 @@ def test_an_interrupted_comparison_leaves_nothing(repository: Path, number: int)
         os.kill(int(mark.read_text()), 0)
 
 
-def test_what_differs_in_the_work_is_told(tmp_path: Path) -> None:
+def test_a_different_workload_is_reported(tmp_path: Path) -> None:
     """A changed number is reported as another workload, a moved import is not."""
     texts = {
         "moved.py": ("'''Old.'''\nfrom app.a import b\nN = 1\n", "from app.c.a import b\nN = 1\n"),
@@ -206,7 +208,7 @@ def test_what_differs_in_the_work_is_told(tmp_path: Path) -> None:
         (("desk", "--against", "no-such-commit"), "no commit no-such-commit"),
     ],
 )
-def test_what_cannot_be_compared_is_said(
+def test_an_impossible_comparison_is_rejected(
     arguments: tuple[str, ...], told: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """A comparison that is impossible exits with code 2 and says what is possible."""

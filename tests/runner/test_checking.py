@@ -74,7 +74,7 @@ def test_what_is_inside_another_folder_runs_once() -> None:
     assert without_inner(paths) == [Path("tests/a"), Path("tests/c.py")]
 
 
-def test_a_path_that_is_not_there_is_answered_with_those_that_are(
+def test_a_missing_path_lists_existing_ones(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     """For a missing path, the contents of the nearest existing folder are listed."""
@@ -84,7 +84,7 @@ def test_a_path_that_is_not_there_is_answered_with_those_that_are(
     assert "features" in told
 
 
-def test_a_path_outside_is_refused() -> None:
+def test_a_path_outside_the_repository_is_rejected() -> None:
     """A path outside the repository is rejected."""
     with pytest.raises(NoSuchPath, match="outside"):
         Chosen.of([".."])
@@ -98,7 +98,7 @@ def test_without_paths_everything_is_checked() -> None:
     assert {"mypy", "imports", "ruff check", "frontend tests"} <= {one.name for one in planned}
 
 
-def test_a_feature_needs_no_look_at_the_pages() -> None:
+def test_a_features_check_leaves_out_the_pages() -> None:
     """A feature's check runs its own tests in one process and leaves out the pages."""
     planned = {stage.name: stage for stage in plan(Chosen.of(["app/api"]))}
     assert set(planned) == {"ruff check", "ruff format", "mypy", "imports", "unit tests"}
@@ -106,14 +106,14 @@ def test_a_feature_needs_no_look_at_the_pages() -> None:
     assert not planned["unit tests"].alone
 
 
-def test_pages_need_no_look_at_python() -> None:
+def test_the_pages_check_leaves_out_python() -> None:
     """A folder of the pages is linted and tested, with all types and without Python."""
     planned = {stage.name: stage for stage in plan(Chosen.of(["frontend/src/shared"]))}
     assert set(planned) == {"frontend lint", "frontend types", "frontend tests"}
     assert str(REPOSITORY / "frontend/src/shared") in planned["frontend tests"].command
 
 
-def test_tests_that_need_more_than_a_process_are_left_out(tmp_path: Path) -> None:
+def test_tests_that_need_a_server_are_skipped(tmp_path: Path) -> None:
     """Tests that need a server, PostgreSQL or a browser are deselected or skipped."""
     (tmp_path / "test_needing.py").write_text(NEEDING)
     options = ["-c", "/dev/null", "-p", "tests.support.unit_tests", "-rs", str(tmp_path)]
@@ -129,7 +129,7 @@ def test_tests_that_need_more_than_a_process_are_left_out(tmp_path: Path) -> Non
     assert "left to ./run test: it needs a server" in told
 
 
-def test_what_starts_something_is_a_fixture() -> None:
+def test_every_starter_is_a_fixture() -> None:
     """Every fixture that starts something exists under the name in STARTERS."""
     conftests = (REPOSITORY / folder / "conftest.py" for folder in ("tests", "tests/e2e"))
     defined = "".join(file.read_text() for file in conftests)

@@ -53,13 +53,13 @@ def wait_for(url: str) -> None:
             return
 
 
-def test_it_hands_calls_over(dev_server: str) -> None:
+def test_the_dev_server_passes_requests_on(dev_server: str) -> None:
     """The dev server passes API requests on to the server."""
     assert httpx2.get(f"{dev_server}/api/health", timeout=30.0).json()["status"] == "ok"
 
 
 @pytest.mark.parametrize("path", ["/", "/console", "/tablet"])
-def test_every_page_comes_with_its_scripts(dev_server: str, path: str) -> None:
+def test_every_page_is_served_with_its_scripts(dev_server: str, path: str) -> None:
     """Every script and icon that a page names is served relative to the page's URL."""
     page = httpx2.get(f"{dev_server}{path}", timeout=30.0)
     named = re.findall(r'(?:src|href)="([^"]+\.(?:tsx|svg))"', page.text)

@@ -30,7 +30,7 @@ def python(name: str, code: str, *, alone: bool = False, aloud: bool = False) ->
     return Stage(name, [sys.executable, "-S", "-c", code], alone=alone, aloud=aloud)
 
 
-def test_a_failure_keeps_nothing_from_running(capfd: pytest.CaptureFixture[str]) -> None:
+def test_stages_run_after_a_failure(capfd: pytest.CaptureFixture[str]) -> None:
     """After a failed stage the others still run in order, and its output is shown."""
     outcomes = run_stages(
         [python("one", "raise SystemExit('it is wrong')"), python("two", "", alone=True)]
@@ -39,7 +39,7 @@ def test_a_failure_keeps_nothing_from_running(capfd: pytest.CaptureFixture[str])
     assert "it is wrong" in capfd.readouterr().out
 
 
-def test_neighbours_run_side_by_side(tmp_path: Path) -> None:
+def test_two_stages_run_in_parallel(tmp_path: Path) -> None:
     """Two stages that need one core each run in parallel."""
     meet = """
 import pathlib, time
@@ -51,7 +51,7 @@ while not pathlib.Path({other!r}).exists(): time.sleep(0.01)
     assert all(outcome.passed for outcome in run_stages(pair))
 
 
-def test_one_that_is_alone_waits_for_its_neighbours_and_prints_as_it_goes(
+def test_a_stage_that_is_alone_waits_and_prints_as_it_goes(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     """A stage that is alone waits for the earlier ones and prints under its own heading."""
@@ -62,7 +62,7 @@ def test_one_that_is_alone_waits_for_its_neighbours_and_prints_as_it_goes(
     assert "it was True" in capfd.readouterr().out.partition("=== two")[2]
 
 
-def test_in_short_what_passes_gets_one_line(capfd: pytest.CaptureFixture[str]) -> None:
+def test_in_brief_mode_a_passed_stage_gets_one_line(capfd: pytest.CaptureFixture[str]) -> None:
     """In brief mode a stage that passes gets one line."""
     run_stages([python("chatty", "print('all is well')")], brief=True)
     told = capfd.readouterr().out
@@ -70,7 +70,7 @@ def test_in_short_what_passes_gets_one_line(capfd: pytest.CaptureFixture[str]) -
     assert told.startswith("--- chatty: ok")
 
 
-def test_a_stage_that_cannot_begin_has_failed() -> None:
+def test_a_stage_with_a_failed_preparation_fails() -> None:
     """A stage whose preparation fails has failed."""
 
     def prepare() -> None:
@@ -108,7 +108,7 @@ def test_only_the_slowest_are_kept() -> None:
     assert total.slowest[0][1] == SLOWEST - 1
 
 
-def test_a_pytest_run_can_be_told_as_json(
+def test_a_pytest_run_can_be_reported_as_json(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     """`./run test PATH --json FILE` writes counts and each test's time with its fixtures."""
@@ -123,7 +123,7 @@ def test_a_pytest_run_can_be_told_as_json(
     assert told["slowest"][0]["seconds"] >= 0.2
 
 
-def test_help_says_what_json_holds(capsys: pytest.CaptureFixture[str]) -> None:
+def test_help_describes_the_json(capsys: pytest.CaptureFixture[str]) -> None:
     """The help describes every key of the JSON file."""
     with pytest.raises(SystemExit):
         stages.main(["--help"])

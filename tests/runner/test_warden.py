@@ -60,18 +60,18 @@ def lives(pid: int) -> bool:
 
 
 @pytest.mark.parametrize("code", [0, 3, 127])
-def test_the_exit_code_is_the_commands(tmp_path: Path, code: int) -> None:
+def test_the_exit_code_is_that_of_the_command(tmp_path: Path, code: int) -> None:
     """The exit code is that of the command."""
     assert run_warded(python(f"raise SystemExit({code})"), folder=tmp_path).code == code
 
 
-def test_a_signal_is_told_as_one(tmp_path: Path) -> None:
+def test_a_signal_is_reported(tmp_path: Path) -> None:
     """A signal is reported as a negative code, and as a shell does."""
     ended = run_warded(["sh", "-c", "kill -9 $$"], folder=tmp_path)
     assert (ended.code, ended.exit_code) == (-signal.SIGKILL, 128 + signal.SIGKILL)
 
 
-def test_a_command_that_is_not_there_is_named(tmp_path: Path) -> None:
+def test_a_missing_command_is_named(tmp_path: Path) -> None:
     """A missing command is named and gives exit code 127, as in a shell."""
     with (tmp_path / "errors").open("wb") as errors:
         assert run_warded(["no-such-command"], folder=tmp_path, errors=errors).code == 127
@@ -88,7 +88,7 @@ def test_the_time_of_an_orphan_counts(tmp_path: Path) -> None:
 
 @linux
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL])
-def test_whoever_kills_the_caller_ends_its_servers(tmp_path: Path, number: int) -> None:
+def test_killing_the_caller_ends_its_servers(tmp_path: Path, number: int) -> None:
     """Killing the caller also ends a server that runs in a session of its own."""
     mark = tmp_path / "pid"
     command = python(

@@ -153,8 +153,8 @@ def take_screenshot(page: Page, folder: Path, name: str) -> Path:
 
 
 # A changed theme or an opening drawer starts to move a frame or two later, and is done when
-# nothing has moved for a few frames. A paused or endlessly repeated animation
-# would never end, so the wait is limited.
+# nothing has moved for a few frames. A paused or endlessly repeated animation would never end, so
+# the wait is limited.
 MOVEMENTS_DONE = """async () => {
     const until = performance.now() + 3000;
     let calm = 0;
@@ -175,9 +175,8 @@ def accessibility_violations(page: Page) -> list[str]:
     """Return the serious and critical violations that axe-core finds on the page, one per line."""
     # A drawer that is still opening has paler colours than at rest.
     page.evaluate(MOVEMENTS_DONE)
-    # Inject it once per document: the engine would compile it again each time. Evaluated, not added
-    # as
-    # an element, so that the page's content security policy stays on.
+    # Inject it once per document: the engine would compile it again each time. Evaluated, not
+    # added as an element, so that the page's content security policy stays on.
     if not page.evaluate("'axe' in window"):
         page.evaluate(axe_script().read_text(encoding="utf-8"))
     result = page.evaluate(RUN_AXE)

@@ -117,9 +117,8 @@ def _watch(caller: int, command: list[str]) -> int:
     """Act as the warden; return the command's exit code, 128 plus the number for a signal."""
     signal.signal(signal.SIGTERM, _stop)
     signal.signal(signal.SIGHUP, _stop)
-    # A terminal sends Ctrl+C to the command too, which then ends in its own way; a command that a
-    # shell
-    # has put into the background must ignore it, and inherits that.
+    # A terminal sends Ctrl+C to the command too, which then ends in its own way; a command that
+    # a shell has put into the background must ignore it, and inherits that.
     if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
         signal.signal(signal.SIGINT, lambda *_: None)
     _control(CHILD_SUBREAPER, 1)
