@@ -30,7 +30,7 @@ def test_it_contains_what_a_journal_in_memory_contains(
     memory_bytes: int,
     segment_bytes: int,
 ) -> None:
-    """It contains the same as a journal in memory, at any memory limit and after reopening."""
+    """A journal in files contains the same as one in memory, also after reopening."""
     folder = tmp_path_factory.mktemp("journal")
     model = Journal()
     filed = FileJournal(folder=folder, memory_bytes=memory_bytes, segment_bytes=segment_bytes)
@@ -64,7 +64,7 @@ def test_acknowledged_segments_are_deleted(tmp_path: Path) -> None:
 
 
 def test_a_torn_record_is_left_out(tmp_path: Path) -> None:
-    """A record that was cut off by the end of the process is left out."""
+    """A record that the end of the process cut off is left out when the journal is reopened."""
     journal = FileJournal(folder=tmp_path)
     for at in range(3):
         journal.add(Entry("target", 1, at + 1, b"x" * 100))
@@ -75,7 +75,7 @@ def test_a_torn_record_is_left_out(tmp_path: Path) -> None:
 
 
 def test_a_new_process_appends_to_the_old_segments(tmp_path: Path) -> None:
-    """Messages stay in order over any number of reopenings."""
+    """Messages of a journal in files stay in order over any number of reopenings."""
     for at in range(4):
         journal = FileJournal(folder=tmp_path)
         journal.add(Entry("target", at + 1, 1, b"%d" % at))

@@ -27,6 +27,6 @@ def test_entries_are_matched_by_their_key() -> None:
 
 
 def test_equal_trees_have_no_differences() -> None:
-    """The order of keys is no difference, but true and 1 are one."""
+    """Another order of keys is no difference, but `true` and 1 differ."""
     assert found({"a": 1, "b": [1]}, {"b": [1], "a": 1}) == []
     assert len(found({"a": True}, {"a": 1})) == 1

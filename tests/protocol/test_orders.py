@@ -79,7 +79,7 @@ def test_blocks_are_mixed_differently() -> None:
 
 
 def test_a_ledger_is_the_same_in_every_release() -> None:
-    """The first rows for the shipped seed are the same in every release."""
+    """The ledger's first rows for the shipped seed are the same in every release."""
     rows = ledger_block(STUDY, 0)
     assert rows[0] == (("latency_0", "latency_350", "latency_125"), 1)
     assert rows[5] == (("latency_0", "latency_125", "latency_350"), 1)

@@ -43,7 +43,7 @@ def test_the_session_around_the_blocks() -> None:
 
 
 def test_tasks_carry_their_times_and_questionnaires_their_instrument() -> None:
-    """Tasks have 60 s of active time with 5 s around it; questionnaires have their instrument."""
+    """Tasks have 60 s of active time, 5 s before and after; questionnaires, an instrument."""
     steps = {step.key: step for step in compile_plan(STUDY, ORDER)}
     task = steps["block2.hand"]
     assert (task.preparation_s, task.duration_s, task.freeze_s) == (5, 60, 5)

@@ -43,7 +43,7 @@ def test_only_true_false_and_decimal_numbers_are_special(word: str, value: objec
 
 
 def test_keys_are_always_text() -> None:
-    """Keys such as `no`, `5` and `true` are text."""
+    """YAML keys such as `no`, `5` and `true` are read as text."""
     assert read_source("{no: 1, 5: 2, true: 3}").tree == {"no": 1, "5": 2, "true": 3}
 
 

@@ -47,7 +47,7 @@ def test_the_hips_are_never_delayed(rng: np.random.Generator) -> None:
 
 
 def test_the_avatar_is_where_the_participant_was() -> None:
-    """A joint that turns at constant speed lags by speed times delay."""
+    """A delayed joint that turns at constant speed lags by speed times delay."""
     times = np.arange(0, 200) / 90.0
     vector = np.zeros((200, 22, 3))
     vector[:, :, 1] = times[:, np.newaxis] * 0.5
@@ -59,14 +59,14 @@ def test_the_avatar_is_where_the_participant_was() -> None:
 
 
 def test_a_delay_of_whole_frames_copies_samples_exactly(rng: np.random.Generator) -> None:
-    """A sample at exactly the requested time is copied without interpolation."""
+    """A sample at exactly the delayed time is copied without interpolation."""
     times = np.arange(50) / 64.0
     q = rot.normalise(rng.normal(size=(50, 22, 4)))
     np.testing.assert_array_equal(delayed_pose(times, q, times, 4 / 64.0)[10:, 1:], q[6:-4, 1:])
 
 
 def test_a_changed_delay_applies_from_the_next_frame(rng: np.random.Generator) -> None:
-    """After a change the buffer responds as if the new delay had always been set."""
+    """After a change the delay buffer responds as if the new delay had always been set."""
     times, q = _movement(rng)
     buffer = DelayBuffer(0.125)
     for t, row in zip(times[:100], q[:100], strict=True):

@@ -30,7 +30,7 @@ class C3dFile:
     stated_frames: int | None = None
 
     def to_bytes(self) -> bytes:
-        """Return the whole file."""
+        """Return the bytes of the whole C3D file."""
         frames = len(self.places_mm)
         parameters = self._parameters(frames % 65536)
         data_block = 2 + len(parameters) // BLOCK

@@ -53,7 +53,7 @@ def test_looking_right_in_unity_is_looking_right_here() -> None:
 
 
 def test_a_german_log_is_read() -> None:
-    """Semicolons between columns and decimal commas are read."""
+    """A UXF log with semicolons between columns and decimal commas is read."""
     text = "time;pos_x;pos_y;pos_z;rot_x;rot_y;rot_z\n1,5;0,25;1,5;-0,5;0;90;0\n1,6;0,3;1;0;0;0;0\n"
     motion = _uxf(text)
     np.testing.assert_allclose(motion.positions_m[0, 0], (0.25, 1.5, 0.5))

@@ -47,7 +47,7 @@ def test_every_format_names_a_function_that_reads() -> None:
 
 
 def test_an_ambiguous_extension_gives_no_format() -> None:
-    """The extension .csv, shared by four formats, gives none; .trc gives TRC."""
+    """The extension .csv, shared by four formats, identifies none; .trc identifies TRC."""
     assert _key_of(b"a,b\n1,2\n", "table.csv") is None
     assert _key_of(b"a,b\n1,2\n", "table.TRC") == "trc"
 

@@ -15,7 +15,7 @@ def _table(motion: RigMotion | MarkerMotion | BodyMotion) -> list[dict[str, str]
 
 
 def test_a_skeleton_is_written_as_positions_and_rotations() -> None:
-    """Each row has every joint's world position and rotation."""
+    """Each row of the exported table has every joint's world position and rotation."""
     rng = np.random.default_rng(5)
     motion = random_motion(rng, random_rig(rng, *motive_body(), rest=True), frames=1100)
     motion.observed[7, 3] = False
@@ -32,7 +32,7 @@ def test_a_skeleton_is_written_as_positions_and_rotations() -> None:
 
 
 def test_rows_come_in_pieces() -> None:
-    """Rows are yielded some hundred frames at a time after the titles, to save memory."""
+    """The export yields the titles and then some hundred rows at a time, to save memory."""
     rng = np.random.default_rng(6)
     pieces = list(to_csv(random_motion(rng, random_rig(rng, *motive_body()), frames=1100)))
     assert len(pieces) == 4
@@ -41,7 +41,7 @@ def test_rows_come_in_pieces() -> None:
 
 
 def test_unseen_values_are_empty() -> None:
-    """Gaps of markers and rigid bodies are empty cells, not zeros."""
+    """Gaps of markers and rigid bodies are exported as empty cells, not as zeros."""
     places = np.array([[[1.0, 2.0, 3.0]], [[np.nan, np.nan, np.nan]]])
     rows = _table(MarkerMotion(("LKNE",), 50.0, places))
     assert rows[0] == {

@@ -78,7 +78,7 @@ def test_each_problem_is_reported_with_its_line(old: str, new: str, expected_mes
 
 
 def test_all_problems_are_reported_together() -> None:
-    """A bad outline, a place in a table and a path to nowhere give three problems."""
+    """A bad outline, a place in a table and an unknown goal of a scene file are all reported."""
     text = SCENE.replace("[2, -2], [2, -1]", "[2, -1], [2, -2]").replace("to: goal", "to: gaol")
     with pytest.raises(ConfigError) as refused:
         load_scene(text.replace("goal: [0, 3]", "goal: [0, 1]"))

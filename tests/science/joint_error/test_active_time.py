@@ -14,7 +14,7 @@ def _times(frames: int) -> FloatArray:
 
 
 def test_a_clock_that_always_runs_counts_from_the_first_frame() -> None:
-    """With an always running clock, active time counts from the first frame's time."""
+    """If the clock always runs, active time counts from the first frame's time."""
     found = active_times(_times(8), np.ones(8, np.bool_))
     np.testing.assert_array_equal(found, STEP_S * np.arange(8))
 

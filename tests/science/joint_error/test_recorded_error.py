@@ -87,7 +87,7 @@ def nodded(size_deg: float, delay_frames: int = DELAY_FRAMES) -> RecordedErrors:
 
 
 def test_a_perfect_avatar_has_no_error_against_its_delayed_command() -> None:
-    """A perfect avatar has no error against the delayed command, but against the present target."""
+    """A perfect avatar has no error against its delayed command, but one against the present."""
     found = nodded(20.0)
     np.testing.assert_allclose(np.nan_to_num(found.command.max_rad), 0.0, atol=1e-9)
     assert of(found.present, "max_rad", "Head", "angle") == pytest.approx(20.0)
@@ -110,7 +110,7 @@ def test_the_error_of_clipping_and_its_share_are_exact() -> None:
 
 
 def test_a_clipping_belongs_to_the_time_of_the_reference() -> None:
-    """Clipping counts where the reference is clipped: now in 10 frames, in the command in 20."""
+    """Clipping counts in the reference's own frames: 10 of the present, 20 of the command."""
     found = nodded(40.0)
     samples = FRAMES - BEGIN
     assert of(found.present, "clipped_share", "Head", "x") == 10 / samples

@@ -136,7 +136,7 @@ def test_known_answers_of_each_naming() -> None:
 
 
 def test_a_shoulder_is_the_upper_arm_where_there_is_no_other() -> None:
-    """A joint called shoulder is the upper arm if limbs are named after joints: elbow, knee."""
+    """If joints are named shoulder, elbow and wrist, the shoulder is mapped to the upper arm."""
     rig = rig_of(
         "pelvis\ntorso pelvis\nneck torso\nhead neck\n"
         + both_sides(

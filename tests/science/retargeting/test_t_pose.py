@@ -29,7 +29,7 @@ def _aligned() -> tuple[TPose, ...]:
 
 
 def _gaps_of_positions(pose: TPose) -> FloatArray:
-    """Return |k - v| of bones between joints, with k from forward kinematics."""
+    """Return |k - v| of each bone's direction k and axis v, by forward kinematics."""
     positions, _ = to_world(pose.rig, pose.rig.offsets_m[0], pose.local_rotations)
     order = list(SAME)
     gaps = []
@@ -41,7 +41,7 @@ def _gaps_of_positions(pose: TPose) -> FloatArray:
 
 
 def test_every_bone_lies_on_its_axis() -> None:
-    """|k - v| <= 1e-9 for all bones of hundreds of random bodies, antiparallel ones included."""
+    """Every bone of random bodies lies on its axis: |k - v| <= 1e-9, antiparallel ones too."""
     poses = _aligned()
     assert len(poses) == BODIES
     assert all(len(pose.bones) >= 13 for pose in poses)
@@ -63,7 +63,7 @@ def test_antiparallel_bones_are_among_the_random_ones() -> None:
 
 
 def test_single_precision_keeps_its_digits() -> None:
-    """In float32 |k - v| <= 1e-6 for all bones of the random bodies."""
+    """In float32 every bone of random bodies lies on its axis to |k - v| <= 1e-6."""
     poses = [t_pose(rig, SAME, dtype=np.float32) for rig in _random_bodies(5)]
     assert {pose.local_rotations.dtype for pose in poses} == {np.dtype(np.float32)}
     assert max(float(np.max(pose.misalignment())) for pose in poses) <= 1e-6

@@ -42,7 +42,7 @@ def test_every_hand_box_is_reached_to_a_millimetre(side: str, box: int) -> None:
 @pytest.mark.parametrize("side", ["Left", "Right"])
 @pytest.mark.parametrize("target", [(-0.5, 0.01, -0.6), (0.2, 0.01, -0.9), (0.0, 0.15, -1.2)])
 def test_floor_targets_are_stepped_on(side: str, target: tuple[float, float, float]) -> None:
-    """The sole ends flat on its target, also several steps away and on a bar."""
+    """The participant's sole ends flat on its target, also several steps away and on a bar."""
     person = person_of()
     pose = follow(person, step(target, side), 0.0, 6.0)[-1]
     np.testing.assert_allclose(sole(pose, side), person.aimed_m or (), atol=1e-3)
@@ -65,7 +65,7 @@ def test_the_hand_enters_and_leaves_a_box_by_its_opening() -> None:
 
 
 def test_feet_lift_over_the_edge_of_a_box() -> None:
-    """A foot is above the box's edge between its start and its goal."""
+    """The participant's foot is above the box's edge between its start and its goal."""
     person = person_of()
     poses = follow(person, step((0.3, 0.01, -0.6), "Right"), 0.0, 3.0)
     soles = np.array([sole(pose, "Right") for pose in poses])
@@ -77,7 +77,7 @@ def test_feet_lift_over_the_edge_of_a_box() -> None:
 
 
 def test_walking_back_brings_the_body_home() -> None:
-    """The body walks back from the bar to the start square and stands there."""
+    """The participant walks back from the bar to the start square and stands there."""
     person = person_of()
     follow(person, step((0.0, 0.15, -1.2), "Right"), 0.0, 5.0)
     home = Goal(GoalKind.WALK_TO, None, (0.0, 0.0, 0.0))
@@ -88,7 +88,7 @@ def test_walking_back_brings_the_body_home() -> None:
 
 
 def test_a_goal_out_of_reach_leaves_the_arm_stretched_towards_it() -> None:
-    """With a target metres away the body stays finite, upright and near."""
+    """With a target metres away the participant's body stays finite, upright and near."""
     person = person_of()
     goal = Goal(GoalKind.REACH, "RightHand", (0.0, 1.3, -6.0))
     pose = follow(person, goal, 0.0, 6.0)[-1]

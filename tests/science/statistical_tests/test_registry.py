@@ -25,7 +25,7 @@ def test_every_test_has_a_key_of_its_own() -> None:
 
 
 def test_page_follows_the_declared_direction() -> None:
-    """Page's p is small for values in the declared direction and large for the opposite one."""
+    """Page's test gives a small p in the declared direction and a large one in the opposite."""
     make = statistical_test("page_trend").load()
     rises = make(Sample(RISING, ("a", "b", "c"), "rises"))
     falls = make(Sample(RISING, ("a", "b", "c"), "falls"))

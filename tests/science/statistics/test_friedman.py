@@ -47,7 +47,7 @@ def _by_brute_force(blocks: FloatArray) -> float:
     ],
 )
 def test_the_exact_p_is_that_of_every_arrangement(blocks: list[list[float]]) -> None:
-    """The exact p equals the enumeration of all arrangements, with and without ties."""
+    """Friedman's exact p equals the enumeration of all arrangements, with and without ties."""
     test = friedman(blocks)
     assert test.method == "exact"
     assert test.p == pytest.approx(_by_brute_force(np.array(blocks)), abs=1e-12)
@@ -56,7 +56,7 @@ def test_the_exact_p_is_that_of_every_arrangement(blocks: list[list[float]]) -> 
 @_DRAWN
 @given(likert())
 def test_names_and_scales_do_not_matter(blocks: FloatArray) -> None:
-    """Reordering subjects or levels and monotone transforms do not change the result."""
+    """Reordering subjects or levels and monotone transforms do not change Friedman's test."""
     rng = np.random.default_rng(blocks.size)
     moved = blocks[rng.permutation(blocks.shape[0])][:, rng.permutation(blocks.shape[1])]
     before = friedman(blocks)
@@ -69,7 +69,7 @@ def test_names_and_scales_do_not_matter(blocks: FloatArray) -> None:
 @_DRAWN
 @given(likert())
 def test_p_and_agreement_stay_in_bounds(blocks: FloatArray) -> None:
-    """W is from 0 to 1, p above 0 up to 1, and mean ranks average (k + 1) / 2."""
+    """In Friedman's test W is 0 to 1, p at most 1, and mean ranks average (k + 1) / 2."""
     test = friedman(blocks)
     assert -1e-12 <= test.kendall_w <= 1.0 + 1e-12
     assert 0.0 < test.p <= 1.0
@@ -77,7 +77,7 @@ def test_p_and_agreement_stay_in_bounds(blocks: FloatArray) -> None:
 
 
 def test_exact_and_asymptotic_meet_at_many_subjects() -> None:
-    """Exact and asymptotic p differ by less than .01 at 60 subjects, by more at 6."""
+    """Friedman's exact and asymptotic p differ by less than .01 at 60 subjects, by more at 6."""
     rng = np.random.default_rng(5)
     many = friedman(rng.normal((0.0, 0.1, 0.25), size=(60, 3)), exact_up_to=60)
     assert many.method == "exact"
@@ -87,14 +87,14 @@ def test_exact_and_asymptotic_meet_at_many_subjects() -> None:
 
 
 def test_full_agreement_has_the_smallest_p_there_is() -> None:
-    """Twelve people in full agreement have W 1 and p 6 / 6^12."""
+    """Twelve subjects in full agreement give W 1 and p 6 / 6^12 in Friedman's test."""
     test = friedman(np.tile([1.0, 2.0, 3.0], (12, 1)))
     assert test.kendall_w == pytest.approx(1.0)
     assert test.p == pytest.approx(6.0 / 6.0**12, rel=1e-9)
 
 
 def test_too_many_arrangements_give_an_asymptotic_p() -> None:
-    """With nine levels p is asymptotic, and a note states the reason."""
+    """With nine levels Friedman's p is asymptotic, and a note states the reason."""
     test = friedman(np.random.default_rng(1).normal(size=(5, 9)))
     assert test.method == "asymptotic"
     assert test.p == test.p_asymptotic

@@ -141,9 +141,9 @@ def test_page_trend_of_the_three_ways_of_teaching() -> None:
 
 
 def test_power_of_twelve_participants() -> None:
-    """Power of 12 with m = 3, r = .5: .823 at .14, .416 at .06; 80 % at .06 takes 27.
+    """The power of an ANOVA agrees with G*Power 3 and pingouin.
 
-    G*Power 3 and pingouin.
+    12 people with m = 3, r = .5: .823 at .14, .416 at .06; 80 % at .06 takes 27.
     """
     assert rm_anova_power(12, Expected(0.14)) == pytest.approx(0.823, abs=5e-4)
     assert rm_anova_power(12, Expected(0.06)) == pytest.approx(0.416, abs=5e-4)

@@ -71,14 +71,14 @@ def test_the_sleep_study_is_that_of_lme4(sleep: MixedModel) -> None:
 
 
 def test_degrees_of_freedom_of_the_sleep_study(sleep: MixedModel) -> None:
-    """The mean slope has 18 - 1 df, since each participant has their own line (lmerTest)."""
+    """The sleep study's mean slope has 18 - 1 df, as each participant has a line (lmerTest)."""
     _, days = fixed_effects(sleep)
     assert days.value.se == pytest.approx(1.5458, abs=5e-5)
     assert days.value.df == pytest.approx(17.0, abs=0.01)
 
 
 def test_balanced_data_give_the_analysis_of_variance() -> None:
-    """Without missing cells F and df are those of the additive ANOVA."""
+    """Without missing cells the mixed model's F and df are those of the additive ANOVA."""
     values, people, design = study(3)
     cube = values.reshape(12, 3, 2)
     means = cube.mean(axis=(0, 2))

@@ -123,7 +123,7 @@ def test_holms_pattern_is_that_of_the_authors(authors: MixedModel) -> None:
 
 
 def test_without_the_interaction_the_pattern_holds(workload: Workload) -> None:
-    """Without the interaction the same four comparisons are significant."""
+    """Without the interaction the model rejects the same four comparisons of methods."""
     rejected = {(one.a, one.b) for one in contrasts(workload.fit(), "method") if one.p_holm < 0.05}
     assert rejected == {
         ("Object", "Stick"),

@@ -12,7 +12,7 @@ from app.science.statistics.arrays import row_midranks
 
 
 def test_with_ties_p_is_that_of_every_arrangement() -> None:
-    """With ties p equals the enumeration of all arrangements of three subjects."""
+    """With ties Page's p equals the enumeration of all arrangements of three subjects."""
     ranks = row_midranks(np.array([[1.0, 1.0, 2.0], [1.0, 2.0, 3.0], [2.0, 1.0, 2.0]]))
     test = page_trend(ranks)
     places = np.array([1.0, 2.0, 3.0])
@@ -26,7 +26,7 @@ def test_with_ties_p_is_that_of_every_arrangement() -> None:
 
 @pytest.mark.parametrize(("n", "k"), [(5, 3), (12, 3), (4, 4), (3, 5)])
 def test_without_ties_p_is_that_of_scipy(n: int, k: int) -> None:
-    """Without ties both forms of the exact p equal scipy's."""
+    """Without ties both forms of Page's exact p equal scipy's."""
     blocks = np.random.default_rng(n * k).normal(size=(n, k)) + 0.3 * np.arange(k)
     test = page_trend(blocks)
     theirs = stats.page_trend_test(blocks, method="exact")
@@ -36,13 +36,16 @@ def test_without_ties_p_is_that_of_scipy(n: int, k: int) -> None:
 
 
 def test_a_fall_is_a_rise_of_the_reversed_levels() -> None:
-    """p of a falling trend is p of a rising one with reversed levels."""
+    """Page's p of a falling trend is that of a rising one with reversed levels."""
     blocks = np.random.default_rng(3).integers(1, 6, size=(9, 3)).astype(np.float64)
     assert page_trend(blocks).p_falling == pytest.approx(page_trend(blocks[:, ::-1]).p, abs=1e-12)
 
 
 def test_many_subjects_come_to_the_normal_distribution() -> None:
-    """At 50 subjects exact and normal p differ by less than .02; beyond, only normal is given."""
+    """Page's exact and normal p differ by less than .02 at 50 subjects.
+
+    Beyond 50 subjects only the normal one is given.
+    """
     blocks = np.random.default_rng(4).normal((0.0, 0.1, 0.2), size=(51, 3))
     fifty = page_trend(blocks[:50])
     assert fifty.method == "exact"
@@ -52,6 +55,6 @@ def test_many_subjects_come_to_the_normal_distribution() -> None:
     assert math.isnan(more.p_given_ties)
 
 
-def test_levels_that_nobody_tells_apart_have_no_trend() -> None:
-    """If all values are equal, p is 1."""
+def test_equal_values_have_no_trend() -> None:
+    """If all values are equal, Page's p is 1."""
     assert page_trend(np.ones((4, 3))).p_given_ties == 1.0

@@ -18,7 +18,7 @@ from tests.science.statistics.published import pingouin_table, wide
 
 
 def test_two_levels_are_a_paired_t_test() -> None:
-    """With two levels F is t squared and epsilon is 1."""
+    """With two levels F is the square of the paired t, and epsilon is 1."""
     rng = np.random.default_rng(1)
     values = rng.normal((0.0, 0.5), size=(12, 2))
     (effect,) = rm_anova(values).effects

@@ -40,7 +40,7 @@ def _by_brute_force(differences: FloatArray, alternative: Alternative, zeros: Ze
 def test_the_exact_p_is_that_of_every_assignment_of_signs(
     differences: list[int], alternative: Alternative, zeros: ZeroRule
 ) -> None:
-    """The exact p equals the enumeration of all signs, with ties and zeros, one- and two-sided."""
+    """The exact signed-rank p equals the enumeration of all signs, with ties and zeros."""
     x = np.array(differences, dtype=np.float64)
     test = signed_rank(x, np.zeros_like(x), alternative=alternative, zeros=zeros)
     assert test.method == "exact"
@@ -59,7 +59,7 @@ def test_turning_the_pairs_round_turns_the_effect_round(differences: list[int]) 
 
 
 def test_without_ties_p_is_that_of_scipy() -> None:
-    """Without ties p equals scipy's, two-sided and one-sided."""
+    """Without ties the signed-rank p equals scipy's, two-sided and one-sided."""
     rng = np.random.default_rng(8)
     x, y = rng.normal(0.4, 1.0, 12), rng.normal(size=12)
     for alternative in ("two-sided", "greater", "less"):
@@ -82,7 +82,7 @@ def test_the_normal_approximation_is_that_of_scipy_and_is_met() -> None:
 
 
 def test_equal_differences_of_decimals_tie() -> None:
-    """0.3 - 0.2 and 0.2 - 0.1 tie, whatever their last bit."""
+    """The differences 0.3 - 0.2 and 0.2 - 0.1 tie, whatever their last bit."""
     decimal = signed_rank([0.3, 0.2, 0.5, 0.1], [0.2, 0.1, 0.1, 0.2])
     whole = signed_rank([3.0, 2.0, 5.0, 1.0], [2.0, 1.0, 1.0, 2.0])
     assert (decimal.w, decimal.p) == (whole.w, whole.p)
@@ -96,7 +96,7 @@ def test_missing_pairs_are_left_out_and_counted() -> None:
 
 
 def test_equal_pairs_give_a_p_of_one() -> None:
-    """If all pairs are equal, p is 1, the effect is 0 and the zeros are counted."""
+    """If all pairs are equal, the signed-rank p is 1, the effect is 0 and the zeros are counted."""
     test = signed_rank([1.0, 2.0, 3.0], [1.0, 2.0, 3.0])
     assert (test.p, test.p_asymptotic, test.rank_biserial, test.n_zero) == (1.0, 1.0, 0.0, 3)
 

@@ -14,7 +14,7 @@ HEAD, HAND = JOINT_INDEX["Head"], JOINT_INDEX["RightHand"]
 
 
 def quality(recording: Recording, counted: NDArray[np.bool_] | None = None) -> StreamQuality:
-    """Return the counted faults."""
+    """Return the faults of a recording, counted."""
     return assess(recording.times_s, recording.rotations, recording.positions_m, counted=counted)
 
 

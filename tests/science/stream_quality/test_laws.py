@@ -32,7 +32,7 @@ def examined(recording: Recording, before: Memory | None = None) -> Examination:
 
 
 def quality(recording: Recording) -> StreamQuality:
-    """Return the counted faults."""
+    """Return the faults of a recording, counted."""
     return assess(recording.times_s, recording.rotations, recording.positions_m)
 
 

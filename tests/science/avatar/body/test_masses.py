@@ -40,7 +40,10 @@ def test_the_parts_weigh_as_much_as_the_body(population: Population, total_kg: f
 
 
 def test_relative_masses_are_the_published_ones() -> None:
-    """A man of 100 kg: thigh 14.16, shank 4.33, hand with fingers .61, head with neck 6.94."""
+    """The parts of a man have the published shares of his mass.
+
+    Of 100 kg: thigh 14.16, shank 4.33, hand with fingers .61, head with neck 6.94.
+    """
     parts = body_masses(build_body(1.75), 100.0, population="male").parts
     assert parts["LeftUpperLeg"].mass_kg == pytest.approx(14.16)
     assert parts["LeftLowerLeg"].mass_kg == pytest.approx(4.33)

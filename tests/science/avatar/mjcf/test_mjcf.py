@@ -54,7 +54,7 @@ def test_a_model_has_a_hinge_and_a_motor_for_each_axis(
 
 @pytest.mark.parametrize("parts", [PART_NAMES, NO_FINGERS])
 def test_the_model_weighs_what_the_body_weighs(parts: list[str]) -> None:
-    """The model weighs 72 kg, to the twelve digits that are written."""
+    """The model of a body of 72 kg weighs 72 kg, to the twelve digits that are written."""
     model, _ = loaded(mjcf_of(build_body(1.75, parts=parts)))
     assert mujoco.mj_getTotalmass(model) == pytest.approx(72.0, abs=1e-9)
 
@@ -169,7 +169,7 @@ def test_both_sides_are_driven_alike() -> None:
 
 
 def test_an_axis_without_settings_is_rejected() -> None:
-    """An axis without settings is rejected by its name."""
+    """An axis without settings raises an error that names it."""
     body = build_body(1.75)
     settings = settings_of(body)
     del settings["HeadY"]

@@ -105,7 +105,7 @@ def test_many_random_poses_and_teleports_cause_no_failure(hips: Hips) -> None:
 
 
 def test_a_state_that_is_not_finite_is_restored() -> None:
-    """After a non-finite state the previous pose is restored, counted, and the clock goes on."""
+    """A non-finite state is counted and replaced by the previous pose; the clock goes on."""
     body = avatar()
     bent = angles(LeftLowerArmY=0.5)
     run(body, bent, 90)

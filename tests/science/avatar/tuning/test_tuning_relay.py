@@ -63,7 +63,7 @@ def test_the_limit_cycle_is_the_one_of_the_describing_function(
 
 @pytest.mark.parametrize("amplitude_hystereses", [3.0, 8.0])
 def test_inertia_does_not_depend_on_how_it_is_measured(amplitude_hystereses: float) -> None:
-    """Other damping and four times the torque change Ku and Pu but not the inertia."""
+    """Other damping and four times the torque change Ku and Pu, but not the measured inertia."""
     usual = relay_for(1.0, 5.0)
     omega = 10.0 * pi
     damping = omega * tan(asin(1.0 / amplitude_hystereses))
@@ -73,7 +73,7 @@ def test_inertia_does_not_depend_on_how_it_is_measured(amplitude_hystereses: flo
 
 
 def test_a_relay_of_twice_the_torque_is_faster_by_the_cube_root() -> None:
-    """At the same damping, w^3 is proportional to the relay's torque."""
+    """At the same damping, the cube of the limit cycle's rate is proportional to the torque."""
     one = relay_for(1.0, 5.0)
     two = replace(one, torque_nm=2.0 * one.torque_nm)
     ratio = _found(1.0, one).period_s / _found(1.0, two).period_s
@@ -113,7 +113,10 @@ def test_a_relay_experiment_can_be_cancelled() -> None:
 
 
 def test_the_usual_rule_damps_a_double_integrator_critically() -> None:
-    """kp = .8 Ku with Td = .356 Pu gives a damping ratio from .95 to 1.1."""
+    """The usual rule gives a double integrator a damping ratio from .95 to 1.1.
+
+    Its gains are kp = .8 Ku with Td = .356 Pu; the response is nearly as fast as the relay's.
+    """
     inertia, relay_hz = 0.3, 8.0
     gains = HEURISTICS["critical"].gains(_found(inertia, relay_for(inertia, relay_hz)), inf)
     omega = sqrt(gains.kp / inertia)

@@ -66,7 +66,7 @@ def test_percentiles_and_tests_are_those_of_scipy() -> None:
 
 
 def test_power_grows_from_alpha_to_one() -> None:
-    """Power is alpha without an effect, .93 at 58 pairs with d = .5, and 1 at 2000 pairs."""
+    """Signed-rank power is alpha without an effect, .93 at 58 pairs with d = .5, 1 at 2000."""
     assert signed_rank_power(50, 0.0) == pytest.approx(0.05, abs=1e-3)
     assert signed_rank_power(58, 0.5) == pytest.approx(0.93, abs=0.02)
     assert signed_rank_power(2000, 0.5) == pytest.approx(1.0)

@@ -67,7 +67,7 @@ def test_blends_have_the_dependencies_and_maps_of_their_weights() -> None:
 
 
 def test_blends_never_include_people_who_are_left_out() -> None:
-    """All entries of a fold are walks of the fold, or blends of them."""
+    """The entries of a space without some people are walks of the others, or blends of them."""
     rng = np.random.default_rng(4)
     rows = dependency_rows(rng, 60)
     person = np.arange(60) % 6

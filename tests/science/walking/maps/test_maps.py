@@ -62,7 +62,7 @@ def test_known_parameters_are_recovered(index: int, metric: Metric) -> None:
 
 
 def test_the_metric_is_equation_five() -> None:
-    """The metric is the sum of distances over the reference's samples by its length."""
+    """The metric is equation 5: the sum of distances over samples, by the reference's length."""
     entry = _entry(POLE)
     reference = reference_of(entry.walk, 1.0 / 60.0)
     places = reference.xy_m[None] + np.array([0.03, 0.04])

@@ -79,7 +79,7 @@ def test_the_papers_grid_is_the_papers() -> None:
 
 
 def test_a_grid_rejects_values_out_of_bounds_or_order() -> None:
-    """A single value fixes a parameter; values out of bounds or out of order are rejected."""
+    """A grid fixes a parameter by one value, and rejects values out of bounds or of order."""
     sway = SteeringParameter("sway", "m", 0.0, 0.1)
     grid = ParameterGrid((VELOCITY, sway), ((0.5, 1.0), (0.02,)))
     assert grid.nodes.tolist() == [[0.5, 0.02], [1.0, 0.02]]

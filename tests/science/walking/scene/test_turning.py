@@ -45,7 +45,7 @@ def test_turns_to_both_sides_add_up() -> None:
 
 
 def test_samples_are_equally_far_apart() -> None:
-    """Samples are equidistant along the path, with both ends kept."""
+    """A path is sampled at equal distances along its length, with both ends kept."""
     line = by_length(np.array([[0.0, 0.0], [0.3, 0.4], [0.3, 1.0]]))
     assert len(line) == 111
     assert line[[0, -1]] == pytest.approx(np.array([[0.0, 0.0], [0.3, 1.0]]))
