@@ -50,7 +50,7 @@ def spend_all(lab: Lab, client: TestClient | None = None) -> Response:
         answer = client.get("/nothing-here")
         if answer.status_code == 429:
             return answer
-    raise AssertionError("a stranger may ask for ever")
+    raise AssertionError("anonymous requests are not limited")
 
 
 @pytest.mark.one_engine
@@ -275,7 +275,7 @@ class TestBudget:
             stranger.headers["authorization"] = f"Bearer {at:043d}"
             if stranger.get("/api/me").status_code == 429:
                 return
-        raise AssertionError("an invented token opens the budget")
+        raise AssertionError("requests with invalid tokens are not limited")
 
     def test_an_unpaired_tablet_is_refused_immediately(self, fresh_lab: Lab) -> None:
         """An unpaired tablet's token is refused immediately."""

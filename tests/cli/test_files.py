@@ -76,7 +76,7 @@ Frame Time: 0.01
 
 
 @pytest.mark.parametrize("what", sorted(READ.keys() - ALIKE))
-def test_a_missing_file_is_named_in_a_sentence(what: str, folder: Path) -> None:
+def test_a_missing_file_is_reported_in_a_sentence(what: str, folder: Path) -> None:
     """A missing file is reported in one sentence with its folder and without an error number."""
     command, arguments = what.split()[:-1], READ[what]
     output = Invoked(command[0]).refusal(*command[1:], *arguments)

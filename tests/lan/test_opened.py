@@ -12,7 +12,7 @@ from app.settings import Settings
 from tests.lan.machines import LAB_PC
 
 
-def test_this_machine_alone_needs_three_lines() -> None:
+def test_a_local_server_prints_three_lines() -> None:
     """A server for this machine alone prints its address, a note on tablets and the data folder."""
     assert addresses(Reach(), "data").splitlines() == [
         "Reembody   http://127.0.0.1:8321",

@@ -20,7 +20,7 @@ def plan_for(tmp_path: Path, **given: Any) -> Plan:
 
 
 @pytest.mark.parametrize("host", ["127.0.0.1", "localhost", "::1", "127.0.0.2"])
-def test_this_machine_alone_needs_nothing(tmp_path: Path, host: str) -> None:
+def test_a_loopback_address_needs_no_certificate(tmp_path: Path, host: str) -> None:
     """A loopback address is served over plain HTTP without certificates."""
     plan = plan_for(tmp_path, host=host)
     assert (plan.mode, plan.lan_hosts, plan.certificates) == ("loopback", (), None)

@@ -12,7 +12,7 @@ STORED, DAMAGED = '{"key":"pilot"}', '{"key":"pil~t'
 
 
 def test_a_stored_text_with_a_wrong_hash_is_reported_as_damage() -> None:
-    """An unreadable stored text is reported as damage if its hash differs, else as our error."""
+    """An unreadable stored text is reported as database damage if it does not match its hash."""
     with unpacking(STORED, sha256_of(STORED)):
         json.loads(STORED)
     with (

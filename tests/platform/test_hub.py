@@ -1,4 +1,4 @@
-"""Tests of the live hub: news reach those that subscribed to them."""
+"""Tests of the live hub: messages reach the subscribers that requested them."""
 
 import asyncio
 from typing import Any
@@ -7,7 +7,7 @@ from app.platform.hub import Hub
 
 
 async def heard_by(hub: Hub, *more: str) -> dict[str, Any]:
-    """Return the news that a subscriber of session `a` gets of it and of session `b`."""
+    """Return the messages that a subscriber of session `a` receives about `a` and `b`."""
     with hub.subscribe("a", *more) as subscription:
         hub.publish("a", "telemetry", {"fps": 90})
         hub.publish("a", "session")
@@ -17,7 +17,7 @@ async def heard_by(hub: Hub, *more: str) -> dict[str, Any]:
 
 
 def test_figures_reach_only_those_that_subscribed_to_them() -> None:
-    """All subscribers of a session get its changes, but figures only if they asked for them."""
+    """All subscribers of a session get its changes, but figures only if they requested them."""
     assert asyncio.run(heard_by(Hub())) == {"session": None}
     assert asyncio.run(heard_by(Hub(), "telemetry")) == {
         "session": None,
@@ -26,7 +26,7 @@ def test_figures_reach_only_those_that_subscribed_to_them() -> None:
 
 
 def test_figures_have_listeners_while_someone_is_subscribed() -> None:
-    """Figures have listeners only while someone is subscribed to them."""
+    """The hub has listeners for figures only while someone is subscribed to them."""
 
     async def look() -> list[bool]:
         hub = Hub()

@@ -148,7 +148,7 @@ def _an_event(database: Database) -> dict[str, object]:
         return dict(db.execute(select(SessionEvent.__table__).limit(1)).mappings().one())
 
 
-def test_a_backup_without_enough_disk_space_is_not_begun(
+def test_a_backup_without_enough_disk_space_is_not_started(
     database: Database, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A backup is refused before it writes if the disk has too little space for it."""

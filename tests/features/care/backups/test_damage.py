@@ -40,7 +40,7 @@ def refused(path: Path) -> bool:
 
 
 def content(path: Path) -> object:
-    """Return the manifest and tables of a backup that opens."""
+    """Open a backup and return its manifest and tables."""
     with opened_backup(path) as backup:
         return backup.manifest, backup.tables
 

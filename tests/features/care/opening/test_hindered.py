@@ -104,7 +104,7 @@ def test_a_dangling_link_to_the_database_is_reported(tmp_path: Path) -> None:
     assert not (tmp_path / "unplugged").exists()
 
 
-def test_damage_that_makes_messages_undecodable_is_damage(file: Path, tmp_path: Path) -> None:
+def test_damage_with_undecodable_messages_is_quarantined(file: Path, tmp_path: Path) -> None:
     """A database whose damage makes SQLite's error message undecodable is quarantined."""
     edited(file, UNDECODABLE)
     with pytest.raises(Damaged) as refused:
@@ -197,7 +197,7 @@ def test_a_leftover_log_is_quarantined_before_a_new_database(tmp_path: Path) -> 
 
 
 def test_a_database_created_for_a_failed_block_is_removed(tmp_path: Path) -> None:
-    """A database created for a block that fails is removed; one that existed before stays."""
+    """`created_if_missing` removes the database that it created if its block fails."""
     settings = Settings(data_dir=tmp_path)
     with pytest.raises(NotADirectoryError), created_if_missing(settings, CLOCK):
         # The file exists; the error comes from treating it as a folder.

@@ -47,7 +47,7 @@ def ends_of_blobs(file: Path) -> set[int]:
 
 
 def test_an_intact_database_passes(file: Path, tmp_path: Path) -> None:
-    """An intact database passes, whether it was closed normally or left by a killed process."""
+    """An intact database passes inspection, even if it was left by a killed process."""
     assert damage_of(file) is None
     assert damage_of(killed(tmp_path / "killed.sqlite")) is None
 
@@ -163,7 +163,7 @@ def test_a_large_file_is_checked_only_after_an_unclean_end(
 
 
 def test_another_programs_database_is_known_by_its_tables(file: Path, tmp_path: Path) -> None:
-    """Another program's database is recognised by its tables; ours and an empty one pass."""
+    """Another program's database is recognised by its tables; ours is not foreign."""
     other, new = tmp_path / "other.sqlite", tmp_path / "new.sqlite"
     with closing(sqlite3.connect(other)) as connection:
         connection.execute("CREATE TABLE bookmarks (x)")

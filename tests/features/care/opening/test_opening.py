@@ -77,7 +77,7 @@ def test_an_older_database_is_backed_up_and_migrated(
 
 
 @pytest.mark.parametrize("revision", EACH_OLDER)
-def test_without_a_backup_nothing_is_migrated(
+def test_a_database_is_not_migrated_without_a_backup(
     bench: Bench, tmp_path: Path, revision: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """An older database is not migrated if the disk has no space for its backup."""

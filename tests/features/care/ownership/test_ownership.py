@@ -249,7 +249,7 @@ def test_a_data_folder_that_is_a_file_is_refused(tmp_path: Path) -> None:
         own_data(Settings(data_dir=tmp_path / "file"))
 
 
-def test_a_reader_works_beside_an_owner_that_has_prepared(tmp_path: Path) -> None:
+def test_a_reader_works_alongside_an_owner_that_has_prepared(tmp_path: Path) -> None:
     """A reading command works beside an owner once the owner has prepared the database.
 
     Without an owner it prepares the database itself; beside one that is still preparing it is
@@ -321,7 +321,7 @@ def _end_connections_of(url: str, own: Ownership) -> None:
 
 
 def _never() -> None:
-    pytest.fail("the data were taken over")
+    pytest.fail("the owner was asked to shut down")
 
 
 def _lives(pid: int) -> bool:
@@ -339,4 +339,4 @@ def _wait_for_end(pid: int) -> None:
         ):
             return
         time.sleep(0.01)
-    pytest.fail("it does not end")
+    pytest.fail(f"process {pid} does not end")

@@ -61,7 +61,7 @@ def save(
 
 
 @pytest.mark.one_engine
-def test_a_lab_begins_with_the_standard_avatar(fresh_lab: Lab) -> None:
+def test_a_new_installation_has_the_standard_avatar(fresh_lab: Lab) -> None:
     """A new installation has the shipped standard avatar, which no session has used."""
     (listed,) = ok(fresh_lab.operator.get(PATH))
     assert (listed["key"], listed["versions"], listed["axes"]) == ("standard", 1, 91)
@@ -72,7 +72,7 @@ def test_a_lab_begins_with_the_standard_avatar(fresh_lab: Lab) -> None:
     assert view["newest"]["configuration"] == as_json(SHIPPED)
 
 
-def test_versions_are_appended_and_stay(fresh_lab: Lab) -> None:
+def test_versions_are_appended_and_kept(fresh_lab: Lab) -> None:
     """Versions are appended with author, origin and note, and earlier ones can be read."""
     first = new(fresh_lab, "soft")
     second = save(fresh_lab, "soft", CAST, 1, "tuned")

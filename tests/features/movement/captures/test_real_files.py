@@ -43,7 +43,7 @@ def test_markers_are_shown_with_their_fitted_skeleton(fresh_lab: Lab, shared_dat
     assert np.linalg.norm(middle_m - hips_m) < 0.5
 
 
-def test_a_capture_without_a_skeleton_says_why(fresh_lab: Lab, shared_data: Path) -> None:
+def test_a_capture_without_a_skeleton_gives_the_reason(fresh_lab: Lab, shared_data: Path) -> None:
     """A capture without a skeleton has a preview, and its joint map is refused with the reason."""
     file = shared_data / "motion" / "optitrack_csv" / "sample_optitrack_take.csv"
     view = uploaded(fresh_lab.operator, file.read_bytes(), file.name)

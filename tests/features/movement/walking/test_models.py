@@ -109,7 +109,7 @@ def test_impossible_paths_are_refused(walking_lab: Lab, model: Json) -> None:
         assert reported in refusal["message"]
 
 
-def test_tracks_of_people_are_fitted(walking_lab: Lab) -> None:
+def test_a_model_is_fitted_to_tracks_of_people(walking_lab: Lab) -> None:
     """A model fitted to an uploaded table of tracks is human; model and walks can be deleted."""
     walks = ok(upload_tracks(walking_lab, table(), stature=["P0=1.6", "P1=1.7", "P2=1.8"]))
     assert (walks["kind"], walks["summary"]["walks"], walks["summary"]["people"]) == ("human", 9, 3)
@@ -143,7 +143,7 @@ def test_an_invalid_table_of_tracks_is_refused(
 
 
 @pytest.mark.one_engine
-def test_one_person_is_too_few(walking_lab: Lab) -> None:
+def test_a_fit_needs_more_than_one_person(walking_lab: Lab) -> None:
     """Fitting a model to the walks of one person fails with the reason."""
     walks = ok(upload_tracks(walking_lab, table(people=1)))
     model = fitted(walking_lab, walks["id"])

@@ -40,7 +40,7 @@ def test_a_scene_is_uploaded_once_and_can_be_deleted(walking_lab: Lab) -> None:
 
 
 @pytest.mark.one_engine
-def test_every_problem_of_a_scene_is_named(walking_lab: Lab) -> None:
+def test_every_problem_of_a_scene_is_reported(walking_lab: Lab) -> None:
     """Every problem of a scene is reported with its line, and the scene is not stored."""
     broken = HALL.replace("goal: [0, 3]", "goal: [0, 1]").replace("from: start", "from: nowhere")
     refusal = error(

@@ -62,7 +62,7 @@ def test_uncommon_phrases_and_random_passwords_are_accepted(password: str) -> No
 
 
 def test_an_estimate_of_a_long_password_does_not_take_long() -> None:
-    """Estimating the strength of the slowest password of the maximum length succeeds."""
+    """A password of maximum length that is slow to estimate is still accepted."""
     slow = "4@8({[<369&#!1/|0$5+7%2" * 8
     require_good(slow[:MAX_LENGTH], "mara")
 

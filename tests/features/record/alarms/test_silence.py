@@ -88,7 +88,7 @@ def test_no_silence_is_reported_while_the_server_does_not_read() -> None:
 
 
 def test_frames_on_another_socket_of_the_session_count() -> None:
-    """Frames on another socket of the same session count, as after a change of headset."""
+    """Frames on another socket of the same session prevent the alarm about silence."""
     watched = running()
     for turn in range(1, 30):
         watched.watch.silence.frame_arrived(at(0.5 * turn).monotonic_s)

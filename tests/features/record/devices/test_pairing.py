@@ -48,7 +48,7 @@ def test_a_code_works_once(lab: Lab) -> None:
     assert first.get("/api/tablet/state").status_code == 200
 
 
-def test_of_many_tablets_with_one_code_one_is_paired(lab: Lab) -> None:
+def test_one_code_pairs_one_of_many_simultaneous_tablets(lab: Lab) -> None:
     """Of eight tablets that use one code at the same time, exactly one is paired."""
     session_id = lab.join()["id"]
     code = lab.show_code(session_id, "tablet")

@@ -158,7 +158,7 @@ def test_a_wall_clock_change_is_not_doubted(wall_s: float) -> None:
     late_s=st.floats(0.0, 600.0),
     wall_s=st.floats(-7200.0, 7200.0),
 )
-def test_no_honest_clock_is_doubted(
+def test_a_correct_clock_is_never_doubted(
     drift: float, scale: float, late_s: float, wall_s: float
 ) -> None:
     """A correct clock raises no doubt, whatever its drift, time scale, delay and wall clock."""

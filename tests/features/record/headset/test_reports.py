@@ -116,7 +116,7 @@ def test_losing_the_headset_pauses_at_the_last_time_on_disk(site: Site) -> None:
 
 
 def test_a_whole_phase_ends_with_its_joint_errors(site: Site) -> None:
-    """A phase that is carried through counts, and its joint errors are computed."""
+    """A completed phase counts, and its joint errors are computed."""
     from app.wire import StreamName
 
     session_id, token = running(site)

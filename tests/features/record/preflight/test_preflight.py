@@ -179,7 +179,7 @@ def test_a_study_changed_in_the_database_fails_its_checks(fresh_lab: Lab) -> Non
     assert checks["instruments"]["details"] == ["karas2020"]
 
 
-def test_an_override_goes_on_record_with_its_reason_and_the_finding(lab: Lab) -> None:
+def test_an_override_is_recorded_with_its_reason_and_finding(lab: Lab) -> None:
     """An override is recorded with the check's key, its finding, the reason and the account."""
     session_id = lab.join()["id"]
     reply = ok(override(lab, session_id, "headset", "  on loan until noon "))

@@ -24,7 +24,7 @@ from tests.features.record.questionnaires.forms import (
 )
 
 
-def test_scores_are_the_published_ones(lab: Lab, session_id: str, tablet: TestClient) -> None:
+def test_scores_equal_the_published_ones(lab: Lab, session_id: str, tablet: TestClient) -> None:
     """The answers of table 7.2 of the thesis give its scores 8, 7, 4 and 1.04 (1.0407...)."""
     ok(send(tablet, filled(due(tablet))))
     (form,) = stored(lab, session_id)

@@ -57,7 +57,7 @@ class Run:
         return self
 
     def report(self, what: str, active_s: float, client_t_s: float = 1.0) -> list[Event]:
-        """Report a change of the phase in progress as the headset."""
+        """Report a change of the phase in progress, in the role of the headset."""
         assert self.state.phase is not None
         return self.do(
             c.Report(

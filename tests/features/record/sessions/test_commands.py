@@ -41,7 +41,7 @@ def contents(lab: Lab, session_id: str, kind: str) -> int:
         )
 
 
-def test_of_two_operators_pressing_start_one_wins(lab: Lab, planned: Json) -> None:
+def test_only_one_of_two_simultaneous_starts_succeeds(lab: Lab, planned: Json) -> None:
     """Of two simultaneous starts one succeeds; the other gets 409 `stale` with what changed."""
     with ThreadPoolExecutor(2) as pool:
         answers = list(pool.map(lambda _: lab.try_command(planned, "start"), BOTH))

@@ -79,7 +79,7 @@ def test_a_phase_has_the_latency_of_its_block() -> None:
 
 
 def test_a_whole_phase_leads_to_its_questionnaire() -> None:
-    """A phase that is carried through is done, and its questionnaire is the current step."""
+    """A completed phase is done, and its questionnaire becomes the current step."""
     run = Run().begin(HAND).finish()
     assert run.step.key == f"{HAND}.karas2020"
     assert run.state.phase is None
@@ -102,7 +102,7 @@ def test_active_time_beyond_the_duration_is_refused() -> None:
         run.report("paused", 61.0)
 
 
-def test_active_time_does_not_run_backwards() -> None:
+def test_decreasing_active_time_is_refused() -> None:
     """A report with less active time than before is refused."""
     run = Run().begin(HAND)
     run.report("paused", 30.0)

@@ -17,7 +17,7 @@ def begin_phase(run: Run) -> None:
     run.report("started", 0.0)
 
 
-def test_redoing_a_running_phase_voids_it() -> None:
+def test_repeating_a_running_phase_voids_it() -> None:
     """Repeating a running phase voids it and makes its step ready for attempt 2."""
     run = Run().begin(HAND)
     run.do(c.Redo(content=WORDS))

@@ -20,7 +20,7 @@ def alarms(view: Json) -> dict[str, str]:
 
 
 @pytest.mark.one_engine
-def test_below_every_limit_nothing_happens(lab: Lab) -> None:
+def test_a_rating_below_every_limit_has_no_effect(lab: Lab) -> None:
     """A rating below every limit raises no alarm and holds nothing."""
     view = answered(lab, 9)
     assert (view["held"], alarms(view)) == (None, {})
@@ -38,7 +38,7 @@ def test_a_rating_at_the_warning_limit_raises_a_warning(lab: Lab) -> None:
     assert alarms(lab.view(view["id"])) == {}
 
 
-def test_at_the_limit_the_session_is_held(lab: Lab) -> None:
+def test_a_rating_at_the_stop_limit_holds_the_session(lab: Lab) -> None:
     """A rating at the stop limit holds the session, with a critical alarm and a neutral tablet."""
     view = answered(lab, 15)
     assert view["held"] == {

@@ -1,4 +1,4 @@
-"""Tests of a participant who refuses or asks: on tablet and console, in record and ledger."""
+"""Tests of a participant's refusal or question, on tablet and console and in the record."""
 
 import uuid
 from typing import Any
@@ -39,7 +39,7 @@ def types(lab: Lab, view: Json) -> list[str]:
 
 
 def test_a_refusal_reaches_the_operator_and_holds_the_session(lab: Lab) -> None:
-    """A refusal raises an alarm, is recorded and holds the session, and the tablet asks no more."""
+    """A refusal raises an alarm, is recorded and holds the session; the tablet asks nothing."""
     view, tablet = at_consent(lab)
     screen = send_refusal(tablet, refusal_request())
     assert (screen["screen"], screen["is_refused"]) == ("refused", True)

@@ -78,7 +78,7 @@ def test_the_latency_is_measured_from_stored_frames(
     assert achieved.samples == 720
 
 
-def test_catching_up_stores_a_row_for_every_phase_that_ended(lab: Lab, session_id: str) -> None:
+def test_the_summariser_stores_a_row_for_every_ended_phase(lab: Lab, session_id: str) -> None:
     """The summariser stores one latency row for each ended phase, with a reason if it has none."""
     by_latency = phases(lab, session_id)
     good, late, empty = (by_latency[latency_ms] for latency_ms in (125.0, 350.0, 0.0))

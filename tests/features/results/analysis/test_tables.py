@@ -180,7 +180,7 @@ def test_joint_errors_have_their_clipped_share(database: Database) -> None:
     assert set(rows["clipped_share"][existing]) == {0.25}
 
 
-def test_answers_stand_as_given_and_scores_follow_from_them(database: Database) -> None:
+def test_answers_are_as_given_and_scores_follow_from_them(database: Database) -> None:
     """The raw answers of Karas 2020, table 7.2 (hand, 0 ms), score 8, 7, 4 and 1.04."""
     raw = [2, 1, 1, 5, 1, 7, 7, 2, 1, 6, 1, 3, 4, 4]
     existing = {f"q{number}": answer for number, answer in enumerate(raw, start=1)}

@@ -77,7 +77,7 @@ def test_published_scores_are_reproduced(lab: Lab, shared_data: Path) -> None:
 
 
 @pytest.mark.one_engine
-def test_a_wide_survey_file_is_understood(lab: Lab) -> None:
+def test_a_wide_survey_file_is_imported(lab: Lab) -> None:
     """A survey file with three header rows, semicolons and columns per condition is imported."""
     names = [f"fms_{ms}" for ms in (0, 125)]
     head = ";".join(["ResponseId", "RecordedDate", *names])

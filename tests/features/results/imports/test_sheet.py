@@ -16,7 +16,7 @@ from app.features.results.imports.sheet import read_sheet
         ("code,q1\nP-1,\x024\n", "not a text file"),
     ],
 )
-def test_another_kind_of_file_is_named(text: str, named: str) -> None:
+def test_another_kind_of_file_is_refused_by_its_kind(text: str, named: str) -> None:
     """A picture, PDF, workbook or binary file is refused by its kind, with a hint to use CSV."""
     with pytest.raises(InvalidInput) as refused:
         read_sheet(text)
@@ -24,7 +24,7 @@ def test_another_kind_of_file_is_named(text: str, named: str) -> None:
     assert "CSV" in refused.value.remedy
 
 
-def test_a_wrong_quote_is_named_with_its_line() -> None:
+def test_a_misplaced_quote_is_reported_with_its_line() -> None:
     """A misplaced quote is reported with its line."""
     with pytest.raises(InvalidInput) as refused:
         read_sheet('code,q1\nP-1,"4"x\n')
