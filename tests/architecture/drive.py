@@ -267,7 +267,7 @@ def _batch(epoch: int, seq: int) -> bytes:
 
 @contextmanager
 def _recorded_member(recorder: Recorder, folder: str) -> Iterator[None]:
-    """Record while a file of this folder is written into a ZIP."""
+    """Record calls while a file of this folder is written into a ZIP archive."""
     opened = zipfile.ZipFile.open
 
     def noting(self: Any, name: Any, mode: Any = "r", *args: Any, **kwargs: Any) -> Any:

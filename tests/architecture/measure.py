@@ -1,25 +1,25 @@
-"""The structure of a tree in five figures, each defined here; nothing of the tree is run.
+"""Compute the structure of a tree in five figures, each defined here, without running anything.
 
 circles
     Sets of files that import each other in a loop: strongly connected components of more than one
     file in the import graph of `app/**/*.py` and `frontend/src/**/*.ts(x)` (tests left out). Every
-    import counts; `tests.architecture.imports` says what one is.
+    import counts; `tests.architecture.imports` defines what one is.
 upward_imports, floors
-    Of `app/features`. Its rooms are the folders and files directly below it and, where it exists,
-    `app/platform`. An arrow leads from one room to another that it imports, and weighs as many
-    pairs of files as import each other across. The rooms are ordered so that as few arrows as can
-    be found run back up (of such orders, with the fewest imports): where the arrows form no loop,
-    none do. Where all of them are wings (`WINGS`) and the platform, their order is given. The
-    `upward_imports` are the imports of the arrows that run back up. Set these aside, and a room
-    stands one floor above the highest room that it imports, on floor 1 if it imports none;
-    `floors` is how many there are. Where a room is a wing (`WINGS`), the features inside it
-    are rooms in the same way: their upward imports are added, their floors are told wing by wing.
+    Of `app/features`. Its rooms are the folders and files directly below it and, if it exists,
+    `app/platform`. An arrow leads from one room to another that it imports; its weight is the
+    number of pairs of files that import each other across. The rooms are ordered so that as few
+    arrows as can be found run back up (of such orders, with the fewest imports): if the arrows form
+    no loop, none do. If all of them are wings (`WINGS`) and the platform, their order is given. The
+    `upward_imports` are the imports of the arrows that run back up. Without these, a room is one
+    floor above the highest room that it imports, and on floor 1 if it imports none;
+    `floors` is the number of floors. If a room is a wing (`WINGS`), the features inside it
+    are rooms in the same way: their upward imports are added, their floors are listed by wing.
 files_le_50
     Python files of `app`, without `__init__.py`, of at most 50 physical lines.
 code_lines
     Lines of `app/**/*.py` and of `frontend/src` (tests and `GENERATED` files left out;
-    translations are data files and not counted) that hold code: not blank, not a comment alone,
-    not part of a docstring (a string that stands alone as a statement).
+    translations are data files and not counted) that contain code: not blank, not only a comment,
+    not part of a docstring (a string that is a statement of its own).
 """
 
 import ast

@@ -1,7 +1,7 @@
-"""Applies a recipe of CONTRIBUTING.md to a copy of the tree, and counts the files it touches.
+"""Apply a recipe of CONTRIBUTING.md to a copy of the tree, and count the files it touches.
 
-A recipe is data: whole files that it adds, and exact edits of files that are there. A test applies
-it, runs what it should enable, and holds the count to a limit:
+A recipe is data: whole files that it adds, and exact edits of existing files. A test applies
+it, runs what it should enable, and limits the count:
 
     PHASE = Recipe(
         name="task phase",
@@ -17,7 +17,7 @@ it, runs what it should enable, and holds the count to a limit:
         assert PHASE.unnamed_files() == set()      # CONTRIBUTING.md names every file
         assert tree.count()["edited"] <= 5         # {"recipe": "task phase", "edited": 4, ...}
 
-What is counted is the tree that came out, compared with the one that stands here, so that what a
+The resulting tree is compared with the current one to count files, so that what a
 generator or a script changed counts, too. Tests and generated files (`is_apart`) do not count.
 """
 
@@ -94,16 +94,16 @@ class Recipe:
     edited: Mapping[str, Sequence[Edit]] = field(default_factory=dict)
 
     def apply(self, folder: Path, *also: str) -> "Tree":
-        """The tree with this recipe in it, made below the empty `folder`.
+        """Return a copy of the tree with this recipe applied, created below the empty `folder`.
 
         Args:
             folder: an existing folder, such as pytest's `tmp_path`.
             also: files or folders that the copy needs besides `COPIED`.
 
         Raises:
-            RecipeError: a file to add is there already, or an edit's text is not in its file
-                exactly once.
-            FileNotFoundError: a file to edit is absent.
+            RecipeError: a file to add exists already, or an edit's text is not in its file exactly
+                once.
+            FileNotFoundError: a file to edit is missing.
         """
         files = {**self._edited_files(), **self._added_files()}
         tree = _copied(self.name, folder, [*COPIED, *also, *self.edited])

@@ -1,13 +1,13 @@
-"""Dashboards and tests of large studies: how soon figures are there, and how cost grows.
+"""Measure dashboards and tests of large studies: response times, and how the cost grows.
 
 Sessions are generated and marked simulated, six phases each. Parts:
 
     served   a real server with a thousand sessions: the first figures and all of them, group after
-             group as a page asks, of a server that was just started, drawn already, and after
-             another filter was chosen, whose drawing begins anew from kept tables
+             group as a page requests them, of a server that was just started, with figures already
+             drawn, and after another filter was chosen, which redraws them from cached tables
     growth   reading tables and drawing every figure, for 125 to 1,000 sessions; the exponent is the
              slope of log cost over log sessions: 1 is linear
-    pandas   two figures beside plain pandas and plotly over the exported CSV, in the same run
+    pandas   two figures compared with plain pandas and plotly on the exported CSV, in the same run
 """
 
 import tempfile

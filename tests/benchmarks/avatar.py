@@ -42,7 +42,7 @@ SWING_RAD, SWING_HZ = 0.35, 1.0
 
 
 def measure(parts: frozenset[str], duration_s: float | None = None) -> Report:
-    """Measure the named parts; nothing here has a duration to choose."""
+    """Measure the named parts; their duration cannot be chosen."""
     report = Report("avatar")
     if "speed" in parts:
         for fingers in (False, True):

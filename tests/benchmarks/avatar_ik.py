@@ -52,7 +52,7 @@ CLIPS = {
 
 
 def measure(parts: frozenset[str], duration_s: float | None = None) -> Report:
-    """Measure the named parts; nothing here has a duration to choose."""
+    """Measure the named parts; their duration cannot be chosen."""
     report = Report("avatar_ik")
     if "python" in parts:
         for name, times_us in _python().items():

@@ -37,7 +37,7 @@ DELAYS_MS = (0.0, 125.0, 350.0)
 
 
 def measure(parts: frozenset[str], duration_s: float | None = None) -> Report:
-    """Measure the named parts; nothing here has a duration to choose."""
+    """Measure the named parts; their duration cannot be chosen."""
     report = Report("avatar_tracking")
     if "tracking" in parts:
         for name, clip in movements():

@@ -84,7 +84,7 @@ class Task(NamedTuple):
 def measure(
     parts: frozenset[str], duration_s: float | None = None, *, write: bool = False
 ) -> Report:
-    """Measure the named parts; nothing here has a duration to choose."""
+    """Measure the named parts; their duration cannot be chosen."""
     chosen = tuple(part for part in PARTS if part in parts)
     if write and chosen != PARTS:
         sys.exit("The table is written whole; leave --only away.")

@@ -107,10 +107,10 @@ def otree_run(scratch: Path) -> Run:
 
 
 def timed(command: list[str], folder: Path, port: int, scratch: Path) -> Run:
-    """From the call to the first page; then everything that was started is ended.
+    """Return the time from the call to the first page; then end everything that was started.
 
     Raises:
-        RuntimeError: it ended before, or showed no page.
+        RuntimeError: the program ended before its first page, or showed none.
     """
     caches = scratch / "caches"
     home = scratch / "home"

@@ -47,7 +47,7 @@ class Trial:
 
     @property
     def covered(self) -> bool:
-        """Whether the truth lies within the interval."""
+        """Return whether the true latency is within the interval."""
         return self.low_s <= self.latency_s <= self.high_s
 
 

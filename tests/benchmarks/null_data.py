@@ -1,26 +1,26 @@
-"""Data sets of the study in which nothing has an effect: what tests are measured on.
+"""Generate data sets of the study without any effect, for measuring tests' error rates.
 
-A test at 5 % should reject in 5 of 100 such data sets, and an interval of 95 % hold the truth in 95
-of them. Exact tests promise it, most others do so only for many participants; and the study has a
+A test at 5 % should reject in 5 of 100 such data sets, and an interval of 95 % contain the truth in
+95 of them. Exact tests guarantee this, most others only for many participants; and the study has a
 dozen or two. So each is tried on data like the study's own:
 
-    n participants (whole blocks of the six orders of three latencies), two limbs a period;
+    n participants (whole blocks of the six orders of three latencies), two limbs per period;
     a continuous measure, participant's level + error, both normal;
     one item of a questionnaire from 1 to 7: participant's level + logistic error cut at thresholds
     with which most agree, as people do with agency, so that many answers are equal;
     a scale of several such items from one administration, for its consistency.
 
-*Reactions* are what a latency does to one person and not to another. With them a participant's
+*Reactions* are effects of a latency on one person and not on another. With them a participant's
 level turns towards another, independent one as the latency grows,
 
     level(latency) = level cos(a) + other sin(a),    a = arcsin(reaction) latency / 350 ms,
 
-so that each latency has the same distribution over people, and nothing an effect, but 0 and 350 ms
-resemble each other less than 0 and 125 ms. Without reactions every order of a participant's values
-is equally likely, which is what rank tests assume; with them it is not, and a model with random
-intercepts only is wrong. Both are tried.
+so that each latency has the same distribution over people, and nothing has an effect, but 0 and 350
+ms resemble each other less than 0 and 125 ms. Without reactions every order of a participant's
+values is equally likely, which is what rank tests assume; with them it is not, and a model with
+only random intercepts is wrong. Both are tried.
 
-Pure simulation: all randomness comes from the generator given.
+Pure simulation: all randomness comes from the given generator.
 """
 
 from dataclasses import dataclass
@@ -41,10 +41,10 @@ class NullDesign:
 
     Attributes:
         participants: a multiple of six.
-        level_sd: of participants' levels, in error SDs of the continuous measure and on the
+        level_sd: SD of participants' levels, in error SDs of the continuous measure and on the
             logistic scale of items.
-        reaction: 0 to 1, how much of a participant's level at 350 ms is another one.
-        items: of the scale.
+        reaction: 0 to 1, the share of another level in a participant's level at 350 ms.
+        items: the number of items of the scale.
         thresholds: six, on the logistic scale.
     """
 
@@ -63,7 +63,7 @@ class NullData:
         measure: (n, latencies, limbs) continuous.
         item: (n, latencies, limbs) answers 1 to 7.
         scale: (n, items) answers 1 to 7.
-        periods: (n, latencies) in which period, from 1, the participant had each latency.
+        periods: (n, latencies) the period, from 1, in which the participant had each latency.
     """
 
     measure: FloatArray

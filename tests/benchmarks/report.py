@@ -45,7 +45,7 @@ class Figure:
         return bool(self.value <= self.limit if self.peer in AT_MOST else self.value >= self.limit)
 
     def as_json(self) -> dict[str, Any]:
-        """For machines."""
+        """Return it as values for JSON."""
         told = {"ratio": self.ratio, "limit": self.limit, "met": self.met}
         return {**asdict(self), **told}
 
@@ -68,7 +68,7 @@ class Report:
         self.figures += figures
 
     def as_json(self) -> dict[str, Any]:
-        """For machines."""
+        """Return it as values for JSON."""
         rows = [figure.as_json() for figure in self.figures]
         head = {"benchmark": self.benchmark, "machine": self.machine}
         return {**head, **self.beside, "figures": rows}

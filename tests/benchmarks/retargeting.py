@@ -33,7 +33,7 @@ SAME_RESULT_RAD = 1e-6
 
 
 def measure(parts: frozenset[str], duration_s: float | None = None) -> Report:
-    """Measure the named parts; nothing here has a duration to choose."""
+    """Measure the named parts; their duration cannot be chosen."""
     report = Report("retargeting")
     body = own_body(1.7)
     motion = random_movement(body, np.random.default_rng(1), FRAMES)

@@ -16,13 +16,13 @@ from app.science.rotations import FloatArray
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """What is to be done for every frame.
+    """The transfer to compute for every frame.
 
     Attributes:
-        source_parents, avatar_parents: the trees.
-        source_offsets_m: (S, 3), which PyMotion's kinematics ask for.
+        source_parents, avatar_parents: the trees of joints, as parent indices.
+        source_offsets_m: (S, 3), needed by PyMotion's kinematics.
         moved_by: source joint of each avatar joint, -1 for none.
-        factors: (A, 4) right factors, local rotations where no joint moves it.
+        factors: (A, 4) right factors; local rotations for joints that no source joint moves.
     """
 
     source_parents: tuple[int, ...]

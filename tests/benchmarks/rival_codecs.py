@@ -53,7 +53,7 @@ def _unframed(data: bytes) -> list[bytes]:
 
 
 class _Pcodec:
-    """pcodec's own file format, for numbers of any shape."""
+    """Use pcodec's own file format, for numbers of any shape."""
 
     def __init__(self) -> None:
         library = importlib.import_module("pcodec")

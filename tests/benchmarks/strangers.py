@@ -31,18 +31,18 @@ class CallersPlan:
     duration_s: float
 
     def as_json(self) -> str:
-        """One line."""
+        """Return the plan as one line of JSON."""
         return json.dumps(asdict(self))
 
 
 @dataclass(frozen=True)
 class ListenerPlan:
-    """A bare listener at `port`."""
+    """The plan of a bare listener at `port`."""
 
     port: int
 
     def as_json(self) -> str:
-        """One line."""
+        """Return the plan as one line of JSON."""
         return json.dumps(asdict(self))
 
 

@@ -61,7 +61,7 @@ class Contender:
 
 
 def measure(parts: frozenset[str], duration_s: float | None = None) -> Report:
-    """Measure the named parts; nothing here has a duration to choose."""
+    """Measure the named parts; their duration cannot be chosen."""
     report = Report("tuning")
     if "steps" in parts:
         report.add(*_steps())

@@ -1,4 +1,4 @@
-"""The walking model: planner and maps (`walking_maps`), draws (`walking_sampling`)."""
+"""Measure the walking model: planner and maps (`walking_maps`), draws (`walking_sampling`)."""
 
 from tests.benchmarks import walking_maps, walking_sampling
 from tests.benchmarks.report import Report
@@ -12,7 +12,7 @@ PARTS = tuple(FIGURES)
 
 
 def measure(parts: frozenset[str], duration_s: float | None = None) -> Report:
-    """Measure the named parts; nothing here has a duration to choose."""
+    """Measure the named parts; their duration cannot be chosen."""
     report = Report("walking")
     for part, figures in FIGURES.items():
         if part in parts:

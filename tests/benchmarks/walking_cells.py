@@ -42,7 +42,7 @@ SCENES = ("car-and-three-racks", "car-between-two-racks")
 
 @dataclass(frozen=True, eq=False)
 class Cell:
-    """A population in a situation."""
+    """A population in one of the three situations, with its walks."""
 
     population: str
     situation: str
@@ -54,7 +54,7 @@ class Studied:
     """One population: its database, the model fitted on all of it, and its cells.
 
     Attributes:
-        workplaces: walks of other people in the two scenes.
+        workplaces: walks of other people in the two workplace scenes.
     """
 
     population: Population

@@ -1,13 +1,14 @@
-"""How well the walking model predicts travel times: populations, the paper's tables, real people.
+"""Measure how well the walking model predicts travel times of synthetic and real people.
 
     ./run bench walking_evaluation [--json]                    the figures with their limits
+
     .venv/bin/python -m tests.benchmarks.walking_evaluation --write    docs/walking-replication.md
 
 `populations` are the cells of `walking_cells`: P_prob's CRPS at most .9 of P_adapt's and below
 P_stat's, P_adapt's below P_stat's, each in 80 % of the cells; the interquartile range of
 predictions over that of the walks, median over courses, from .75 to 1.5. `replication` are the
-experiments of the paper; of them only leaving out has limits. `real` needs the shared data. A few
-minutes.
+experiments of the paper; of these only the leave-out errors have limits. `real` needs the shared
+data. Takes a few minutes.
 """
 
 import sys
@@ -28,7 +29,7 @@ NEIGHBOURS_LIMITS, NODES_LIMITS = (0.5, 5.5), (0.05, 0.17)
 
 
 def measure(parts: frozenset[str], duration_s: float | None = None) -> Report:
-    """Measure the named parts; nothing here has a duration to choose."""
+    """Measure the named parts; their duration cannot be chosen."""
     report = Report("walking_evaluation")
     for part, figures in FIGURES.items():
         if part in parts:
@@ -109,7 +110,7 @@ PARTS = tuple(FIGURES)
 
 
 def main(arguments: list[str]) -> int:
-    """Write the replication report with --write; else print it."""
+    """Write the replication report with --write; otherwise print it."""
     from tests.benchmarks.walking_report import replication_report
 
     text = replication_report(studied(), repeated(), real())

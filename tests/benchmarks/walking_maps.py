@@ -1,10 +1,10 @@
-"""Planner and suitability maps of the walking model: parts of `./run bench walking`.
+"""Measure planner and suitability maps of the walking model: parts of `./run bench walking`.
 
 `planner`: Lazy Theta* on a lattice of one centimetre, over the walks of the laboratory's sixteen
-scenes, and beside the shortest paths of all (full visibility graph) on 1,000 random scenes: at most
-1 % longer. `maps`: all 1848 maps of 1000 combinations, on all processors, at most 60 s; compiled
-against NumPy on some of them, to 1e-9. Compiling is not timed. Where other programs run, the
-processor time says what the machine alone would take.
+scenes, and compared with the shortest paths (full visibility graph) on 1,000 random scenes: at most
+1 % longer. `maps`: all 1848 maps of 1000 combinations, on all processors, at most 60 s; the
+compiled version is compared with NumPy on some of them, to 1e-9. Compiling is not timed. If other
+programs run, the processor time shows what the machine alone would take.
 """
 
 import os

@@ -1,15 +1,16 @@
-"""Real walks: fitted on a few people, tested on others.
+"""Fit the walking model on the real walks of a few people and test it on others.
 
-Fitted on the foot paths of the short-walk experiment's first two people and part of the captured
-walks of the CMU database; tested on the table of the experiment's other eight people, and on the
-CMU walks left out. Nobody's stature is known. The table's durations are of its authors' own
-definition of beginning and end, which the walks here do not share, so only speed is judged and the
-duration's error is told.
+It is fitted on the foot paths of the short-walk experiment's first two people and part of the
+captured walks of the CMU database; tested on the table of the experiment's other eight people, and
+on the CMU walks left out. Nobody's stature is known. The table's durations use its authors' own
+definition of beginning and end, which differs from the one here, so only speed is judged and the
+error of the duration is reported without a limit.
 
 A foot's path is integrated from a sensor, and drifts: the second person's walk of 1.1 m comes to
 .43 m. So paths are scaled to the distance that was walked, and one that misses it by more than half
-is left out. CMU 05_06 turns by 326 degrees on the way: no walk from a start to a goal, left out.
-Both rules were made after a look at the files and at a first comparison with the table.
+is left out. CMU 05_06 turns by 326 degrees on the way: this is not a walk from a start to a goal,
+and is left out. Both rules were made after looking at the files and at a first comparison with the
+table.
 """
 
 from collections.abc import Iterator
@@ -46,10 +47,10 @@ DRAWS, LEAST_SHARE = 300, 0.5
 
 @dataclass(frozen=True)
 class Distance:
-    """One distance of the table: means of the eight people, and what was predicted for them.
+    """One distance of the table: means of the eight people, and the prediction for them.
 
     Attributes:
-        sd_m_s: between people's own means, of all ten.
+        sd_m_s: SD between the means of all ten people.
     """
 
     distance_m: float
@@ -67,10 +68,10 @@ class Distance:
 
 @dataclass(frozen=True, eq=False)
 class RealWalks:
-    """The result.
+    """The results of the fit on real walks.
 
     Attributes:
-        worst_unscaled_sds: the worst distance, had the foot paths been taken as they are.
+        worst_unscaled_sds: the worst distance without the scaling of the foot paths.
     """
 
     fit: FittedWalking

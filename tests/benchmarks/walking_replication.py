@@ -40,7 +40,10 @@ DISTANCES_M, LONG_PEOPLE, LONG_TIMES = (10.0, 25.0, 50.0), 16, 4
 
 @dataclass(frozen=True)
 class Neighbourhood:
-    """One k: median |dt| of single draws, CRPS, and how long one draw by the paper's way takes."""
+    """The results for one k.
+
+    Median |dt| of single draws, CRPS, and the duration of one draw by the paper's method.
+    """
 
     k: int
     median_s: float
@@ -50,7 +53,7 @@ class Neighbourhood:
 
 @dataclass(frozen=True)
 class Submodel:
-    """P_prob without one parameter: median |dt| of single draws, and CRPS."""
+    """The results of P_prob without one parameter: median |dt| of single draws, and CRPS."""
 
     without: str
     median_s: float
@@ -83,7 +86,7 @@ class Replication:
 
 
 def replication(studied: Studied) -> Replication:
-    """Repeat the paper's experiments."""
+    """Repeat the paper's experiments and return all results."""
     rng = np.random.default_rng(11)
     database, fit = studied.database, studied.fit
     papers = fitted(database, replace(fit.options, reading=PAPER))

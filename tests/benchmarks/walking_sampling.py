@@ -73,7 +73,7 @@ class Literal:
         self.maps = space.values.astype(np.float64)
 
     def draw_one(self, z: FloatArray, rng: np.random.Generator) -> FloatArray:
-        """Draw one vector."""
+        """Draw one parameter vector as the paper describes it."""
         apart, indices = self.tree.query(z[None], k=self.space.k)
         weights = 1.0 - apart[0] / apart[0].max()
         weights /= weights.sum()

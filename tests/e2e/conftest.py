@@ -52,7 +52,10 @@ def page_watch() -> PageWatch:
 
 @pytest.fixture
 def new_context(browser: Browser, page_watch: PageWatch) -> Iterator[ContextFactory]:
-    """`new_context(size=(1280, 800), color_scheme="light", locale="en-US", motion="reduce")`."""
+    """Provide a factory of browser contexts.
+
+    `new_context(size=(1280, 800), color_scheme="light", locale="en-US", motion="reduce")`.
+    """
     with watched_contexts(browser, page_watch) as factory:
         yield factory
 

@@ -1,4 +1,4 @@
-"""A lab with a blinded study and people in several roles, for browser tests."""
+"""A lab with a blinded study and accounts in several roles, for browser tests."""
 
 import re
 from collections.abc import Callable, Iterator

@@ -27,7 +27,7 @@ class Experimenter:
         expect(self.page.get_by_role("heading", name="Studies")).to_be_visible()
 
     def open_tab(self, study: str, tab: str = "") -> None:
-        """Go to a study's tab."""
+        """Open a tab of a study."""
         self.page.goto(f"{self.url}/#/studies/{study}/{tab}")
 
     def create_session(self) -> None:
@@ -38,7 +38,7 @@ class Experimenter:
         expect(self.page.get_by_role("heading", name="Before the start")).to_be_visible()
 
     def code_for(self, device: str) -> str:
-        """Show the pairing code of the tablet or the headset, and read it."""
+        """Open the pairing dialog of the tablet or the headset and return its code."""
         self.page.get_by_role("button", name=f"Pair the {device}").click()
         shown = self.page.get_by_text(re.compile(r"^[0-9A-Z]{3}-[0-9A-Z]{3}$")).first
         expect(shown).to_be_visible()
@@ -74,7 +74,7 @@ class Experimenter:
         self.press("Save heights")
 
     def sees_step(self, name: str) -> None:
-        """Wait until the current step is the one of that name."""
+        """Wait until the step with this name is the current one."""
         heading = self.page.get_by_role("main").get_by_role("heading", name=name)
         expect(heading.first).to_be_visible(timeout=PATIENCE_MS)
 
@@ -94,7 +94,7 @@ class Participant:
         self.page.get_by_role("button", name="I agree to take part").click()
 
     def have_read(self) -> None:
-        """Confirm the instructions."""
+        """Confirm that the instructions were read."""
         self.page.get_by_role("button", name="I have read this").click()
 
     def fill_in(self, answers: Mapping[str, str]) -> None:

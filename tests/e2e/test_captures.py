@@ -85,7 +85,7 @@ def console(new_console: NewConsole) -> Page:
 
 
 def open_capture(page: Page, server: LiveServer, capture: dict[str, Any], tab: str = "") -> None:
-    """Go to a capture's tab."""
+    """Open a tab of a capture."""
     page.goto(f"{server.url}/#/captures/{capture['id']}/{tab}")
 
 

@@ -47,7 +47,7 @@ PROCEDURE = """procedure:
 
 
 def short_study() -> str:
-    """The shipped study with two conditions and short phases."""
+    """Return the shipped study with two conditions and short phases."""
     text = FILE
     start, end = text.index("procedure:\n"), text.index("  after:\n")
     text = text[:start] + PROCEDURE + text[end:]

@@ -27,7 +27,7 @@ class Told:
 
 
 def note(row: int, fault: str, figure: str, value: object) -> None:
-    """Add a figure to the run's table."""
+    """Append a figure to the run's table, under its fault's row."""
     told = Told(row, fault, figure, f"{value:.3g}" if isinstance(value, float) else str(value))
     file = run_folder() / "fault-figures.jsonl"
     with locked(file.with_suffix(".lock")), file.open("a") as lines:

@@ -44,7 +44,7 @@ class Relay:
             self.up = True
 
     async def accept(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        """Relay one connection."""
+        """Relay one connection, or reset it while the relay is down."""
         if not self.up:
             writer.transport.abort()
             return

@@ -36,7 +36,7 @@ await build({
 
 @dataclass(frozen=True)
 class Bundle:
-    """A built module in `folder`."""
+    """A frontend module that was bundled into `folder`."""
 
     folder: Path
 
@@ -58,7 +58,7 @@ class Bundle:
 
 
 def bundled(entry: str, folder: Path) -> Bundle:
-    """Bundle `entry`, a path below `frontend/src`, into `folder`."""
+    """Bundle the module at `entry`, a path below `frontend/src`, into `folder`."""
     install_packages(FRONTEND)
     arguments = json.dumps([str(FRONTEND / "src" / entry), str(folder), BASE, SCRIPT])
     run_node("--input-type=module", "-e", BUILD, arguments, cwd=FRONTEND)

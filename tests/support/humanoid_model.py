@@ -42,19 +42,19 @@ def without(*names: str) -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class Model:
-    """What the file is to be like.
+    """The properties of a humanoid model file.
 
     Attributes:
         parts: body parts that have a bone.
-        name: of a part's bone.
-        vrm: the version of the map in it, if there is one.
-        facing_rad: how far it is turned to its left from facing +z.
-        units_per_metre: of everything below the root.
-        root_scale: of the root; 1 / units_per_metre makes metres of it again.
-        up: the axis of the file that is up.
-        arms_down_rad: zero for a T-pose.
-        hair: whether a bone without a part hangs on the head, with skin.
-        helpers: bones without skin and the part each hangs on, None for the root.
+        name: the name of a part's bone.
+        vrm: the version of the bone map in the file, if it has one.
+        facing_rad: how far the model is turned to its left from facing +z.
+        units_per_metre: units of everything below the root.
+        root_scale: scale of the root; 1 / units_per_metre converts back to metres.
+        up: the axis of the file that points up.
+        arms_down_rad: how far the arms are lowered; zero for a T-pose.
+        hair: whether the head has a bone without a part, with skin.
+        helpers: bones without skin and the part each is attached to, None for the root.
         skin: parts that have skin.
         binary: GLB, else JSON with the buffer inside.
     """

@@ -125,7 +125,7 @@ class Nursery:
         self._one_question = threading.Lock()
 
     def start(self, wish: Wish) -> Child:
-        """Run a command."""
+        """Start a command in a child of the nursery and return its process."""
         started = self.ask(
             {
                 "arguments": list(wish.arguments),

@@ -1,14 +1,14 @@
-"""The short walks of Carlisle and Kuo: foot paths of single walks, and the table of all.
+"""Read the short walks of Carlisle and Kuo: foot paths of single walks, and the table of all.
 
 Carlisle and Kuo (2023), "Optimization of energy and time predicts dynamic speeds for human
 walking", eLife 12; data in the repository kuo-lab/short_walk_experiment (MATLAB files).
 
-A file of one walk has both feet, each integrated from a sensor on it at 128 Hz, each turned about
-the vertical by an angle of its own, and adrift while standing before its first step. `FFstart` and
-`FFend` are the frames at which a foot is flat, one for each stride. So each foot counts from its
-first flat frame to its last, is turned so that it ends straight ahead, and in between goes by its
-flat places: what is left out is how a foot swings, which the body does not follow. The middle of
-both feet stands for the centre of mass.
+A file of one walk contains both feet. Each path is integrated from a sensor on the foot at 128 Hz,
+is rotated about the vertical by an angle of its own, and drifts while the foot stands before its
+first step. `FFstart` and `FFend` are the frames at which a foot is flat, one for each stride. So
+each foot counts from its first flat frame to its last, is rotated so that it ends straight ahead,
+and is interpolated between its flat positions: this omits the swing of a foot, which the body does
+not follow. The mean of both feet represents the centre of mass.
 """
 
 import io

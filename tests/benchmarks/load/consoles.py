@@ -32,12 +32,12 @@ class ConsolePlan:
     views: str
 
     def as_json(self) -> str:
-        """One line."""
+        """Return the plan as one line of JSON."""
         return json.dumps(asdict(self))
 
     @classmethod
     def from_json(cls, text: str) -> "ConsolePlan":
-        """The inverse of `as_json`."""
+        """Return the plan of a line made by `as_json`."""
         read: dict[str, Any] = json.loads(text)
         sessions = tuple((int(number), str(key)) for number, key in read["sessions"])
         return cls(**{**read, "sessions": sessions})
@@ -122,7 +122,7 @@ async def _view(client: AsyncClient, at: int, session_id: str, begin_s: float, s
 
 
 def main() -> None:
-    """Run the plan."""
+    """Read the plan from standard input and run it."""
     plan = ConsolePlan.from_json(sys.stdin.readline())
     with asyncio.Runner(loop_factory=uvloop.new_event_loop) as runner:
         print(json.dumps(runner.run(run(plan))), flush=True)

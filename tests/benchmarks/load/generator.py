@@ -29,7 +29,7 @@ DRAINS_WITHIN_S = 60.0
 
 @dataclass(frozen=True)
 class Seat:
-    """A session of the load: `number` in the run, and the token of its headset."""
+    """A session of the load: its `number` in the run, and the token of its headset."""
 
     number: int
     session_id: str
@@ -52,12 +52,12 @@ class GeneratorPlan:
     messages: str
 
     def as_json(self) -> str:
-        """One line."""
+        """Return the plan as one line of JSON."""
         return json.dumps(asdict(self))
 
     @classmethod
     def from_json(cls, text: str) -> "GeneratorPlan":
-        """The inverse of `as_json`."""
+        """Return the plan of a line made by `as_json`."""
         read: dict[str, Any] = json.loads(text)
         return cls(**{**read, "seats": tuple(Seat(**seat) for seat in read["seats"])})
 
@@ -128,7 +128,7 @@ def _percentiles(values: "np.typing.NDArray[np.float64]") -> list[float]:
 
 
 def main() -> None:
-    """Run the plan."""
+    """Read the plan from standard input and run it."""
     plan = GeneratorPlan.from_json(sys.stdin.readline())
     with asyncio.Runner(loop_factory=uvloop.new_event_loop) as runner:
         print(json.dumps(runner.run(run(plan))), flush=True)

@@ -18,11 +18,11 @@ class Headset(Protocol):
 
     @property
     def epoch(self) -> int:
-        """The number of this run."""
+        """Return the epoch, the number of this run."""
 
     @property
     def state(self) -> HeadsetState | None:
-        """The newest state of the session."""
+        """Return the newest state of the session."""
 
     async def hand(self, stream: StreamName, seq_end: int, message: bytes) -> None:
         """Send a batch."""
@@ -31,7 +31,7 @@ class Headset(Protocol):
         """Send a report."""
 
     async def close(self) -> None:
-        """Hang up."""
+        """Close the connection."""
 
 
 @dataclass
@@ -63,7 +63,7 @@ class RealHeadset:
 
     @classmethod
     async def open(cls, url: str, token: str, record: Record) -> "RealHeadset":
-        """Connect; its journal writes the record."""
+        """Connect a client whose journal writes the record."""
         began_s = time.monotonic()
         client = TelemetryClient(
             url,
@@ -78,12 +78,12 @@ class RealHeadset:
 
     @property
     def epoch(self) -> int:
-        """The number of this run."""
+        """Return the epoch, the number of this run."""
         return self.client.epoch
 
     @property
     def state(self) -> HeadsetState | None:
-        """The newest state of the session."""
+        """Return the newest state of the session."""
         return self.client.state
 
     async def hand(self, stream: StreamName, seq_end: int, message: bytes) -> None:
@@ -95,6 +95,6 @@ class RealHeadset:
         await self.client.report(body)
 
     async def close(self) -> None:
-        """Hang up."""
+        """Close the connection."""
         await self.client.__aexit__(None, None, None)
         await asyncio.sleep(0)

@@ -21,7 +21,10 @@ GENERATOR_LAG_MS = 100.0
 
 @dataclass(frozen=True)
 class Step:
-    """One number of sessions: acknowledgements and generator (ms), throughput, server's cores."""
+    """The measurements for one number of sessions.
+
+    Acknowledgements and generator (ms), throughput, and the server's cores.
+    """
 
     sessions: int
     ack_p99_ms: float

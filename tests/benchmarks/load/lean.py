@@ -66,7 +66,7 @@ class LeanHeadset(asyncio.Protocol):
 
     @property
     def epoch(self) -> int:
-        """The number of this run."""
+        """Return the epoch, the number of this run."""
         return self.record.epoch
 
     async def hand(self, stream: StreamName, seq_end: int, message: bytes) -> None:
@@ -82,7 +82,7 @@ class LeanHeadset(asyncio.Protocol):
         self._tell(Report(epoch=self.epoch, seq=seq, body=body).model_dump_json())
 
     async def close(self) -> None:
-        """Hang up."""
+        """Close the connection."""
         self._closing = True
         if self._beside is not None:
             self._beside.cancel()

@@ -25,7 +25,7 @@ JITTER_S = 2e-4
 
 @dataclass(frozen=True)
 class Movement:
-    """A loop of n frames: `target`, `actual` (2 n, 91) as on the wire, twice; `jitter_s` (n,)."""
+    """A loop of n frames: `target`, `actual` (2 n, 91) as sent, stored twice; `jitter_s` (n,)."""
 
     target: NDArray[np.float32]
     actual: NDArray[np.float32]

@@ -26,7 +26,7 @@ class Load:
 
 @dataclass
 class Companions:
-    """The processes of a run: the generators by the client they use, and the consoles."""
+    """The processes of a run: generators by the client they use, and the consoles."""
 
     generators: dict[str, Companion]
     consoles: Companion | None

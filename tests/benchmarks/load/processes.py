@@ -15,12 +15,12 @@ class Plan(Protocol):
     """The plan that is passed to a process."""
 
     def as_json(self) -> str:
-        """One line."""
+        """Return the plan as one line of JSON."""
 
 
 @dataclass
 class Companion:
-    """A module in a process of its own."""
+    """A benchmark module that runs in a process of its own."""
 
     process: "subprocess.Popen[str]"
     errors: Path

@@ -69,7 +69,7 @@ class Digest:
 
 @dataclass
 class Record:
-    """One session of the load."""
+    """The sent and acknowledged messages of one session of the load."""
 
     session_id: str
     streams: dict[str, StreamRecord] = field(

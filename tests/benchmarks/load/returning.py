@@ -63,12 +63,12 @@ class ReturnPlan:
     gives_up_s: float
 
     def as_json(self) -> str:
-        """One line."""
+        """Return the plan as one line of JSON."""
         return json.dumps(asdict(self))
 
     @classmethod
     def from_json(cls, text: str) -> "ReturnPlan":
-        """The inverse of `as_json`."""
+        """Return the plan of a line made by `as_json`."""
         return cls(**json.loads(text))
 
 
@@ -154,7 +154,7 @@ def _streaming(plan: ReturnPlan, client: TelemetryClient) -> Streaming:
 
 
 def main() -> None:
-    """Run the plan."""
+    """Read the plan from standard input and run it."""
     plan = ReturnPlan.from_json(sys.stdin.readline())
     with asyncio.Runner(loop_factory=uvloop.new_event_loop) as runner:
         print(json.dumps(runner.run(run(plan))), flush=True)

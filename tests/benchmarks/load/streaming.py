@@ -38,7 +38,7 @@ class Streaming:
     phase_id: int = 0
 
     async def enter_phase(self) -> None:
-        """Wait for the operator's phase and start its clock."""
+        """Wait until the operator begins the phase, then start its clock."""
         give_up_s = time.monotonic() + STARTS_WITHIN_S
         while True:
             state = self.headset.state

@@ -28,7 +28,7 @@ class Look:
 
 @dataclass
 class Watch:
-    """Watches a process with its children within a `with` block."""
+    """Sample a process with its children while a `with` block runs."""
 
     pid: int
     database: Path | None

@@ -38,9 +38,9 @@ class BulletRun:
     """One way to run PyBullet.
 
     Attributes:
-        name: of the way.
+        name: the name of the way.
         fastest_s: processor time of the fastest round.
-        mean_error_deg: of all axes and steps from their targets.
+        mean_error_deg: mean error of all axes and steps from their targets.
     """
 
     name: str
@@ -51,15 +51,15 @@ class BulletRun:
 def bullet_avatar(
     model: mujoco.MjModel, controls: FloatArray, *, steps_per_frame: int, rounds: int
 ) -> list[BulletRun]:
-    """Let PyBullet follow the same targets: as it comes, and as lean as it may be.
+    """Run PyBullet with the same targets: with its defaults, and with as little work as possible.
 
-    Returns nothing, with the reason told, where it cannot be had.
+    Returns nothing, with a printed reason, if PyBullet is unavailable.
 
     Args:
         model: an avatar with carried hips.
         controls: (steps, nu) as in `data.ctrl`: angle, speed, angle, speed.
-        steps_per_frame: the lean way gets new targets this often, not at every step.
-        rounds: of each way.
+        steps_per_frame: how often the minimal run gets new targets, instead of at every step.
+        rounds: the number of rounds of each run.
     """
     ways = {
         "PyBullet as it comes": {"every": 1, "iterations": _USUAL_ITERATIONS},

@@ -74,19 +74,19 @@ def scene_boxes(model: mujoco.MjModel) -> Iterator[dict[str, list[float]]]:
 
 
 def has_floor(model: mujoco.MjModel) -> bool:
-    """Whether there is a plane."""
+    """Return whether the model has a floor plane."""
     return bool(np.any(model.geom_type == _PLANE))
 
 
 def motor_gains(model: mujoco.MjModel) -> tuple[FloatArray, FloatArray]:
-    """Gains of Bullet's motors, of position and of speed, per step.
+    """Return the gains of Bullet's motors, of position and of speed, per step.
 
     A motor of ours changes the speed of a limb of inertia I in a step h by
 
         h (kp (angle* - angle) + kd (speed* - speed)) / I,   kp = w^2 I,   kd = 2 w I,
 
-    and Bullet's by  g (angle* - angle) / h + d (speed* - speed).  So g = (w h)^2, d = 2 w h, with
-    w = 2 kp / kd as for critical damping.
+    and Bullet's by  g (angle* - angle) / h + d (speed* - speed).  So g = (w h)^2, d = 2 w h, with w
+    = 2 kp / kd as for critical damping.
     """
     # MuJoCo's bias: ... - kp angle - kd speed.
     kp, kd = -model.actuator_biasprm[:, 1], -model.actuator_biasprm[:, 2]

@@ -25,7 +25,7 @@ class NoPyBullet(RuntimeError):
 
 
 def pybullet_python() -> Path:
-    """The interpreter that has PyBullet; made and filled where it is not there yet.
+    """Return the interpreter that has PyBullet, creating its environment if it is missing.
 
     Raises:
         NoPyBullet: there is no uv, or the installation failed.

@@ -20,7 +20,7 @@ _TAKES_UP = 6
 
 
 class Avatar:
-    """The body in its scene."""
+    """The avatar's body in its scene, simulated by PyBullet."""
 
     def __init__(self, bullet: Any, plan: Plan) -> None:
         self._bullet, self._plan = bullet, plan

@@ -25,7 +25,7 @@ class NoPeer(RuntimeError):
 
 
 def python_peer(name: str, *requirements: str) -> Path:
-    """The folder of the programs of an environment that has `requirements`.
+    """Return the folder of the programs of an environment that has `requirements`.
 
     Raises:
         NoPeer: there is no uv, or the installation failed.
@@ -41,7 +41,7 @@ def python_peer(name: str, *requirements: str) -> Path:
 
 
 def npm_peer(name: str, *packages: str) -> Path:
-    """The `node_modules` that hold `packages` (`name@version`); no script of theirs is run.
+    """Return the `node_modules` with `packages` (`name@version`), without running their scripts.
 
     Raises:
         NoPeer: the installation failed.

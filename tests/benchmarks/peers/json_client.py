@@ -34,7 +34,7 @@ class JsonClientPlan:
     duration_s: float
 
     def as_json(self) -> str:
-        """One line."""
+        """Return the plan as one line of JSON."""
         return json.dumps(asdict(self))
 
 
@@ -118,7 +118,7 @@ async def run(plan: JsonClientPlan) -> dict[str, Any]:
 
 
 def main() -> None:
-    """Run the plan."""
+    """Read the plan from standard input and run it."""
     plan = JsonClientPlan(**json.loads(sys.stdin.readline()))
     with asyncio.Runner(loop_factory=uvloop.new_event_loop) as runner:
         print(json.dumps(runner.run(run(plan))), flush=True)

@@ -31,7 +31,7 @@ class JsonServerPlan:
     database: str
 
     def as_json(self) -> str:
-        """One line."""
+        """Return the plan as one line of JSON."""
         return json.dumps(asdict(self))
 
 
@@ -100,7 +100,7 @@ async def run(plan: JsonServerPlan) -> dict[str, Any]:
 
 
 def main() -> None:
-    """Run the plan."""
+    """Read the plan from standard input and run it."""
     plan = JsonServerPlan(**json.loads(sys.stdin.readline()))
     with asyncio.Runner(loop_factory=uvloop.new_event_loop) as runner:
         print(json.dumps(runner.run(run(plan))), flush=True)

@@ -27,10 +27,10 @@ jsPsych.run([{{ type: jsPsychSurveyLikert, questions: {questions} }}]);
 
 @contextmanager
 def served_survey(folder: Path, statements: Sequence[str], steps: Sequence[str]) -> Iterator[str]:
-    """The address of a page that shows all statements with these steps.
+    """Yield the URL of a page that shows all statements with these steps.
 
     Raises:
-        NoPeer: it could not be installed.
+        NoPeer: jsPsych could not be installed.
     """
     folder.mkdir()
     _write(folder, statements, steps)

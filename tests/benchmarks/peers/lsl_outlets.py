@@ -30,12 +30,12 @@ class OutletsPlan:
     config: str
 
     def as_json(self) -> str:
-        """One line."""
+        """Return the plan as one line of JSON."""
         return json.dumps(asdict(self))
 
 
 def run(plan: OutletsPlan) -> None:
-    """Stream in real time."""
+    """Stream from all outlets in real time."""
     pylsl.util.set_config_content(plan.config)
     outlets = [_outlet(number) for number in range(plan.streams)]
     movement = make_movement(np.random.default_rng(5))
@@ -65,7 +65,7 @@ def _outlet(number: int) -> Any:
 
 
 def main() -> None:
-    """Run the plan."""
+    """Read the plan from standard input and run it."""
     run(OutletsPlan(**json.loads(sys.stdin.readline())))
 
 

@@ -40,7 +40,7 @@ class RecorderPlan:
     file: str
 
     def as_json(self) -> str:
-        """One line."""
+        """Return the plan as one line of JSON."""
         return json.dumps(asdict(self))
 
 
@@ -113,7 +113,7 @@ def _pull(file: BinaryIO, number: int, inlet: Any) -> None:
 
 
 def main() -> None:
-    """Run the plan."""
+    """Read the plan from standard input and run it."""
     run(RecorderPlan(**json.loads(sys.stdin.readline())))
 
 

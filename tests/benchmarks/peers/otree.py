@@ -103,11 +103,11 @@ class OTree:
 def running_otree(
     folder: Path, statements: Sequence[str], participants: int, rounds: int
 ) -> Iterator[OTree]:
-    """A server whose participants answer the same page in every round.
+    """Run a server whose participants answer the same page in every round.
 
     Raises:
-        NoPeer: it could not be installed.
-        RuntimeError: it did not start.
+        NoPeer: oTree could not be installed.
+        RuntimeError: the server did not start.
     """
     programs = python_peer("otree", f"otree=={VERSION}")
     write_project(folder, statements, rounds)

@@ -43,7 +43,7 @@ class LeanHttp:
         return answer
 
     async def close(self) -> None:
-        """Hang up."""
+        """Close the connection."""
         if self._writer is not None:
             self._writer.close()
         self._reader = self._writer = None

@@ -21,7 +21,7 @@ ITEMS = 14
 
 @dataclass(frozen=True)
 class Desk:
-    """An operator's calls."""
+    """An operator's signed-in HTTP calls to the server."""
 
     server: LiveServer
     client: httpx2.Client

@@ -22,7 +22,10 @@ OK, MOVED = 200, (302, 303, 307)
 
 @dataclass(frozen=True)
 class Plan:
-    """`who`: a tablet's cookie header (ours), or a participant's first path (oTree)."""
+    """The work of the tablets.
+
+    `who`: a tablet's cookie header (ours), or a participant's first path (oTree).
+    """
 
     server: Literal["ours", "otree"]
     port: int
@@ -31,7 +34,7 @@ class Plan:
     items: int
 
     def as_json(self) -> str:
-        """One line."""
+        """Return the plan as one line of JSON."""
         return json.dumps(asdict(self))
 
 
@@ -108,7 +111,7 @@ async def run(plan: Plan) -> Submitted:
 
 
 def main() -> None:
-    """Run the plan."""
+    """Read the plan from standard input and run it."""
     read: dict[str, Any] = json.loads(sys.stdin.readline())
     plan = Plan(**{**read, "who": tuple(read["who"])})
     with asyncio.Runner(loop_factory=uvloop.new_event_loop) as runner:

@@ -35,7 +35,7 @@ class Recording:
 
     @property
     def data_dir(self) -> str:
-        """The folder of the database."""
+        """Return the folder of the database."""
         return str((self.folder / "data").resolve())
 
     def with_earlier_acks(self) -> "Recording":
