@@ -29,7 +29,7 @@ class TestBalance:
     """The balance of every block of the ledger."""
 
     def test_a_block_contains_every_order_once(self, protocol: StudyProtocol) -> None:
-        """A block has every order of the design exactly once."""
+        """A block of the ledger has every order of the design exactly once."""
         for index in range(5):
             rows = [row.sequence for row in ledger_block(protocol, index)]
             assert sorted(rows) == sorted(sequences(protocol))
@@ -38,7 +38,7 @@ class TestBalance:
     def test_each_condition_occurs_equally_often_at_each_position(
         self, protocol: StudyProtocol
     ) -> None:
-        """Each condition occurs equally often at each position."""
+        """In a block each condition occurs equally often at each position."""
         rows = [row.sequence for row in ledger_block(protocol, 0)]
         counts = Counter((at, key) for row in rows for at, key in enumerate(row))
         assert len(counts) == len(protocol.conditions) ** 2
@@ -47,7 +47,10 @@ class TestBalance:
     def test_each_ordered_pair_of_neighbours_occurs_equally_often(
         self, protocol: StudyProtocol
     ) -> None:
-        """Each ordered pair of neighbours occurs equally often, which balances carry-over."""
+        """In a block each ordered pair of neighbours occurs equally often.
+
+        This balances first-order carry-over.
+        """
         rows = [row.sequence for row in ledger_block(protocol, 0)]
         counts = Counter(pair for row in rows for pair in pairwise(row))
         n = len(protocol.conditions)
@@ -64,7 +67,7 @@ def test_orders_are_listed_by_the_place_of_their_conditions() -> None:
 
 
 def test_blocks_depend_on_nothing_but_seed_and_index() -> None:
-    """A block depends only on seed and index, so more blocks do not change earlier ones."""
+    """A ledger's block depends only on seed and index, so more blocks change no earlier ones."""
     more = study(("replicates: 2", "replicates: 9"))
     for index in range(3):
         assert ledger_block(STUDY, index) == ledger_block(more, index)
@@ -72,8 +75,8 @@ def test_blocks_depend_on_nothing_but_seed_and_index() -> None:
     assert [ledger_block(other, n) for n in range(3)] != [ledger_block(STUDY, n) for n in range(3)]
 
 
-def test_blocks_are_mixed_differently() -> None:
-    """Blocks are shuffled differently, so that the next order cannot be predicted."""
+def test_blocks_are_shuffled_differently() -> None:
+    """The ledger's blocks are shuffled differently, so the next order cannot be predicted."""
     mixed = {tuple(row.sequence for row in ledger_block(STUDY, index)) for index in range(8)}
     assert len(mixed) == 8
 

@@ -33,7 +33,7 @@ def test_hand_boxes_stand_in_a_row_with_four_walls_each() -> None:
 
 
 def test_foot_boxes_are_a_tenth_longer_than_their_base_length() -> None:
-    """Foot boxes are longer by about 10 % (Karas 2020, 7.2); either foot counts."""
+    """The shipped study's foot boxes are 10 % longer, and either foot counts (Karas 2020, 7.2)."""
     foot = STUDY.tasks.foot
     assert foot is not None
     assert foot.length_m == pytest.approx(0.396, abs=1e-12)

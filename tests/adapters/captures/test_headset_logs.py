@@ -117,7 +117,7 @@ def test_the_quest_log_is_read(shared_data: Path) -> None:
 
 
 def test_a_quote_in_a_labs_own_column_is_a_character() -> None:
-    """A quote in UXF, which quotes nothing, does not swallow the following rows."""
+    """A quote in a UXF log, which has no quoting, does not swallow the following rows."""
     text = _UXF.replace("rot_z\n", "rot_z,said\n") + '1,0,1,0,0,0,0,"yes\n2,0,1,0,0,0,0,no\n'
     assert _uxf(text).frame_count == 2
 

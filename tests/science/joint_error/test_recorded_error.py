@@ -87,7 +87,7 @@ def nodded(size_deg: float, delay_frames: int = DELAY_FRAMES) -> RecordedErrors:
 
 
 def test_a_perfect_avatar_has_no_error_against_its_delayed_command() -> None:
-    """A perfect avatar has no error against its delayed command, but one against the present."""
+    """A perfect avatar's error is zero against its delayed command, not against the present."""
     found = nodded(20.0)
     np.testing.assert_allclose(np.nan_to_num(found.command.max_rad), 0.0, atol=1e-9)
     assert of(found.present, "max_rad", "Head", "angle") == pytest.approx(20.0)

@@ -56,7 +56,7 @@ def test_the_hips_follow_the_ground_below_them(rng: np.random.Generator) -> None
 
 
 def test_the_frame_that_stands_on_the_ground_can_be_chosen(rng: np.random.Generator) -> None:
-    """The frame in which the avatar stands on the ground can be chosen, for captures with jumps."""
+    """For captures that begin in the air, the frame that stands on the ground can be chosen."""
     motion = random_movement(own_body(1.7), rng)
     avatar = own_body(1.5)
     result = Retargeter(motion.rig, SAME, avatar, SAME).batch(motion, standing_frame=-1)

@@ -52,7 +52,7 @@ def test_steps_scale_exactly_with_the_legs(stature_m: float) -> None:
 
 @pytest.mark.parametrize("stature_m", [0.8, *PAPER_STATURES_M])
 def test_uniform_scaling_adds_no_slide(stature_m: float) -> None:
-    """Under uniform scaling feet slide as the source's do, times the leg ratio."""
+    """Under uniform scaling the feet slide as much as the source's, times the leg ratio."""
     walks = _onto(stature_m).walks
     assert walks is not None
     assert walks.source.slide_m_s is not None

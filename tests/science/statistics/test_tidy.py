@@ -50,7 +50,7 @@ def test_a_missing_row_is_a_missing_value() -> None:
 
 
 def test_the_mean_over_a_factor_takes_complete_subjects() -> None:
-    """The mean over a factor is missing for a subject who lacks one of its cells."""
+    """A subject's mean over a factor is missing if one of its cells is missing."""
     by_latency = _cells(_ROWS).of_factor(1)
     assert by_latency[0].tolist() == [5.0, 3.5, 2.5]
     assert by_latency[1, :2].tolist() == [4.5, 4.75]

@@ -66,7 +66,7 @@ def test_a_pose_that_is_off_for_one_frame_jumps_there_and_back() -> None:
 
 @pytest.mark.parametrize(("turn_deg", "jumps"), [(21.0, 0), (24.0, 1)])
 def test_the_fastest_turn_is_an_argument(turn_deg: float, jumps: int) -> None:
-    """The speed limit is an argument: 2,000 deg/s are 22.2 degrees in a frame at 90 Hz."""
+    """A joint's speed limit can be set: 2,000 deg/s are 22.2 degrees in a frame at 90 Hz."""
     still = np.zeros((10, 22, 4), np.float32)
     still[..., 0] = 1.0
     half = np.radians(turn_deg) / 2.0

@@ -53,7 +53,7 @@ def test_relative_masses_are_the_published_ones() -> None:
 
 
 def test_the_upper_trunk_is_shared_in_equal_parts() -> None:
-    """Upper chest and both shoulders weigh a third each of it (Karas 2020, section 6.4.1)."""
+    """Upper chest and shoulders weigh a third each of the upper trunk (Karas 2020, 6.4.1)."""
     parts = body_masses(build_body(1.75), 100.0, population="male").parts
     for part in ("UpperChest", "LeftShoulder", "RightShoulder"):
         assert parts[part].mass_kg == pytest.approx(15.96 / 3.0)

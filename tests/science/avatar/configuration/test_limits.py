@@ -77,7 +77,10 @@ def test_every_part_has_a_layer() -> None:
 
 
 def test_a_hand_touches_arms_and_upper_body_and_an_arm_does_not() -> None:
-    """Hands collide with arms and torso, and arms do not (Karas 2020, section 4.2.1)."""
+    """Hands collide with arms and torso; an arm does not collide with the torso.
+
+    Karas 2020, section 4.2.1.
+    """
     assert collide("LeftHand", "Chest")
     assert collide("LeftHand", "LeftUpperArm")
     assert collide("LeftIndexDistal", "RightLowerArm")

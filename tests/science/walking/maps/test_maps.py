@@ -50,7 +50,7 @@ def _walked_by(vector: np.ndarray[tuple[int], np.dtype[np.float64]]) -> PlannedW
 @pytest.mark.parametrize("index", [22, 42, 63])
 @pytest.mark.parametrize("metric", [EuclideanMetric(), PaceMetric()])
 def test_known_parameters_are_recovered(index: int, metric: Metric) -> None:
-    """A walk made with a combination of the grid deviates least, by nothing, at that combination.
+    """A walk made with a combination of the grid has its least deviation, zero, at that one.
 
     Both metrics go through the same protocol.
     """
