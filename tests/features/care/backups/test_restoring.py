@@ -127,7 +127,7 @@ def test_restoring_a_missing_file_is_reported(sqlite: Database, tmp_path: Path) 
 
 
 def test_active_sessions_block_a_restore(fresh_lab: Lab, tmp_path: Path) -> None:
-    """A restore refuses and lists active sessions; forced, it unpairs their headsets."""
+    """A restore lists active sessions and refuses; if forced, it unpairs their headsets."""
     session = fresh_lab.join(participant_code="P-014")
     fresh_lab.command(session, "start")
     headset = fresh_lab.operator.post(

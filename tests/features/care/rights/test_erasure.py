@@ -78,7 +78,7 @@ def test_nothing_of_the_person_is_left_in_any_table(site: Site) -> None:
 
 @pytest.mark.one_engine
 def test_erased_answers_cannot_be_guessed_from_their_hash(site: Site) -> None:
-    """After an erasure the salts are gone, so answers cannot be guessed from the hashes left."""
+    """After an erasure the salts are gone, so answers cannot be guessed from the hashes."""
     visit = make_visit(site, mine("salt"))
     with site.database.reading() as db:
         forms = db.scalars(

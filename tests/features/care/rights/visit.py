@@ -37,7 +37,7 @@ SHEET = {"place": "Folder A, sheet 12", "reason": "No tablet in this test"}
 
 @dataclass(frozen=True)
 class Visit:
-    """A visit; its texts contain the participant's code and its frames their `height_m`."""
+    """A participant's visit, whose texts contain the code and whose frames contain `height_m`."""
 
     session_id: str
     participant_id: str

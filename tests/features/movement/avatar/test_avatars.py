@@ -73,7 +73,7 @@ def test_a_new_installation_has_the_standard_avatar(fresh_lab: Lab) -> None:
 
 
 def test_versions_are_appended_and_kept(fresh_lab: Lab) -> None:
-    """Versions are appended with author, origin and note, and earlier ones can be read."""
+    """Versions of an avatar are appended with author, origin and note, and stay readable."""
     first = new(fresh_lab, "soft")
     second = save(fresh_lab, "soft", CAST, 1, "tuned")
     assert [one["number"] for one in second["versions"]] == [2, 1]
@@ -106,7 +106,7 @@ def test_the_same_content_is_not_saved_twice_in_a_row(fresh_lab: Lab) -> None:
 
 
 def test_saving_on_an_outdated_version_is_refused(fresh_lab: Lab) -> None:
-    """Saving based on an outdated version is refused with the newest number."""
+    """Saving an avatar based on an outdated version is refused with the newest number."""
     new(fresh_lab, "soft")
     save(fresh_lab, "soft", CAST, 1)
     body = {"based_on": 1, "origin": "by_hand", "configuration": as_json(SHIPPED)}

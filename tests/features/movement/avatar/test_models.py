@@ -41,7 +41,7 @@ def test_locked_groups_have_no_hinges_in_the_model(fresh_lab: Lab) -> None:
 
 
 def test_a_model_may_lack_fingers_but_no_arm(fresh_lab: Lab) -> None:
-    """A model without fingers is built; one without a forearm is refused by name."""
+    """An avatar model without fingers is built; without a forearm it is refused."""
     new(fresh_lab, "mitten", without_parts(SHIPPED, frozenset(FINGER_PARTS)))
     assert fresh_lab.operator.get(f"{PATH}/mitten/model?stature_m=1.7").is_success
     new(fresh_lab, "armless", without_parts(SHIPPED, frozenset({"LeftLowerArm"})))
@@ -50,7 +50,7 @@ def test_a_model_may_lack_fingers_but_no_arm(fresh_lab: Lab) -> None:
 
 
 def test_an_impossible_stature_is_refused(fresh_lab: Lab) -> None:
-    """A model's stature must be a number from 0.5 to 2.6 m."""
+    """An avatar model's stature must be a number from 0.5 to 2.6 m."""
     for stature in ("0.4", "2.7", "nan", "tall"):
         answer = fresh_lab.operator.get(f"{PATH}/standard/model?stature_m={stature}")
         error(answer, 422, "invalid_input")

@@ -81,7 +81,7 @@ def _leg_deg(side: str, time_s: float) -> Mapping[str, float]:
 
 
 def _ankle_m(time_s: float) -> tuple[float, float]:
-    """Return the ankle's place ahead of the hips and above the ground; it swings half the time."""
+    """Return the ankle's position ahead of the hips and above the ground at a time."""
     phase = time_s % 1.0
     reach_m = SPEED_M_S / 4.0
     if phase < 0.5:

@@ -46,7 +46,7 @@ def test_the_numbers_of_a_preview_are_aligned() -> None:
 
 
 def test_a_fast_recording_is_downsampled() -> None:
-    """A recording above 60 Hz is downsampled to whole frames at 60 Hz or less."""
+    """A recording above 60 Hz is downsampled to every n-th frame, at most 60 Hz."""
     positions_m = np.arange(240.0 * 3).reshape(240, 1, 3)
     header, seen = positions_of(encode(Points("markers", ("M",), (-1,), 240.0, positions_m)))
     assert (header["rate_hz"], header["recorded_rate_hz"], header["frames"]) == (60.0, 240.0, 60)

@@ -50,7 +50,7 @@ def upload_tracks(lab: Lab, data: bytes, **query: Any) -> Any:
 
 
 def fitted(lab: Lab, set_id: str, **options: Any) -> Json:
-    """Order a model of a walk set and return it once its fit has ended."""
+    """Request a model of a walk set and return it once its fit has ended."""
     request = {"title": "A model", "walk_set_id": set_id, "options": SMALL | options}
     model: Json = ok(lab.operator.post("/api/walking/models", json=request))
     return settled(lab, model["id"])

@@ -58,7 +58,7 @@ def test_typed_user_names_are_not_recorded(fresh_lab: Lab) -> None:
 
 @pytest.mark.one_engine
 def test_each_window_has_a_row(fresh_lab: Lab, refusals: RefusedSignIns) -> None:
-    """Refused logins get one row per window; after a quiet window the next is a first again."""
+    """Refused logins get one row per window; after a quiet one the next is recorded directly."""
     for at in range(4):
         for _ in range(10):
             refusals.note("10.0.0.1", "admin", checked=True)

@@ -45,7 +45,7 @@ def test_each_stream_has_its_own_alarms() -> None:
 
 
 def test_closing_clears_every_alarm_with_a_reason() -> None:
-    """Closing the book clears every open alarm with the given reason."""
+    """Closing the list of open alarms clears each of them with the given reason."""
     book = OpenAlarms(3.0)
     list(book.report(GAP, at(0.0)))
     (cleared,) = book.close("it is over", at(1.0))
