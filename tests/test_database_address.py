@@ -16,7 +16,7 @@ from app.features.care.ownership import own_data
 from app.platform.folders import database_file
 from app.settings import Settings, read_settings
 from tests.cli.invoked import Invoked
-from tests.faults.commands import Said, command
+from tests.faults.commands import CommandResult, command
 from tests.support.postgres import Cluster, running_cluster
 
 SECRET = "tiger-in-the-tank"
@@ -240,7 +240,7 @@ def test_an_unreachable_database_server_is_reported(tmp_path: Path) -> None:
     assert done.err.count("\n") == 1
 
 
-def serve(folder: Path, url: str) -> Said:
+def serve(folder: Path, url: str) -> CommandResult:
     """Run `reembody serve` until it ends."""
     environment = {"REEMBODY_DATA_DIR": str(folder), "REEMBODY_DATABASE_URL": url}
     return command(environment, "serve", "--port", "0")

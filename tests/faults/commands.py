@@ -15,7 +15,7 @@ UNUSABLE = 2
 
 
 @dataclass(frozen=True)
-class Said:
+class CommandResult:
     """The result of a command: exit code, output, error output and duration."""
 
     code: int
@@ -31,14 +31,16 @@ class Said:
         return decoded
 
 
-def reembody(server: LiveServer, *arguments: object, max_file_bytes: int | None = None) -> Said:
+def reembody(
+    server: LiveServer, *arguments: object, max_file_bytes: int | None = None
+) -> CommandResult:
     """Run a command in the server's environment; `max_file_bytes` limits the files it can write."""
     return command(server._full_environment(), *arguments, max_file_bytes=max_file_bytes)
 
 
 def command(
     environment: Mapping[str, str], *arguments: object, max_file_bytes: int | None = None
-) -> Said:
+) -> CommandResult:
     """Run a command in the given environment; `max_file_bytes` limits the files it can write."""
     with tempfile.TemporaryDirectory() as folder:
         out, err = Path(folder) / "out", Path(folder) / "err"
@@ -53,4 +55,4 @@ def command(
         began_s = time.monotonic()
         code = nursery().start(wish).wait()
         took_s = time.monotonic() - began_s
-        return Said(code, out.read_text(), err.read_text(), took_s)
+        return CommandResult(code, out.read_text(), err.read_text(), took_s)

@@ -17,7 +17,7 @@ FILE_VARIABLE = "REEMBODY_FAULT_FIGURES"
 
 
 @dataclass(frozen=True)
-class Told:
+class FaultFigure:
     """One figure of one fault."""
 
     row: int
@@ -28,22 +28,24 @@ class Told:
 
 def note(row: int, fault: str, figure: str, value: object) -> None:
     """Append a figure to the run's table, under its fault's row."""
-    told = Told(row, fault, figure, f"{value:.3g}" if isinstance(value, float) else str(value))
+    told = FaultFigure(
+        row, fault, figure, f"{value:.3g}" if isinstance(value, float) else str(value)
+    )
     file = run_folder() / "fault-figures.jsonl"
     with locked(file.with_suffix(".lock")), file.open("a") as lines:
         lines.write(json.dumps(asdict(told)) + "\n")
 
 
-def noted() -> list[Told]:
+def noted() -> list[FaultFigure]:
     """Return all figures reported in this run, sorted by row."""
     file = run_folder() / "fault-figures.jsonl"
     if not file.exists():
         return []
-    told = [Told(**json.loads(line)) for line in file.read_text().splitlines()]
+    told = [FaultFigure(**json.loads(line)) for line in file.read_text().splitlines()]
     return sorted(told, key=lambda one: one.row)
 
 
-def as_table(told: Sequence[Told]) -> list[str]:
+def as_table(told: Sequence[FaultFigure]) -> list[str]:
     """Format the figures as lines for the terminal."""
     widths = [max(len(getattr(one, name)) for one in told) for name in ("fault", "figure")]
     return [
@@ -52,7 +54,7 @@ def as_table(told: Sequence[Told]) -> list[str]:
     ]
 
 
-def save(told: Sequence[Told]) -> None:
+def save(told: Sequence[FaultFigure]) -> None:
     """Write the figures as JSON to the file named by the environment variable, if it is set."""
     if os.environ.get(FILE_VARIABLE):
         rows = [asdict(one) for one in told]

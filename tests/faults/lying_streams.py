@@ -21,12 +21,12 @@ from tests.faults.simulated_headset import (
     Frames,
     Json,
     Message,
+    SimulatedHeadset,
     Site,
-    Telling,
     Weather,
 )
 
-Lie = Callable[[Telling, np.random.Generator], None]
+Lie = Callable[[SimulatedHeadset, np.random.Generator], None]
 
 
 @dataclass(frozen=True)
@@ -60,12 +60,14 @@ def play(site: Site, seed: int, lie: str | None = None) -> Outcome:
     kind = "simulated" if simulated else "test"
     session_id = site.join(kind=kind, time_scale=weather.time_scale, step=step)
     limb = {HAND: "hand", FOOT: "foot", FREE: None}[step]
-    telling = Telling(site, session_id, 1, limb, rng, weather, pace=1.0 / weather.time_scale)
+    headset = SimulatedHeadset(
+        site, session_id, 1, limb, rng, weather, pace=1.0 / weather.time_scale
+    )
     if step == FREE:
-        telling.duration_s = ROAM_S
+        headset.duration_s = ROAM_S
     if lie is not None:
-        LIES[lie](telling, rng)
-    telling.play()
+        LIES[lie](headset, rng)
+    headset.play()
     site.summarise(session_id)
     with site.context.database.reading() as db:
         doubts = doubts_of(db, session_id)
@@ -73,10 +75,10 @@ def play(site: Site, seed: int, lie: str | None = None) -> Outcome:
     # A client that skips ahead is asked for the missing messages, and none of it is stored.
     refusals = [
         str(one.get("reason") or one.get("message") or one["type"])
-        for one in telling.socket.heard
+        for one in headset.socket.heard
         if one["type"] in (*REFUSALS, "resend")
     ]
-    welcomes = tuple(one for one in telling.socket.heard if one["type"] == "welcome")
+    welcomes = tuple(one for one in headset.socket.heard if one["type"] == "welcome")
     status = "none" if phase is None else phase.status
     return Outcome(
         seed, lie, session_id, status, lie is not None, tuple(refusals), doubts, welcomes
@@ -133,60 +135,60 @@ def _plain(type_: str, change: Callable[[Json], list[Json]]) -> Edit:
     return edit
 
 
-def _too_fast(telling: Telling, rng: np.random.Generator) -> None:
+def _too_fast(headset: SimulatedHeadset, rng: np.random.Generator) -> None:
     """Send the whole phase within a moment of server time: 8 s in 0.1 s."""
-    telling.pace = float(rng.uniform(0.0, 0.7)) / telling.weather.time_scale
-    telling.weather = Weather()
+    headset.pace = float(rng.uniform(0.0, 0.7)) / headset.weather.time_scale
+    headset.weather = Weather()
 
 
-def _slow_clock(telling: Telling, rng: np.random.Generator) -> None:
+def _slow_clock(headset: SimulatedHeadset, rng: np.random.Generator) -> None:
     """Report more active time than has elapsed on the headset's own clock."""
     share = float(rng.uniform(0.0, 0.9))
-    telling.edit = _reports("time_up", lambda b: [{**b, "t_s": 21.2 + share * DURATION_S}])
-    telling.weather = Weather()
+    headset.edit = _reports("time_up", lambda b: [{**b, "t_s": 21.2 + share * DURATION_S}])
+    headset.weather = Weather()
 
 
 def _batch_ahead(claimed_s: float) -> Lie:
     """Claim the whole phase in one batch, then replace the headset: the next has nothing to do."""
 
-    def lie(telling: Telling, rng: np.random.Generator) -> None:
-        telling.weather = Weather(new_client_at_s=float(rng.uniform(1.0, 3.0)))
+    def lie(headset: SimulatedHeadset, rng: np.random.Generator) -> None:
+        headset.weather = Weather(new_client_at_s=float(rng.uniform(1.0, 3.0)))
 
         def ahead(frames: Frames, number: int) -> Frames:
-            lies = telling.epoch == 1 and number > 10
+            lies = headset.epoch == 1 and number > 10
             return replace(frames, active_s=claimed_s) if lies else frames
 
-        telling.edit = _frames(ahead)
+        headset.edit = _frames(ahead)
 
     return lie
 
 
-def _report_backwards(telling: Telling, rng: np.random.Generator) -> None:
+def _report_backwards(headset: SimulatedHeadset, rng: np.random.Generator) -> None:
     back_s = float(rng.uniform(0.5, 20.0))
-    telling.edit = _reports("ended", lambda b: [{**b, "t_s": b["t_s"] - back_s - 1.0}])
+    headset.edit = _reports("ended", lambda b: [{**b, "t_s": b["t_s"] - back_s - 1.0}])
 
 
-def _standing_gain(telling: Telling, rng: np.random.Generator) -> None:
+def _standing_gain(headset: SimulatedHeadset, rng: np.random.Generator) -> None:
     """Gain active time while the clock is paused."""
-    telling.weather = Weather(pause=(2.0, float(rng.uniform(5.0, 60.0))))
+    headset.weather = Weather(pause=(2.0, float(rng.uniform(5.0, 60.0))))
     gained_s = float(rng.uniform(0.5, 4.0))
     jumped = [False]
 
     def resumed(body: Json) -> list[Json]:
         jumped[0] = True
-        telling.active_s += gained_s
-        return [{**body, "active_s": telling.active_s}]
+        headset.active_s += gained_s
+        return [{**body, "active_s": headset.active_s}]
 
-    telling.edit = _reports("resumed", resumed)
+    headset.edit = _reports("resumed", resumed)
 
 
-def _fell(telling: Telling, rng: np.random.Generator) -> None:
+def _fell(headset: SimulatedHeadset, rng: np.random.Generator) -> None:
     """Report an active time at the end of the freeze that is less than at time up."""
-    telling.edit = _reports("ended", lambda b: [{**b, "active_s": rng.uniform(0.0, 7.0)}])
+    headset.edit = _reports("ended", lambda b: [{**b, "active_s": rng.uniform(0.0, 7.0)}])
 
 
 def _odd_times(odd: Callable[[np.random.Generator], float]) -> Lie:
-    def lie(telling: Telling, rng: np.random.Generator) -> None:
+    def lie(headset: SimulatedHeadset, rng: np.random.Generator) -> None:
         at = int(rng.integers(20, 100))
 
         def change(frames: Frames, number: int) -> Frames:
@@ -196,58 +198,58 @@ def _odd_times(odd: Callable[[np.random.Generator], float]) -> Lie:
             times_s[-1] = odd(rng)
             return replace(frames, times_s=times_s, flags=np.ones_like(frames.flags))
 
-        telling.edit = _frames(change)
+        headset.edit = _frames(change)
 
     return lie
 
 
-def _frames_back(telling: Telling, rng: np.random.Generator) -> None:
+def _frames_back(headset: SimulatedHeadset, rng: np.random.Generator) -> None:
     at, back_s = int(rng.integers(20, 100)), float(rng.uniform(0.2, 15.0))
 
     def change(frames: Frames, number: int) -> Frames:
         return frames if number != at else replace(frames, times_s=frames.times_s - back_s)
 
-    telling.edit = _frames(change)
+    headset.edit = _frames(change)
 
 
-def _idle_frames(telling: Telling, rng: np.random.Generator) -> None:
+def _idle_frames(headset: SimulatedHeadset, rng: np.random.Generator) -> None:
     """Mark frames as paused while the clock is reported as running."""
     since = int(rng.integers(2, 60))
 
     def change(frames: Frames, number: int) -> Frames:
         return frames if number < since else replace(frames, flags=np.zeros_like(frames.flags))
 
-    telling.edit = _frames(change)
+    headset.edit = _frames(change)
 
 
 def _contact(change: Callable[[Json, np.random.Generator], Json]) -> Lie:
-    def lie(telling: Telling, rng: np.random.Generator) -> None:
-        telling.edit = _reports("contact", _once(lambda b: change(b, rng), int(rng.integers(8))))
+    def lie(headset: SimulatedHeadset, rng: np.random.Generator) -> None:
+        headset.edit = _reports("contact", _once(lambda b: change(b, rng), int(rng.integers(8))))
 
     return lie
 
 
 def _completion(change: Callable[[Json, np.random.Generator], Json]) -> Lie:
-    def lie(telling: Telling, rng: np.random.Generator) -> None:
-        telling.edit = _reports("completion", _once(lambda b: change(b, rng), int(rng.integers(3))))
+    def lie(headset: SimulatedHeadset, rng: np.random.Generator) -> None:
+        headset.edit = _reports("completion", _once(lambda b: change(b, rng), int(rng.integers(3))))
 
     return lie
 
 
-def _many_completions(telling: Telling, rng: np.random.Generator) -> None:
+def _many_completions(headset: SimulatedHeadset, rng: np.random.Generator) -> None:
     """Report more completions than the touched targets allow."""
     more = int(rng.integers(2, 40))
 
     def change(body: Json) -> list[Json]:
         return [{**body, "number": body["number"] * (more + 1) + at} for at in range(-more, 1)]
 
-    telling.edit = _reports("completion", change)
+    headset.edit = _reports("completion", change)
 
 
 def _in_free(kind: str) -> Lie:
     """Report a contact or a completion in free movement, where there is nothing to touch."""
 
-    def lie(telling: Telling, rng: np.random.Generator) -> None:
+    def lie(headset: SimulatedHeadset, rng: np.random.Generator) -> None:
         body: Json = {
             "phase_id": 1,
             "kind": "contact",
@@ -276,12 +278,12 @@ def _in_free(kind: str) -> Lie:
                 times = {"t_s": t_s, "active_s": active_s}
             return [{**body, **times}, up]
 
-        telling.edit = _reports("time_up", before)
+        headset.edit = _reports("time_up", before)
 
     return lie
 
 
-def _completion_after(telling: Telling, rng: np.random.Generator) -> None:
+def _completion_after(headset: SimulatedHeadset, rng: np.random.Generator) -> None:
     """Report a completion during the freeze, after the time is up."""
     late = {
         "phase_id": 1,
@@ -293,52 +295,52 @@ def _completion_after(telling: Telling, rng: np.random.Generator) -> None:
 
     def after(up: Json) -> list[Json]:
         t_s = up["t_s"] + rng.uniform(0.2, 0.9)
-        number = telling.completions + 1
+        number = headset.completions + 1
         return [up, {**late, "number": number, "t_s": t_s, "active_s": DURATION_S}]
 
-    telling.edit = _reports("time_up", after)
+    headset.edit = _reports("time_up", after)
 
 
-def _walk_back(telling: Telling, rng: np.random.Generator) -> None:
+def _walk_back(headset: SimulatedHeadset, rng: np.random.Generator) -> None:
     """Report a walk back in a hand task."""
 
     def before(up: Json) -> list[Json]:
         walks = [{**up, "what": f"walk_back_{what}"} for what in ("started", "ended")]
         return [*walks, up]
 
-    telling.edit = _reports("time_up", before)
+    headset.edit = _reports("time_up", before)
     assert rng
 
 
-def _given_epoch(telling: Telling, rng: np.random.Generator) -> None:
-    telling.hello_epoch = int(rng.choice([2, 3, 7, 1000, 2**31 - 1]))
-    telling.weather = Weather()
+def _given_epoch(headset: SimulatedHeadset, rng: np.random.Generator) -> None:
+    headset.hello_epoch = int(rng.choice([2, 3, 7, 1000, 2**31 - 1]))
+    headset.weather = Weather()
 
 
-def _epoch_zero(telling: Telling, rng: np.random.Generator) -> None:
+def _epoch_zero(headset: SimulatedHeadset, rng: np.random.Generator) -> None:
     at = int(rng.integers(5, 60))
-    telling.edit = _frames(lambda f, n: f if n != at else replace(f, epoch=0, seq_first=0))
+    headset.edit = _frames(lambda f, n: f if n != at else replace(f, epoch=0, seq_first=0))
 
 
-def _produced(telling: Telling, rng: np.random.Generator) -> None:
+def _produced(headset: SimulatedHeadset, rng: np.random.Generator) -> None:
     count = int(rng.choice([10**8, 2**40, 2**53 - 1]))
-    telling.edit = _plain("produced", lambda m: [{**m, "streams": {"target": count}}])
+    headset.edit = _plain("produced", lambda m: [{**m, "streams": {"target": count}}])
 
 
-def _produced_then_true(telling: Telling, rng: np.random.Generator) -> None:
-    telling.weather = Weather()
+def _produced_then_true(headset: SimulatedHeadset, rng: np.random.Generator) -> None:
+    headset.weather = Weather()
     wrong = {"target": int(rng.choice([10**8, 2**53 - 1])), "actual": 2**50}
-    telling.edit = _plain("produced", lambda m: [{**m, "streams": wrong}, m])
+    headset.edit = _plain("produced", lambda m: [{**m, "streams": wrong}, m])
 
 
-def _seq(telling: Telling, rng: np.random.Generator) -> None:
+def _seq(headset: SimulatedHeadset, rng: np.random.Generator) -> None:
     at, ahead = int(rng.integers(60, 140)), int(rng.choice([10**9, 2**40, 2**61]))
-    telling.edit = _frames(
+    headset.edit = _frames(
         lambda f, n: f if n != at else replace(f, seq_first=f.seq_first + ahead, phase_id=1)
     )
 
 
-def _report_seq(telling: Telling, rng: np.random.Generator) -> None:
+def _report_seq(headset: SimulatedHeadset, rng: np.random.Generator) -> None:
     ahead = int(rng.choice([10**9, 2**40, 2**52]))
 
     def edit(message: Message) -> list[Message]:
@@ -348,12 +350,12 @@ def _report_seq(telling: Telling, rng: np.random.Generator) -> None:
             return [message]
         return [message, {**message, "seq": ahead, "odd": True}]
 
-    telling.edit = edit
+    headset.edit = edit
 
 
 def _echo(change: Callable[[Json, np.random.Generator], Json]) -> Lie:
-    def lie(telling: Telling, rng: np.random.Generator) -> None:
-        telling.edit = _plain("probed", lambda m: [change(m, rng)])
+    def lie(headset: SimulatedHeadset, rng: np.random.Generator) -> None:
+        headset.edit = _plain("probed", lambda m: [change(m, rng)])
 
     return lie
 
@@ -361,10 +363,10 @@ def _echo(change: Callable[[Json, np.random.Generator], Json]) -> Lie:
 def _json_time(value: float) -> Lie:
     """Send a time in a report that is not a finite number."""
 
-    def lie(telling: Telling, rng: np.random.Generator) -> None:
+    def lie(headset: SimulatedHeadset, rng: np.random.Generator) -> None:
         what = str(rng.choice(["started", "time_up", "ended"]))
         name = str(rng.choice(["t_s", "active_s"]))
-        telling.edit = _reports(what, lambda b: [{**b, name: value}])
+        headset.edit = _reports(what, lambda b: [{**b, name: value}])
 
     return lie
 

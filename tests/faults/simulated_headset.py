@@ -292,7 +292,7 @@ class Weather:
 
 
 @dataclass
-class Telling:
+class SimulatedHeadset:
     """A headset in one phase: its clock, sequence numbers, journal and task.
 
     `edit` may change, drop or add messages before they are journaled: this is where a lie is

@@ -21,7 +21,7 @@ from app.features.care.backups.reading import digests, opened_backup
 from app.features.record.sessions import events_of, verify_chain
 from app.rehearsal.cast import answer, operate
 from app.rehearsal.rehearse import RehearsalPlan, assembled, rehearse
-from tests.faults.commands import UNUSABLE, Said, reembody
+from tests.faults.commands import UNUSABLE, CommandResult, reembody
 from tests.faults.figures import note
 from tests.faults.short_study import Watch, add_short_study
 from tests.rehearsal.ledger import Key, LedgerJournal, reconcile
@@ -61,7 +61,7 @@ class Made:
     """A backup made while a session streamed. `acked`: acknowledged before the command."""
 
     session_id: str
-    said: Said
+    said: CommandResult
     acked: dict[Key, int]
 
 

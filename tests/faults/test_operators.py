@@ -48,7 +48,7 @@ def press_many_times(lab: Lab, times: int) -> Counter[str]:
 
 
 def test_one_of_two_simultaneous_starts_succeeds(lab: Lab) -> None:
-    """Of two simultaneous starts one succeeds, and the other is told of the winner's event."""
+    """Of two simultaneous starts one succeeds, and the other is shown the winner's event."""
     found = press_many_times(lab, SHORT)
     note(25, f"two operators press start (x{SHORT})", "double starts", found["double"])
     note(25, f"two operators press start (x{SHORT})", "losers not told", found["unseen"])

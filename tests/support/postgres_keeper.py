@@ -21,7 +21,7 @@ LOOKS_EVERY_S = 0.5
 FAST_SHUTDOWN_S = 10.0
 
 
-class Told(Exception):  # a request, not an error
+class StopRequested(Exception):  # a request, not an error
     """Raised when SIGTERM arrives."""
 
 
@@ -34,7 +34,7 @@ def keep(owner: psutil.Process, server: subprocess.Popen[bytes]) -> None:
             except subprocess.TimeoutExpired:
                 continue
             return
-    except Told:
+    except StopRequested:
         return
 
 
@@ -60,7 +60,7 @@ def shut_down(server: subprocess.Popen[bytes]) -> None:
 
 def on_term(_number: int, _frame: FrameType | None) -> None:
     """End the wait in `keep`."""
-    raise Told
+    raise StopRequested
 
 
 def main(arguments: list[str]) -> None:
