@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from tests.cli.invoked import Invoked
-from tests.science.statistics.published import in_pingouin
+from tests.science.statistics.published import pingouin_table
 
 _COMMAND = Invoked("analyse")
 _FACTOR = ("--subject", "person", "--within", "latency", "--measure", "score")
@@ -56,7 +56,7 @@ def test_json_has_every_test_of_one_factor(tmp_path: Path) -> None:
 
 def test_two_factors_give_the_published_anova_and_families(tmp_path: Path) -> None:
     """Pingouin's `rm_anova2` gives F of 33.852, 26.959 and 12.632, and four families of tests."""
-    table = in_pingouin("rm_anova2")
+    table = pingouin_table("rm_anova2")
     path = _written(tmp_path, [",".join(table[0]), *(",".join(row.values()) for row in table)])
     names = ("--subject", "Subject", "--within", "Metric", "--within", "Time")
     figures = _COMMAND.figures(path, *names, "--measure", "Performance", "--art")
