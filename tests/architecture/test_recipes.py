@@ -176,7 +176,7 @@ def test_a_task_phase_edits_at_most_five_files(tmp_path: Path) -> None:
         "first command": "begin_phase",
         "event": "phase_prepared",
         "has boxes": True,
-        "without a body": "The baseline comes before the participant has a body.",
+        "without a body": "The step “baseline” comes before the participant has a body.",
         "codebook": ["free_roam, baseline, practice, task"],
     }
     tree.run_module("app.cli.page_texts")
