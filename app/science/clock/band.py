@@ -78,7 +78,7 @@ def band_of(bounds: Bounds, drift: float) -> Band | None:
 def _cut(
     ref_s: float, offset_s: float, slopes: FloatArray, low: FloatArray, high: FloatArray
 ) -> Band:
-    """Keep the slopes that have a line, and add the two slopes at which the polygon ends."""
+    """Keep the slopes for which a line exists, and add the two slopes at which the polygon ends."""
     room = high - low
     kept = np.flatnonzero(room >= 0.0)
     first, last = int(kept[0]), int(kept[-1])

@@ -173,7 +173,7 @@ class ClockMapping:
         return low, high
 
     def _relevant_times(self, t_s: FloatArray) -> list[npt.NDArray[np.bool_]]:
-        """Return for each stretch at which of the times (k,) its bounds count, as masks (k,)."""
+        """Return one mask (k,) for each stretch: the times at which its bounds count."""
         begins, ends = self._validity
         inside = [(t_s >= begin) & (t_s <= end) for begin, end in zip(begins, ends, strict=True)]
         outside = ~np.logical_or.reduce(inside)
@@ -187,11 +187,11 @@ class ClockMapping:
 
     @cached_property
     def _validity(self) -> tuple[FloatArray, FloatArray]:
-        """The client times from which and until which each stretch may be valid.
+        """The first and the last client time at which each stretch may be valid.
 
         Where the client's clock was set back, the earlier stretch may have lasted, after its last
         probe, for as long as the server counted until the next one; the later stretch may have
-        begun by as much earlier.
+        begun earlier by the same time.
         """
         begins = np.array([placed.stretch.knots_s[0] for placed in self.placed])
         ends = np.array([placed.stretch.knots_s[-1] for placed in self.placed])

@@ -106,7 +106,7 @@ class ClockProbes:
 
     @property
     def round_trip_s(self) -> FloatArray:
-        """Time under way (n,): the client's waiting minus the server's handling time, in s.
+        """Time on the network (n,): the client's waiting minus the server's handling time, in s.
 
         NaN where the probe was lost.
         """

@@ -3,7 +3,7 @@
 A window grows probe by probe while some line still lies between all bounds, up to the longest
 window that the limits allow. Where no line is left there are two explanations. Either that one
 probe is wrong: then the probes after it fit again, and it alone is left out. Or a clock jumped,
-stood still or changed its rate: then they do not fit, and the next window begins.
+stopped or changed its rate: then those probes do not fit, and the next window begins.
 """
 
 from collections.abc import Sequence

@@ -82,7 +82,7 @@ def _quaternions(axes: FloatArray) -> FloatArray:
 
 
 def _continuous(world: FloatArray) -> FloatArray:
-    """Choose of q and -q the one nearer to the previous frame's, (N, J, 4)."""
+    """Choose between q and -q the quaternion nearer to the previous frame's, (N, J, 4)."""
     away = np.einsum("nji,nji->nj", world[1:], world[:-1]) < 0.0
     flips = np.cumsum(away, axis=0) % 2 == 1
     out = world.copy()

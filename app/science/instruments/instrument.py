@@ -151,7 +151,7 @@ def _basics(instrument: Instrument) -> Iterator[DefinitionProblem]:
 
 
 def _keys(instrument: Instrument) -> Iterator[DefinitionProblem]:
-    """Check that keys are valid and unique; items and scores share one namespace."""
+    """Yield a problem for each invalid or duplicate key; items and scores share one namespace."""
     taken: set[str] = {"x", *FUNCTIONS}
     groups: tuple[tuple[str, Iterable[str]], ...] = (
         ("items", (item.key for item in instrument.items)),

@@ -33,7 +33,8 @@ class Token:
 def tokenize(text: str) -> tuple[Token, ...]:
     """Split a formula into tokens; the last one is always of kind "end".
 
-    Raises FormulaError for a character outside the language, and for formulas over the limits.
+    Raises FormulaError for a character outside the language, and for a formula that exceeds the
+    limits of its length.
     """
     if len(text) > MAX_LENGTH:
         raise FormulaError(

@@ -8,8 +8,8 @@ its local rotation (parent_from_joint), so that a late trunk is not attributed t
 
 A coarse search first correlates angular velocities; a fine search then finds the lag to a small
 fraction of a frame by least squares on the rotations. The 95 % confidence interval comes from how
-much blocks of about two seconds disagree. The other modules of `app.science.latency` hold the steps
-with formulas and sources.
+much blocks of about two seconds disagree. The other modules of `app.science.latency` contain the
+individual steps, with formulas and sources.
 
 What the number means:
 

@@ -120,7 +120,7 @@ def lock_feet(
 def _hip_lowering(
     positions_m: FloatArray, legs: Legs, targets_m: FloatArray, deepest_m: float, reach: int
 ) -> FloatArray:
-    """Return by how much the hips are lowered, (N,), so that both legs reach.
+    """Return the distance by which the hips are lowered, (N,), so that both legs reach.
 
     It is smooth and at most `deepest_m`.
     """

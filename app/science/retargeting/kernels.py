@@ -167,7 +167,7 @@ def transfer_frame(
     root_out: FloatArray,
     rotations_out: FloatArray,
 ) -> None:
-    """Transfer one frame: `transfer` for (3,) and (S, 4)."""
+    """Transfer one frame, with root (3,) and rotations (S, 4); otherwise like `transfer`."""
     transfer(
         root.reshape((1, 3)),
         rotations.reshape((1, *rotations.shape)),

@@ -67,7 +67,7 @@ def reach_for(
 
 
 def longest_m(a: FloatArray, b: FloatArray, now: FloatArray) -> FloatArray:
-    """Return how far legs may stretch: almost fully, or as far as they already do."""
+    """Return the length to which legs may stretch: almost full, or the present one if longer."""
     return np.maximum(STRETCH * (a + b), now)
 
 

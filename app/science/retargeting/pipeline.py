@@ -27,7 +27,7 @@ _EASING_S = 0.3
 
 @dataclass(frozen=True, eq=False)
 class Walks:
-    """The same walk of the source and of the avatar, measured, and the result of foot locking.
+    """Measures of the same walk by the source and by the avatar, and the result of foot locking.
 
     Attributes:
         source, avatar: measured over the source's contacts; the avatar's after foot locking.

@@ -58,7 +58,7 @@ class Plan(NamedTuple):
 def plan_of(
     source: Body, avatar: Body, moved_by: IntArray, factors: FloatArray, scale: float
 ) -> Plan:
-    """Pack two bodies, and the source joint and the factor of each avatar joint."""
+    """Pack two bodies, and the source joint and the factor of each avatar joint, into a `Plan`."""
     width = max(len(source.parents), len(avatar.parents)) + 1
     joints = np.full((7, width), -1, dtype=np.int64)
     numbers = np.zeros((4, width, 4))

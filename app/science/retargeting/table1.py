@@ -78,7 +78,7 @@ class Table1Row:
 
 
 def check_table1() -> tuple[Table1Row, ...]:
-    """Compute the rows of the table and compare them with the print, in its order."""
+    """Compute the rows of the table and compare them with the printed ones, in their order."""
     rig = mannequin()
     pose = t_pose(rig, MANNEQUIN_MAP, UNREAL, local_axes=UNREAL_LOCAL_AXES)
     printed = np.array([_PRINTED[name] for name in rig.names])

@@ -228,7 +228,7 @@ class Retargeter:
 
 
 def _plain(array: FloatArray) -> FloatArray:
-    """Return the array in the layout the kernel was compiled for; others would recompile it."""
+    """Return the array in the layout the kernel was compiled for; others trigger a compilation."""
     if array.flags.carray and array.dtype is _FLOAT64:
         return array
     return np.array(array, dtype=np.float64, order="C")

@@ -1,4 +1,4 @@
-"""Hold the other contents of captures: markers, and rigid bodies that belong to no skeleton.
+"""Data types for other contents of captures: markers, and rigid bodies outside any skeleton.
 
 The world is y up and right-handed, lengths are metres. Unobserved values are NaN.
 """

@@ -17,7 +17,10 @@ Population = Literal["male", "female", "average"]
 
 @dataclass(frozen=True)
 class Segment:
-    """One row of the table; all values are fractions, see the module docstring."""
+    """The parameters of one body segment, a row of the table.
+
+    All values are fractions; see the module docstring.
+    """
 
     mass: float
     center: float

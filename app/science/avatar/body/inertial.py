@@ -73,7 +73,7 @@ def combined(objects: Sequence[Inertial]) -> Inertial:
 
 
 def remainder(whole: Inertial, pieces: Sequence[Inertial]) -> Inertial:
-    """Return what is left of an object without some of its pieces, the inverse of `combined`."""
+    """Return the object that is left when some pieces are removed: the inverse of `combined`."""
     mass = whole.mass_kg - fsum(piece.mass_kg for piece in pieces)
     weighted = [
         whole.mass_kg * whole.center_m[axis]

@@ -120,7 +120,7 @@ class Configuration:
 
     @property
     def in_force(self) -> Mapping[str, AxisSettings]:
-        """Return axis -> settings with the locked groups applied: what a body is built from."""
+        """Return the settings of each axis with the locked groups applied, as a body is built."""
         held = {name for group in self.locked_groups for name in axes_of(group)}
         return MappingProxyType(
             {

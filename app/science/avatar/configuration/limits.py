@@ -134,5 +134,5 @@ FREE: Mapping[str, AxisLimits] = MappingProxyType(
 
 
 def limits_of(preset: Preset) -> Mapping[str, AxisLimits]:
-    """Return the limits of a preset, axis name -> limits."""
+    """Return the limits of every axis in a preset, by axis name."""
     return FREE if preset == "free" else ANATOMIC

@@ -18,7 +18,7 @@ _BODY = mujoco.mjtObj.mjOBJ_BODY
 
 
 class Chain:
-    """A model with its own data, separate from that of any simulation.
+    """The avatar's model, prepared for inverse kinematics, with data separate from any simulation.
 
     Attributes:
         axis_names: every hinge, in the order of the model.

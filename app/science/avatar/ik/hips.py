@@ -44,7 +44,7 @@ _TINY = 1e-9
 
 @dataclass(frozen=True)
 class Trunk:
-    """Lengths of one body in the T-pose.
+    """Lengths of one body's trunk and thighs in the T-pose.
 
     Attributes:
         hips_to_head_m: from the hips' joint to the head's.
@@ -61,7 +61,7 @@ class Trunk:
 
 @dataclass(frozen=True)
 class Tracked:
-    """A tracked part: the position of its joint in the world, and world_from_part."""
+    """The pose of a tracked part: its joint's position in the world, and world_from_part."""
 
     position_m: Vector
     rotation: Quaternion

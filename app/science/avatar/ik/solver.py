@@ -122,7 +122,7 @@ class Solution:
 
 
 class InverseKinematics:
-    """Follows one tracked body frame by frame.
+    """Computes the avatar's pose from the tracked parts of one person, frame by frame.
 
     Args:
         model: an avatar's, as `mjcf.build_mjcf` writes it, with any scene.
@@ -158,7 +158,7 @@ class InverseKinematics:
 
     @property
     def axis_names(self) -> tuple[str, ...]:
-        """Return the hinges whose angles a solution contains, in its order."""
+        """Return the names of the hinges, in the order of a solution's angles."""
         return self._chain.axis_names
 
     def reset(self) -> None:

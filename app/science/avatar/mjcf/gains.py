@@ -59,7 +59,7 @@ MAX_TORQUES_NM: Mapping[str, float] = MappingProxyType(
 def default_settings(
     body: Body, masses: BodyMasses, *, preset: Preset = "anatomic"
 ) -> dict[str, AxisSettings]:
-    """Return the settings of every axis of the parts of `body`, axis name -> settings."""
+    """Return the default settings of every axis of the parts of `body`, by axis name."""
     limits = limits_of(preset)
     settings: dict[str, AxisSettings] = {}
     for axis, hinge in hinges_of(body, masses).items():

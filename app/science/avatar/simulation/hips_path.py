@@ -54,7 +54,7 @@ class HipsPath:
         self._jump_to(pose)
 
     def go(self, fraction: float) -> None:
-        """Interpolate the pose: fraction 0 is that of the last frame, 1 that of this one."""
+        """Interpolate the pose: fraction 0 gives the last frame's pose, 1 gives this frame's."""
         if self._previous == self._next:
             return
         if fraction >= 1.0:
@@ -69,7 +69,7 @@ class HipsPath:
         self._rotation[:] = q_blend(turn, to_turn, fraction)
 
     def put_root(self) -> None:
-        """Put welded hips to the pose of the body that they are welded to, at rest."""
+        """Move welded hips to the pose of the body that they are welded to, at rest."""
         angles, speeds = self._table.root_angles, self._table.root_speeds
         if angles is not None and speeds is not None:
             self._data.qpos[angles : angles + 3] = self._previous[0]

@@ -30,7 +30,7 @@ _GRAVITY = 9.81
 
 
 class Switches:
-    """The switches of one running model; `ranges_rad` (n, 2) are the current limits."""
+    """Changes the settings of one running model; `ranges_rad` (n, 2) are the current limits."""
 
     def __init__(self, model: "mujoco.MjModel", data: "mujoco.MjData", table: HingeTable) -> None:
         from mujoco import mjtGeom  # already loaded by the caller

@@ -1,6 +1,6 @@
 """Compute the motors' target angles from a pose.
 
-`TargetAngles` follows poses frame by frame or as a recording, and gives the angles clamped to the
+`TargetAngles` converts poses, frame by frame or as a recording, to angles, both clamped to the
 limits and unclamped; `joint_rotations` is the inverse. `HingeReference` gives the rotations that
 the motors of an avatar aimed at, the reference of joint errors.
 """

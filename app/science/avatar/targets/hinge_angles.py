@@ -68,7 +68,7 @@ def _in_frame(q: Quaternion, frame: FloatArray, hand: float) -> Quaternion:
 
 @compiled_fused
 def _three(q: Quaternion, previous_angles: Vector) -> Vector:
-    """Return one of the two solutions for three axes; see the module docstring."""
+    """Return one of the two solutions for a part with three axes; see the module docstring."""
     w, x, y, z = q
     r13, r23, r33 = 2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)
     r21, r22 = 2 * (x * y + w * z), 1 - 2 * (x * x + z * z)
@@ -86,7 +86,7 @@ def _three(q: Quaternion, previous_angles: Vector) -> Vector:
 
 @compiled_fused
 def _two(q: Quaternion) -> tuple[float, float, float]:
-    """Return both angles of a part with two axes, and the angle between its rotation and theirs."""
+    """Return both angles of a part with two axes, and the angle by which they miss its rotation."""
     w, x, y, z = q
     total, difference = atan2(x + y, w - z), atan2(x - y, w + z)
     near = (hypot(x + y, w - z) + hypot(x - y, w + z)) / 2

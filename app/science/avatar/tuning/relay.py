@@ -177,7 +177,7 @@ class _Cycles:
             self._lowest = angle
 
     def ended(self, at_s: float) -> bool:
-        """Record the end of a cycle and return whether the previous_ahead cycles are steady."""
+        """Record the end of a cycle and return whether the latest cycles are steady."""
         if self._last_s is not None:
             self._periods.append(at_s - self._last_s)
             self._amplitudes.append((self._highest - self._lowest) / 2.0)
@@ -188,7 +188,7 @@ class _Cycles:
         )
 
     def oscillation(self, simulated_s: float) -> Oscillation:
-        """Return the mean of the previous_ahead cycles."""
+        """Return the mean of the latest cycles."""
         amplitudes, periods = self._latest()
         amplitude, period = sum(amplitudes) / len(amplitudes), sum(periods) / len(periods)
         edge, torque = self._settings.hysteresis_rad, self._settings.torque_nm

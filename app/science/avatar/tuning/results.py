@@ -24,7 +24,7 @@ class TuningCancelled(Exception):
 
 @dataclass(frozen=True)
 class TuningOptions:
-    """How a tuning is done; it uses no random numbers.
+    """Options of a tuning, which uses no random numbers.
 
     Attributes:
         heuristic: a key of `HEURISTICS`.
@@ -67,7 +67,7 @@ class TuningOptions:
 
 @dataclass(frozen=True)
 class TuningProgress:
-    """Progress of a tuning: `done` of `total` axes of the attempt's phase; `axis` was the last."""
+    """Progress of a tuning: `done` of `total` axes in the attempt's phase, most recently `axis`."""
 
     attempt: int
     phase: Phase

@@ -83,7 +83,7 @@ _STEADY_SHARE = 0.25
 def objection(
     step: StepFigures, clearance: float, *, accepted_overshoot_percent: float
 ) -> str | None:
-    """Return what is wrong with the gains of an axis; None if nothing is.
+    """Return the objection to the gains of an axis; None if they are good enough.
 
     Args:
         step: the step response with these gains.

@@ -58,7 +58,7 @@ class Spread:
 
 @dataclass(frozen=True)
 class Tracking:
-    """Errors of contact body on contact movement.
+    """Errors of one body that follows one movement.
 
     Attributes:
         rms_deg: driven axis -> RMS of the clamped target minus the angle.
@@ -146,7 +146,7 @@ def track(
 
 @dataclass(frozen=True)
 class Followed:
-    """The errors on contact movement, in an empty space and on a floor."""
+    """The errors for one movement, in an empty space and on a floor."""
 
     alone: Tracking
     on_floor: Tracking
@@ -172,7 +172,7 @@ def follow_capture(
 
 
 class _Record:
-    """Errors and contacts of a movement, added frame by frame."""
+    """Collects the errors and contacts of a movement frame by frame."""
 
     def __init__(self, frames: int) -> None:
         self._clamped = np.empty((frames, len(AXIS_NAMES)))
