@@ -32,7 +32,7 @@ IDLE_S = 2.0
 CALLABLE = 0x1
 """CO_OPTIMIZED: the code of a function, lambda or comprehension, not of a module or class."""
 AGAIN = 0x20 | 0x80 | 0x200
-"""CO_GENERATOR, CO_COROUTINE, CO_ASYNC_GENERATOR: entered again each time they go on."""
+"""CO_GENERATOR, CO_COROUTINE, CO_ASYNC_GENERATOR: entered again whenever they resume."""
 
 
 class Recorder:

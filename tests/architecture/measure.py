@@ -42,7 +42,7 @@ from tests.architecture.imports import (
 FEATURES = "app/features"
 PLATFORM = "app/platform"
 WINGS = ("care", "results", "record", "design", "movement", "people")
-"""From the top down; features live inside them."""
+"""The wings from the top down; features are inside them."""
 SMALL_LINES = 50
 GENERATED = ("schema.d.ts", ".generated.ts")
 SILENT = {

@@ -34,7 +34,7 @@ from typing import Any, TypedDict
 from tests.architecture.trees import REPOSITORY
 
 COPIED = ("app", "study_configs", "migrations", "pyproject.toml")
-"""What every copy holds. A file that a recipe edits elsewhere is copied by itself."""
+"""The contents of every copy. A file that a recipe edits elsewhere is copied individually."""
 GENERATED = frozenset(
     {
         "docs/data-dictionary.md",
@@ -47,7 +47,7 @@ _LEFT_OUT = shutil.ignore_patterns("static", "*.pyc.*")  # built pages; half-wri
 _TIMEOUT_S = 120.0
 
 Json = Any
-"""What `json.loads` makes of a text."""
+"""A value that `json.loads` returns."""
 
 
 class RecipeError(Exception):

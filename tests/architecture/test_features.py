@@ -7,7 +7,7 @@ from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 ROUTERS = "app/api/router.py"
-"""It takes routers from the features' `endpoints`, where they are made: faces know no HTTP."""
+"""It imports routers from the features' `endpoints`: packages do not export HTTP."""
 
 
 def imports() -> Iterator[tuple[str, str, list[str]]]:

@@ -20,7 +20,7 @@ LIMITS = MappingProxyType(
         "files_le_50": 49,
     }
 )
-"""The most that the tree may have; `tests.architecture.measure` says of what."""
+"""The greatest allowed figures; `tests.architecture.measure` defines them."""
 Build = Callable[[dict[str, str]], Path]
 
 

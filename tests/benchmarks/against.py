@@ -35,7 +35,7 @@ from tests.support.warden import run_warded
 REPOSITORY = Path(__file__).resolve().parents[2]
 LOCK = "requirements-dev.lock"
 PAIRS = 6
-"""The fewest whose extremes hold the median with a confidence of 95 %."""
+"""The fewest pairs whose extremes enclose the median with a confidence of 95 %."""
 CONFIDENCE = 0.95
 SHORT = {
     "avatar": ("--only", "speed", "--only", "control"),

@@ -26,7 +26,7 @@ from tests.support.server import LiveServer, free_port
 PARTS = ("flood",)
 DURATION_S, RUNS, CALLERS = 60.0, 3, 100
 SETTLED_S = 3.0
-"""The headsets stream for so long before the callers come."""
+"""How long the headsets stream before the callers start."""
 MOST_RATIO, MOST_GROWTH_MIB = 1.5, 100.0
 
 

@@ -12,7 +12,7 @@ CLIPS = {"walk": (WALK, False), "reach": (REACH, False), "turn": (TURN, True)}
 """File, and whether it travels: CMU 02_01 in place; a person who inspects objects on tables; CMU
 05_06, a dancer who turns round four times over four metres."""
 LONG_WALK = LONG
-"""Long enough to measure a latency on."""
+"""A walk that is long enough to measure a latency."""
 
 
 def movement(name: str, *, travels: bool = False) -> Movement | None:

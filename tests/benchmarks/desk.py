@@ -23,7 +23,7 @@ PARTICIPANTS = 1000
 REPEATS, LOGINS = 25, 20
 CALL_LIMIT_MS, LOGIN_LIMIT_MS = 100.0, 300.0
 NO_PAGE = ("/live", "/export", "/access", "/rows")
-"""Streams and files, which take as long as they are large."""
+"""Streams and files, whose duration depends on their size."""
 
 
 def measure(parts: frozenset[str], duration_s: float | None = None) -> Report:

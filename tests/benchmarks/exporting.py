@@ -18,7 +18,7 @@ from tests.features.movement_builders import store_chunks
 
 SESSIONS = 12
 FRAMES = 50_880
-"""As many as a session in real time records: 9.4 min at 90 Hz."""
+"""The frames of a session in real time: 9.4 min at 90 Hz."""
 PHASES = 7
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 AT_MOST, AT_LEAST = frozenset({"at most", "limit"}), frozenset({"at least"})
-"""Names of a peer that is a limit."""
+"""The peer names that mark a limit."""
 
 
 class CannotMeasure(ValueError):

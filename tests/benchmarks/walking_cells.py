@@ -66,7 +66,7 @@ class Studied:
 
 
 def made(entries: Sequence[PlannedWalk], maker: MapMaker, names: tuple[str, ...]) -> WalkDatabase:
-    """Return a database with all its maps."""
+    """Return a database of walks with the maps of all its entries."""
     return database_of(entries, [one for _, one in maps_of(entries, maker)], names)
 
 

@@ -151,13 +151,13 @@ def test_the_commands_of_a_page_run_in_their_order(
 
 
 PREPARED = {"./run restore /media/usb/2026-11-21.reembody": "an empty data folder"}
-"""What a page says has to be there first."""
+"""The state that a page requires before a command."""
 BRIEF = {
     r"\./run walk fit": FAST_WALKING,
     # The last one wins: an avatar of which only one arm moves.
     r"\./run tune": ("--avatar", "arm"),
 }
-"""What is added so that a command takes seconds."""
+"""Arguments that are added so that a command takes only seconds."""
 
 
 def _run(command: Command, lab: Lab, monkeypatch: pytest.MonkeyPatch) -> None:

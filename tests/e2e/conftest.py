@@ -78,7 +78,7 @@ def page_factory(new_context: ContextFactory) -> Callable[..., Page]:
 
 @pytest.fixture
 def screenshot() -> Callable[[Page, str], object]:
-    """`screenshot(page, name)` saves to the folder $REEMBODY_SCREENSHOTS, if it is set.
+    """Provide `screenshot(page, name)`, which saves to $REEMBODY_SCREENSHOTS, if it is set.
 
     No test examines its pictures, and drawing whole pages costs more than most of what is tested.
     """
@@ -92,7 +92,7 @@ def screenshot() -> Callable[[Page, str], object]:
 
 @pytest.fixture
 def axe() -> Callable[[Page], list[str]]:
-    """`axe(page)` lists serious and critical accessibility violations; assert that it is empty."""
+    """Provide `axe(page)`, which lists serious and critical accessibility violations."""
     return accessibility_violations
 
 

@@ -9,7 +9,7 @@ from tests.support.server import ADMIN_PASSWORD
 
 PATIENCE_MS = 30_000
 PICTURE_HIDDEN = "localStorage.setItem('reembody.cockpit.live', 'false')"
-"""For consoles on which nobody looks at the live picture: software draws it with a whole core."""
+"""For consoles without the live picture: software rendering would use a whole core."""
 
 
 class Experimenter:

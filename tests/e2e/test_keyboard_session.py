@@ -21,9 +21,9 @@ STUDY = "keyboard-study"
 TITLE = "A study by keyboard"
 PHASES = 2
 FARTHEST = 80
-"""So many times Tab at most, from wherever the focus is."""
+"""The most presses of Tab to reach an element."""
 ARMED_AFTER_MS = 800
-"""The cockpit takes no Enter sooner after a step has changed, so that none is meant for another."""
+"""The cockpit ignores Enter for this long after a step has changed."""
 # Keys pressed in every session, and those of each task phase: docs/operator-steps.md.
 FIXED_AT_MOST, PER_PHASE = 35, 1
 PROCEDURE = """procedure:

@@ -23,7 +23,7 @@ from tests.features.record.headset.site import Site
 from tests.support.browser import ContextFactory
 
 MANY = 6000
-"""More frames than a page makes before it is killed."""
+"""More frames than a page produces before it is killed."""
 
 
 @pytest.mark.parametrize(("mode", "flush_every_s"), [("page", 600.0), ("worker", 0.25)])

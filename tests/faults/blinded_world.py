@@ -43,20 +43,20 @@ from tests.protocol.helpers import edited
 
 STATUSES = ("planned", "active", "paused", "held", "completed", "aborted", "withdrawn")
 TAKEN_AGAIN, REVEALED = "taken again", "revealed"
-"""An aborted session whose slot another one has now; an active one that somebody had shown."""
+"""An aborted session whose slot another one has now; an active one whose condition was shown."""
 WORLDS = (*STATUSES, TAKEN_AGAIN, REVEALED)
 KNOWN = ("completed", REVEALED)
-"""Where those who read results may know the condition."""
+"""Worlds in which roles that read results may know the condition."""
 FRAMES, MS_PER_S = 90, 1000.0
 HEAVY = ("/dashboard", "/statistics", "/preregistration")
-"""Routes that draw or test: they take seconds."""
+"""Routes that draw figures or run tests: they take seconds."""
 DESIGN = {
     "/api/studies/{key}": ("protocol", "yaml"),
     "/api/studies/{key}/versions/{number}": None,
     "/api/studies/{key}/diff": None,
     "/api/studies/{key}/dashboard": ("choices",),
 }
-"""Where the design itself may be read: what of an answer is not searched; None: all of it."""
+"""Routes that show the design itself: the fields that are not searched; None: all of them."""
 IDS = {"phase_id": "2", "number": "1", "figure": "joint_error_joints"}
 NOBODY = "f" * 32
 QUERIES = {"/api/studies/{key}/diff": {"from": "1", "to": "1"}}

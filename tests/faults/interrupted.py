@@ -25,7 +25,7 @@ from tests.support.filled import VERSION_TABLE, contents, remembered, statements
 
 READING = {"SELECT", "PRAGMA", "SHOW", "SET", "BEGIN"}
 Step = tuple[str, str]
-"""The revision before, and the one that it becomes."""
+"""The revision before and after a migration step."""
 
 
 class Interrupted(Exception):

@@ -82,7 +82,7 @@ KNOWN = tuple(
         ),
     )
 )
-"""Files that an installation and what was asked of it may hold, once a server has started."""
+"""Files that may exist after an operation, once a server has started."""
 
 
 @dataclass(frozen=True)
@@ -217,7 +217,7 @@ OPERATIONS: dict[str, Callable[[Path, Source], None]] = {
     "erasure": erase,
 }
 EMPTY = {"first start", "restore"}
-"""Those that begin without any data."""
+"""Operations that begin without any data."""
 
 
 def prepared(operation: str, source: Source, to: Path) -> Path:

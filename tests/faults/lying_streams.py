@@ -1,7 +1,7 @@
 """Simulate headsets that report one impossible thing somewhere in a correct stream.
 
 `play(site, seed, lie)` runs one phase and returns the outcome. A lie is believed if the phase
-counts and nobody notices: there is neither a rejection nor a doubt in the record.
+counts and the record contains neither a rejection nor a doubt.
 """
 
 import math
@@ -446,8 +446,8 @@ LIES: dict[str, Lie] = {
     "a report at NaN": _json_time(math.nan),
     "a report at infinity": _json_time(math.inf),
 }
-"""Every lie by its name."""
+"""All lies by name."""
 CORRECTED = ("more made than can be, then the truth",)
-"""Lies that are taken back: in the end nothing untrue is on record."""
+"""Lies that are corrected later: in the end nothing untrue is stored."""
 OF_FREE = ("a contact in free movement", "a completion in free movement")
 OF_HAND = tuple(name for name in LIES if "contact" in name or "complet" in name or "hand" in name)

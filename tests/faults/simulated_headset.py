@@ -46,7 +46,7 @@ TOGETHER = 20
 DURATION_S, ROAM_S, FREEZE_S = 8.0, 4.0, 1.0
 BOXES = 4
 REFUSALS = ("refused", "closed", "error")
-"""What the server says where it does not take something."""
+"""The types of the server's messages that reject something."""
 TOUCH_S, BETWEEN_S = 0.08, 0.2
 
 

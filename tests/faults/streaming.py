@@ -20,7 +20,7 @@ from tests.support.server import ADMIN_PASSWORD, LiveServer
 
 BATCHES_PER_REPORT = 15
 MOST_WAITING = 400
-"""A headset that is not bound to real time sends no further ahead than this, in messages."""
+"""The most unacknowledged messages of a headset that does not stream in real time."""
 
 
 @dataclass(frozen=True)

@@ -40,7 +40,7 @@ from tests.protocol.helpers import edited
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 
 CANARIES = canaries((137.25, 262.5), more=("canary",))
-"""Both latencies in ms and s, and what their conditions are called."""
+"""Both latencies in ms and s, and the names of their conditions."""
 LOOK_EVERY_S = 0.02
 SPEED = 8.0
 PAGES = ("/", "/tablet")
@@ -217,7 +217,7 @@ def test_a_blinded_operator_cannot_find_the_condition(tmp_path: Path) -> None:
 
 QUICK = ("active", TAKEN_AGAIN, "completed")
 QUICK_ROLES = ("operator", "experimenter")
-"""Those that differ in who may know, and in how; `./run bench blinding` has all of them."""
+"""The roles that differ in what they may know; `./run bench blinding` has all roles."""
 
 
 @pytest.mark.one_engine

@@ -21,7 +21,7 @@ from tests.support.server import ADMIN_PASSWORD, LiveServer
 
 PAGE = 4096
 FRAMES = 35
-"""As many pages in the log that several transactions lie behind the damaged one."""
+"""Enough pages in the log for several transactions after the damaged one."""
 KNOWINGLY = (
     sys.executable,
     "-c",

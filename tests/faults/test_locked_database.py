@@ -17,7 +17,7 @@ from tests.faults.streaming import pair_headsets
 from tests.support.server import LiveServer
 
 LONGEST_WRITE_S = 5.0
-"""How long anybody may wait to hear that the database is locked, on a slow machine."""
+"""The longest wait for the response that the database is locked, on a slow machine."""
 
 
 @pytest.mark.parametrize(

@@ -143,7 +143,7 @@ def stream_row(session_id: str, epoch: int, now: datetime) -> TelemetryStream:
 @pytest.mark.long
 @pytest.mark.timeout(3600)
 def test_none_of_a_thousand_lies_is_believed(site: Site) -> None:
-    """A thousand lies are all rejected or doubted, and 300 correct streams are not."""
+    """A thousand impossible streams are all rejected or doubted, and 300 correct ones are not."""
     told = lying(site, MANY_LYING)
     assert tell(told, "lying") == []
     kinds = Counter(doubt.kind for one in told for doubt in one.doubts)

@@ -30,14 +30,14 @@ from tests.support.filled import fill
 from tests.support.postgres import running_cluster
 
 RELEASED = ("0001", "0002", "0003", "0004", "0005", "0006", "0007", "0008")
-"""Revisions that labs have run: they never change, and are stopped at in the long form."""
+"""Revisions that labs have run: they never change, and are tested in the long form."""
 EVERY = steps()
 STEPS = [
     pytest.param(step, marks=pytest.mark.long if step[-1] in RELEASED else ()) for step in EVERY
 ]
 KILLS, MANY_KILLS = 4, 60
 STOPS_ON_POSTGRES = 6
-"""PostgreSQL is slow to copy; the long form stops at every statement there too."""
+"""PostgreSQL databases are slow to copy; the long form stops at every statement."""
 
 
 @pytest.fixture(scope="module", params=["sqlite", "postgresql"])

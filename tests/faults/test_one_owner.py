@@ -185,7 +185,7 @@ def test_a_running_servers_database_is_refused_under_another_name(
 
 
 def test_a_database_of_postgres_has_one_server(tmp_path: Path) -> None:
-    """A PostgreSQL database has only one server, whatever the data folders.
+    """A PostgreSQL database has only one server, also if the data folders differ.
 
     This holds for servers started simultaneously and one after the other.
     """

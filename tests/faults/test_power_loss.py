@@ -25,7 +25,7 @@ EMULATED = (
     "wrote to"
 )
 PLACES = 7
-"""Kinds of moments at which power fails."""
+"""The number of kinds of moments at which power fails."""
 
 
 @pytest.fixture(scope="module")

@@ -18,9 +18,9 @@ from tests.rehearsal.ledger import LedgerJournal
 from tests.support.server import LiveServer
 
 SILENT_S = 0.15
-"""Ten times as long for a client that runs faster than life."""
+"""Ten times as long for a client that runs faster than real time."""
 NOTICED_WITHIN_S = 60.0
-"""A server that hardly gets a processor takes its own standing still into account, and waits."""
+"""A server with little processor time allows for its own delays, and waits."""
 
 
 def test_a_silent_headset_is_paused_and_gets_its_whole_time(

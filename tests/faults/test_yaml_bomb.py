@@ -26,7 +26,7 @@ BOMBS = {
     "200,000 dashes": "- " * 120_000,
 }
 MAX_CPU_S, MAX_GROWTH_MIB = 5.0, 96.0
-"""Far above what is seen and far below what any expansion would cost."""
+"""Far above the measured values and far below the cost of any expansion."""
 
 READ = """
 import json, resource, sys

@@ -61,9 +61,9 @@ class Lengths:
 
 SHIPPED = Lengths(120.0, 60.0)
 LONGER, SHORT = Lengths(15.0, 30.0), Lengths(10.0, 25.0, 1.0)
-"""Long enough for a task with each limb, and for a latency to be measured in every phase."""
+"""Long enough for a task with each limb, and to measure a latency in every phase."""
 BRIEF = Lengths(6.0, 10.0, 1.0)
-"""Long enough for a task with the hand, and for a latency to be measured of each condition."""
+"""Long enough for a task with the hand, and to measure a latency for each condition."""
 
 
 @dataclass(frozen=True)

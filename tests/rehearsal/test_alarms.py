@@ -7,8 +7,8 @@ from app.models import AlarmRow, PhaseQuality
 from tests.rehearsal.performed import PHASES, Performed
 
 TOLERATED = {"clock_uncertain", "jump"}
-"""A round trip takes long where the machine is busy, and a simulated participant who steps too wide
-sits down faster than anybody."""
+"""Round trips are long on a busy machine, and a simulated participant who steps too wide sits down
+faster than a real one."""
 
 
 def test_correct_movement_raises_no_alarm(performed: Performed, db: Session) -> None:

@@ -113,7 +113,7 @@ def test_the_interval_is_of_order_statistics(count: int, low: int, confidence: f
 
 
 def test_a_limit_is_an_upper_or_a_lower_one() -> None:
-    """ "At most" and "at least" make a peer a limit that a value meets or not; a rival is none."""
+    """A peer "at most" or "at least" is a limit that a value meets or not; others are rivals."""
     peers = ("at most", "at least", "bare mj_step")
     rows = [Figure("p", "n", 2.0, "s", peer, 3.0).as_json() for peer in peers]
     assert [(row["limit"], row["met"]) for row in rows] == [(3.0, True), (3.0, False), (None, None)]

@@ -17,7 +17,7 @@ from tests.support.node import install_packages, run_node
 FRONTEND = Path(__file__).resolve().parents[2] / "frontend"
 BASE, SCRIPT = "/only-in-tests/", "page.js"
 DOCUMENT = "/api/health"
-"""Any answer of the server that runs no script."""
+"""A response of the server that runs no script."""
 # Run in the frontend's folder, so that its packages are found.
 BUILD = """
 import { build } from "vite";

@@ -34,7 +34,7 @@ TESTS = Path("tests")
 BIOME = FRONTEND / "node_modules" / "@biomejs" / "biome" / "bin" / "biome"
 SOURCES = FRONTEND / "src"
 FAULT_TESTS = TESTS / "faults"
-"""Killed processes, failing disks and damaged files take minutes: `./run test` has them."""
+"""Killed processes, failing disks and damaged files take minutes: only `./run test` tests them."""
 
 
 class NoSuchPath(ValueError):

@@ -22,7 +22,7 @@ from multiprocessing import forkserver
 from typing import Any
 
 HEAVY = ("mujoco", "numba", "pandas", "plotly.graph_objects", "scipy.ndimage", "scipy.stats")
-"""What workers import and servers do not."""
+"""Modules that workers import and servers do not."""
 
 
 def listener() -> socket.socket:

@@ -34,9 +34,9 @@ MOST_BYTES = 64 * 1024
 PARENT_DEATH_SIGNAL = 1
 """PR_SET_PDEATHSIG of linux/prctl.h."""
 CHEAP_PASSWORDS = "TESTS_HAVE_CHEAP_PASSWORDS"
-"""Set where servers need not take a sixth of a second for each password."""
+"""The variable that makes servers hash passwords at little cost."""
 STUDIES = "TESTS_SHIP_STUDIES_FROM"
-"""Names the folder whose studies a new database gets, instead of the product's own."""
+"""The variable with the folder of studies for new databases, instead of the product's own."""
 EAGER = (
     "app.cli.commands",
     "app.cli.serve.run",
@@ -46,7 +46,7 @@ EAGER = (
     "uvicorn.protocols.http.httptools_impl",
     "uvicorn.protocols.websockets.websockets_sansio_impl",
 )
-"""What a server has imported by the time it listens."""
+"""The modules that a server has imported by the time it listens."""
 
 
 class Child:
@@ -101,9 +101,9 @@ class Wish:
     folder: Path
     output: Path
     errors: Path | None = None
-    """Where standard error goes, if not to `output` too."""
+    """The file for standard error; None: `output`."""
     max_file_bytes: int | None = None
-    """The longest file that it can write, if not any."""
+    """The size limit of files that it writes; None: no limit."""
 
 
 class Nursery:

@@ -19,7 +19,7 @@ PICTURES = DOCS / "images" / "pages"
 COLOURS = 256
 TALLEST_PX = 1400
 WINDOW_PX = 800
-"""Where a dialog is open: below the window the page is not dimmed."""
+"""The height with an open dialog: below the window the page is not dimmed."""
 
 
 @dataclass(frozen=True)

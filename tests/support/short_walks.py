@@ -25,7 +25,7 @@ from app.science.walking.records import Walk
 
 RATE_HZ = 128.0
 DISTANCES_M = (1.1, 1.7, 2.2, 2.8, 3.3, 3.8, 5.1, 7.0, 9.1, 12.7)
-"""Nominal distances of the table's ten rows a subject."""
+"""Nominal distances of the table's ten rows per subject."""
 _STILL_S = 1.0
 
 

@@ -56,7 +56,7 @@ class Outcome:
 
     @property
     def passed(self) -> bool:
-        """Return whether it found no problem."""
+        """Return whether the stage found no problem."""
         return self.ended.code == 0
 
 

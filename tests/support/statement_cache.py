@@ -22,7 +22,7 @@ SETTINGS = (
     "_json_serializer",
     "_json_deserializer",
 )
-"""What may differ between two dialects of one class, and would change what is compiled."""
+"""The attributes of two dialects of one class that change the compiled SQL."""
 _compiled: LRUCache[Any, Any] = LRUCache(MOST_STATEMENTS)
 
 

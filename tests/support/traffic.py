@@ -11,7 +11,7 @@ from playwright.sync_api import Page, Request
 
 LOOK_EVERY_MS = 60.0
 QUIET_LOOKS = 4
-"""A page that has just got its code asks for its data a moment later."""
+"""A page that has just loaded its code requests its data a moment later."""
 ENDLESS = "/live"
 
 

@@ -12,7 +12,7 @@ import pytest
 
 UNITS_VARIABLE = "REEMBODY_TEST_UNITS"
 STARTERS = frozenset({"live_server", "shared_server", "postgres_url", "browser"})
-"""The fixtures of `tests/conftest.py` and `tests/e2e` behind which something is started."""
+"""The fixtures of `tests/conftest.py` and `tests/e2e` that start something."""
 
 
 def needs(what: str) -> None:

@@ -16,7 +16,7 @@ FIRST, STEP, LAST = 50, 25, 400
 STEP_S = 20.0
 LATE_MS = 1000.0
 GENERATOR_LAG_MS = 100.0
-"""A generator that makes its messages later than this measures itself."""
+"""A generator that is later than this limits the measurement itself."""
 
 
 @dataclass(frozen=True)

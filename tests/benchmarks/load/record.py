@@ -14,7 +14,7 @@ from app.wire import StreamName
 from app.wire.messages import REPORT_STREAM
 
 STREAMS = (StreamName.TARGET.value, StreamName.ACTUAL.value, REPORT_STREAM)
-"""In this order the numbers in the columns stand for streams."""
+"""The streams in the order of their numbers in the columns."""
 
 
 @dataclass

@@ -16,7 +16,7 @@ from tests.support.shared_run import locked
 
 REPOSITORY = Path(__file__).resolve().parents[3]
 REQUIREMENTS = ("pybullet==3.2.7", "numpy>=2,<3")
-"""Its wheels need NumPy 2 without saying so."""
+"""Its wheels need NumPy 2 without declaring it."""
 _LONGEST_S = 1800
 
 

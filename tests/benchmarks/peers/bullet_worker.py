@@ -16,7 +16,7 @@ from typing import Any
 Plan = dict[str, Any]
 _UP = [0.0, 1.0, 0.0]
 _TAKES_UP = 6
-"""Errors count after this share of the movement, one in so many."""
+"""Errors count after the first 1/n of the movement."""
 
 
 class Avatar:

@@ -23,7 +23,7 @@ SESSIONS = 50
 PULLS_EVERY_S = 0.5
 """LabRecorder's interval."""
 PULLS_OFTEN_S = 0.05
-"""As often as ours commits."""
+"""The interval at which our server commits."""
 PEER = "LSL"
 CONFIG = """[ports]
 PortRange = 512

@@ -16,7 +16,7 @@ from tests.support.server import ADMIN_PASSWORD, LiveServer
 FORMS = "forms"
 INSTRUMENT = "karas2020"
 ITEMS = 14
-"""Its rated statements; an open question that may be left out comes after them."""
+"""The rated statements of the form; an optional open question follows them."""
 
 
 @dataclass(frozen=True)

@@ -11,11 +11,11 @@ from tests.faults.power.files import Choice, Rng, TracedFile
 from tests.faults.tracing.events import NEVER, Event
 
 Image = dict[str, bytes]
-"""The files of a folder by their path in it."""
+"""The contents of a folder's files, by path."""
 REBUILT = "-shm"
-"""What the name of a file ends with that is rebuilt, whatever it holds."""
+"""The suffix of the file that is rebuilt regardless of its contents."""
 MOODS = ("nothing", "everything", "scattered", "most", "few", "later first", "earlier first")
-"""How the disk treated what was not synced yet."""
+"""The ways in which the disk treats data that were not synced."""
 
 
 @dataclass

@@ -31,7 +31,7 @@ class Recording:
     promises: Sequence[Promise]
     ledgers: Mapping[str, LedgerJournal]
     flushes: list[Flush] = field(default_factory=list)
-    """What each flush made certain, once `prove_acks` has looked; variants of a run share it."""
+    """The certain data of each flush, filled in by `prove_acks`; variants of a run share it."""
 
     @property
     def data_dir(self) -> str:

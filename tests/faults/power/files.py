@@ -9,7 +9,7 @@ from tests.faults.tracing.events import Event
 
 Rng = np.random.Generator
 Choice = Callable[[list[int]], int]
-"""Of the changes to a sector (their places among all since the last sync), how many happened."""
+"""Chooses how many of a sector's changes (given as indices since the last sync) took effect."""
 
 
 @dataclass

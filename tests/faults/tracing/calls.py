@@ -62,7 +62,7 @@ NUMBERS = {
     },
 }
 OPEN_FLAGS_AT = {"open": 1, "openat": 2}
-"""Which argument holds the flags."""
+"""The index of the argument with the flags."""
 O_CREAT, O_TRUNC = 0o100, 0o1000
 AT_FDCWD = -100
 AT_REMOVEDIR = 0x200

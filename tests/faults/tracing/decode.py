@@ -15,7 +15,7 @@ PAGE = 4096
 WRITES = {"write", "writev", "pwrite64", "pwritev", "pwritev2"}
 SENDS = {"sendto", "sendmsg"}
 ON_FILES = {"fallocate": 0, "sendfile": 0, "copy_file_range": 2, "splice": 2, "sendmmsg": 0}
-"""Calls nothing here understands, with the argument that names what they would change."""
+"""Calls that are not decoded, with the index of the argument that names the changed file."""
 WITH_FOLDER = {"openat", "unlinkat", "renameat", "renameat2", "linkat"}
 """Calls whose paths may be relative to an open folder, named before each path."""
 Arguments = Sequence[int]

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 NEVER = 2**62
-"""`ended` of a call that the process did not live to see return."""
+"""`ended` of a call that had not returned when the process ended."""
 
 
 @dataclass(frozen=True)

@@ -38,7 +38,7 @@ CALLS = {
     "mkdir": 83,
     "mkdirat": 258,
 }
-"""Of x86-64. Reading a folder, looking at a file, locks and memory maps are not among them."""
+"""The call numbers of x86-64, without reading a folder, stat, locks and memory maps."""
 _KIND = {
     "pread64": "read",
     "openat": "open",
@@ -55,7 +55,7 @@ _BY_PATH = _WITH_FOLDER | {"open", "unlink", "mkdir", "rename"}
 _FLAGS_AT = {"open": 1, "openat": 2}
 _GET_REGISTERS, _SET_REGISTERS = 12, 13
 _REGISTERS, _RESULT, _NUMBER = 27, 10, 15
-"""`struct user_regs_struct`: how many, and where rax and orig_rax are."""
+"""`struct user_regs_struct`: its length, and the indices of rax and orig_rax."""
 _DRAWN = re.compile(r"[0-9a-f]{6,}|\d{2,}|(?<=-)[a-z0-9_]{8}(?=/|$)|(?<=\.)[a-z0-9_]{8}(?=\.)")
 
 

@@ -12,7 +12,7 @@ from tests.faults.tracing.calls import O_CREAT, O_TRUNC, OPEN_FLAGS_AT, Machine
 SEIZE, CONT, SYSCALL, LISTEN, GET_SYSCALL_INFO = 0x4206, 7, 24, 0x4208, 0x420E
 EVENT_SECCOMP, EVENT_STOP = 7, 128
 OPTIONS = 0x1 | 0x2 | 0x4 | 0x8 | 0x10 | 0x80 | 0x100000
-"""Mark system call stops; follow fork, vfork, clone, exec; seccomp stops; kill with the tracer."""
+"""Mark system call stops; follow fork, vfork, clone, exec; seccomp stops; end with the tracer."""
 INFO_ENTRY, INFO_EXIT, INFO_SECCOMP = 1, 2, 3
 WALL = 0x40000000
 PR_SET_SECCOMP, PR_SET_NO_NEW_PRIVS, MODE_FILTER = 22, 38, 2

@@ -19,7 +19,7 @@ from tests.faults.tracing.decode import Reader
 from tests.faults.tracing.events import Event, write_event
 
 REFUSED = 77
-"""Exit code: the kernel does not allow tracing; standard error says why."""
+"""The exit code if the kernel does not allow tracing; standard error says why."""
 SYSCALL_STOP = signal.SIGTRAP | 0x80
 GROUP_STOPS = (signal.SIGSTOP, signal.SIGTSTP, signal.SIGTTIN, signal.SIGTTOU)
 
