@@ -46,7 +46,7 @@ def test_no_file_names_a_folder_of_somebodys_machine(committed: list[Path]) -> N
 
 @pytest.mark.parametrize("name", LOCK_FILES)
 def test_python_lock_files_name_no_host(name: str) -> None:
-    """Python lock files name no host: whoever installs chooses the index, and hashes protect it."""
+    """Python lock files name no host: installers choose the index, and hashes verify packages."""
     lines = (REPOSITORY / name).read_text().splitlines()
     assert [line for line in lines if "://" in line or "index-url" in line] == []
 
