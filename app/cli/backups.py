@@ -113,7 +113,7 @@ def _sentence(done: BackedUp) -> str:
     )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class RestoreOptions:
     """What `reembody restore` may do, as on its command line.
 

@@ -215,6 +215,11 @@ def restore(
     with reported(), Activity(f"restoring {file}: opening it") as now:
         from app.cli.backups import RestoreOptions, restore_from
 
-        options = RestoreOptions(replace, even_though_active, even_though_altered, erasures)
+        options = RestoreOptions(
+            replace=replace,
+            even_though_active=even_though_active,
+            even_though_altered=even_though_altered,
+            erasures=erasures,
+        )
         done = restore_from(file, now, options, as_json=as_json)
     print(done)

@@ -22,7 +22,7 @@ import numpy as np
 from fastapi.testclient import TestClient
 from httpx2 import Response
 
-from app.cli.backups import restore_from
+from app.cli.backups import RestoreOptions, restore_from
 from app.cli.progress import Activity
 from app.cli.serve.run import why_not
 from app.clock import Clock
@@ -154,10 +154,9 @@ def _restored(folder: Folder, settings: Settings) -> Iterator[str]:
         restore_from(
             folder.backup,
             Activity(""),
-            replace=False,
-            even_though_active=True,
-            even_though_altered=False,
-            erasures=None,
+            RestoreOptions(
+                replace=False, even_though_active=True, even_though_altered=False, erasures=None
+            ),
             as_json=True,
         )
     yield from served(settings, folder.session_id)

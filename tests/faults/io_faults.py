@@ -28,7 +28,7 @@ from typing import Any
 
 from fastapi.testclient import TestClient
 
-from app.cli.backups import back_up_to, restore_from
+from app.cli.backups import RestoreOptions, back_up_to, restore_from
 from app.cli.errors import reported
 from app.cli.progress import Activity
 from app.cli.record import export_to_folder
@@ -170,10 +170,9 @@ def restore(folder: Path, _: Source, *, replace: bool = False) -> None:
     restore_from(
         folder / "all.reembody",
         Activity(""),
-        replace=replace,
-        even_though_active=True,
-        even_though_altered=False,
-        erasures=None,
+        RestoreOptions(
+            replace=replace, even_though_active=True, even_though_altered=False, erasures=None
+        ),
         as_json=True,
     )
 
