@@ -138,7 +138,7 @@ def npm(cwd: Path, *arguments: str) -> None:
 
 
 def shortened(output: str) -> str:
-    """Keep both ends of a long output: npm names its reason first, compilers theirs last."""
+    """Shorten a long output, keeping both ends: npm prints its reason first, compilers last."""
     lines = output.splitlines()
     if len(lines) > 2 * SHOWN_LINES:
         lines[SHOWN_LINES:-SHOWN_LINES] = [f"... ({len(lines) - 2 * SHOWN_LINES} lines more)"]

@@ -1,4 +1,4 @@
-"""Build the pages (`frontend/` into `app/static/`) whenever a wheel, sdist or editable is made."""
+"""Build the pages (`frontend/` into `app/static/`) for every wheel, sdist or editable install."""
 
 import os
 import sys

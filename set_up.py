@@ -1,4 +1,4 @@
-"""Install Reembody where something changed: Python packages and pages in parallel.
+"""Install what is missing or outdated: the Python packages and the pages, in parallel.
 
     python set_up.py run|dev --check      exit code 0 if there is nothing to do
     python set_up.py run|dev --uv PATH    do it
@@ -196,7 +196,7 @@ class SetUp:
             PROJECT.finish(project_key())
 
     def compile(self) -> None:
-        """Compile what the server starts with, or everything for development."""
+        """Compile the modules that the server imports at start, or all of them for development."""
         everything = ("-m", "compileall", "-q", "app", "migrations")
         self.commands.run(
             "compiling the project",

@@ -118,9 +118,9 @@ def _total_changes(connection: Connection) -> int:
 class FairLock:
     """A lock that serves its waiters in the order in which they arrived.
 
-    Python's own lock goes to any thread that asks at the right moment: of many threads that want to
-    write, most are served immediately and a few wait for all the others. One holder at a time; a
-    thread may release the lock that another thread acquired.
+    Python's own lock goes to any thread that requests it at the right moment: of many threads that
+    want to write, most are served immediately and a few wait for all the others. One holder at a
+    time; a thread may release the lock that another thread acquired.
     """
 
     def __init__(self) -> None:
@@ -232,7 +232,7 @@ class Database:
 
     @contextmanager
     def write_turn(self) -> Iterator[None]:
-        """On SQLite, block all other writers of this process."""
+        """On SQLite, block all other writers of this process for the duration of the block."""
         with self._write_lock if self.is_sqlite else nullcontext():
             yield
 

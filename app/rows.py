@@ -53,7 +53,7 @@ def _powers(count: int) -> Iterator[int]:
 
 @lru_cache(maxsize=256)
 def _from_rows(table: Table, names: Names, moving: Names, rows: int) -> str:
-    """Return SQLite's statement for this many rows, with a parameter for every value."""
+    """Return SQLite's statement for this number of rows, with a parameter for every value."""
     row = f"({', '.join('?' * len(names))})"
     return _statement(table, names, moving, f"VALUES {', '.join([row] * rows)}")
 
@@ -82,6 +82,6 @@ def _statement(table: Table, names: Names, moving: Names, source: str) -> str:
 
 @lru_cache(maxsize=64)
 def _processors(table: Table, names: Names, dialect: Dialect) -> tuple[tuple[str, Any], ...]:
-    """Return what converts each column's values for the driver; None if nothing does."""
+    """Return each column's converter of values for the driver; None where none is needed."""
     impls = {name: table.c[name].type.dialect_impl(dialect) for name in names}
     return tuple((name, impl.bind_processor(dialect)) for name, impl in impls.items())

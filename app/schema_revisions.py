@@ -39,8 +39,7 @@ def migrate_file(file: Path, revision: str = "head") -> None:
     """Migrate a SQLite file that no other program has open, so that the file alone is complete.
 
     SQLite's last connection copies the log into the file and removes it; if it cannot, it reports
-    no error, and whoever then moves or reads the file alone has an incomplete database. Raises
-    OSError in that case.
+    no error, and the file alone is then an incomplete database. Raises OSError in that case.
     """
     command.upgrade(alembic_config(f"sqlite:///{file}"), revision)
     _require_whole(file)

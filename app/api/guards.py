@@ -163,7 +163,7 @@ class Guards:
     async def _read(
         self, scope: Scope, headers: Headers, receive: Receive, *, known: bool
     ) -> Receive:
-        """Return what the application reads the body from; raise TooLarge if it is too large."""
+        """Return the receiver of the body; raise TooLarge if the body is larger than allowed."""
         declared = headers.get("content-length", "")
         if declared in ("", "0") and "transfer-encoding" not in headers:
             return receive
@@ -215,7 +215,7 @@ async def _whole(receive: Receive, limit: int) -> bytes:
 
 
 class _Replayed:
-    """Passes on a body that was already read, then whatever follows it."""
+    """Passes on a body that was already read, then the messages that follow it."""
 
     def __init__(self, body: bytes, receive: Receive) -> None:
         self._body: bytes | None = body
@@ -286,7 +286,7 @@ def _headed(scope: Scope, send: Send) -> Send:
 
 
 def require_known_host(host: str, known: Iterable[str]) -> None:
-    """Raise NotAllowed if a request addresses this server by somebody else's name.
+    """Raise NotAllowed if a request uses a host name that does not belong to this server.
 
     `host` is the Host header; `known` are the names that the lab gave to the server.
     """

@@ -71,7 +71,7 @@ def back_up_to(to: Path, activity: Activity, *, as_json: bool) -> str:
 
 
 def _put_on_record(database: Database, done: BackedUp) -> None:
-    """Record that a copy left the database, or warn: the backup is complete even if that fails."""
+    """Record that a copy left the database; if that fails, warn, since the backup is complete."""
     if done.revision != newest_revision():
         return
     try:
@@ -115,11 +115,11 @@ def _sentence(done: BackedUp) -> str:
 
 @dataclass(frozen=True, kw_only=True)
 class RestoreOptions:
-    """What `reembody restore` may do, as on its command line.
+    """The options of `reembody restore`, as on its command line.
 
     `replace`: replace a database that contains data. `even_though_active`, `even_though_altered`:
-    do it although sessions are running, or although the backup was altered. `erasures`: the list of
-    erasures of an earlier data folder, or None.
+    restore although sessions are running, or although the backup was altered. `erasures`: the list
+    of erasures of an earlier data folder, or None.
     """
 
     replace: bool
@@ -132,10 +132,10 @@ def restore_from(path: Path, activity: Activity, options: RestoreOptions, *, as_
     """Replace the database by a backup; raise ReembodyError with nothing changed if that fails.
 
     Phases whose clock was running when the backup was made are paused afterwards, as after a crash.
-    A damaged database is quarantined first. The erasures listed in `options.erasures`
-    are repeated here; if there is no list at all, it is requested on a terminal, and
-    elsewhere standard error reports what that may mean. The data are locked against other processes
-    from the first check until everything is done.
+    A damaged database is quarantined first. The erasures listed in `options.erasures` are repeated
+    here; if there is no list at all, the user is asked for it on a terminal, and elsewhere a
+    warning on standard error says what its absence may mean. The data are locked against other
+    processes from the first check until everything is done.
     """
     settings = read_settings()
     with own_data(settings, "restore"), storage_errors_reported():

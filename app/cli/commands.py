@@ -1,4 +1,4 @@
-"""Define all commands of `reembody`, the small ones here: parse the options, call, print."""
+"""Define all commands of `reembody`, and implement the small ones."""
 
 import json
 import os

@@ -21,7 +21,7 @@ ERASE_LINE = "\r\033[K"
 
 
 def fail(message: str) -> NoReturn:
-    """Print what is wrong and exit with the status for unusable input."""
+    """Print an error message and exit with the status for unusable input."""
     warn(message)
     raise SystemExit(UNUSABLE)
 

@@ -66,7 +66,7 @@ def export_to_folder(study: str, to: Path, activity: Activity, kind: str | None 
 
 
 def _put_on_record(database: Database, study: str, done: Exported) -> None:
-    """Record that a copy left the database, or warn: the export is complete even if that fails."""
+    """Record that a copy left the database; if that fails, warn, since the export is complete."""
     try:
         with database.writing() as db:
             record_copy(

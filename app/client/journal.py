@@ -23,7 +23,7 @@ class Entry:
 
     @property
     def size_bytes(self) -> int:
-        """The bytes that it counts for against the journal's limit."""
+        """The number of bytes that count towards the journal's limit."""
         return len(self.message)
 
 

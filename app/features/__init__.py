@@ -1,1 +1,1 @@
-"""The product's features, one package each; a feature only uses the services of other features."""
+"""The product's features, one package each; a feature uses only the services of other features."""

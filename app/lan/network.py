@@ -85,7 +85,7 @@ class Network:
 
 
 def is_this_machine(host: str) -> bool:
-    """Return whether a URL's host name means, on every machine, that machine itself."""
+    """Return whether a host name refers to the local machine everywhere, as `localhost` does."""
     name = host.lower().rstrip(".")
     if name in ("", "localhost") or name.endswith(".localhost"):
         return True

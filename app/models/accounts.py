@@ -1,4 +1,4 @@
-"""Tables of accounts, logins and invitations, and the audit trail of what they did."""
+"""Tables of accounts, logins and invitations, and the audit trail of their actions."""
 
 from datetime import datetime
 from typing import Any

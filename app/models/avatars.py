@@ -13,8 +13,8 @@ class HumanoidRow(Base):
     """A humanoid model by the SHA-256 of its file.
 
     Configurations refer to it, so it is never deleted. `figure` is its measures and convex pieces
-    as canonical JSON (`app.protocol.humanoid`); the other columns repeat what lists show of it.
-    `bones_by` is how its bones were mapped to body parts.
+    as canonical JSON (`app.protocol.humanoid`); the other columns repeat the values that lists
+    show. `bones_by` is how its bones were mapped to body parts.
     """
 
     __tablename__ = "humanoids"
@@ -45,10 +45,10 @@ class Avatar(Base):
 
 
 class AvatarVersion(Base):
-    """One content of a configuration; versions are appended and never edited or deleted.
+    """One version of an avatar's configuration; versions are appended, never edited or deleted.
 
     A session refers to a content by its hash, which is computed from `canonical_json`. `origin` is
-    how the content was created. `report` is what the tuning measured and with which settings, null
+    how the content was created. `report` has the tuning's measurements and settings, null
     otherwise.
     """
 

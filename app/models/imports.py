@@ -53,9 +53,10 @@ class AnswerImport(Base):
 class ImportedForm(Base):
     """One filled-in form of an import: its participant, condition, answers and scores.
 
-    `line`: in the file, from 1. `condition`: as in the file, or as mapped by the import;
-    `in_study`: whether it is the key of one of the study's conditions. `answered_on`: YYYY-MM-DD.
-    `answers`: by item, null if left out; `scores`: by score, null if an item is missing.
+    `line`: the form's line in the file, from 1. `condition`: as in the file, or as mapped by the
+    import; `in_study`: whether it is the key of one of the study's conditions. `answered_on`:
+    YYYY-MM-DD. `answers`: by item, null if left out; `scores`: by score, null if an item is
+    missing.
     """
 
     __tablename__ = "imported_forms"

@@ -10,10 +10,11 @@ from app.models.types import Id, UtcTime
 
 
 class PhaseLatency(Base):
-    """The achieved latency of a phase, with the set one.
+    """The achieved latency of a phase, next to the latency that was set.
 
     `achieved_s` with its 95 % interval is null if there was too little movement to measure it;
-    `reason` then says so. `flagged`: off by more than 10 ms and more than one frame (`frame_s`).
+    `reason` then states this. `flagged`: the two differ by more than 10 ms and more than one frame
+    (`frame_s`).
     """
 
     __tablename__ = "phase_latencies"

@@ -25,7 +25,7 @@ class Study(Base):
 
 
 class StudyVersion(Base):
-    """One content of a study. Once a session has started it is frozen; an edit makes a new one.
+    """One version of a study, frozen once a session has started with it; an edit makes a new one.
 
     `source_yaml` is the file as it was uploaded, including comments; its hash was computed from
     `canonical_json`. `instruments` maps the key of each instrument to its content hash at that
@@ -51,7 +51,7 @@ class StudyVersion(Base):
 
 
 class InstrumentVersion(Base):
-    """One content of an instrument; submissions refer to the exact wording that was shown."""
+    """One version of an instrument; submissions refer to the exact wording that was shown."""
 
     __tablename__ = "instrument_versions"
     __table_args__ = (UniqueConstraint("key", "content_hash"),)

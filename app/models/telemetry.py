@@ -19,7 +19,7 @@ from app.models.types import Id, UtcDateTime, UtcTime
 
 
 class TelemetryStream(Base):
-    """A stream of one client run (epoch), of which all of `seq < next_seq` is stored.
+    """A stream of one client run (epoch), of which everything with `seq < next_seq` is stored.
 
     `produced` is the next seq that the client has reported: what lies between is still in its
     journal, or was lost with it. `phase_id` and `active_s` are those of the newest stored frame:

@@ -1,12 +1,12 @@
-"""Decide which studies, sessions and other objects a caller may see, and who is kept blind.
+"""Decide which studies, sessions and other objects a caller may see, and apply blinding.
 
 A caller gets the same response for an object of a foreign study as for one that never existed, so
 that its address discloses nothing.
 
 Blinding is one rule, `hidden_sessions`. An order belongs to a slot of the ledger, and a slot whose
 session was aborted or withdrawn is given to the next participant. So in a blinded study the order
-of a slot, and with it the condition of every session that held it, is disclosed once the session
-that holds it *now* is completed, or was revealed for a reason that is on record. It is never
+of a slot, and with it the condition of every session that used it, is disclosed once the session
+that uses it *now* is completed, or was revealed for a reason that is on record. It is never
 disclosed to operators: known orders narrow down the remaining ones.
 """
 
@@ -65,7 +65,7 @@ def visible_to(caller: Caller) -> ColumnElement[bool]:
 
 
 def add_member(db: Session, caller: Caller, study: Study) -> None:
-    """Let the caller see a study that they have created."""
+    """Add the caller to the members of a study that they have created, so that they can see it."""
     if not caller.all_studies:
         db.add(StudyMember(account_id=caller.account_id, study_id=study.id))
         db.flush()
@@ -101,7 +101,7 @@ def session_by_id(db: Session, session_id: str, *, lock: bool = False) -> StudyS
 def is_blind(
     db: Session, caller: Caller, protocol: StudyProtocol, session: StudySession | None
 ) -> bool:
-    """Return whether the caller must not learn the condition of a session (or of any, if None)."""
+    """Return whether the caller must not learn the condition of a session (of any, if None)."""
     if not protocol.blinding.operator:
         return False
     if caller.role == "operator" or session is None:
@@ -150,7 +150,7 @@ def _blinded_versions(db: Session, study: Study) -> list[str]:
 def _undisclosed(db: Session, which: ColumnElement[bool]) -> frozenset[str]:
     """Return those of the given sessions whose order is still undisclosed.
 
-    That is: their slot is now held by a session that is neither completed nor revealed.
+    That is: their slot is now used by a session that is neither completed nor revealed.
     """
     open_ = (which, StudySession.status != "completed")
     slot_of_session = dict(

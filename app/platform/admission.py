@@ -1,4 +1,4 @@
-"""Decide, before its body is read, whether a request comes from somebody the lab knows.
+"""Decide, before a request's body is read, whether its sender has a valid login or pairing.
 
 A client without a valid token is a stranger: strangers share a budget per address and may send
 little (`app.api.guards`). A request with a valid token is never counted, so a flood from the same

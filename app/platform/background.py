@@ -1,8 +1,8 @@
-"""Monitor what runs in the background: threads, queues, worker processes, watches.
+"""Monitor background tasks: threads, queues, worker processes and periodic checks.
 
-Each has a name. When one ends with an error, it is restarted where that is safe, and `/api/health`
-reports it until it works again or has not failed for a while. This module does not depend on what
-any of them does.
+Each task has a name. When one ends with an error, it is restarted where that is safe, and
+`/api/health` reports it until it works again or has not failed for a while. This module does not
+depend on what any of them does.
 """
 
 import asyncio
@@ -185,7 +185,7 @@ class Background:
         self.on_change()
 
     def failing(self) -> tuple[Failing, ...]:
-        """Return what does not work now or failed recently, oldest first."""
+        """Return the tasks that fail now or failed recently, oldest first."""
         with self._lock:
             self._look_at_threads()
             self._forget_old()
@@ -193,7 +193,7 @@ class Background:
         return tuple(sorted(shown, key=lambda one: (one.since, one.name)))
 
     def take_incidents(self) -> tuple[Incident, ...]:
-        """Return each incident that is over exactly once, for the caller to record."""
+        """Return the incidents that are over, each exactly once, for the caller to record."""
         if not self._incidents:
             return ()
         with self._lock:

@@ -1,4 +1,4 @@
-"""Report problems of a study or instrument file, and of a stored one that was damaged."""
+"""Describe problems of study and instrument files, and detect stored ones that were damaged."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -1,8 +1,8 @@
 """The parts of a running application, built once in `create_app` and passed to every request.
 
-What every request may need has a name here. A feature that keeps something alive between requests
-(a process, a queue, a thread) adds a `Part`, which the application starts and stops with itself,
-and which the feature looks up by its class. So this module depends on no feature.
+A part that every request may need has a name here. A feature that keeps something alive between
+requests (a process, a queue, a thread) adds a `Part`, which the application starts and stops with
+itself, and which the feature looks up by its class. So this module depends on no feature.
 """
 
 from collections.abc import Callable
@@ -51,7 +51,7 @@ class AppContext:
     _parts: dict[type[Part], Part] = field(default_factory=dict)
 
     def add(self, part: Part) -> None:
-        """Add a feature's part; there is one of each class."""
+        """Add a feature's part, at most one of each class."""
         self._parts[type(part)] = part
 
     @property

@@ -25,7 +25,7 @@ Result = TypeVar("Result")
 
 
 async def get_context(request: Request) -> AppContext:
-    """Return the running application's context; async, because a thread would cost more."""
+    """Return the running application's context; it is async because a thread would cost more."""
     context = request.app.state.context
     assert isinstance(context, AppContext)  # noqa: S101 - narrows what create_app put there
     return context

@@ -34,7 +34,7 @@ def database_file(settings: Settings) -> Path | None:
 
 
 def home_of(settings: Settings) -> Path:
-    """Return the folder of everything that belongs to the database.
+    """Return the folder that contains everything belonging to the database.
 
     It is the folder of the database file, or the data folder if there is no file.
     """
@@ -100,7 +100,7 @@ def _more_than_one_name(file: Path, found: os.stat_result) -> Conflict:
 
 
 def _another_name(file: Path, found: os.stat_result) -> Path | None:
-    """Find another hard link to a file in its folder, or of the same name in a sibling folder."""
+    """Find a second hard link to a file: in its folder, or of the same name in a sibling folder."""
     near = chain(file.parent.glob("*"), file.parent.parent.glob(f"*/{glob.escape(file.name)}"))
     for one in islice(near, _MOST_LOOKED_AT):
         try:
@@ -113,7 +113,7 @@ def _another_name(file: Path, found: os.stat_result) -> Path | None:
 
 
 def traces_of_a_database(settings: Settings) -> list[str]:
-    """List what a previous database has left in the data folder; an empty list for a new folder."""
+    """List the files that a previous database has left in the data folder; empty for a new one."""
     home, found = home_of(settings), list[str]()
     patterns = [*_TRACES]
     file = database_file(settings)

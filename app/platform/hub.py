@@ -98,7 +98,7 @@ class Hub:
                 reader.offer(topic, value)
 
     def has_listeners(self, session_id: str, topic: str) -> bool:
-        """Return whether anybody subscribes to a topic: otherwise its news need not be made."""
+        """Return whether anybody subscribes to a topic: if nobody does, no news need be made."""
         with self._lock:
             readers = self._subscribers.get(session_id, ())
             return any(topic in reader.topics for reader in readers)

@@ -99,7 +99,7 @@ class Notes:
                         note.unlink()
 
     def all(self) -> list[IncompleteFile]:
-        """Return what is noted, oldest first, without notes that are themselves incomplete."""
+        """Return all noted files, oldest first; incomplete notes are skipped."""
         found = [one for note in self.folder.glob("*.json") if (one := _read(note)) is not None]
         return sorted(found, key=lambda one: (one.since, one.path))
 
@@ -194,7 +194,7 @@ def _read(note: Path) -> IncompleteFile | None:
 
 
 def _lock(file: IO[str], *, wait: bool = True) -> bool:
-    """Lock a note until the process ends; return whether it succeeded. True without file locks."""
+    """Lock a note until the process ends; return whether it succeeded, True without file locks."""
     try:
         import fcntl
     except ImportError:

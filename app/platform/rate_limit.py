@@ -19,7 +19,7 @@ IPV6_PREFIX = 64
 
 
 def network_of(address: str | None) -> str:
-    """Return what a client's address is counted under: itself, or the /64 of an IPv6 address."""
+    """Return the key for counting a client: its address, or the /64 network of an IPv6 address."""
     try:
         parsed = ip_address((address or "").partition("%")[0])
     except ValueError:

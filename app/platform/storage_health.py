@@ -130,7 +130,7 @@ class StorageHealth:
         return failure is not None and self.clock.monotonic_ns() - failure.last_ns > for_ns
 
     def take_outages(self) -> tuple[Outage, ...]:
-        """Return each outage that is over exactly once, for the caller to record."""
+        """Return the outages that are over, each exactly once, for the caller to record."""
         with self._lock:
             taken, self._outages = tuple(self._outages), []
         return taken

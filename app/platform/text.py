@@ -37,7 +37,7 @@ def require_text_in_head(path: bytes, query: bytes, headers: Iterable[tuple[byte
 
 
 def require_text_in_json(sent: bytes | str) -> None:
-    """Raise InvalidInput if a JSON text or a string inside it contains what cannot be stored.
+    """Raise InvalidInput if a JSON text or a string inside it contains invalid characters.
 
     Text that is not JSON is left to the parser that reads it next.
     """

@@ -125,7 +125,7 @@ def errors_as_not_durable(what: str) -> Iterator[None]:
 
 
 def not_durable_error(what: str, error: Exception) -> NotDurable:
-    """Return the error that `plainly` raises for `error`."""
+    """Return the error that `errors_as_not_durable` raises for `error`."""
     if isinstance(error, OSError):
         trouble = _BY_ERRNO.get(error.errno or 0, REFUSED)
         return NotDurable(f"{what}: {error.strerror or error}", remedy=trouble.remedy)

@@ -38,7 +38,7 @@ class Worker:
     _lock: threading.RLock = field(default_factory=threading.RLock)
 
     def watched_by(self, background: Background, name: str) -> Self:
-        """Report it to `background` under a name if the process dies without being ended."""
+        """Report the process to `background` under a name if it dies without being ended."""
         self._watched = (background, name)
         return self
 

@@ -42,9 +42,10 @@ class RemoteAvatar(Protocol):
         """Return the avatar's pose for the participant's pose; called for every frame."""
 
     def touches(self) -> tuple[Bools, Bools]:
-        """Return what it touches at the last frame, and what is near enough to keep a touch.
+        """Return the avatar's touches at the last frame, and what is near enough to keep a touch.
 
-        Two bool (S, 22), surfaces of the task by joints of the skeleton; (0, 22) without boxes.
+        Two bool arrays (S, 22), surfaces of the task by joints of the skeleton; (0, 22) without
+        boxes.
         """
 
 
@@ -79,7 +80,7 @@ class DelayedCopy:
 
 
 def no_touches() -> tuple[Bools, Bools]:
-    """Return the touches without boxes."""
+    """Return empty touches, as when there are no boxes."""
     nothing = np.zeros((0, 22), dtype=np.bool_)
     return nothing, nothing
 
@@ -120,7 +121,7 @@ class PhysicsBody:
 
     Args:
         mjcf: the model, with the boxes of all tasks.
-        configuration: that the model was built from.
+        configuration: the one that the model was built from.
         hips_scale: the height of its hips when standing, as a share of the participant's.
     """
 

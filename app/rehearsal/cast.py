@@ -1,4 +1,4 @@
-"""Play a session: an operator who issues commands, a tablet that answers, a headset."""
+"""Play a session: an operator who issues commands, a tablet that answers, and a headset."""
 
 import asyncio
 from collections.abc import Callable

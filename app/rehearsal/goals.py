@@ -1,4 +1,4 @@
-"""Convert the surface that the task rules expect next to a goal of the simulated participant."""
+"""Derive the simulated participant's goal from the surface that the task rules expect next."""
 
 from app.science.simulation import Goal, GoalKind
 from app.science.tasks import (

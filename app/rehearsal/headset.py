@@ -193,7 +193,7 @@ class Headset:
         await self._enter_phase(order)
 
     def _has_ended(self, order: PhaseOrder) -> bool:
-        """Return whether the state is older than our own report that the phase has ended."""
+        """Return whether the order is older than our own report that the phase has ended."""
         return self._run is None and order.phase_id <= self._phase_id
 
     async def _materialise(self, state: HeadsetState) -> None:

@@ -118,7 +118,7 @@ class RehearsalReport:
 
 
 async def visit_of(plan: RehearsalPlan) -> Visit:
-    """Return what the plan's study specifies for each visit.
+    """Return the length of a visit, as the plan's study specifies it.
 
     Raises ValueError if an interruption is planned for a phase that a visit does not have,
     ServerRefusedError or UnreachableError.
@@ -161,7 +161,7 @@ async def assembled(
     *,
     journal: Journal | None = None,
 ) -> AsyncIterator[Cast]:
-    """Create a session with three paired devices, ready to start; raises as `rehearse`."""
+    """Create a session with three paired devices, ready to start; raise like `rehearse`."""
     clock = FrameClock(plan.speed)
     rng = np.random.default_rng(plan.seed)
     person = make_person(rng, plan.capture)
@@ -226,7 +226,7 @@ async def _join(http: AsyncClient, plan: RehearsalPlan) -> Json:
 
 
 async def report_of(cast: Cast, plan: RehearsalPlan, duration_s: float) -> RehearsalReport:
-    """Return what was sent, and what the server has stored of it."""
+    """Return a report on the data that were sent, and on those that the server has stored."""
     view = await cast.operator.view()
     session_id = cast.operator.session_id
     streams: list[Json] = await call_with_retry(

@@ -1,4 +1,4 @@
-"""Define the command `analyse`: parse the options, call, print."""
+"""Define the command `analyse`: parse its options, run the analysis, print the results."""
 
 import json
 from pathlib import Path

@@ -153,7 +153,7 @@ def _interval(one: Interval | None) -> dict[str, Any] | None:
 
 
 def _values(one: object, *names: str) -> dict[str, Any]:
-    """Return the named attributes of a result under their own names."""
+    """Return the named attributes of a result as a dictionary."""
     return {name: getattr(one, name) for name in names}
 
 

@@ -1,4 +1,4 @@
-"""Define the command `retarget`: parse the options, call, print."""
+"""Define the command `retarget`: parse its options, run it, print the results."""
 
 import json
 from pathlib import Path

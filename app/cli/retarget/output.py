@@ -59,7 +59,7 @@ def as_text(done: Done) -> str:
 
 
 def table1_json(rows: tuple[Table1Row, ...]) -> dict[str, object]:
-    """Return roll, pitch and yaw in degrees, as printed and as computed, and their difference."""
+    """Return the table's roll, pitch and yaw in degrees: printed, computed, and the difference."""
     return {
         "rows": [
             {
@@ -74,7 +74,7 @@ def table1_json(rows: tuple[Table1Row, ...]) -> dict[str, object]:
 
 
 def table1_text(rows: tuple[Table1Row, ...]) -> str:
-    """Format the comparison as a table that marks the source's own inconsistency."""
+    """Format printed and computed angles as a table that marks the source's own inconsistency."""
     lines = [f"{'joint':<12}{'printed (roll, pitch, yaw)':<30}{'computed':<30}{'apart':>7}  deg"]
     for row in rows:
         mark = "  the source contradicts itself here" if row.inconsistent_in_source else ""

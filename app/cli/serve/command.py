@@ -1,4 +1,4 @@
-"""Define the commands `serve`, `tls show` and `tls renew`: parse the options, call, print."""
+"""Define the commands `serve`, `tls show` and `tls renew`: parse their options and run them."""
 
 from pathlib import Path
 from typing import Annotated

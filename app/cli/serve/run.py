@@ -165,7 +165,7 @@ class _Bound:
         )
 
     def doors(self, app: FastAPI, watch: CertificateWatch, settings: Settings) -> list[Door]:
-        """Return what is served on each group of sockets."""
+        """Return the listeners: each group of sockets with the application served on it."""
         config = _config(app, settings)
         doors = [Door(self.local, config)]
         if self.lan:

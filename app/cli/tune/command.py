@@ -1,4 +1,4 @@
-"""Define the command `tune`: parse the options, call, print."""
+"""Define the command `tune`: parse its options, run the tuning, print the results."""
 
 import json
 from pathlib import Path

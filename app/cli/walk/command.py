@@ -1,4 +1,4 @@
-"""Define the commands `walk fit`, `walk sample` and `walk evaluate`: parse, call, print."""
+"""Define `walk fit`, `walk sample` and `walk evaluate`: parse options, run, print the results."""
 
 import json
 import sys

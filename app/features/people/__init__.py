@@ -1,1 +1,1 @@
-"""The lab's staff: their accounts, and the audit trail of what they did."""
+"""The lab's staff: their accounts, and the audit trail of their actions."""

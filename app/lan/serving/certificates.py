@@ -42,7 +42,7 @@ POSIX = os.name == "posix"
 
 @dataclass(frozen=True)
 class Identity:
-    """The server's certificate. `authority` is what devices install; None if nothing.
+    """The server's certificate. `authority` is what devices install; None if nothing is needed.
 
     `uncovered` are addresses of this machine for which the certificate is not valid.
     """
@@ -63,7 +63,7 @@ class Identity:
 class CertificateSource(Protocol):
     """Provides the certificate for a machine's current addresses.
 
-    It is renewed or read again if necessary.
+    The certificate is renewed or reread if necessary.
     """
 
     def current(self, machine: Machine) -> Identity:

@@ -89,7 +89,7 @@ class ReceivingProtocol(HttpToolsProtocol):
     def data_received(self, data: bytes) -> None:
         """Parse data.
 
-        The first byte of the next head, or of anything like it, starts its deadline.
+        The first byte of the next head, or of other data in its place, starts its deadline.
         """
         if self._timer is None:
             self._await_head()
@@ -195,6 +195,6 @@ class ReceivingProtocol(HttpToolsProtocol):
         self._close()
 
     def _close(self) -> None:
-        """Close, with a time limit for a client that does not read the last bytes."""
+        """Close the connection, with a time limit for a client that does not read the rest."""
         self.transport.close()
         self.loop.call_later(CLOSED_WITHIN_S, self.transport.abort)

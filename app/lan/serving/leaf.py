@@ -29,12 +29,12 @@ class Leaf:
 
     @property
     def hosts(self) -> tuple[Host, ...]:
-        """The names and addresses for which it is valid."""
+        """The names and addresses for which the certificate is valid."""
         return hosts_of(self.certificate)
 
     @property
     def expires_at(self) -> datetime:
-        """The time at which it expires."""
+        """The time at which the certificate expires."""
         return self.certificate.not_valid_after_utc
 
 

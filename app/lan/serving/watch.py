@@ -57,7 +57,7 @@ class CertificateWatch:
         return self.identity.authority
 
     async def run(self) -> None:
-        """Check periodically; on an error it is reported, and the old certificate stays in use."""
+        """Check periodically; an error is reported, and the old certificate stays in use."""
         while True:
             await asyncio.sleep(LOOKED_AT_EVERY_S)
             try:

@@ -1,7 +1,7 @@
 """Check that a database contains only what this program can have written.
 
 Checksums show that a file is what was written, and SQLite's own check that its structure is intact.
-Neither says that the tables are those of the product, that a column of times contains times, or
+Neither shows that the tables are those of the product, that a column of times contains times, or
 that an account's role exists: a damaged value, or a forged backup, would crash the server where it
 is read. `wrong_tables` and `wrong_rows` check this without reading long values; `RestoredContent`
 checks rows that were just inserted into a database, before they are committed.
@@ -50,7 +50,7 @@ def columns_in(driver: sqlite3.Connection) -> dict[str, set[str]]:
 def wrong_tables(
     found: Mapping[str, Collection[str]], ours: Sequence[TableShape], *, exactly: bool = False
 ) -> list[str]:
-    """Return sentences on missing tables and columns of `ours`; `exactly`: also on any others."""
+    """Return a sentence for each missing table or column of `ours`; `exactly`: also for others."""
     wrong = []
     for shape in ours:
         columns = [column.name for column in shape.columns]
@@ -68,8 +68,8 @@ def wrong_tables(
 def wrong_rows(driver: sqlite3.Connection, shapes: Iterable[TableShape]) -> Iterator[str]:
     """Yield a sentence for each column with values of a wrong type.
 
-    No value is repeated: it may be a participant's answer. Raises what SQLite raises if a row
-    cannot be read at all; `app.platform.trouble.proves_damage` says what that means.
+    No value is repeated: it may be a participant's answer. Raises SQLite's error if a row cannot be
+    read at all; `app.platform.trouble.proves_damage` interprets it.
     """
     for shape in shapes:
         wrong: set[str] = set()

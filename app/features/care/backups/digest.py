@@ -1,4 +1,4 @@
-"""Checksums over rows, equal if and only if the rows are, whichever engine they are on.
+"""Checksums over rows: equal if and only if the rows are equal, whichever engine they are on.
 
 A table's checksum is SHA-256 over lines of compact ASCII JSON, each with a line feed: first the
 names of its columns, then every row in the order of the primary key, with `{"sha256": "..."}` in
@@ -28,7 +28,7 @@ class TableDigest:
 
 @dataclass
 class Digester:
-    """Compute the checksum of one table from its rows, a few at a time."""
+    """The checksum of one table, computed from its rows a few at a time."""
 
     shape: TableShape
     rows: int = 0

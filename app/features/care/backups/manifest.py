@@ -1,4 +1,4 @@
-"""The manifest of a backup, in a table of its own beside the product's."""
+"""The manifest of a backup, stored in a separate table of its file."""
 
 import hashlib
 import json

@@ -1,4 +1,4 @@
-"""Check that this program can read what a database contains, by the functions that read it later.
+"""Check that this program can read a database's content, using the functions that read it later.
 
 A backup may be complete, with the right types of values and with matching checksums, and still have
 a snapshot that is no valid state, or an order of conditions that no study has: it would crash the

@@ -116,7 +116,7 @@ def _refused(path: Path, why: str) -> InvalidInput:
 
 @contextmanager
 def opened_copy(path: Path) -> Iterator[Connection]:
-    """Open a SQLite file that no process writes, for reading."""
+    """Open a SQLite file that no process is writing to, for reading."""
     with (
         closing(sqlite3.connect(_address(path), uri=True, check_same_thread=False)) as driver,
         _through_sqlalchemy(driver) as connection,

@@ -71,7 +71,7 @@ def write_rows(connection: Connection, shape: TableShape, rows: Sequence[Row]) -
 
 
 def sqlite_insert(shape: TableShape) -> str:
-    """Return the SQLite statement that inserts such a row, with a `?` for each column."""
+    """Return the SQLite statement that inserts a row of this table, with a `?` for each column."""
     names = ", ".join(_quoted(one.name) for one in shape.columns)
     marks = ", ".join("?" * len(shape.columns))
     return f"INSERT INTO {_quoted(shape.name)} ({names}) VALUES ({marks})"  # noqa: S608 - names, quoted

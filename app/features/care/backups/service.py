@@ -60,8 +60,8 @@ class BackedUp:
 class Restored:
     """A committed restore.
 
-    `made_at`: that of the backup. `before`: the backup of the replaced rows, if there were any.
-    `unpaired`: number of headsets that must be paired again. `erasures_reapplied`: number of
+    `made_at`: when the backup was made. `before`: the backup of the replaced rows, if there were
+    any. `unpaired`: number of headsets that must be paired again. `erasures_reapplied`: number of
     participants in the backup whose data had been erased since, and were erased again.
     """
 
@@ -93,9 +93,9 @@ def back_up(
     notes: Notes | None = None,
     progress: Progress = silent,
 ) -> BackedUp:
-    """Copy everything in the database, as of this moment, to the new file `to`, blocking nobody.
+    """Copy the current content of the database to the new file `to`, without blocking anybody.
 
-    `notes` record the temporary file while it is written, for a place outside of the data folder.
+    `notes` record the temporary file while it is written, if it is outside of the data folder.
 
     On SQLite the write-ahead log cannot be emptied before the copy is finished, and grows
     meanwhile. Raises Conflict, NotFound or NotDurable; then nothing is left of the file.
@@ -132,7 +132,7 @@ def checked_backup(path: Path, workplace: Path, progress: Progress = silent) -> 
 
 
 def holds_people(backup: Backup) -> bool:
-    """Return whether the backup has participants of the kind people."""
+    """Return whether the backup contains participants of the kind `people`."""
     people: Select[tuple[Any]] = (
         select(column("id")).select_from(table("participants")).where(column("kind") == "people")
     )

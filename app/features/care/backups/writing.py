@@ -40,7 +40,7 @@ def write_backup(
 ) -> Manifest:
     """Copy everything that `source` sees to the file `to`, readable by its owner only.
 
-    `notes` record the temporary file while it is written, for a place outside of the data folder.
+    `notes` record the temporary file while it is written, if it is outside of the data folder.
     Raises Conflict if the file exists already, NotFound if the folder or a Reembody database is
     missing, NotDurable if the file cannot be written. Then nothing is left of it.
     """
@@ -116,7 +116,7 @@ def _mb(size: int) -> str:
 
 @contextmanager
 def _temporary_file(to: Path, now: datetime, notes: Notes | None) -> Iterator[Path]:
-    """Yield a file in a private temporary folder beside `to`, which is removed afterwards."""
+    """Yield a file in a private temporary folder next to `to`, which is removed afterwards."""
     with partial_folder("backup", to, now=now, notes=notes) as folder:
         yield folder / to.name
 

@@ -51,7 +51,7 @@ def index_of(file: Path) -> Path:
 
 
 def is_open_elsewhere(file: Path) -> bool:
-    """Return whether another process has the database open; False if the system cannot say."""
+    """Return whether another process has the database open; False if that cannot be determined."""
     try:
         import fcntl
     except ImportError:
@@ -73,9 +73,9 @@ def is_open_elsewhere(file: Path) -> bool:
 def damage_of(file: Path, *, every_row: bool = False) -> str | None:
     """Return a short description of the file's damage, or None if it can be used.
 
-    A log that was left behind, perhaps with a torn end, is what a power failure leaves and not
-    damage. Rows are read in a small file, and with `every_row` in any. Raises NotDurable if the
-    file cannot be read, so that its state is unknown.
+    A leftover log, even with a torn end, is the normal result of a power failure and not damage.
+    Rows are read if the file is small, or if `every_row` is set. Raises NotDurable if the file
+    cannot be read, so that its state is unknown.
     """
     with _unless_hindered(file):
         start = _beginning(file)
@@ -108,7 +108,7 @@ def damage_of(file: Path, *, every_row: bool = False) -> str | None:
 
 
 def foreign_tables(file: Path) -> list[str]:
-    """Return the tables of another program's database; none if it is Reembody's, or new.
+    """Return the tables of another program's database; empty if it is Reembody's, or new.
 
     Raises NotDurable if it cannot be read.
     """
@@ -143,7 +143,7 @@ def _proven_damage(error: Exception) -> str | None:
 
 
 def _plain(description: str) -> str:
-    """Return one line without the unprintable characters that damage brings into messages."""
+    """Return a message as one line, without unprintable characters that come from damaged data."""
     return "".join(letter if letter.isprintable() else "?" for letter in description)[:200]
 
 
@@ -205,7 +205,7 @@ def _as_readable(text: bytes) -> str:
 
 
 def _wrong_content(connection: sqlite3.Connection) -> str | None:
-    """Return what this program cannot have written, if the database is Reembody's."""
+    """Describe content that this program cannot have written, if the database is Reembody's."""
     found = columns_in(connection)
     if VERSION_TABLE not in found:
         # Another program's, or new; but with many Reembody tables, the version table was lost.

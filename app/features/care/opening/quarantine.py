@@ -1,8 +1,8 @@
 """Move a damaged database into quarantine, never deleting it.
 
-Each gets a folder of its own, `quarantine/UTC/`, with its log and a note. The note's name is the
-state: `moving` while files are moved (the next start continues if interrupted), `unresolved` until
-somebody has decided what to use instead, `resolved` from then on.
+Each database gets its own folder, `quarantine/UTC/`, with its log and a note. The note's name is
+the state: `moving` while files are moved (the next start continues if interrupted), `unresolved`
+until somebody has decided what to use instead, `resolved` from then on.
 """
 
 import os
@@ -20,7 +20,7 @@ SUFFIXES = DATABASE_SUFFIXES
 
 @dataclass(frozen=True)
 class Quarantine:
-    """The quarantine folder beside the database `file`."""
+    """The quarantine folder next to the database `file`."""
 
     file: Path
 

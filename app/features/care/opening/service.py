@@ -46,8 +46,8 @@ def quarantine_if_damaged(settings: Settings, clock: Clock, *, every_row: bool =
     cannot be read, so that its state is unknown; in the last two cases it is left alone.
 
     Call it in a process that has not opened the database yet. While another process uses the
-    database, it is not inspected: that process did so when it started. `every_row`: also in a large
-    file.
+    database, it is not inspected: that process did so when it started. `every_row`: read every row
+    even of a large file.
     """
     file = database_file(settings)
     if file is None:
@@ -146,8 +146,8 @@ def prepare_database(
 ) -> Path | None:
     """Inspect, create, back up and migrate the database, for a command that uses it.
 
-    `to_write`: also check that it can be written, as a server does. Raises NotDurable, or what the
-    single steps raise.
+    `to_write`: also check that it can be written, as a server does. Raises NotDurable, or the
+    errors of the single steps.
     """
     quarantine_if_damaged(settings, clock)
     refuse_unconfirmed_new_database(settings, new_database=new_database)
@@ -274,8 +274,8 @@ def _is_missing(settings: Settings) -> bool:
 def create_database(file: Path, clock: Clock) -> None:
     """Create an empty database with the newest schema at `file`, atomically.
 
-    A log that is there without its database is put into quarantine: SQLite would use it for the new
-    one. Raises NotDurable if the database cannot be created; nothing is left of it then.
+    A log found without its database is put into quarantine: SQLite would use it for the new one.
+    Raises NotDurable if the database cannot be created; nothing is left of it then.
     """
     folder = file.absolute().parent
     with errors_as_not_durable(f"a new database cannot be created in {folder}"):

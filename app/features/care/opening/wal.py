@@ -62,7 +62,7 @@ def inspect_log(path: Path) -> LogReport:
 
 
 def frames_noted(log: Path, index: Path) -> int:
-    """Return how many frames of this log, by its index, were committed and not copied yet.
+    """Return how many frames of this log its index lists as committed but not yet copied.
 
     0 if the index is missing, torn or another log's. A log that is too short to be identified
     counts as the index's own.

@@ -1,9 +1,8 @@
-"""One owner for the data: the server, or a command that changes more than single rows.
+"""Ensure that one process owns the data: the server, or a command that changes many rows.
 
-owner           the description of an owner, as text for other processes
-folder_lock     the operating system's lock on a folder
-database_lock   the lock of a PostgreSQL database
-service         take both locks, detect a loss, and allow commands beside an owner
+owner           the description of an owner, as text for other processes folder_lock     the
+operating system's lock on a folder database_lock   the lock of a PostgreSQL database service
+take both locks, detect a loss, and allow commands alongside an owner
 """
 
 from app.features.care.ownership.owner import Owned

@@ -35,7 +35,7 @@ _ENDED_NOTICED_BY_SERVER = (
 class DatabaseLock:
     """The lock on the database at `url`, taken on construction.
 
-    Raises Owned, and what `open_connection` raises.
+    Raises Owned, and the errors of `open_connection`.
     """
 
     def __init__(self, url: str, owner: Owner) -> None:
@@ -49,7 +49,7 @@ class DatabaseLock:
             _name(self._connection, owner)
 
     def is_held(self) -> bool:
-        """Query the server whether this connection still holds the lock."""
+        """Return whether this connection still holds the lock, according to the server."""
         query = f"SELECT count(*) FROM pg_locks WHERE pid = pg_backend_pid() AND {_MINE}"  # noqa: S608 - constants
         try:
             return bool(self._connection.execute(text(query), _KEYS).scalar())
@@ -57,7 +57,7 @@ class DatabaseLock:
             return False
 
     def take_again(self) -> None:
-        """Reconnect and take the lock; raise as on construction."""
+        """Reconnect and take the lock; raise the same errors as the constructor."""
         disconnect(self._connection)
         self._connection = self._taken()
 

@@ -67,7 +67,7 @@ class FolderLock:
         return self._handle is not None and _is_at(self._handle, self._file)
 
     def take_again(self) -> None:
-        """Lock the file that is there now; raise as on construction."""
+        """Lock the file that exists now; raise the same errors as the constructor."""
         before, self._handle = self._handle, self._taken()
         if before is not None:
             os.close(before)

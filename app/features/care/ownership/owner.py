@@ -37,7 +37,7 @@ class Owner:
 
     @classmethod
     def myself(cls, command: str, port: int | None = None) -> Self:
-        """Return this process as an owner, from now on."""
+        """Return a description of this process as an owner, starting now."""
         now = datetime.now(UTC).isoformat(timespec="seconds")
         return cls(os.getpid(), port, socket.gethostname(), now, command, _namespace())
 
@@ -59,11 +59,11 @@ class Owner:
 
     @property
     def ends_by_itself(self) -> bool:
-        """Return whether to wait for this owner: a command, or a server that has just died."""
+        """Return whether to wait for this owner: a command, or a server that has just ended."""
         return self.command != SERVER or self._is_dead()
 
     def __str__(self) -> str:
-        """Return process id, port, machine and time, for a sentence."""
+        """Describe the owner for a message: process id, port, machine and start time."""
         what = "server" if self.command == SERVER else f"command `{self.command}`"
         port = "" if self.port is None else f" on port {self.port}"
         where = "" if self._is_here else " of another container or machine"

@@ -1,4 +1,4 @@
-"""Take ownership of the data, keep it, and allow some commands beside an owner.
+"""Take ownership of the data, keep it, and allow some commands alongside an owner.
 
 The data of an installation are the folder of its settings, the folder of its embedded database
 (often the same one), and its PostgreSQL database. An owner holds the locks of all of them, and
@@ -55,7 +55,7 @@ class Ownership:
                 lock.announce(self.owner)
 
     def hold(self) -> bool:
-        """Take locks again that were lost; return whether there were any.
+        """Take lost locks again; return whether there were any.
 
         Raises Owned if another process has taken them, and NotDurable if they cannot be taken now.
         """
@@ -127,11 +127,11 @@ def _locks(settings: Settings, owner: Owner) -> list[_Lock]:
 def prepared_beside_owner(
     settings: Settings, command: str, prepare: Callable[[], object]
 ) -> Iterator[None]:
-    """Allow a command that reads, or adds rows in transactions of its own, beside an owner.
+    """Allow a command that reads, or adds rows in its own transactions, alongside an owner.
 
     Without an owner, the command owns the data while it prepares them (`prepare`), as a server
-    does. Beside an owner, which has prepared them, it does not; raises NotNow if the owner is still
-    preparing them, or if the database is of another version.
+    does. If there is an owner, which has prepared them, it does not; it raises NotNow if the owner
+    is still preparing them, or if the database is of another version.
     """
     try:
         own = own_data(settings, command)
@@ -164,7 +164,7 @@ def _require_prepared(settings: Settings, owned: Owned) -> None:
 
 
 class OwnerWatch(Part):
-    """Check regularly whether this server still owns the data, and take lost locks again.
+    """A regular check that this server still owns the data, which takes lost locks again.
 
     If another process has taken them, `taken_over` is called: two servers on the same data are
     worse than none.

@@ -46,7 +46,7 @@ def get_participants(key: str, db: Reading, context: Context, _: SignedIn) -> li
 async def post_erasure(
     key: str, participant_id: str, request: ErasureRequest, context: Context, caller: SignedIn
 ) -> ErasureView:
-    """Erase everything about a participant, except that there were sessions."""
+    """Erase everything about a participant; only the fact that there were sessions remains."""
     await run_in_threadpool(_expect, context, key, participant_id, request.confirm)
     async with context.database.writing_async() as db:
 

@@ -68,7 +68,7 @@ def erase(
 
 
 def require_erasable(db: Session, participant: Participant, confirm: str) -> None:
-    """Raise Conflict, InvalidInput or NotNow if `erase` would."""
+    """Raise the error with which `erase` would fail: Conflict, InvalidInput or NotNow."""
     if erasure_of(db, participant.id) is not None:
         raise Conflict(
             "the data of this participant were already erased",

@@ -22,7 +22,7 @@ log = logging.getLogger(__name__)
 
 @dataclass
 class ErasureReplay:
-    """Repeat, in a restore's transaction, the erasures that the restore undoes.
+    """Repeats, in a restore's transaction, the erasures that the restore undoes.
 
     `snapshot` is called before the rows are replaced, `reapply` after it. `given`: erasures of an
     earlier installation, which apply here, too.
@@ -33,7 +33,7 @@ class ErasureReplay:
     _tombstones: dict[str, Tombstone] = field(default_factory=dict)
 
     def snapshot(self, db: Session) -> None:
-        """Remember every erasure in the table or in the list beside the database."""
+        """Remember every erasure in the table or in the list next to the database."""
         listed = tombstone_file(self.context.settings).read()
         remembered = (*self.given, *listed, *tombstones_of(db))
         self._tombstones = {one.erasure_id: one for one in remembered}
@@ -44,7 +44,7 @@ class ErasureReplay:
 
 
 def repeat_erasures(db: Session, context: AppContext, remembered: Sequence[Tombstone]) -> int:
-    """Erase every participant with sessions in the database who was erased before."""
+    """Erase every participant with sessions in the database whose data were erased before."""
     done = 0
     for one in remembered:
         owners = db.scalars(
@@ -84,9 +84,10 @@ def _repeat_erasure(db: Session, context: AppContext, one: Tombstone, participan
 
 
 def finish_erasures(context: AppContext) -> int:
-    """Complete the list, repeat undone erasures, and overwrite remaining bytes, at a start.
+    """Complete the list, repeat undone erasures and overwrite remaining bytes at a start.
 
-    Returns how many erasures were repeated: somebody put an older file in the database's place.
+    Returns how many erasures were repeated: they were undone if somebody put an older file in the
+    database's place.
     """
     database, settings = context.database, context.settings
     listed = tombstone_file(settings).read()
@@ -114,7 +115,7 @@ def knows_erasures(context: AppContext) -> bool:
 
 
 def keep_tombstones(context: AppContext) -> None:
-    """Complete the list beside the database from its table; raise NotDurable."""
+    """Complete the list next to the database from its table; raise NotDurable if that fails."""
     with context.database.reading() as db:
         remembered = tombstones_of(db)
     tombstone_file(context.settings).add(remembered)

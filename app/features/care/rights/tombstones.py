@@ -1,8 +1,8 @@
-"""The erasures of an installation, one JSON line each, beside the database.
+"""The erasures of an installation, one JSON line each, in a file next to the database.
 
 A backup that is older than an erasure still has the data. Restoring it also restores the table of
-erasures of that moment; this file stays as it is, and says what has to be erased again.
-It has only ids. It is completed from the table at every start.
+erasures of that moment; this file is not replaced, and lists what has to be erased again. It has
+only ids. It is completed from the table at every start.
 """
 
 import json
@@ -66,7 +66,7 @@ class TombstoneFile:
         return found
 
     def add(self, tombstones: Iterable[Tombstone]) -> None:
-        """Append new erasures, flushed to the disk; raise NotDurable."""
+        """Append new erasures, flushed to the disk; raise NotDurable if that fails."""
         known_ids = {one.erasure_id for one in self.read()}
         new = [one for one in tombstones if one.erasure_id not in known_ids]
         if not new:

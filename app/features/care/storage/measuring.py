@@ -39,7 +39,7 @@ class MeasuredSession:
 
 @dataclass(frozen=True)
 class Measured:
-    """The sizes measured at one moment; `total_bytes`: of the disk of the data folder."""
+    """The sizes measured at one moment; `total_bytes` is the size of the data folder's disk."""
 
     at: datetime
     sizes: TableSizes

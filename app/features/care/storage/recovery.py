@@ -22,7 +22,7 @@ _CHANGES_NOTHING = text("UPDATE alembic_version SET version_num = version_num")
 
 @dataclass(eq=False)
 class StorageRecovery(Part):
-    """Keep the reserve of the disk, and test writing while nothing can be stored."""
+    """Keeps the reserve of the disk, and tests writing while nothing can be stored."""
 
     context: AppContext
     _stop: threading.Event = field(default_factory=threading.Event)

@@ -52,7 +52,7 @@ class TableSizes:
     """Bytes of each table, measured by `method`; without `dbstat` only `whole_bytes` are known.
 
     `unused_bytes`: free pages in the file, which will be reused. `log_bytes`: of the write-ahead
-    log beside it.
+    log next to it.
     """
 
     method: Method

@@ -193,7 +193,7 @@ class TimelineView(BaseModel):
 
 
 class DifferenceView(BaseModel):
-    """One difference between two study files; `before` or `after` is null if it has no value."""
+    """One difference between two study files; `before` or `after` is null if there is no value."""
 
     path: str
     kind: Literal["added", "removed", "changed"]

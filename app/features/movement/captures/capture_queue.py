@@ -36,7 +36,7 @@ def limit_memory() -> None:
 
 @dataclass
 class CaptureQueue(JobQueue):
-    """Run the tasks of captures one after the other, and cache their results (bytes)."""
+    """Runs the tasks of captures one after the other, and caches their results (bytes)."""
 
     messages: ClassVar[JobMessages] = JobMessages(
         busy="the server is busy with other captures",

@@ -40,7 +40,7 @@ class Inspected:
 
 
 def inspect_upload(max_bytes: int, source: Source, paths: tuple[Path, ...]) -> Inspected:
-    """Parse newly uploaded files and write a compressed copy beside each; raise Cannot."""
+    """Parse newly uploaded files and write a compressed copy next to each; raise Cannot."""
     inspected = _inspected(open_files(max_bytes, source, paths))
     for path in paths:
         compress(path, compressed_beside(path))

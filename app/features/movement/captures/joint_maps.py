@@ -53,7 +53,7 @@ class CurrentMap:
 
     @property
     def joint_map(self) -> dict[str, str]:
-        """Return body joint -> joint of the skeleton, in the order of the body's joints."""
+        """Return the map from body joints to joints of the skeleton, in the order of the body's."""
         chosen = self.saved.joint_map if self.saved is not None and self.saved.chosen else None
         mapping = dict(self.proposal.joint_map) if chosen is None else chosen
         return {joint: str(mapping[joint]) for joint in JOINT_NAMES if joint in mapping}

@@ -61,7 +61,7 @@ class Opened:
 
 @dataclass(frozen=True)
 class Store:
-    """Where file contents are read from: the database's URL, and the largest file size."""
+    """The source of file contents: the database's URL, and the largest allowed file size."""
 
     url: str
     max_bytes: int

@@ -152,7 +152,7 @@ class JointMapWish(BaseModel):
 
 
 class JointMapView(BaseModel):
-    """Which joint of a skeleton is which joint of the body, for every capture with this skeleton.
+    """A skeleton's joint map: its joint for each body joint, in every capture with this skeleton.
 
     `version` counts the saved maps, from 0; `chosen` is false while the map is the proposal.
     `sources` says for each mapped body joint whether its name, its place in the hierarchy, or a
@@ -238,12 +238,12 @@ class WalkerView(BaseModel):
 class AvatarWalkerView(WalkerView):
     """The walk of an avatar, compared with the source.
 
-    `leg_ratio` is its leg length over the source's, `length_ratio` and `height_ratio` the same of
-    mean steps (null without steps). `lifts_agree`: it lifts each foot as often as the source.
-    Slides are speeds of its feet while the *source's* are down: `slide_m_s` as shown here,
-    `slide_before_m_s` before the feet were locked, null if they are not. With locked feet,
-    `lowered_m` is how far the hips came down at most, and `out_of_reach` counts frames in which
-    a foot could not be held in place.
+    `leg_ratio` is its leg length over the source's, `length_ratio` and `height_ratio` the same
+    ratios of mean step lengths and heights (null without steps). `lifts_agree`: it lifts each foot
+    as often as the source. Slides are speeds of its feet while the *source's* are down: `slide_m_s`
+    as shown here, `slide_before_m_s` before the feet were locked, null if they are not. With locked
+    feet, `lowered_m` is how far the hips came down at most, and `out_of_reach` counts frames in
+    which a foot could not be kept in place.
     """
 
     stature_m: float

@@ -44,7 +44,7 @@ class Refused:
 
 
 def measure(max_bytes: int, path: Path) -> Measured | Refused:
-    """Parse and measure a newly uploaded file, and write a compressed copy beside it."""
+    """Parse and measure a newly uploaded file, and write a compressed copy next to it."""
     try:
         read = read_humanoid(path.read_bytes(), Limits(bytes=max_bytes))
         figure = figure_of(read.humanoid)

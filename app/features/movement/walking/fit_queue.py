@@ -1,7 +1,7 @@
 """Fit models of walking one after the other, in a worker process that can be stopped.
 
-Each fit has a folder beside the database for its finished maps. Stopping kills the process, and
-resuming continues after the last finished map, also after a restart of the server. Only complete
+Each fit has a folder next to the database for its finished maps. Stopping kills the process, and
+resuming continues after the last finished map, even after a restart of the server. Only complete
 models are stored in the database.
 """
 

@@ -43,7 +43,7 @@ Json = dict[str, Any]
 
 
 def fit(store: Store, order: FitOrder, folder: Path) -> Json:
-    """Fit a model in a folder and return a `ModelSummary`; raise Cannot."""
+    """Fit a model, with its files in `folder`, and return a `ModelSummary`; raise Cannot."""
     files = FitFolder(folder)
     files.write_stage("walks", 0, 0)
     entries = planned_walks(store, order.source, order.scene)

@@ -24,7 +24,7 @@ def load() -> None:
 
 @dataclass
 class PredictionQueue(JobQueue):
-    """Compute predictions one after the other, and cache their results."""
+    """Computes predictions one after the other, and caches their results."""
 
     messages: ClassVar[JobMessages] = JobMessages(
         busy="the server is busy with other predictions of walking",

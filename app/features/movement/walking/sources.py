@@ -23,7 +23,7 @@ class Cannot(Exception):
 
 @dataclass(frozen=True)
 class Store:
-    """Where file contents are read from: the database's URL."""
+    """The source of file contents: the database's URL."""
 
     url: str
 
@@ -33,9 +33,9 @@ class TrackSource:
     """A table of tracks.
 
     Attributes:
-        name: Of the file.
-        content_hash: Under which it is stored.
-        rate_hz, metres_per_unit: Missing in the table itself.
+        name: The file's name.
+        content_hash: The hash under which it is stored.
+        rate_hz, metres_per_unit: Values that are missing in the table itself.
         kind: Whether people walked, or the walks are synthetic.
         statures_m: Pairs of subject and stature.
         subjects: Pairs of the table's id and the person, for several tracks of one person.
@@ -57,7 +57,7 @@ class PopulationSource:
     """Synthetic walkers.
 
     Attributes:
-        name: Of the population.
+        name: The population's name.
         people, repetitions, seed: How many walkers, how often each walks each path, random seed.
         scene: Text of the scene file whose paths they walk, or `LABORATORY`.
     """
@@ -116,7 +116,7 @@ class Question:
         scene: Text of the scene; None for the open floor.
         points_m: A path, or its two ends if `planned`.
         planned: Whether the path between the ends is to be planned.
-        stature_m: Of the walker, None for the mean of the model's people.
+        stature_m: The walker's stature, None for the mean of the model's people.
         count, seed: Draws of P_prob.
         shown: How many of the draws are followed along the path.
     """

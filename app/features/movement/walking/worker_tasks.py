@@ -50,7 +50,7 @@ def captured_table(
 
 
 def fit_model(store: Store, order: FitOrder, folder: Path) -> dict[str, Any]:
-    """Fit a model in a folder and return a `ModelSummary`; raise Cannot."""
+    """Fit a model, with its files in `folder`, and return a `ModelSummary`; raise Cannot."""
     from app.features.movement.walking.fit_task import fit
 
     return fit(store, order, folder)

@@ -56,7 +56,7 @@ _HASHER = PasswordHasher()
 
 @dataclass
 class PasswordQueue:
-    """Run one job at a time on a low-priority thread, with at most `waiting` callers in the queue.
+    """Runs one job at a time on a low-priority thread, with at most `waiting` callers in the queue.
 
     Raises Busy for every further caller. Running sessions take precedence over log-in attempts, so
     the thread gives way to anything else that needs a processor.

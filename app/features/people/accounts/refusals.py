@@ -50,7 +50,7 @@ class _Window:
 
 @dataclass(eq=False)
 class RefusedSignIns(Part):
-    """Count refused sign-ins and write them to the audit trail; thread-safe."""
+    """Counts refused sign-ins and writes them to the audit trail; thread-safe."""
 
     database: Database
     clock: Clock

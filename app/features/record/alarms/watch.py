@@ -29,7 +29,7 @@ class CheckResult:
 
 @dataclass
 class QualityWatch:
-    """Run all checks on one open headset socket, without using the database or the event loop.
+    """Runs all checks on one open headset socket, without using the database or the event loop.
 
     Create it with `QualityWatch.of(welcome, ...)`, pass it what the headset sends and what was
     stored, and call `check` about every `limits.check_every_s`.

@@ -106,7 +106,7 @@ def _completion_content(store: "_Store", request: CommandRequest) -> ContentRef 
 
 
 class _Store:
-    """Store texts next to the event log, in the caller's transaction.
+    """Stores texts next to the event log, in the caller's transaction.
 
     If the command is rejected, the transaction is rolled back, so no text remains.
     """

@@ -218,7 +218,7 @@ def exceeds_possible(count: int, age_s: float, time_scale: float = 1.0) -> bool:
 
 
 def max_made(age_s: float, time_scale: float) -> float:
-    """Return the most frames (or reports) of a stream that an epoch of this age can have made."""
+    """Return the largest number of frames (or reports) that an epoch of this age can have made."""
     return MAX_PER_S * time_scale * (max(age_s, 0.0) + HEAD_START_S)
 
 
@@ -380,7 +380,7 @@ def _frames(phase: PhaseClaims, reports: Sequence[ClockReport]) -> Iterator[Doub
 
 
 class _Running(NamedTuple):
-    """When a phase's clock ran in one epoch, and how far it lagged behind the epoch's own clock."""
+    """The intervals in which a phase's clock ran in one epoch, and its lag behind that epoch's."""
 
     first_s: float
     last_s: float

@@ -79,7 +79,7 @@ def judge_with_doubts(db: Session, session: StudySession) -> None:
 
 
 class _Reader:
-    """Read the claims of the chosen sessions, table by table."""
+    """Reads the claims of the chosen sessions, table by table."""
 
     def __init__(self, db: Session, chosen: ColumnElement[bool]) -> None:
         self._db, self._chosen = db, chosen

@@ -55,7 +55,7 @@ class Touch(BaseModel):
 
 @dataclass
 class PoseFeed:
-    """Publish the poses and contacts of one headset connection to consoles."""
+    """Publishes the poses and contacts of one headset connection to consoles."""
 
     hub: Hub
     session_id: str

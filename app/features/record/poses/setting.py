@@ -1,4 +1,4 @@
-"""What a console needs to draw poses: the body, the boxes, and whether the reader is blinded."""
+"""The data that a console needs to draw poses: body, boxes, and whether the reader is blinded."""
 
 from typing import Literal
 
@@ -37,7 +37,7 @@ class SurfaceView(BaseModel):
 
 
 class Setup(BaseModel):
-    """What a console needs to draw poses; sent first, and again whenever it changes.
+    """The data that a console needs to draw poses; sent first, and again whenever they change.
 
     Joint j is at `offsets_m[j]` in its parent's frame (-1: the world); the rest pose is the T-pose
     facing -z, y up. `surfaces` are those of the current step's task. A `blinded` reader gets only

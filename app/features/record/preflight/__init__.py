@@ -1,4 +1,4 @@
-"""Pre-flight checks: what should be in order before a participant puts the headset on."""
+"""Pre-flight checks: conditions to be met before a participant puts the headset on."""
 
 from app.features.record.preflight.checks import CHECKS, check_texts
 

@@ -63,7 +63,7 @@ class Found:
 
 @dataclass(frozen=True)
 class Situation:
-    """What a check can inspect: the session, the database (read-only), and the running server.
+    """The input of a check: the session, the database (read-only), and the running server.
 
     `signal`: figures of the headset's live watch; empty while no headset is connected.
     """

@@ -1,4 +1,4 @@
-"""Receipts: what was made, stored and is missing of a session, computed from the record."""
+"""Receipts: the data that a session produced, stored and lacks, computed from its record."""
 
 from app.features.record.receipts.service import SessionReceipt, receipt_of, receipt_text
 

@@ -19,7 +19,7 @@ from app.platform.access import session_by_id
 
 @dataclass(frozen=True)
 class SessionReceipt:
-    """What a session's record contains and what it lacks.
+    """The data that a session's record contains, and those that it lacks.
 
     `complete` is true if `problems` is empty: nothing that was made is missing or damaged, the
     event log's hash chain is intact, the stored completions follow from the stored contacts, and

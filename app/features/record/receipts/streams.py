@@ -1,4 +1,4 @@
-"""Count what is stored of each stream by decoding every chunk, without relying on counters."""
+"""Count the stored frames of each stream by decoding every chunk, without relying on counters."""
 
 import hashlib
 from collections.abc import Iterable, Iterator
@@ -17,7 +17,7 @@ from app.wire import MAX_TIME_S, REPORT_STREAM
 
 @dataclass(frozen=True)
 class StreamReceipt:
-    """What is stored and what is missing of one stream in one epoch.
+    """The stored and the missing frames (or reports) of one stream in one epoch.
 
     `sent`: how many frames (or reports) the client made, as far as it could report it. `gaps`: the
     seqs that are missing, as (first, end). `damaged`: stored frames that can no longer be decoded;

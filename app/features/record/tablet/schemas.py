@@ -63,7 +63,7 @@ class HelpWish(BaseModel):
 
 
 class RefusalWish(BaseModel):
-    """Whether the participant refuses the consent of a step, or takes the refusal back.
+    """A request to refuse the consent of a step, or to take the refusal back.
 
     `wish_id` is generated when the button is pressed, so the request can be resent any number of
     times, even late.

@@ -22,7 +22,7 @@ EVERY_S = 2.0
 
 @dataclass
 class Checkpointer:
-    """Checkpoint the write-ahead log at intervals; call `turn` repeatedly from a single thread."""
+    """Checkpoints the write-ahead log at intervals; call `turn` repeatedly from a single thread."""
 
     database: Database
     monotonic_s: Callable[[], float] = time.monotonic

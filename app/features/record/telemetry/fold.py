@@ -34,7 +34,7 @@ class BatchesChanged(RuntimeError):
 
 @dataclass
 class Folder(Part):
-    """Fold batches into chunks in a background thread, from `start` until `stop`.
+    """Folds batches into chunks in a background thread, from `start` until `stop`.
 
     Chunks are encoded by the `encoder` process, or in this thread if there is none.
     """

@@ -38,7 +38,7 @@ PROBES = cast("Table", ClockProbe.__table__)
 
 @dataclass
 class Intake:
-    """What one transaction stores. Rows are collected here and written together by `flush`.
+    """The rows that one transaction stores, collected for one write by `flush`.
 
     Call `flush` before reading the tables within the transaction.
     """

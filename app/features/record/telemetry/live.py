@@ -18,7 +18,7 @@ PERIOD_S = 0.2
 
 @dataclass
 class LiveTelemetry:
-    """Summarise the messages of one connection as a few figures, at most five times a second.
+    """Summarises the messages of one connection as a few figures, at most five times a second.
 
     Counting is cheap and always done; figures are computed only while a console is subscribed.
 

@@ -50,7 +50,7 @@ SUMMARIES: dict[Tables, Summary] = {
 
 @dataclass
 class Summariser(Part):
-    """Compute summaries of stored phases in the background, one phase at a time."""
+    """Computes summaries of stored phases in the background, one phase at a time."""
 
     context: AppContext
     _pool: ThreadPoolExecutor = field(

@@ -30,7 +30,7 @@ class TryoutWish(BaseModel):
 
 
 class TryoutTrouble(BaseModel):
-    """Why a scripted participant ended early, and what to do about it."""
+    """The reason why a scripted participant ended early, and the remedy."""
 
     message: str
     remedy: str
@@ -87,7 +87,7 @@ class Tryout:
 
 @dataclass(eq=False)
 class TryoutRunner(Part):
-    """Start, stop and report the scripted participants of a server; thread-safe."""
+    """Starts, stops and reports the scripted participants of a server; thread-safe."""
 
     database: Database
     clock: Clock

@@ -103,7 +103,7 @@ class Drawings(Part):
     def statistics(self, db: Session, study_key: str, kind: DashboardKind) -> tuple[Drawn, bool]:
         """Return the latest results of the study's tests, and whether they are of the current data.
 
-        Raises as `dashboard` does.
+        Raises the same errors as `dashboard`.
         """
         return self._newest(db, DrawingRequest("statistics", study_key, kind))
 

@@ -26,7 +26,7 @@ FigureKey = Annotated[str, Path(pattern=r"^[a-z][a-z0-9_]{0,79}$")]
 def get_dashboard(
     key: str, db: Reading, context: Context, _: SignedIn, query: Annotated[GroupQuery, Query()]
 ) -> Response:
-    """Return the latest figures of a study's sessions of one kind; repeat while not current.
+    """Return the latest figures of sessions of one kind; repeat the request until they are current.
 
     The filter selects sessions and rows before anything is drawn. One group of the figures is ready
     sooner than all of them.

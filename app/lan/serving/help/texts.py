@@ -1,4 +1,4 @@
-"""The help page's texts in English and German, and which language a browser is shown.
+"""The help page's texts in English and German, and the choice of language for a browser.
 
 `*bold*` is what a person looks for on the device's screen, `` `code` `` what they type.
 """

@@ -50,7 +50,7 @@ def _members(db: Session, participant: Participant, now: datetime) -> Iterator[M
 
 
 def _words(db: Session, participant: Participant) -> str:
-    """Return notes, reasons, heights and corrections as they are stored, as JSON."""
+    """Return notes, reasons, heights and corrections in their stored form, as JSON."""
     sessions = db.scalars(
         select(StudySession.id)
         .where(StudySession.participant_id == participant.id)

@@ -44,7 +44,7 @@ class Consent:
 
 @dataclass(frozen=True)
 class Written:
-    """A text of the lab, or a form that came too late; `kind`: note, reason, refused_form."""
+    """A text of the lab, or a form that arrived too late; `kind`: note, reason, refused_form."""
 
     kind: str
     text: str

@@ -49,7 +49,7 @@ def get_models(db: Reading, context: Context, _: SignedIn) -> list[ModelListed]:
 
 @router.post("/models", status_code=201)
 async def post_model(request: NewModel, context: Context, caller: SignedIn) -> ModelView:
-    """Start fitting a model; the response is immediate, and the model shows the progress."""
+    """Start fitting a model; the response is immediate, and the model's view shows the progress."""
     model_id = await write(context, lambda db: order_model(db, context, caller, request))
     return await run_in_threadpool(begin_fit, context, model_id)
 

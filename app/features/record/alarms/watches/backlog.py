@@ -10,7 +10,7 @@ from app.wire import Produced, StreamName, StreamPosition
 
 @dataclass
 class BacklogWatch:
-    """Compare what the client has produced with what is stored, over all of its epochs.
+    """Compares what the client has produced with what is stored, over all of its epochs.
 
     `frames_per_s` is how many frames the client produces per real second. Received frames count as
     unstored until they are acknowledged: if that takes long, the disk is the cause.

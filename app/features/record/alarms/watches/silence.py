@@ -12,7 +12,7 @@ LATE_S = 1.0
 
 @dataclass
 class SilenceWatch:
-    """Measure how long expected frames have been missing, on the server's monotonic clock.
+    """Measures how long expected frames have been missing, on the server's monotonic clock.
 
     `unread_until_s`: until then frames may have arrived without being read: before the socket
     opened, before frames were expected, or while the server itself was suspended or had stopped

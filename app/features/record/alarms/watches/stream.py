@@ -30,7 +30,7 @@ class StreamTally:
 
 @dataclass
 class StreamWatch:
-    """Examine the frames of a stream as they arrive, without using the database.
+    """Examines the frames of a stream as they arrive, without using the database.
 
     The usual frame rate is learned: the highest one that lasted for a few seconds. All times are on
     the client's clock, so a client that runs faster than real time is treated like any other.

@@ -32,7 +32,7 @@ BYTES_PER_GB = 1e9
 
 
 class DiffersError(Exception):
-    """What was read back differs from what was written."""
+    """The data that were read back differ from those that were written."""
 
 
 async def _written(context: AppContext, session_id: str) -> Found:
@@ -53,7 +53,7 @@ async def _written(context: AppContext, session_id: str) -> Found:
 async def write_and_read_back(context: AppContext, session_id: str) -> None:
     """Write a test row and a test file, read them back, and remove them.
 
-    Raises DiffersError, or what the database or the file system raises.
+    Raises DiffersError, or the error of the database or the file system.
     """
     text = secrets.token_hex(WRITTEN_BYTES // 2)
     database = context.database

@@ -46,7 +46,7 @@ class StatementForm(BaseModel):
 
 
 class ConsentForm(BaseModel):
-    """What a consent requires besides its text: statements to tick and a kind of signature."""
+    """The requirements of a consent besides its text: statements to tick, a kind of signature."""
 
     signature: Literal["none", "typed", "drawn"]
     statements: list[StatementForm]
@@ -59,7 +59,7 @@ class StatementRecord(StatementForm):
 
 
 class ConsentRecord(BaseModel):
-    """Who agreed to what, and when: everything that a printed record shows.
+    """The printable record of a consent: who agreed to what, and when.
 
     `text` and `statements` are taken from the study version that was shown; `text_matches` says
     whether the text still has the hash stored with the consent. For an erased consent, only

@@ -33,7 +33,7 @@ CONTENT = "consent"
 
 
 def consent_form(step: Step, language: str) -> ConsentForm | None:
-    """Return what a consent requires besides its text; None if the step is not a consent."""
+    """Return the requirements of a consent besides its text; None if the step is not a consent."""
     if step.consent is None:
         return None
     return ConsentForm(
@@ -47,7 +47,7 @@ def consent_form(step: Step, language: str) -> ConsentForm | None:
 
 @dataclass(frozen=True)
 class ConsentDesk:
-    """Store the consents of one session in the caller's transaction, on behalf of `actor`."""
+    """Stores the consents of one session in the caller's transaction, on behalf of `actor`."""
 
     db: Session
     context: AppContext

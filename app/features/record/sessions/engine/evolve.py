@@ -1,4 +1,4 @@
-"""Compute the state that follows from an event; total, so every stored event can be folded."""
+"""Compute the state after an event; defined for every event, so that any log can be folded."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""What all encodings share: the columns, the error for a damaged chunk, and byte planes.
+"""The parts that all encodings share: the columns, the error for a damaged chunk, and byte planes.
 
 Byte planes contain first the lowest byte of every number, then the next higher one, and so on: the
 high bytes of small numbers are zero or repeat, so next to each other they compress to almost
