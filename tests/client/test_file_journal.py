@@ -30,7 +30,7 @@ def test_it_contains_what_a_journal_in_memory_contains(
     memory_bytes: int,
     segment_bytes: int,
 ) -> None:
-    """A journal in files contains the same as one in memory, also after reopening."""
+    """A journal in files has the same messages as one in memory, also after reopening."""
     folder = tmp_path_factory.mktemp("journal")
     model = Journal()
     filed = FileJournal(folder=folder, memory_bytes=memory_bytes, segment_bytes=segment_bytes)
@@ -102,7 +102,7 @@ def test_a_full_disk_leaves_no_partial_record(tmp_path: Path) -> None:
 
 
 def test_a_killed_process_leaves_everything_it_added(tmp_path: Path) -> None:
-    """After SIGKILL every message is there for which `add` had returned."""
+    """After SIGKILL the journal still has every message for which `add` had returned."""
     work = (
         "import sys; from pathlib import Path\n"
         "from app.client.file_journal import FileJournal\n"

@@ -1,4 +1,4 @@
-"""The Python client against the real server: what it produced and what was stored."""
+"""The Python client against the real server: frames produced, stored and missing."""
 
 import asyncio
 import time
@@ -29,7 +29,7 @@ def client(site: Site, token: str, journal: Journal) -> TelemetryClient:
 
 
 async def send(headset: TelemetryClient, batches: int, first: int = 0) -> None:
-    """Add this many batches of the target stream to the journal."""
+    """Append this many batches of the target stream to the journal."""
     for at in range(first, first + batches):
         text = message(standing(FRAMES), seq_first=at * FRAMES, epoch=headset.epoch)
         await headset.send_batch(StreamName.TARGET, (at + 1) * FRAMES, text)

@@ -27,7 +27,7 @@ def test_a_file_gives_back_what_was_saved(configuration: Configuration) -> None:
 
 
 def test_how_it_is_written_makes_no_difference_to_the_hash() -> None:
-    """The order of keys, white space, and 72 for 72.0 do not change the hash."""
+    """The order of keys, white space, and 72 for 72.0 do not change an avatar file's hash."""
     tree = json.loads(TEXT)
     turned = {key: tree[key] for key in reversed(tree)}
     turned["axes"] = {name: tree["axes"][name] for name in reversed(tree["axes"])}
@@ -45,7 +45,7 @@ def test_how_it_is_written_makes_no_difference_to_the_hash() -> None:
 
 
 def test_every_setting_is_in_the_hash() -> None:
-    """Any change of a setting changes the hash."""
+    """Any change of a setting changes the hash of the avatar's configuration."""
     some = AxisSettings(1.0, 1.0, 1.0, -0.1, 0.1)
     changed = [
         with_axis(BODY, "NeckX", some),
@@ -65,7 +65,7 @@ def test_every_setting_is_in_the_hash() -> None:
 
 
 def test_the_hash_of_a_content_stays() -> None:
-    """A content has the same hash in every release, since data refer to it."""
+    """A configuration has the same hash in every release, since data refer to it."""
     one = Configuration({"LeftToesX": AxisSettings(10.0, 1.0, 5.0, -0.5, 0.5)})
     assert loaded(one).canonical_json == (
         '{"axes":{"LeftToesX":{"high_deg":28.647889757,"kd_nm_s_per_rad":1.0,'
@@ -77,7 +77,7 @@ def test_the_hash_of_a_content_stays() -> None:
 
 
 def test_a_file_states_its_units_and_its_format() -> None:
-    """A file has one axis a line, degrees, and units in every key."""
+    """A configuration file has one axis per line, angles in degrees, and units in its keys."""
     line = next(line for line in TEXT.splitlines() if "LeftUpperLegX" in line)
     assert line.strip() == (
         '"LeftUpperLegX": {"kp_nm_per_rad": 300.0, "kd_nm_s_per_rad": 20.0, '
@@ -108,7 +108,7 @@ def test_a_file_states_its_units_and_its_format() -> None:
 def test_a_problem_has_its_place(
     change: tuple[str, str], path: str, expected_message: str, valid: str
 ) -> None:
-    """A problem has its path, line and column and what is valid."""
+    """A problem states its path, line and column, and what is valid."""
     with pytest.raises(ConfigError) as caught:
         load_avatar(TEXT.replace(*change, 1))
     problem = caught.value.problems[0]

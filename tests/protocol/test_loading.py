@@ -77,7 +77,7 @@ def test_only_what_decides_balance_changes_the_design_hash() -> None:
 
 
 def test_the_canonical_json_gives_the_same_study() -> None:
-    """The canonical JSON gives an equal study with the same canonical JSON."""
+    """A study restored from its canonical JSON is equal and has the same canonical JSON."""
     rewritten = parse_study_json(loaded().canonical_json)
     assert rewritten == loaded().protocol
     instrument = load_instrument(KARAS)

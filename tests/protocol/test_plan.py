@@ -73,7 +73,7 @@ def test_indices_count_and_keys_are_unique() -> None:
 def test_alternating_limbs_turn_round_in_every_other_block(
     *, flip: bool, first_limbs: list[str]
 ) -> None:
-    """With alternating limbs the first limb changes in every other block, by the given flip."""
+    """With alternating limbs every second block starts with the other limb; a flip swaps them."""
     protocol = study(("limb_order: fixed", "limb_order: alternate"))
     tasks = [s for s in compile_plan(protocol, ORDER, block_limb_flip=flip) if s.kind == "task"]
     assert [step.limb for step in tasks[::2]] == first_limbs

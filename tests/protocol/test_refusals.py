@@ -31,7 +31,7 @@ breakages = st.sampled_from(["delete", "replace", "unknown", "alias", "nest", "c
 
 
 def broken_tree(tree: Plain, path: Path, kind: str, odd: Plain) -> Plain:
-    """Return the tree with one place deleted, replaced or joined by an unknown key."""
+    """Return the tree with one value deleted or replaced, or with an unknown key added."""
     tree = json.loads(json.dumps(tree))
     node: Any = tree
     for part in path[:-1]:

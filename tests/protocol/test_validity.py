@@ -12,7 +12,7 @@ HAND = "{phase: hand, min_active_share: 0.9}"
 
 
 def test_the_shipped_study_asks_for_its_tasks_and_its_questionnaire() -> None:
-    """The shipped study requires nine tenths of both tasks' minute and every karas2020."""
+    """The shipped study requires nine tenths of each task's minute and every karas2020 form."""
     rules = study().valid_when
     assert rules is not None
     assert [(one.phase, one.least_s(60.0)) for one in rules.phases] == [("hand", 54), ("foot", 54)]
@@ -79,7 +79,7 @@ def test_unsatisfiable_rules_are_rejected() -> None:
     ],
 )
 def test_empty_and_duplicate_rules_are_rejected(rules: dict[str, object], path: str) -> None:
-    """Empty rules, duplicate keys and a latency of no phase are rejected."""
+    """Empty rules, duplicate keys and a latency rule without a phase are rejected."""
     tree = yaml.safe_load(STUDY)
     tree["valid_when"] = rules
     [problem] = problems(yaml.safe_dump(tree, allow_unicode=True))

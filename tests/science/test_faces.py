@@ -26,7 +26,7 @@ HOMES = {_name(path): path for path in SCIENCE.rglob("*.py")}
 
 @cache
 def _exported_names(module: str) -> set[str] | None:
-    """Return what `__all__` lists, or None if the module has none."""
+    """Return the names that `__all__` lists, or None if the module has no `__all__`."""
     for node in ast.parse(HOMES[module].read_text(encoding="utf-8")).body:
         if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__":
             return set(ast.literal_eval(node.value))
@@ -34,7 +34,7 @@ def _exported_names(module: str) -> set[str] | None:
 
 
 def _imports(path: Path) -> Iterator[tuple[str, str, int]]:
-    """Yield each name that a file imports from science: its module, the name, the line."""
+    """Yield the module, name and line of each import from science in a file."""
     text = path.read_text(encoding="utf-8")
     for node in ast.walk(ast.parse(text)) if "app.science" in text else ():
         if isinstance(node, ast.Import):

@@ -1,4 +1,4 @@
-"""Quaternion algebra."""
+"""Quaternion algebra: products, vectors, Euler angles, slerp and swings."""
 
 import numpy as np
 import pytest
@@ -64,7 +64,7 @@ def test_rotation_keeps_lengths_and_agrees_with_scipy(rng: np.random.Generator) 
 
 @pytest.mark.parametrize("scale", [1e-12, 1e-7, 1e-3, 1.0, 3.1])
 def test_rotation_vector_round_trip(rng: np.random.Generator, scale: float) -> None:
-    """A rotation vector below half a turn survives conversion, from tiny to large."""
+    """A rotation vector below half a turn, however small, survives conversion to a quaternion."""
     direction = rng.normal(size=(50, 3))
     vector = scale * direction / np.linalg.norm(direction, axis=1, keepdims=True)
     back = rot.to_rotation_vector(rot.from_rotation_vector(vector))
@@ -101,7 +101,7 @@ def test_slerp_ends_and_constant_speed(rng: np.random.Generator) -> None:
 
 
 def test_slerp_takes_the_shorter_side() -> None:
-    """Slerp takes the shorter way, whatever the sign of its goal."""
+    """Slerp takes the shorter way, whatever the sign of its end."""
     a, b = rot.identity(), rot.from_rotation_vector(np.array((0.4, 0.0, 0.0)))
     half = rot.from_rotation_vector(np.array((0.2, 0.0, 0.0)))
     assert float(rot.geodesic_angle(rot.slerp(a, -b, 0.5), half)) < 1e-12

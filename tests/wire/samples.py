@@ -62,7 +62,7 @@ def message(
     active: bool = False,
     active_s: float = 0.0,
 ) -> bytes:
-    """Return a batch of these frames at 90 a second."""
+    """Return a batch of these frames at 90 per second."""
     count = len(values)
     if times_s is None:
         times_s = (seq_first + np.arange(count)) / RATE_HZ

@@ -1,4 +1,4 @@
-"""The vectors of the wire format agree with this implementation; others use the same files."""
+"""The wire format's vectors, which all implementations share, agree with this one."""
 
 import json
 from typing import Any

@@ -99,7 +99,7 @@ class C3dFile:
 
 
 def vax_bytes(values: npt.NDArray[np.float64]) -> bytes:
-    """Return numbers as a VAX writes them: F format, the half with sign and exponent first."""
+    """Return numbers in the VAX F format: the half with sign and exponent comes first."""
     bits = (values.astype(np.float32) * np.float32(4.0)).view(np.uint32)
     halves = np.stack((bits >> 16, bits & 0xFFFF), axis=-1)
     return halves.astype("<u2").tobytes()

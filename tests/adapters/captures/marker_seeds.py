@@ -1,4 +1,4 @@
-"""Small valid marker files and ASF/AMC pairs, to be damaged."""
+"""Small valid marker files and ASF/AMC pairs, which the fuzzing tests damage."""
 
 from collections.abc import Mapping
 

@@ -64,7 +64,7 @@ def random_rig(
 def random_motion(
     rng: np.random.Generator, rig: Rig, *, frames: int = 40, rate_hz: float = 120.0
 ) -> RigMotion:
-    """Return smooth turning of every joint about a random pose, with a root that walks."""
+    """Return a movement in which every joint turns about a random pose and the root walks."""
     count, times = rig.joint_count, np.arange(frames) / rate_hz
     slow = np.sin(2.0 * np.pi * rng.uniform(0.3, 2.0, (count, 3)) * times[:, None, None])
     turns = from_rotation_vector(rng.uniform(-1.2, 1.2, (count, 3)) * (1.0 + slow))

@@ -1,4 +1,4 @@
-"""Small valid files of each table format, to be damaged."""
+"""Small valid files of each table format, which the fuzzing tests damage."""
 
 import numpy as np
 

@@ -18,7 +18,7 @@ _METRES = Reading(metres_per_unit=0.01)
 
 
 def _by_pymotion(path: Path) -> dict[str, FloatArray]:
-    """Return each joint's positions in the file's unit, by upc-pymotion in double precision."""
+    """Return each joint's positions by upc-pymotion, in the file's unit and double precision."""
     file = BVH()
     file.load(str(path))
     turns, places, parents, offsets, _, _ = file.get_data()
@@ -27,7 +27,7 @@ def _by_pymotion(path: Path) -> dict[str, FloatArray]:
 
 
 def _by_bvhio(path: Path, frames: int) -> dict[str, FloatArray]:
-    """Return each joint's positions by bvhio, in single precision: a few micrometres."""
+    """Return each joint's positions by bvhio, whose single precision is a few micrometres."""
     with warnings.catch_warnings():
         # It imports a deprecated module.
         warnings.simplefilter("ignore", PendingDeprecationWarning)
@@ -78,7 +78,7 @@ def test_reading_it_back_gives_the_same_body() -> None:
 def test_a_capture_written_and_read_elsewhere_stays(
     shared_data: Path, tmp_path: Path, file: str
 ) -> None:
-    """A real walk is the same after our writer and another program's reader."""
+    """A real walk that we write and another program reads is unchanged."""
     path = shared_data / "motion" / file
     motion = read_capture(path.read_bytes(), name=path.name).motion
     assert isinstance(motion, RigMotion)

@@ -32,7 +32,7 @@ def _some_places(frames: int = 7, markers: int = 3) -> npt.NDArray[np.float64]:
 
 
 def _standing(places_mm: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    """Convert from z up in millimetres to y up in metres."""
+    """Convert positions from z up in millimetres to y up in metres."""
     return np.stack((places_mm[..., 0], places_mm[..., 2], -places_mm[..., 1]), -1) / 1000.0
 
 

@@ -103,7 +103,7 @@ def test_a_gaze_log_is_rejected(shared_data: Path) -> None:
 
 
 def test_the_quest_log_is_read(shared_data: Path) -> None:
-    """The Quest's quaternions are w, x, y, z, by which heads are upright; two minutes at 60 Hz."""
+    """The Quest's log, two minutes at 60 Hz, is read as w, x, y, z, which makes heads upright."""
     path = shared_data / "logs" / "quest_log" / "sample_movement_data.csv"
     capture = read_capture(path.read_bytes(), name=path.name)
     motion = _bodies(capture)

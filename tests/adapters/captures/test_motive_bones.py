@@ -40,6 +40,6 @@ def test_children_may_be_listed_before_their_parents() -> None:
     ],
 )
 def test_bones_that_form_no_tree_are_rejected(parents: list[int], reason: str) -> None:
-    """Bones with two roots, none, a circle or an endless chain are rejected."""
+    """Bones that have two roots or none, or form a circle or an endless chain, are rejected."""
     with pytest.raises(CaptureError, match=reason):
         parents_first(parents, ["a", "b", "c", "d"][: len(parents)], Limits(depth=3))

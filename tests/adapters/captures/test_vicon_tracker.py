@@ -58,7 +58,7 @@ def _scatter(turns: FloatArray, places: FloatArray) -> float:
 
 
 def test_the_angles_are_rotation_vectors(shared_data: Path) -> None:
-    """Vicon's angles are rotation vectors: in no Euler order would a hand stay at its elbow."""
+    """Vicon's angles are rotation vectors; in any Euler order a hand would leave its elbow."""
     path = shared_data / "motion" / "vicon_tracker" / "HumanRobotHandover_0.csv"
     motion = _bodies(read_capture(path.read_bytes(), name=path.name))
     elbow, hand = motion.names.index("left_elbow"), motion.names.index("left_hand")

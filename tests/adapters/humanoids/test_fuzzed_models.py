@@ -28,7 +28,7 @@ _ODD: list[Any] = [
 
 
 def survives(data: bytes) -> None:
-    """Read a file, or expect the proper error."""
+    """Read a file, which may raise only an error about the model, and never a warning."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         with contextlib.suppress(HumanoidFileError, HumanoidError):

@@ -31,7 +31,7 @@ def test_a_missing_part_is_named(part: str) -> None:
 
 
 def test_all_missing_parts_are_named() -> None:
-    """A torso raises an error that lists all twelve missing parts."""
+    """A model of a torso raises an error that lists all twelve missing parts."""
     torso = without("Arm", "Leg", "Hand", "Foot", "Toes")
     error = rejected(humanoid_file(Model(parts=torso, vrm=1)))
     assert all(part in str(error) for part in REQUIRED_PARTS if part[0] in "LR")
@@ -39,25 +39,25 @@ def test_all_missing_parts_are_named() -> None:
 
 
 def test_a_dog_is_no_humanoid() -> None:
-    """A dog raises an error that names the missing arms and its bones."""
+    """A model of a dog raises an error that names the missing arms and the model's bones."""
     message = str(rejected(dog_file()))
     assert "no LeftUpperArm, LeftLowerArm, LeftHand" in message
     assert "front_paw.L" in message
 
 
 def test_a_box_is_no_humanoid() -> None:
-    """A box without bones is rejected."""
+    """A model of a box, which has no bones, is rejected."""
     assert "The model has no Hips, Spine, Head" in str(rejected(box_file()))
 
 
 def test_a_dog_with_a_humans_names_is_no_humanoid() -> None:
-    """A dog whose bones have a human's names is rejected, as its body is not upright."""
+    """A dog's model with human bone names is rejected, as its body is not upright."""
     message = str(rejected(dog_file(humans_names=True)))
     assert "not a standing human body" in message
 
 
 def test_exchanged_sides_are_found() -> None:
-    """A model with left and right swapped, whose feet would point back, is rejected."""
+    """A model with left and right swapped, whose feet would point backwards, is rejected."""
 
     def exchanged(part: str) -> str:
         return part.replace("Left", "#").replace("Right", "Left").replace("#", "Right")
@@ -120,7 +120,7 @@ def test_files_that_are_no_model_are_rejected(data: bytes, message: str) -> None
 
 
 def test_a_truncated_file_is_rejected() -> None:
-    """A model cut at any tenth is rejected, and a file beyond the size limit is not parsed."""
+    """A file cut after any tenth is rejected, and one beyond the size limit is not parsed."""
     data = humanoid_file()
     for tenth in range(1, 10):
         assert f"of {len(data)} bytes" in str(rejected(data[: len(data) * tenth // 10]))

@@ -71,7 +71,7 @@ def test_a_walk_is_turned_to_lead_along_y() -> None:
 
 
 def test_files_of_another_kind_are_rejected() -> None:
-    """Files that are no MATLAB, or lack feet, valid frames, movement or the table, are rejected."""
+    """Files that are not MATLAB's, or lack feet, valid frames, movement or the table, fail."""
     still = _foot(101) | {"P": np.zeros((500, 3))}
     late = _foot(401)
     for data in (

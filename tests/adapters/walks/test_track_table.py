@@ -100,7 +100,7 @@ def test_trajectories_of_juelich_are_read(
 ) -> None:
     """Both layouts of the Juelich data are read, with a median walk at walking speed.
 
-    The second file states speeds of its own, .404 m/s in its first row among them.
+    The second file states its own speeds, such as .404 m/s in its first row.
     """
     data = (shared_data / "walking" / "pedestrian" / name).read_bytes()
     tracks = read_tracks(data, name=name, reading=TrackReading(rate_hz=rate_hz))

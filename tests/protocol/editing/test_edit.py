@@ -131,7 +131,7 @@ def test_comments_survive_every_kind_of_change() -> None:
 
 
 def test_a_new_entry_is_written_like_its_neighbours() -> None:
-    """A new condition is written with one key a line, as the others are."""
+    """A new condition is written with one key per line, as the others are."""
     label = {"en": "half a second", "de": "eine halbe Sekunde"}
     value: Plain = {"key": "latency_500", "latency_ms": 500, "label": {**label}}
     after = edit_text(STUDY, [Change(("conditions", 3), "insert", value)])

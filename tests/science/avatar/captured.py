@@ -36,12 +36,12 @@ def movement_of(path: Path, *, travels: bool) -> Movement:
 
 
 def captured(shared_data: Path, name: str) -> Movement:
-    """Return a capture of the shared data at 90 Hz, in place; it is read once."""
+    """Return a capture of the shared data at 90 Hz, moving in place; it is cached."""
     return _read(shared_data / "motion" / name, travels=False)
 
 
 def travelling(shared_data: Path, name: str) -> Movement:
-    """Return a capture of the shared data at 90 Hz with its own travel and turning."""
+    """Return a capture of the shared data at 90 Hz with the person's own travel and turning."""
     return _read(shared_data / "motion" / name, travels=True)
 
 

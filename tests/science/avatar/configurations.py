@@ -85,5 +85,5 @@ def whole_body(settings: AxisSettings = FINE_SPRING) -> Configuration:
 def axes_of_part(
     part: str, primary: AxisSettings, *shared: AxisSettings
 ) -> dict[str, AxisSettings]:
-    """Return a part's axis settings by axis name, given the primary's and the shared axes'."""
+    """Return a part's axis settings by name, given those of the primary and the shared axes."""
     return {primary_axis(part): primary, **dict(zip(shared_axes(part), shared, strict=True))}

@@ -1,6 +1,6 @@
 """Simulated clocks of a client and a server, and the network between them.
 
-The truth is known, and no clock of the machine is read.
+The true times are known, and no clock of the machine is read.
 """
 
 from dataclasses import dataclass, replace
@@ -103,7 +103,7 @@ class Simulated:
 
 @dataclass(frozen=True)
 class Outcome:
-    """Errors, bounds and coverage of a mapping on a scenario's events; milliseconds and shares."""
+    """Errors, bounds and coverage of a mapping on a scenario's events, in ms and as shares."""
 
     scenario: str
     residual_p50_ms: float
@@ -166,7 +166,7 @@ def outcome(
 
 
 def table(outcomes: list[Outcome]) -> str:
-    """Return the outcomes as a table with one line a scenario."""
+    """Return the outcomes as a table with one line per scenario."""
     head = (
         f"{'scenario':28} {'residual p50':>12} {'p95 ms':>8} {'bound p50':>10} {'p95 ms':>9}"
         f" {'covered':>8} {'negative':>8} {'segments':>8} {'left out':>8}"
@@ -234,7 +234,7 @@ def _way_s(
 
 
 def _spoil(probes: ClockProbes, scenario: Scenario, rng: np.random.Generator) -> None:
-    """Make single probes impossible: half return before they were sent, half are just wrong."""
+    """Make single probes impossible: half return before they were sent, half are seconds off."""
     wrong = rng.choice(np.arange(5, len(probes) - 5, 5), scenario.wrong, replace=False)
     half = scenario.wrong // 2
     probes.client_received_s[wrong[:half]] -= rng.uniform(0.5, 5.0, half)

@@ -72,7 +72,7 @@ def test_more_bounds_never_allow_more_lines() -> None:
 
 
 def test_a_line_outside_is_brought_to_the_edge() -> None:
-    """A line outside of the band is moved to it: first its slope, then its height."""
+    """A line outside of the band is moved to its edge: first its slope, then its height."""
     band = band_of(_bounds(np.random.default_rng(4), 30, 0.003), DRIFT)
     assert isinstance(band, Band)
     a_s, slope = band.nearest(9.0, 1.0)

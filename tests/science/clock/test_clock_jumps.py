@@ -46,7 +46,7 @@ def test_a_negative_round_trip_is_left_out() -> None:
 
 
 def test_two_probes_that_agree_are_a_jump() -> None:
-    """Two consecutive probes that agree on another offset are a jump, there and back."""
+    """Two consecutive probes that agree on another offset are a jump, and so is the way back."""
     mapping = fit_clock(_wrong(200, 2))
     assert [round(segment.step_s) for segment in mapping.segments if segment.stepped] == [3, -3]
 
@@ -101,7 +101,7 @@ def test_around_a_jump_the_bound_covers_both_sides() -> None:
 def _halves(
     way_s: tuple[float, float], trip_s: tuple[float, float], step_s: float, every_s: float = 1.0
 ) -> ClockProbes:
-    """Return two hundred probes with the way up and the round trip of each half.
+    """Return two hundred probes whose uplink delay and round trip differ between the halves.
 
     True server and client times are equal. The server's clock steps between the halves; its wall
     clock does not.

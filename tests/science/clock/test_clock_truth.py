@@ -9,7 +9,7 @@ from tests.science.clock.simulated import ASYMMETRIC, SYMMETRIC, Scenario, outco
 @pytest.mark.parametrize("seed", [1, 2, 3])
 @pytest.mark.parametrize("scenario", SYMMETRIC, ids=lambda scenario: scenario.name)
 def test_on_symmetric_paths_the_error_is_small(scenario: Scenario, seed: int) -> None:
-    """On symmetric paths 95 % of errors are within 5 ms through drift, steps, queues and losses."""
+    """On symmetric paths 95 % of errors are within 5 ms despite drift, steps, queues and losses."""
     found = outcome(scenario, np.random.default_rng(seed))
     assert found.residual_p95_ms <= 5.0
     assert found.coverage >= 0.999

@@ -56,7 +56,7 @@ def body() -> Rig:
 
 
 def moving(seed: int, frames: int = 200) -> RigMotion:
-    """Return a third of the frames in the T-pose, then random hinging of the limbs."""
+    """Return a movement: a third of its frames in the T-pose, then random bending of the limbs."""
     rng = np.random.default_rng(seed)
     rotations, stand = identity(frames, len(NAMES)), frames // 3
     count = frames - stand

@@ -30,7 +30,7 @@ def test_a_short_gap_is_bridged_and_marked() -> None:
 
 
 def test_a_long_gap_in_a_leg_trims_to_the_longest_whole_stretch() -> None:
-    """A knee that is unseen for 0.6 s leaves the longer part, with a note of where it begins."""
+    """If a knee is unseen for 0.6 s, the longer part is kept, with a note of where it begins."""
     fitted = fit_skeleton(_hidden(markers_on(moving(0)), "LKNE", 60, 120))
     assert (fitted.first_frame, fitted.motion.frame_count) == (120, 80)
     assert any("0.80 s from 1.20 s on" in note for note in fitted.notes)
@@ -46,7 +46,7 @@ def test_a_long_gap_in_an_arm_leaves_the_arm_out() -> None:
 
 
 def test_a_leg_never_seen_whole_is_rejected() -> None:
-    """If no half second shows both legs, the error names the joint that is missing most."""
+    """If no half second shows both legs, the error names the joint that is missing most often."""
     markers = markers_on(moving(0))
     for start in range(0, 200, 40):
         markers = _hidden(markers, "RANK", start, start + 39)

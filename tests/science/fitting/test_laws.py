@@ -132,7 +132,7 @@ def test_the_rig_is_the_bodys() -> None:
 
 
 def _upright(seed: int) -> RigMotion:
-    """Return a person with a rigid trunk, as the rigid bodies on hip and collar see it."""
+    """Return a person with a rigid trunk, as rigid bodies on hip and collar assume it."""
     truth = moving(seed)
     rotations = truth.rotations.copy()
     for name in ("Spine", "UpperChest", "LeftLowerArm", "RightLowerArm"):
@@ -142,7 +142,7 @@ def _upright(seed: int) -> RigMotion:
 
 
 def _without_twist(rotations: FloatArray) -> FloatArray:
-    """Keep the rotation about y only, since bodies on elbow and hand show no forearm twist."""
+    """Return only the rotation about y, since bodies on elbow and hand show no forearm twist."""
     hinge = rotations * np.array((1.0, 0.0, 1.0, 0.0))
     return normalise(hinge)
 

@@ -40,7 +40,7 @@ def _heading(motion: RigMotion) -> tuple[FloatArray, FloatArray]:
 
 @pytest.mark.parametrize("path", _WALKS)
 def test_walkers_have_the_legs_of_people(shared_data: Path, path: str) -> None:
-    """Thigh and shank are 35 to 48 cm, within 6 cm of each other and 2 cm between sides."""
+    """Thighs and shanks are 35 to 48 cm long and differ by up to 6 cm, between sides up to 2 cm."""
     motion = _fitted(shared_data, path).motion
     for bone in ("LowerLeg", "Foot"):  # named after the joint below: thigh, then shank
         left, right = _bone(motion, f"Left{bone}"), _bone(motion, f"Right{bone}")
@@ -91,7 +91,7 @@ def test_walkers_face_where_they_go_and_bend_their_knees_backwards(
 
 
 def test_stride_of_the_cmu_walk_is_a_persons(shared_data: Path) -> None:
-    """In the CMU walk, one foot strikes every 0.8 to 1.3 s at 1 to 1.5 m/s."""
+    """In the CMU walk, the same foot strikes every 0.8 to 1.3 s, at a speed of 1 to 1.5 m/s."""
     motion = _fitted(shared_data, "cmu_c3d/02_01.c3d").motion
     forward, _ = _heading(motion)
     times: list[float] = []
@@ -181,7 +181,7 @@ def test_the_unfitted_joints_of_each_file_are_named(shared_data: Path) -> None:
 
 
 def test_gait_is_trimmed_to_where_the_person_is_seen(shared_data: Path) -> None:
-    """Of 4.87 s only the 1.86 s in which the cameras see the person are kept."""
+    """Of the Gait file's 4.87 s, only the 1.86 s in which the cameras see the person are kept."""
     fitted = _fitted(shared_data, "c3d/Gait.c3d")
     assert (fitted.first_frame, fitted.motion.frame_count) == (137, 186)
     assert any("1.86 s from 1.37 s on" in note for note in fitted.notes)
@@ -238,7 +238,7 @@ def test_vicon_hands_go_where_the_tracker_saw_them(shared_data: Path) -> None:
 
 
 def test_straight_elbows_do_not_spin(shared_data: Path) -> None:
-    """A nearly straight arm turns by less than 12 degrees a frame."""
+    """A nearly straight arm turns by less than 12 degrees per frame."""
     motion = _fitted(shared_data, "c3d/Gait.c3d").motion
     for side in ("Left", "Right"):
         arm = motion.rotations[:, motion.rig.index(f"{side}UpperArm")]

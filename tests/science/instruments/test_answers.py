@@ -109,7 +109,7 @@ EXPECTED_START = ("q2", "q11", "q8", "q10", "q14")
 
 
 def test_an_item_with_a_scale_of_its_own_takes_its_steps_only() -> None:
-    """An item with its own scale accepts its steps only; the others keep the instrument's scale."""
+    """An item with its own scale accepts only its steps; the others keep the instrument's scale."""
     tlx = shipped("raw_tlx")
     answers: dict[str, object] = dict.fromkeys(tlx.by_key, 50)
     assert validate_answers(tlx, answers) == ()

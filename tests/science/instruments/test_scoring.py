@@ -35,7 +35,7 @@ def test_the_expert_of_table_7_2() -> None:
 
 
 def test_answers_are_recoded_before_they_are_scored() -> None:
-    """Reversed items are recoded before scoring; without it the scores would be 4, 15 and 8."""
+    """Reversed items are recoded before scoring; without recoding, scores would be 4, 15 and 8."""
     raw = score_answers(replace(KARAS, recode=None), EXPERT)
     recoded = score_answers(KARAS, EXPERT)
     components = ("ownership", "agency", "location")
@@ -44,7 +44,7 @@ def test_answers_are_recoded_before_they_are_scored() -> None:
 
 
 def test_agreeing_with_everything_is_not_embodiment() -> None:
-    """All sevens score -3, 6, 3 and 0.4222, since five items are reversed."""
+    """Answers of 7 to every item score -3, 6, 3 and 0.4222, since five items are reversed."""
     scores = score_answers(KARAS, dict.fromkeys(SCORED, 7))
     assert (scores["ownership"], scores["agency"], scores["location"]) == (-3, 6, 3)
     assert scores["soe_thesis"] == pytest.approx(0.42222222222222222, abs=1e-15)

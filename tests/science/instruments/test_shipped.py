@@ -146,7 +146,7 @@ def test_stated_ranges_are_those_of_the_scales(instrument: Instrument, score: Sc
 
 @pytest.mark.parametrize("key", KEYS)
 def test_every_text_is_there_in_both_languages(key: str) -> None:
-    """Every instrument has English and German texts, a source and what was verified."""
+    """Every instrument has English and German texts, a source and a record of what was verified."""
     instrument = shipped(key)
     assert instrument.languages == ("en", "de")
     provenance = instrument.provenance

@@ -51,7 +51,7 @@ def posed(degrees: Mapping[str, FloatArray]) -> FloatArray:
 
 
 def of(summary: JointErrorSummary, table: str, joint: str, axis: str) -> float:
-    """Return one figure of a summary; angles in degrees."""
+    """Return one value of an error summary, with angles in degrees."""
     value = getattr(summary, table)[ERROR_JOINTS.index(joint), ERROR_AXES.index(axis)]
     return float(value if table == "clipped_share" else math.degrees(value))
 

@@ -73,7 +73,7 @@ def test_the_interval_has_its_stated_coverage() -> None:
 def test_jitter_and_dropped_frames_widen_the_interval_and_stay_inside(
     latency_s: float,
 ) -> None:
-    """Jitter, wrong timestamps and dropped frames widen the interval, which still covers."""
+    """Jitter, wrong timestamps and dropped frames widen the interval, which covers the truth."""
     noise, worse = Flaws(noise_deg=0.5), Flaws(0.5, jitter_s=0.003, stamp_s=0.002, dropped=0.2)
     clean, poor = (
         record(made_movement(np.random.default_rng(2)), latency_s, np.random.default_rng(3), flaws)

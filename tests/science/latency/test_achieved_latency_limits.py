@@ -1,4 +1,4 @@
-"""Achieved latency: no latency is given where the data do not allow it, but the reason."""
+"""Achieved latency where the data do not allow a number: the reason is given instead."""
 
 import re
 from dataclasses import astuple, replace
@@ -109,7 +109,7 @@ def test_walking_that_differs_from_step_to_step_is_not_ambiguous(shared_data: Pa
 
 
 def test_latency_is_off_beyond_ten_milliseconds_or_a_frame() -> None:
-    """A latency is off beyond the longer of 10 ms and a frame; an unknown one never is."""
+    """A latency counts as off beyond the longer of 10 ms and a frame; an unknown one never does."""
     at_90 = AchievedLatency(0.125, 0.124, 0.126, 60.0, 5400, 1 / 90)
     assert tolerance_s(at_90) == 1 / 90
     assert tolerance_s(replace(at_90, frame_s=1 / 120)) == 0.010

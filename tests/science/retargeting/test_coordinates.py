@@ -63,6 +63,6 @@ def test_a_rotator_is_yaw_then_pitch_then_roll_with_unreals_signs() -> None:
 
 
 def test_a_rotator_comes_back(rng: np.random.Generator) -> None:
-    """Unreal's angles of a rotation give the same rotation again."""
+    """A rotation converted to Unreal's angles and back is the same rotation."""
     q = normalise(rng.normal(size=(200, 4)))
     assert float(np.max(geodesic_angle(from_rotator(to_rotator(q)), q))) < 1e-12

@@ -52,7 +52,7 @@ def test_lifts_are_found_when_the_feet_leave_and_come_down() -> None:
 
 
 def test_a_standing_foot_does_not_slide_in_its_middle() -> None:
-    """In the middle of a contact a foot does not slide; at its edges, by a few cm/s at most."""
+    """A foot does not slide in the middle of a contact; at its edges, by a few cm/s at most."""
     legs = mapped(_BODY)
     slide = mean_slide_m_s(legs.balls_m(*_WALK.motion.world()), find_contacts(_WALK.motion, legs))
     assert slide is not None
@@ -93,7 +93,7 @@ def test_noise_of_a_millimetre_adds_no_lift() -> None:
 
 
 def test_a_floor_that_drifts_does_not_hide_contacts() -> None:
-    """All steps are found on a floor that tilts by 2 cm a metre, as captured floors do."""
+    """All steps are found on a floor that tilts by 2 cm per metre, as captured floors do."""
     root = _WALK.motion.root_positions_m.copy()
     root[:, 1] -= 0.02 * root[:, 2]
     tilted = RigMotion(_BODY, RATE_HZ, root, _WALK.motion.rotations, _WALK.motion.observed)

@@ -184,7 +184,7 @@ def test_legs_that_were_not_captured_stand(shared_data: Path) -> None:
     ],
 )
 def test_any_capture_with_a_body_makes_a_simulated_person(shared_data: Path, file: str) -> None:
-    """A capture of any format gives an upright simulated person of their own stature."""
+    """A capture in any format gives an upright simulated person of the captured stature."""
     person = make_person(np.random.default_rng(5), shared_data / "motion" / file)
     first = person.participant.pose(0.0, None)
     world = forward_kinematics(person.skeleton, first.root_position_m, first.rotations)

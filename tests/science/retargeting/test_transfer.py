@@ -157,7 +157,7 @@ def test_bones_point_where_the_sources_bones_point(rng: np.random.Generator) -> 
 def test_a_scaled_copy_takes_scaled_steps_and_does_not_slide(
     rng: np.random.Generator, factor: float
 ) -> None:
-    """On a scaled copy all joints move the scaled way to 1e-9, so resting feet rest.
+    """On a scaled copy all joints travel the scaled distance to 1e-9, so resting feet stay put.
 
     The step ratio is the leg ratio.
     """
@@ -224,7 +224,7 @@ def test_arrays_of_any_layout_give_the_same(rng: np.random.Generator) -> None:
 
 
 def test_wrong_arrays_are_rejected(rng: np.random.Generator) -> None:
-    """A frame of another skeleton and a movement of one raise different errors."""
+    """A frame of 21 joints and a movement of another skeleton raise different errors."""
     source = own_body(1.7)
     retargeter = Retargeter(source, SAME, own_body(1.9), SAME)
     with pytest.raises(RigError, match=r"\(22, 4\)"):

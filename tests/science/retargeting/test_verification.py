@@ -31,7 +31,7 @@ def _onto(
 
 
 def _jerk_m_s(motion: RigMotion) -> float:
-    """Return the largest change of any joint's velocity from frame to frame, which shows pops."""
+    """Return the largest change of any joint's velocity between frames; sudden jumps raise it."""
     change = np.diff(motion.world()[0], n=2, axis=0)
     return float(np.linalg.norm(change, axis=-1).max() * motion.rate_hz)
 
@@ -76,7 +76,7 @@ def test_feet_are_on_the_ground_at_the_start(ground: Ground, stature_m: float) -
 
 @pytest.mark.parametrize("share", [0.42, 0.45, 0.55, 0.58])
 def test_locking_the_feet_ends_the_slide_of_other_proportions(share: float) -> None:
-    """Feet slide if the knee is elsewhere; locked feet rest, without pops."""
+    """Feet slide if the avatar's knees are elsewhere; locked feet rest, without sudden jumps."""
     free, locked = _onto(1.65, share), _onto(1.65, share, lock=True)
     assert free.walks is not None
     assert locked.walks is not None
@@ -156,7 +156,7 @@ def test_a_locked_foot_out_of_reach_is_released_and_counted() -> None:
 
 @pytest.mark.parametrize("frames", [1, 2, 3, 7])
 def test_the_shortest_movements_come_through(frames: int) -> None:
-    """Movements of very few frames are retargeted, with locked feet or not, without a step."""
+    """Movements of very few frames are retargeted and have no steps, with locked feet or not."""
     short = RigMotion(
         _WALK.rig,
         _WALK.rate_hz,
@@ -225,7 +225,7 @@ def test_movements_of_different_length_are_not_compared() -> None:
 
 
 def test_the_papers_step_sizes_are_consistent_with_one_scale_an_avatar() -> None:
-    """Scales .70, .91 and 1 fit both rows of figure 9 within 5 cm and 0.5 cm; statures only one.
+    """Scales .70, .91 and 1 fit both rows of figure 9, to 5 cm and 0.5 cm; statures fit only one.
 
     Degen et al. (2022), section 4: 110, 150, 165 cm forward and 16, 20, 22 cm up for 130, 165 and
     190 cm. Leg lengths are not published, so only consistency can be tested.
@@ -236,7 +236,7 @@ def test_the_papers_step_sizes_are_consistent_with_one_scale_an_avatar() -> None
 
 
 def _one_scale_fits(printed: tuple[float, ...], scales: tuple[float, ...], within: float) -> bool:
-    """Return whether one size times the scales comes within the tolerance of every number."""
+    """Return whether one size times the scales is within the tolerance of every number."""
     lowest = max((value - within) / s for value, s in zip(printed, scales, strict=True))
     highest = min((value + within) / s for value, s in zip(printed, scales, strict=True))
     return lowest <= highest

@@ -59,7 +59,7 @@ def mapped(rig: Rig) -> Legs:
 
 
 def _walking(rig: Rig, feet_m: FloatArray, crouch_m: float) -> RigMotion:
-    """Return hips midway between the feet and legs that reach them; feet (2, N, 3) from rest."""
+    """Return hips midway between the feet, and legs that reach the feet (2, N, 3) from rest."""
     frames = feet_m.shape[1]
     root = np.tile(rig.offsets_m[0], (frames, 1))
     root[:, 2] += feet_m[:, :, 2].mean(axis=0)

@@ -28,7 +28,7 @@ def rng_of(seed: int = 1) -> np.random.Generator:
 def person_of(
     seed: int = 1, traits: MovementTraits | None = EXACT, base: Movement | None = None
 ) -> SimulatedParticipant:
-    """Return a participant, by default exact and patient."""
+    """Return a participant, by default a precise and patient one (`EXACT`)."""
     base = base or idle_movement(SKELETON, rng_of(99))
     return SimulatedParticipant(SKELETON, base, rng_of(seed), traits=traits)
 

@@ -109,7 +109,7 @@ def test_a_walking_capture_does_not_stride_at_the_boxes(shared_data: Path) -> No
 
 @pytest.mark.parametrize("latency_s", [0.0, 0.35])
 def test_closed_loop_through_the_delayed_avatar_goes_on(latency_s: float) -> None:
-    """Goals that change when the delayed avatar arrives are all met in order within a minute."""
+    """Goals that change as the delayed avatar arrives are all met in order within a minute."""
     person, buffer = person_of(traits=None), DelayBuffer(latency_s)
     person.set_latency(latency_s)
     met, frame = 0, 0

@@ -53,7 +53,7 @@ def test_a_reachable_end_is_met(rng: np.random.Generator) -> None:
 
 @pytest.mark.parametrize("length_m", [0.7, 5.0])
 def test_an_end_out_of_reach_is_approached_straight(length_m: float) -> None:
-    """Towards an end out of reach the limb is straight, and reports the missing length."""
+    """A limb whose end is out of reach is straight and reports the missing length."""
     end = (0.0, 0.0, -length_m)
     limb = solve_two_bone((0.0, 0.0, 0.0), end, _UPPER_M, _LOWER_M, _POLE)
     assert limb.short_m == pytest.approx(length_m - _UPPER_M - _LOWER_M)
@@ -61,7 +61,7 @@ def test_an_end_out_of_reach_is_approached_straight(length_m: float) -> None:
 
 
 def test_an_end_too_near_is_approached_as_far_as_the_bones_fold() -> None:
-    """Towards an end that is too near the limb folds and reports a negative missing length."""
+    """A limb whose end is too near folds and reports a negative missing length."""
     limb = solve_two_bone((0.0, 0.0, 0.0), (0.0, 0.0, -0.01), _UPPER_M, _LOWER_M, _POLE)
     assert limb.short_m == pytest.approx(0.01 - (_UPPER_M - _LOWER_M))
 
@@ -75,7 +75,7 @@ def test_a_pole_along_the_limb_is_replaced(pole: Vector) -> None:
 
 @pytest.mark.parametrize("side", [-1.0, 1.0])
 def test_an_elbow_only_bends_the_way_elbows_do(side: float) -> None:
-    """From the T-pose the forearm turns about y alone against the upper arm, forwards."""
+    """From the T-pose the forearm turns forwards, about y alone relative to the upper arm."""
     limb = solve_two_bone((0.0, 0.0, 0.0), (0.1, 0.0, -0.4), _UPPER_M, _LOWER_M, _POLE)
     upper = np.array(arm_rotation(limb.upper, limb.normal, side))
     lower = np.array(arm_rotation(limb.lower, limb.normal, side))
@@ -88,7 +88,7 @@ def test_an_elbow_only_bends_the_way_elbows_do(side: float) -> None:
 
 
 def test_a_knee_only_bends_backwards() -> None:
-    """The shank turns about -x alone against the thigh, so the heel moves backwards."""
+    """The shank turns about -x alone relative to the thigh, so the heel moves backwards."""
     limb = solve_two_bone((0.0, 0.5, 0.0), (0.0, 0.0, -0.1), _UPPER_M, _LOWER_M, (0.0, 0.0, -1.0))
     upper = np.array(leg_rotation(limb.upper, limb.normal))
     lower = np.array(leg_rotation(limb.lower, limb.normal))
@@ -113,7 +113,7 @@ def test_minimum_jerk_known_values() -> None:
 
 
 def test_a_path_begins_ends_and_lasts_as_requested() -> None:
-    """A path starts and ends in its way-points and takes exactly the requested time."""
+    """A path starts and ends at its way-points and takes exactly the requested time."""
     points: list[Vector] = [(0.0, 0.0, 0.0), (0.0, 0.3, 0.0), (0.5, 0.3, 0.0), (0.5, 0.0, 0.0)]
     path = path_through(points, 2.0, 1.2)
     assert path.end_s == pytest.approx(3.2)

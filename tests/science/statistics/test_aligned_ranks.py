@@ -1,4 +1,4 @@
-"""Aligned ranks: which effects alignment keeps and removes, and contrasts."""
+"""Aligned ranks: the effects that alignment keeps or removes, and contrasts."""
 
 import numpy as np
 import pytest

@@ -12,7 +12,7 @@ EFFECT = {"0": 0.0, "125": -1.0, "350": -3.0}
 
 
 class Experiment:
-    """An experiment with every order of three latencies `repeats` times, and two limbs a period."""
+    """An experiment with all orders of three latencies `repeats` times and two limbs per period."""
 
     def __init__(self, repeats: int = 2) -> None:
         """Create the rows of the design."""
@@ -103,7 +103,7 @@ def test_the_complete_design_is_balanced() -> None:
 
 
 def test_the_sequence_is_tested_between_participants() -> None:
-    """Twelve people in six orders leave 6 error df; one person an order leaves none."""
+    """Twelve people in six orders leave 6 error df; one person per order leaves none."""
     experiment, single = Experiment(), Experiment(1)
     sequence = experiment.diagnose(experiment.values(dict.fromkeys(LEVELS, 0.0), 0.1, 0.5)).sequence
     assert sequence is not None
@@ -130,7 +130,7 @@ def test_a_missing_order_is_named() -> None:
 
 
 def test_an_unknown_condition_before_is_left_out_and_counted() -> None:
-    """A period after a missing one has no known previous condition and is left out."""
+    """A period after a missing one has no known previous condition, is left out and is counted."""
     experiment = Experiment()
     values = experiment.values(dict.fromkeys(LEVELS, 0.0), 0.1, 0.5)
     remaining = [at for at, row in enumerate(experiment.rows) if (row[0], row[2]) != (4, 1)]

@@ -51,7 +51,7 @@ def wine(shared_data: Path) -> Wine:
 
 
 def effects(model: CumulativeModel) -> list[float]:
-    """Return the estimates alone."""
+    """Return only the estimates of the effects."""
     return [one.estimate for one in model.effects]
 
 
@@ -146,7 +146,7 @@ def test_turning_the_scale_round_turns_the_effects_round(wine: Wine) -> None:
 
 
 def test_unused_categories_are_left_out_and_reported(wine: Wine) -> None:
-    """Categories that nobody chose are reported and do not change the estimates."""
+    """Categories that no participant chose are reported and do not change the estimates."""
     stretched = fit_cumulative_model(
         [2 * one - 1 for one in wine.ratings], wine.judges, wine.design, scale=range(1, 10)
     )
@@ -199,7 +199,7 @@ def test_answers_that_cannot_be_fitted_are_rejected(
 
 
 def test_models_of_other_answers_are_not_compared(wine: Wine) -> None:
-    """Models of other answers, or fitted in another way, cannot be compared."""
+    """Models of different answers, or fitted in different ways, cannot be compared."""
     with pytest.raises(ModelError, match="differ in nodes"):
         likelihood_ratio(wine.fit(0), wine.fit(1))
 

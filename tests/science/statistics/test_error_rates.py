@@ -53,7 +53,7 @@ def test_reactions_make_far_latencies_less_alike() -> None:
 
 
 def test_items_are_answered_as_people_answer() -> None:
-    """Simulated answers use all of 1 to 7, mostly agree, and often repeat."""
+    """Simulated answers use the whole scale from 1 to 7, mostly agree, and often repeat."""
     data = null_data(NullDesign(6000), np.random.default_rng(2))
     shares = np.bincount(data.item.ravel(), minlength=8)[1:] / data.item.size
     assert shares.min() > 0.01
@@ -90,7 +90,7 @@ def test_alpha_of_the_population_follows_from_the_levels() -> None:
     ],
 )
 def test_a_page_warns_out_of_bounds(rate: float, kind: str, warning: str) -> None:
-    """Warnings appear outside of 4 to 6.5 % for tests and below 93.5 % for intervals."""
+    """Error rates outside of 4 to 6.5 % and interval coverages below 93.5 % get a warning."""
     assert row(rate, kind).warning == warning
 
 
@@ -132,7 +132,7 @@ def test_the_page_of_the_documents_is_that_of_the_table(shipped: ErrorRates) -> 
 
 @pytest.mark.parametrize("group", GROUPS)
 def test_every_group_of_tests_can_be_computed(group: str) -> None:
-    """Every group of tests runs on one data set and has names that the table knows."""
+    """Every group of tests runs on one data set, and all its names are in the table of tests."""
     rng = np.random.default_rng(6)
     outcomes = dict(GROUPS[group](null_data(NullDesign(12), rng), 0.66, rng))
     assert outcomes

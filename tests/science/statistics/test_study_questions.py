@@ -117,7 +117,7 @@ def test_rank_correlation_is_that_of_scipy() -> None:
 
 
 def test_rank_correlation_knows_its_limits() -> None:
-    """Monotone relations give 1 or -1; constants and three pairs are rejected."""
+    """Monotone relations give 1 or -1; constant data and only three pairs are rejected."""
     x = np.arange(6.0)
     assert spearman(x, np.exp(x)).rho == 1.0
     assert spearman(x, -(x**3)).rho == -1.0

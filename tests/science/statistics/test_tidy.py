@@ -33,7 +33,7 @@ def test_rows_find_their_cells_whatever_their_order() -> None:
 
 
 def test_averaged_and_missing_rows_are_counted() -> None:
-    """Averaged rows and empty cells are counted, and incomplete subjects are named."""
+    """Averaged rows and empty cells are counted, and incomplete subjects are listed."""
     found = _cells(_ROWS)
     assert found.values[1, 1, 0] == 3.0
     assert (found.n_averaged, found.n_missing, found.n_empty) == (1, 1, 1)
@@ -50,7 +50,7 @@ def test_a_missing_row_is_a_missing_value() -> None:
 
 
 def test_the_mean_over_a_factor_takes_complete_subjects() -> None:
-    """A subject's mean over a factor is missing if one of its cells is missing."""
+    """A subject's mean over a factor is missing if one of the subject's cells is missing."""
     by_latency = _cells(_ROWS).of_factor(1)
     assert by_latency[0].tolist() == [5.0, 3.5, 2.5]
     assert by_latency[1, :2].tolist() == [4.5, 4.75]
@@ -77,7 +77,7 @@ def test_means_of_decimals_tie() -> None:
     ],
 )
 def test_levels_are_ordered_as_people_would(found: list[str], ordered: tuple[str, ...]) -> None:
-    """Numeric levels are sorted by value, others by their words and the numbers in them."""
+    """Numeric levels are sorted by value, others by their text and the numbers in it."""
     assert ordered_levels(found) == ordered
     assert ordered_levels(found[::-1]) == ordered
 

@@ -82,7 +82,7 @@ def captured(file: Path) -> Recording:
 
 
 def captures(shared_data: Path) -> list[Recording]:
-    """Return every capture that has no faults itself."""
+    """Return every capture that has no faults of its own."""
     return [captured(shared_data / "motion" / "cmu_bvh" / name) for name in CAPTURES]
 
 
@@ -118,7 +118,7 @@ class Found:
         return Found(self.there + other.there, self.hits + other.hits, self.false + other.false)
 
     def line(self, what: str) -> str:
-        """Return the counts as a line of the log."""
+        """Format the counts as a line of the log."""
         return (
             f"{what:<34}{self.there:>7} there, {self.hits:>7} found, {self.false:>4} false:"
             f" precision {self.precision:.4f}, recall {self.recall:.4f}"

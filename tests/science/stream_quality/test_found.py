@@ -70,7 +70,7 @@ def test_every_bad_quaternion_is_flagged_and_no_good_one(
 
 
 def test_jumps_are_found(recordings: list[Recording], capsys: pytest.CaptureFixture[str]) -> None:
-    """Joints that turn by 30 to 180 degrees and hips that move 0.2 to 2 m at once are found."""
+    """Joints that turn by 30 to 180 degrees and hips that move 0.2 to 2 m in a frame are found."""
     rng = np.random.default_rng(21)
     turned, shifted = Found(0, 0, 0), Found(0, 0, 0)
     for recording in recordings:
@@ -169,6 +169,6 @@ def _axis(rng: np.random.Generator) -> NDArray[np.float64]:
 
 
 def print_figures(capsys: pytest.CaptureFixture[str], lines: list[str]) -> None:
-    """Print the figures for the log."""
+    """Print the counts, precision and recall for the log."""
     with capsys.disabled():
         sys.stdout.write("\n" + "\n".join(lines) + "\n")

@@ -56,7 +56,7 @@ def with_faults(seed: int) -> Recording:
 @given(seed=st.integers(0, 40), cuts=st.lists(st.integers(1, 2400), max_size=6, unique=True))
 @settings(max_examples=60, deadline=None)
 def test_it_does_not_matter_where_a_recording_is_cut(seed: int, cuts: list[int]) -> None:
-    """Examining a recording in spans with the carried memory gives the same flags as at once."""
+    """Examining a recording span by span, with the carried memory, gives the same flags."""
     whole = with_faults(seed)
     expected = examined(whole)
     parts, before = [], Memory()
@@ -126,7 +126,7 @@ def test_arrays_of_different_lengths_are_rejected(shape: tuple[int, ...]) -> Non
 @given(seed=st.integers(0, 10_000))
 @settings(max_examples=60, deadline=None)
 def test_any_bits_can_be_examined(seed: int) -> None:
-    """Arbitrary bits raise no error and no warning, and give finite figures."""
+    """Arbitrary bits raise no error and no warning, and give finite counts."""
     rng = np.random.default_rng(seed)
     odd = generated().part(slice(0, 200)).copy()
     places = rng.random(odd.rotations.shape) < 0.02

@@ -64,7 +64,7 @@ def random_run(name: str, moves: Moves) -> tuple[TaskRun, Steps]:
 
 
 def _change(run: TaskRun, time_s: float, what: str, place: int, part: int) -> ContactChange:
-    """Return a change: touch or leave the goal with the first part, or toggle any contact."""
+    """Return a change that begins or ends the first part's contact with the goal or any contact."""
     limb = run.state.rules.layout.limb.value
     goal = current_goal(run.state)
     contact = Contact(f"{limb}/{_PLACES[limb][place]}", _PARTS[limb][part])

@@ -21,14 +21,14 @@ def test_active_time_is_the_sum_of_the_running_spans(quarters: list[int]) -> Non
 
 
 def test_a_clock_knows_when_a_phase_is_over() -> None:
-    """60 s of active time with a pause of 5 s end 65 s after the start."""
+    """A phase of 60 s of active time with a pause of 5 s ends 65 s after the start."""
     clock = ActiveClock().begin(10.0).pause(20.0)
     assert clock.reaches_s(60.0) is None
     assert clock.resume(25.0).reaches_s(60.0) == 75.0
 
 
 def test_an_unbegun_clock_shows_zero() -> None:
-    """Before the clock begins, active time is zero."""
+    """Before the clock is started, active time is zero."""
     assert ActiveClock().active_s(5.0) == 0.0
 
 
@@ -46,7 +46,7 @@ def test_time_must_not_go_back() -> None:
 
 
 def test_calls_out_of_order_are_rejected() -> None:
-    """A clock can begin once, pause only while running and resume only while paused."""
+    """A clock can be started once, paused only while running and resumed only while paused."""
     clock = ActiveClock()
     with pytest.raises(ClockError, match="Begin it before resuming"):
         clock.resume(0.0)

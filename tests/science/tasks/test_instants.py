@@ -26,7 +26,7 @@ def test_stepping_on_the_start_square_at_the_completion_is_no_arrival() -> None:
 
 
 def test_a_pause_of_no_length_makes_no_new_touch() -> None:
-    """A contact through a pause of no length stays one contact, live and in the record."""
+    """A contact through a pause of zero length stays one contact, live and in the record."""
     rules = TaskRules(layout("hand"), Laterality.RIGHT)
     run = TaskRun(rules, ())
     run.command(CommandKind.START, 0.0)

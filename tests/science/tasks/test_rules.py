@@ -61,7 +61,7 @@ def mirrored(step: ContactChange | Command) -> ContactChange | Command:
 
 
 def comparable(event: TaskEvent) -> tuple[object, ...]:
-    """Return an event's values without the part where it is the first of several by name."""
+    """Return an event's values, without a part that is merely the first of several by name."""
     part = None if event.kind in CHOSEN_BY_NAME else event.part
     return (event.kind, event.time_s, event.active_s, event.task, event.surface, part)
 
@@ -76,7 +76,7 @@ def test_random_phases_complete_tasks() -> None:
 @example("foot", TWO_TASKS)
 @example("hand", TWO_TASKS)
 def test_the_record_gives_the_live_completions(name: str, moves: Moves) -> None:
-    """Completions derived from intervals and commands equal those of the live run."""
+    """Completions derived from the recorded intervals and commands equal those of the live run."""
     run, steps = random_run(name, moves)
     commands = [step for step in steps if isinstance(step, Command)]
     assert run.summary().completions == rederive(run.state.rules, run.intervals, commands)
@@ -97,7 +97,7 @@ def test_the_record_gives_the_live_events(name: str, moves: Moves) -> None:
 @given(NAMES, MOVES)
 @example("hand", TWO_TASKS)
 def test_completions_are_numbered_and_in_order(name: str, moves: Moves) -> None:
-    """Completions are numbered in order, their durations add up, and each touches all boxes."""
+    """Completions are numbered in order, their durations add up, and each includes all boxes."""
     run, _ = random_run(name, moves)
     done = run.summary().completions
     assert [c.number for c in done] == list(range(1, len(done) + 1))
@@ -118,7 +118,7 @@ def test_a_side_is_red_no_longer_than_its_parts_touch_it(name: str, moves: Moves
 
 @given(NAMES, MOVES)
 def test_red_time_of_the_record_is_what_was_shown(name: str, moves: Moves) -> None:
-    """The union of intervals equals the time between the events to red and to white."""
+    """The union of intervals equals the time between the events that turn a side red and white."""
     run, _ = random_run(name, moves)
     shown: Counter[str] = Counter()
     for event in run.events:

@@ -59,7 +59,7 @@ def test_a_margin_only_joins_contacts(touches: list[bool], seed: int) -> None:
 
 
 def test_near_alone_begins_nothing() -> None:
-    """Being within the margin keeps a contact but never begins one."""
+    """Being within the margin prolongs a contact but never begins one."""
     run = started()
     run.frame(1.0, table(), table(("hand/1/left", "RightHand")))
     assert run.state.contacts == frozenset()

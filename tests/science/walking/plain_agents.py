@@ -97,7 +97,7 @@ def _left(places: FloatArray, way: Way, legs: IntArray) -> FloatArray:
 def move_all(
     way: Way, vectors: FloatArray, pace: Pace, places: FloatArray, arrival: FloatArray
 ) -> None:
-    """Move K agents: vectors (K, 3), places (K, N, 2), arrival (K,); fills the last two."""
+    """Move K agents; fill `places` (K, N, 2) and `arrival` (K,) from vectors (K, 3)."""
     fastest, change, slope = vectors[:, 0], vectors[:, 1] * pace.dt, vectors[:, 2] * pace.dt
     count, samples = places.shape[:2]
     at = np.tile(way.points[0], (count, 1))

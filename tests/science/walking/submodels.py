@@ -16,7 +16,7 @@ def without_dependency(database: WalkDatabase, name: str) -> WalkDatabase:
     """Return the database without one dependency.
 
     Raises:
-        WalkingError: it is unknown or the only one.
+        WalkingError: the dependency is unknown or the only one.
     """
     if name not in database.names or len(database.names) == 1:
         raise WalkingError(f"{name} cannot be left out of {', '.join(database.names)}.")

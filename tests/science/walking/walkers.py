@@ -56,7 +56,7 @@ def walker(
 
 
 def _sway(times_s: FloatArray, along: FloatArray, places: FloatArray, sway_m: float) -> FloatArray:
-    """Return a lateral sway of one cycle in two steps, none at rest."""
+    """Return a lateral sway of one cycle per two steps, which is zero at rest."""
     ahead = np.gradient(places, axis=0)
     ahead /= np.maximum(np.linalg.norm(ahead, axis=1, keepdims=True), 1e-9)
     aside = np.stack([-ahead[:, 1], ahead[:, 0]], axis=-1)

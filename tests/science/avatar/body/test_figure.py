@@ -83,7 +83,7 @@ def test_masses_are_a_persons(lacking: tuple[str, ...]) -> None:
 
 
 def test_what_the_model_lacks_has_no_hinge() -> None:
-    """With a configuration of the whole body, a model with four fingers has no fifth's hinges."""
+    """A model with four fingers has no hinges for the fifth, even if the configuration does."""
     built = model(own=figure("Little"))
     found, _ = loaded(built.mjcf)
     names = {found.joint(row).name for row in range(found.njnt)}
@@ -105,7 +105,7 @@ def test_a_configuration_without_fingers_leaves_them_out() -> None:
 
 
 def test_unusual_lengths_take_the_masses_of_the_nearest_plausible_length() -> None:
-    """Forearms of half the length keep their joints, get plausible masses and cause a note."""
+    """Forearms of half the usual length keep their joints, get plausible masses and add a note."""
 
     def shortened(document: dict[str, Any]) -> None:
         for node in document["nodes"]:
@@ -122,13 +122,13 @@ def test_unusual_lengths_take_the_masses_of_the_nearest_plausible_length() -> No
 
 
 def test_a_model_and_measured_lengths_exclude_each_other() -> None:
-    """A body cannot be built from a model and from measured lengths simultaneously."""
+    """A body cannot be built from both a model and measured lengths."""
     with pytest.raises(BodyError, match="either a model or measured lengths"):
         build_body(STATURE_M, figure=figure(), segments_m={"thigh": 0.43})
 
 
 def test_the_model_must_be_the_one_that_the_configuration_names() -> None:
-    """A named model must be given, and a model that is not named is rejected."""
+    """A model is required if the configuration names one, and rejected if it names none."""
     named = replace(whole_body(), humanoid=HASH)
     with pytest.raises(BodyError, match=HASH):
         avatar_model(named, STATURE_M)

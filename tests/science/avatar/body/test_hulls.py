@@ -13,7 +13,7 @@ GRID_M = 1e-5
 
 
 def cloud(seed: int, count: int, size_m: float = 0.1) -> FloatArray:
-    """Return random points on a dented ball."""
+    """Return random points on the surface of a dented ball."""
     rng = np.random.default_rng(seed)
     points = rng.normal(size=(count, 3))
     points /= np.linalg.norm(points, axis=1, keepdims=True)
@@ -30,7 +30,7 @@ def outside_m(piece: Piece, points: FloatArray) -> float:
 @settings(max_examples=60, deadline=None, derandomize=True)
 @given(st.integers(0, 10_000), st.integers(8, 3_000), st.floats(0.01, 0.3))
 def test_a_piece_encloses_its_points(seed: int, count: int, size_m: float) -> None:
-    """A piece encloses its points to its stated tolerance, a millimetre if corners suffice."""
+    """A convex piece encloses its points to its stated tolerance, 1 mm if its corners suffice."""
     points = cloud(seed, count, size_m)
     piece = piece_of(points)
     assert piece is not None
@@ -41,7 +41,7 @@ def test_a_piece_encloses_its_points(seed: int, count: int, size_m: float) -> No
 
 
 def test_a_box_is_its_corners() -> None:
-    """The piece of a box has the box's eight corners, whatever points lie inside."""
+    """The convex piece of a box has just the box's eight corners, whatever points lie inside."""
     rng = np.random.default_rng(1)
     inside = rng.uniform(-0.05, 0.05, (500, 3))
     corners = [(x, y, z) for x in (-0.05, 0.05) for y in (-0.05, 0.05) for z in (-0.05, 0.05)]
@@ -74,12 +74,12 @@ def test_a_piece_does_not_depend_on_order_or_rounding() -> None:
     ],
 )
 def test_points_without_volume_have_no_piece(points: FloatArray) -> None:
-    """No points, coincident, collinear or coplanar points, and a tiny cloud give no piece."""
+    """Empty, coincident, collinear, coplanar and tiny sets of points have no convex piece."""
     assert piece_of(points) is None
 
 
 def test_a_piece_grows_with_its_body() -> None:
-    """A piece scaled by two has corners twice as far out, to the grid's resolution."""
+    """Points scaled by two give corners twice as far out, to the resolution of the grid."""
     piece = piece_of(cloud(5, 60))
     assert piece is not None
     assert np.allclose(piece.scaled(2.0).corners_m, 2.0 * np.array(piece.corners_m), atol=GRID_M)

@@ -27,7 +27,7 @@ def test_the_tables_are_de_levas(shared_data: Path, file: str, table: dict[str, 
 
 
 def test_average_is_the_mean_of_men_and_women() -> None:
-    """The average is the mean of men and women: thigh (.1416 + .1478) / 2 of the mass."""
+    """Average masses are the mean of men's and women's: thigh (.1416 + .1478) / 2 of the mass."""
     assert segments_of("average")["Thigh"].mass == pytest.approx(0.1447)
 
 
@@ -53,7 +53,7 @@ def test_relative_masses_are_the_published_ones() -> None:
 
 
 def test_the_upper_trunk_is_shared_in_equal_parts() -> None:
-    """Upper chest and shoulders weigh a third each of the upper trunk (Karas 2020, 6.4.1)."""
+    """Upper chest and each shoulder weigh a third of the upper trunk (Karas 2020, 6.4.1)."""
     parts = body_masses(build_body(1.75), 100.0, population="male").parts
     for part in ("UpperChest", "LeftShoulder", "RightShoulder"):
         assert parts[part].mass_kg == pytest.approx(15.96 / 3.0)

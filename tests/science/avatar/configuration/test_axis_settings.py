@@ -1,4 +1,4 @@
-"""Settings of one axis: validation, locking, and angles that survive a file."""
+"""Settings of one axis: validation, locking, and angles that are stored without loss."""
 
 import math
 from dataclasses import replace
@@ -31,7 +31,7 @@ from tests.science.avatar.configurations import FINE_SPRING, angles_rad, axis_se
 def test_an_invalid_value_is_reported_with_its_key(
     change: dict[str, float], path: str, expected_message: str
 ) -> None:
-    """An invalid value is reported with its key and unit as in a file, and what is valid."""
+    """An invalid value is reported with its key and unit as in a file, and with the valid range."""
     with pytest.raises(AvatarSettingsError) as caught:
         replace(FINE_SPRING, **change)
     (problem,) = caught.value.problems
@@ -61,7 +61,7 @@ def test_limits_that_are_one_angle_lock_the_axis() -> None:
 
 @given(angles_rad)
 def test_degrees_give_the_angle_back_to_the_bit(angle_rad: float) -> None:
-    """A rounded angle survives degrees exactly and lies within 1e-11 rad of the original."""
+    """A rounded angle is within 1e-11 rad of the original and survives conversion to degrees."""
     settled = rounded_angle(angle_rad)
     assert math.radians(degrees_of(settled)) == settled
     assert rounded_angle(settled) == settled

@@ -67,7 +67,7 @@ def test_axes_come_in_the_order_of_the_body() -> None:
 def test_an_invalid_value_is_reported_with_its_place(
     change: dict[str, object], path: str, expected_message: str
 ) -> None:
-    """One invalid value gives one problem with its path and what is valid."""
+    """One invalid value gives one problem, which states its path and what is valid."""
     with pytest.raises(AvatarSettingsError) as caught:
         replace(BODY, **change)  # type: ignore[arg-type]  # the fact
     (problem,) = caught.value.problems
@@ -175,7 +175,7 @@ def test_a_hand_without_its_counterpart_keeps_its_settings() -> None:
 
 
 def test_settings_of_missing_parts_are_dropped() -> None:
-    """Axes and held angles of missing parts are dropped; the rest stays."""
+    """Settings and held angles of missing parts are removed; all others are kept."""
     body = lock(BODY, "left_fingers", {"LeftLittleDistalZ": 0.3, "LeftIndexDistalZ": 0.2})
     four = without_parts(body, frozenset(part for part in PART_NAMES if "Little" in part))
     assert len(four.axes) == 91 - 8

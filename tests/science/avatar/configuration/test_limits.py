@@ -40,7 +40,7 @@ def test_both_sides_turn_equally_far() -> None:
     ],
 )
 def test_published_ranges(axis: str, low_deg: float, high_deg: float) -> None:
-    """Ranges from handbooks equal the published values and are not called estimates."""
+    """Ranges from handbooks equal the published values and are not marked as estimates."""
     bounds = ANATOMIC[axis]
     assert (degrees(bounds.low_rad), degrees(bounds.high_rad)) == pytest.approx((low_deg, high_deg))
     assert not bounds.estimated
@@ -68,7 +68,7 @@ def test_estimates_are_marked_as_estimates() -> None:
 
 
 def test_every_part_has_a_layer() -> None:
-    """Every part has a layer: fingers that of the hand, toes of the foot, head of the torso."""
+    """Every part has a collision layer: fingers the hand's, toes the foot's, head the torso's."""
     assert tuple(LAYER_OF) == PART_NAMES
     assert set(LAYER_OF.values()) == set(LAYERS)
     assert LAYER_OF["LeftRingDistal"] == "left_hand"

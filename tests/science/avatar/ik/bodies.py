@@ -1,4 +1,4 @@
-"""A model of the avatar, poses of it, and the goals that trackers on these poses give."""
+"""A model of the avatar, random poses of it, and the goals of trackers in these poses."""
 
 from functools import cache
 

@@ -40,7 +40,7 @@ def settled(solver: InverseKinematics, goals: Goals, frames: int = 60) -> Soluti
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("waist", [True, False])
 def test_a_pose_that_can_be_reached_is_reached(chain: Chain, seed: int, *, waist: bool) -> None:
-    """Reachable goals are met within 2 mm and half a degree, the pull of the rest pose."""
+    """Reachable goals are met within 2 mm and half a degree, which the rest pose's pull causes."""
     pose = bodies.random_pose(chain, np.random.default_rng(seed))
     goals = bodies.reached(chain, pose, HIPS_M, HIPS, waist=waist)
     solution = settled(InverseKinematics(bodies.model()), goals)

@@ -48,5 +48,5 @@ def test_trackers_of_real_people_are_followed(shared_data: Path, file: str, *, w
 
 
 def _mean(rows: list[FloatArray]) -> float:
-    """Return the mean after the first half second, in which the body finds its pose."""
+    """Return the mean without the first half second, in which the body settles into its pose."""
     return float(np.mean(rows[int(RATE_HZ / 2) :]))

@@ -57,7 +57,7 @@ def read(name: str) -> Json:
 
 
 def as_text(vector: Json) -> str:
-    """Return a vector as JSON with one frame or sample a line."""
+    """Return a vector as JSON with one frame or sample per line."""
     lines = []
     for key, value in vector.items():
         rows = isinstance(value, list) and value and not isinstance(value[0], str)
@@ -171,7 +171,7 @@ def simulate(model: mujoco.MjModel, controls: Json) -> list[tuple[int, FloatArra
 
 
 def _rounded(values: FloatArray) -> list[float | None]:
-    """Round to twelve decimals; NaN becomes null."""
+    """Round numbers to twelve decimals and replace NaN with null."""
     return [None if np.isnan(one) else round(one, _DECIMALS) + 0.0 for one in values.tolist()]
 
 

@@ -38,7 +38,7 @@ from tests.science.avatar.bodies import (
 def test_a_model_has_a_hinge_and_a_motor_for_each_axis(
     hips: str, parts: list[str], axes: int, *, free: bool
 ) -> None:
-    """52 parts have 91 axes; the anatomic elbows lock two; welded hips add a free joint."""
+    """The 52 parts have 91 axes, two of them locked in anatomic elbows; welded hips move freely."""
     body = build_body(1.75, parts=parts)
     options = WELDED if hips == "welded" else CARRIED
     settings = settings_of(body, free=free)

@@ -54,7 +54,7 @@ def test_a_target_is_followed_and_clamped_to_the_limits() -> None:
 
 
 def test_added_latency_can_be_changed_while_the_model_runs() -> None:
-    """A motor with a delay of 100 ms starts 100 ms later, to two steps; 1 s is the most."""
+    """A motor with a delay of 100 ms starts 100 ms late, within two steps; the maximum is 1 s."""
     body = build_body(1.75, parts=NO_FINGERS)
     model, data = loaded(mjcf_of(body, options=ModelOptions(gravity=False)))
     motor = model.actuator("LeftLowerArmY").id
@@ -138,7 +138,7 @@ def test_a_hand_touches_the_chest_and_the_arm_passes_it() -> None:
 
 
 def test_without_self_collision_only_the_scene_is_touched() -> None:
-    """Without self-collision only the feet touch anything, the floor."""
+    """Without self-collision the only contacts of a standing body are its feet on the floor."""
     body = build_body(1.75)
     options = ModelOptions(self_collision=False, gravity=False)
     model, data = loaded(mjcf_of(body, scene=Scene(), options=options))
@@ -168,7 +168,7 @@ def test_a_model_that_lacks_parts_stands_too(absent: list[str]) -> None:
 
 
 def test_a_motor_without_torque_lets_the_limb_hang() -> None:
-    """A greatest torque of zero means no torque, not unlimited torque."""
+    """A maximum torque of zero means no torque, not unlimited torque."""
     body = build_body(1.75, parts=NO_FINGERS)
     settings = settings_of(body)
     settings["LeftUpperArmZ"] = replace(settings["LeftUpperArmZ"], max_torque_nm=0.0)

@@ -203,7 +203,7 @@ def test_models_that_lack_parts_follow(lacking: tuple[str, ...], kind: ColliderK
 def test_odd_bodies_stand(seed: int) -> None:
     """Bodies with bones of half to one and a half times the length are rejected or stay stable.
 
-    Here with simple shapes on one side and meshes on the other.
+    One side of the body has simple shapes and the other meshes.
     """
     rng = np.random.default_rng(seed)
 

@@ -43,7 +43,7 @@ def test_a_pushed_trunk_drags_hands_and_head_only_in_joint_space() -> None:
 
 @pytest.mark.parametrize("target_space", ["local", "world"])
 def test_latency_delays_the_limbs_in_both_spaces(target_space: TargetSpace) -> None:
-    """With a delay of 0.2 s an elbow has not moved after 0.1 s and has after half a second."""
+    """With a delay of 0.2 s an elbow is at rest after 0.1 s and has moved after half a second."""
     body = avatar()
     built = model()
     follower = Follower(body, target_angles(built), target_space=target_space, delay_s=0.2)

@@ -1,4 +1,4 @@
-"""The simulated avatar: it follows, it touches, and it stays stable."""
+"""The simulated avatar follows its targets, touches boxes and stays stable."""
 
 import math
 from pathlib import Path
@@ -43,7 +43,7 @@ def test_a_step_is_reached(name: str) -> None:
 
 @pytest.mark.parametrize("capture", [WALK, REACH, TURN, LONG])
 def test_real_movements_are_followed(shared_data: Path, capture: str) -> None:
-    """At 90 Hz the error from the clamped command is 1.5 deg on average, 5 deg at the p95."""
+    """Errors from the clamped command average 1.5 deg (95th percentile 5 deg) at most at 90 Hz."""
     followed = follow(model(), captured(shared_data, capture))
     errors = followed.errors_deg()
     assert errors.mean() < 1.5

@@ -29,7 +29,7 @@ def standing() -> tuple[PhysicsAvatar, SurfaceTouches]:
 
 
 def go(body: PhysicsAvatar, metres: float, speed_m_s: float = 0.5) -> None:
-    """Carry the hips to the right by this many metres."""
+    """Move the hips to the right by this many metres."""
     start, begun_s = body.state().root_position_m, body.time_s
     count = max(1, round(abs(metres) / speed_m_s * RATE_HZ))
     for frame in range(1, count + 1):
@@ -53,7 +53,7 @@ def test_a_hand_touches_the_wall_that_stops_it() -> None:
 
 
 def test_a_hidden_wall_is_passed_through() -> None:
-    """A hidden wall is not touched; a wall shown inside the hand pushes it out."""
+    """A hidden wall is not touched; a wall that is shown around a hand pushes the hand out."""
     body, touches = standing()
     body.boxes.show((MARK,))
     go(body, 0.1)
@@ -76,7 +76,7 @@ def test_feet_touch_the_floor_mark_they_stand_on() -> None:
 
 
 def test_a_touch_ends_beyond_the_release_margin() -> None:
-    """Within the margin a hand is near though not in contact; beyond it the touch ends."""
+    """Within the release margin a hand is near but not in contact; beyond it the touch ends."""
     body, touches = standing()
     go(body, 0.1)
     hand = JOINT_INDEX["RightHand"]

@@ -1,4 +1,4 @@
-"""The reference motion of a physics avatar: what its hinges can do of the participant's pose."""
+"""The reference motion of a physics avatar: the part of the pose that its hinges can follow."""
 
 import math
 from pathlib import Path

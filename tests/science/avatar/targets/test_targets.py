@@ -196,7 +196,7 @@ def test_the_turn_of_a_missing_part_goes_to_its_children() -> None:
 
 
 def test_what_is_beyond_the_limits_is_clamped_and_counted() -> None:
-    """A knee bent backwards in one frame of two is clamped there, and its share is one half."""
+    """A knee bent backwards in one of two frames is clamped there; its clipped share is a half."""
     poses = identity(2, len(JOINT_NAMES))
     angles = np.zeros(len(AXIS_NAMES))
     angles[_column("LeftLowerLegX")] = -0.04

@@ -1,4 +1,4 @@
-"""How closely and how late a tuned avatar follows captured movements of real people."""
+"""How closely and with what delay a tuned avatar follows captured movements of people."""
 
 import time
 from collections.abc import Callable
@@ -45,7 +45,7 @@ def _tuned() -> Configuration:
 
 
 def test_every_axis_of_the_whole_body_is_tuned() -> None:
-    """No axis is flagged; 30 degree steps overshoot by 3 % in the median and 10 % at worst."""
+    """No axis is flagged; steps of 30 degrees overshoot by 3 % in the median, by 10 % at most."""
     free = [one for one in _report().axes if one.status != "locked"]
     assert len(free) == 89
     assert {one.status for one in free} <= {"tuned", "retried"}
@@ -62,7 +62,7 @@ def test_every_axis_of_the_whole_body_is_tuned() -> None:
 def test_a_tuned_body_follows_real_people(
     shared_data: Path, read: Callable[[Path, str], Movement], name: str, hips: Hips
 ) -> None:
-    """At 90 Hz the error from the clamped command is 1.5 deg on average, 5 deg at the p95."""
+    """Errors from the clamped command average 1.5 deg (95th percentile 5 deg) at most at 90 Hz."""
     found = track(replace(_tuned(), hips=hips), STATURE_M, read(shared_data, name))
     assert found.clamped.mean_deg <= 1.5
     assert found.clamped.p95_deg <= 5.0

@@ -158,7 +158,7 @@ def test_a_motor_without_torque_is_flagged() -> None:
 
 
 def test_mirror_copies_the_left_side_to_the_right(left_arm: TuningReport) -> None:
-    """With mirroring the right arm gets the left one's gains, is marked so, and is assessed."""
+    """With mirroring the right arm gets the left one's gains, is marked as such and is assessed."""
     seen: list[TuningProgress] = []
     report = tune(
         _with_locked_groups(_ALL_BUT_ARMS),
@@ -228,7 +228,7 @@ def test_invalid_options_are_rejected(options: dict[str, object]) -> None:
 @pytest.mark.parametrize(("stature_m", "mass_kg"), [(1.5, 45.0), (1.75, 72.0), (2.0, 120.0)])
 @pytest.mark.parametrize("heuristic", ["critical", "inertia"])
 def test_all_axes_of_all_bodies(stature_m: float, mass_kg: float, heuristic: str) -> None:
-    """30 degree steps overshoot by 3 % in the median, 10 % at worst, and no axis is flagged."""
+    """Steps of 30 degrees overshoot by 3 % in the median, 10 % at most; no axis is flagged."""
     configuration = replace(default_configuration(limits="free"), total_mass_kg=mass_kg)
     report = tune(
         configuration, stature_m, TuningOptions(heuristic=heuristic), wall_s=time.monotonic

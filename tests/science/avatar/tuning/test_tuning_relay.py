@@ -20,7 +20,7 @@ from app.science.avatar.tuning.relay import (
 
 
 def _plant(inertia_kg_m2: float) -> AxisPlant:
-    """Return a wheel on a hinge."""
+    """Return the model of a wheel of this inertia on a hinge."""
     inertia = f"{inertia_kg_m2} {inertia_kg_m2} {inertia_kg_m2}"
     return AxisPlant(
         mujoco.MjModel.from_xml_string(f"""
@@ -50,7 +50,7 @@ def _found(inertia_kg_m2: float, settings: RelaySettings) -> Oscillation:
 def test_the_limit_cycle_is_the_one_of_the_describing_function(
     inertia_kg_m2: float, frequency_hz: float
 ) -> None:
-    """The limit cycle matches the describing function: within 5 %, the inertia within 6 %."""
+    """The limit cycle matches the describing function within 5 %, and the inertia within 6 %."""
     settings = relay_for(inertia_kg_m2, frequency_hz)
     found = _found(inertia_kg_m2, settings)
     amplitude = radians(8.0)
@@ -89,7 +89,7 @@ def test_an_undamped_hinge_has_no_limit_cycle() -> None:
 
 
 def test_a_relay_that_is_too_weak_is_given_up_after_the_simulated_time() -> None:
-    """A relay that is too weak to reach the switching angle ends after its simulated time."""
+    """An experiment whose relay never reaches the switching angle ends after the simulated time."""
     settings = replace(relay_for(1.0, 5.0), torque_nm=1e-4, longest_s=2.0)
     found = run_relay(_plant(1.0), settings, wall_s=_stopped)
     assert isinstance(found, NoOscillation)

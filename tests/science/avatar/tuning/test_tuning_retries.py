@@ -1,4 +1,4 @@
-"""What the tuning does when the first gains of an axis are not accepted."""
+"""Retries of the tuning when the first gains of an axis are not accepted."""
 
 import time
 from dataclasses import replace

@@ -49,7 +49,7 @@ def test_settling_and_rise_of_a_first_order_lag() -> None:
 
 
 def test_a_steady_error_is_no_overshoot() -> None:
-    """The overshoot of a limb that sags is counted from where it comes to rest."""
+    """The overshoot of a limb that sags is measured from where it comes to rest."""
     figures = step_figures(0.9 * _second_order(0.5), 0.0, 1.0, _STEP_S)
     assert figures.overshoot_percent == pytest.approx(16.3, abs=0.1)
     assert figures.steady_error_deg == pytest.approx(degrees(0.1), abs=1e-3)

@@ -52,7 +52,7 @@ def test_axes_of_legs_that_touch_the_floor_are_reported_separately() -> None:
 
 
 def test_the_error_that_the_limits_cause_is_reported() -> None:
-    """A head that nods by 40 degrees gets 22.5; only the unclamped error includes the rest."""
+    """A head that nods by 40 degrees is clamped to 22.5; only the unclamped error has the rest."""
     bent = _standing(90)
     half = np.radians(20.0)
     bent.rotations[:, JOINT_INDEX["Head"]] = (np.cos(half), -np.sin(half), 0.0, 0.0)
@@ -64,7 +64,7 @@ def test_the_error_that_the_limits_cause_is_reported() -> None:
 
 
 def test_weaker_gains_follow_a_walk_worse(shared_data: Path) -> None:
-    """A quarter of kp and half of kd at least raise a walk's mean error by half."""
+    """Dividing kp by four and kd by two raises a walk's mean error by more than half."""
     usual = default_configuration()
     weak = {
         name: own.with_values(kp=own.kp / 4.0, kd=own.kd / 2.0) for name, own in usual.axes.items()

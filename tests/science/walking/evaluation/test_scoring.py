@@ -26,7 +26,7 @@ from tests.science.walking.spaces import made_up_database, made_up_space
 
 
 def test_crps_is_its_definition() -> None:
-    """CRPS equals E|T - t| - E|T - T'| / 2, |dt| for one draw, and a normal's closed form."""
+    """CRPS equals E|T - t| - E|T - T'| / 2, |dt| for one draw, and the normal's closed form."""
     draws = np.random.default_rng(1).gamma(4.0, 0.5, 60)
     pairs = np.abs(draws[:, None] - draws[None, :]).mean()
     assert crps_s(draws, 1.7) == pytest.approx(np.abs(draws - 1.7).mean() - pairs / 2.0)
@@ -92,7 +92,7 @@ def test_leaving_out_stays_within_the_limits_on_smooth_maps() -> None:
 
 
 def test_people_left_out_are_harder_than_entries() -> None:
-    """Leaving people out gives larger errors than leaving out single entries of the space."""
+    """Leaving out people gives larger errors than leaving out single entries of the space."""
     database = made_up_database()
     rng = np.random.default_rng(1)
     easy = neighbours_left_out(space_of(database, PAPER, rng, entries=400, k=20))
@@ -102,7 +102,7 @@ def test_people_left_out_are_harder_than_entries() -> None:
 
 
 def test_a_population_is_predicted_from_others_of_it() -> None:
-    """Other people of a synthetic population are predicted best by the probabilistic model."""
+    """Unseen people of a synthetic population are predicted best by the probabilistic model."""
     maker = MapMaker(grid=regular_grid(PAPER_PARAMETERS, 7))
     scenes = [straight_scene(length) for length in (1.0, 2.0, 3.0)]
     population = POPULATIONS[3]

@@ -79,7 +79,7 @@ def test_an_agent_that_cannot_turn_enough_does_not_arrive() -> None:
 
 
 def test_a_walk_ends_at_the_time_limit() -> None:
-    """An agent that is too slow has not arrived when the time limit is over."""
+    """An agent that is too slow has not arrived when the time limit elapses."""
     slow = np.array([[0.1, 1.0, 1.0]])
     assert not FOLLOWER.follow(Course(STRAIGHT, 10, 10.0), slow).arrived[0]
     assert FOLLOWER.follow(Course(STRAIGHT, 10, 45.0), slow).arrived[0]

@@ -46,7 +46,7 @@ def test_a_walk_without_a_dependency_is_named() -> None:
 
 
 def test_weights_of_blends_are_those_of_kovar_and_gleicher() -> None:
-    """Weights of a blend are from -.1 to 1.1, beyond 0 and 1 at times, and sum to 1."""
+    """Weights of a blend sum to 1 and are from -.1 to 1.1, sometimes outside of 0 to 1."""
     weights = drawn_weights(4000, 4, np.random.default_rng(1))
     assert weights.sum(axis=1) == pytest.approx(np.ones(4000))
     assert weights.min() >= -0.1
@@ -108,7 +108,7 @@ def test_equal_walks_weigh_the_same() -> None:
 
 
 def test_an_answer_traced_to_its_walks_is_the_blended_map() -> None:
-    """A blended map equals the weighted maps of the walks behind its blends, but for clipping."""
+    """A blended map equals the weighted maps of the walks that it blends, except for clipping."""
     space = made_up_space()
     walks = space.values[: space.walks].astype(np.float64)
     for z in space.z[5:60:11]:

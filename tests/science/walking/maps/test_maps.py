@@ -50,9 +50,9 @@ def _walked_by(vector: np.ndarray[tuple[int], np.dtype[np.float64]]) -> PlannedW
 @pytest.mark.parametrize("index", [22, 42, 63])
 @pytest.mark.parametrize("metric", [EuclideanMetric(), PaceMetric()])
 def test_known_parameters_are_recovered(index: int, metric: Metric) -> None:
-    """A walk made with a combination of the grid has its least deviation, zero, at that one.
+    """A walk made with a combination of the grid has its smallest deviation, zero, at that one.
 
-    Both metrics go through the same protocol.
+    Both metrics are tested through the same protocol.
     """
     made = MapMaker(GRID, metric=metric).map_of(_walked_by(GRID.node(index)))
     assert made.metric == metric.name
@@ -62,7 +62,7 @@ def test_known_parameters_are_recovered(index: int, metric: Metric) -> None:
 
 
 def test_the_metric_is_equation_five() -> None:
-    """The metric is equation 5: the sum of distances over samples, by the reference's length."""
+    """The metric is equation 5: the summed distances of the samples over the reference's length."""
     entry = _entry(POLE)
     reference = reference_of(entry.walk, 1.0 / 60.0)
     places = reference.xy_m[None] + np.array([0.03, 0.04])

@@ -76,7 +76,7 @@ def test_the_adaptive_model_is_at_the_top_of_its_map() -> None:
 
 
 def test_both_samplers_serve_the_probabilistic_model() -> None:
-    """The probabilistic model can use the paper's rejection, with about the mixture's mean."""
+    """With the paper's rejection the probabilistic model has about the same mean as the mixture."""
     space, rng = made_up_space(), np.random.default_rng(2)
     mixture = ProbabilisticModel(space).vectors(QUERY, 4000, rng).mean(axis=0)
     paper = ProbabilisticModel(space, "rejection").vectors(QUERY, 4000, rng).mean(axis=0)

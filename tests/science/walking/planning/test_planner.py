@@ -94,7 +94,7 @@ def test_a_gap_narrower_than_a_cell_is_walked_through() -> None:
 
 
 def test_a_closed_scene_has_no_path() -> None:
-    """If a wall or a gap narrower than the clearance separates start and goal, none is found."""
+    """No path is found if a wall or a gap narrower than the clearance separates start and goal."""
     wall = box("wall", (0.0, 0.0), (5.0, 0.1))
     narrow = (box("left", (-1.1, 0.0), (1.9, 0.1)), box("right", (1.1, 0.0), (1.9, 0.1)))
     for obstacles in ((wall,), narrow):

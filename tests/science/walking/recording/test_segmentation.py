@@ -12,7 +12,7 @@ RATE_HZ = 120.0
 
 
 def _walked(*parts: tuple[float, float]) -> Track:
-    """Return a track of parts (seconds, metres ahead) at minimum jerk; 0 m is standing."""
+    """Return a minimum-jerk track from parts (seconds, metres ahead); 0 m means standing."""
     ahead, at = [np.zeros(1)], 0.0
     for seconds, metres in parts:
         share = np.arange(1, round(seconds * RATE_HZ) + 1) / round(seconds * RATE_HZ)
@@ -44,7 +44,7 @@ def test_a_short_pause_belongs_to_the_walk() -> None:
 
 
 def test_a_walk_cut_by_the_recording_is_marked() -> None:
-    """A walk cut by the recording's begin and end is marked as not beginning or ending still."""
+    """A walk that the recording cuts is marked as not beginning or not ending at rest."""
     track = _walked((4.0, 4.0))
     middle = slice(120, 360)
     cut = Track(track.times_s[middle], track.xy_m[middle], "7", "made")
@@ -55,7 +55,7 @@ def test_a_walk_cut_by_the_recording_is_marked() -> None:
 
 
 def test_standing_is_no_walk_and_neither_is_a_step() -> None:
-    """A track of standing, or of a single step, has no walk."""
+    """A track of a standing person, or of a single step, has no walk."""
     assert walks_of(_walked((3.0, 0.0))) == []
     assert walks_of(_walked((1.0, 0.0), (0.8, 0.2), (1.0, 0.0))) == []
 

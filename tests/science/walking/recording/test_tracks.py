@@ -83,7 +83,7 @@ def test_a_belt_tracker_reaches_into_the_body_along_its_z() -> None:
 
 
 def test_markers_are_followed_by_their_middle() -> None:
-    """Markers of the pelvis are found by name and followed by their middle."""
+    """Markers of the pelvis are found by name, and their mean position is followed."""
     names = ("RPSI", "LASI", "RASI", "LPSI", "HEAD")
     places = np.zeros((2, 5, 3))
     places[:, :4] = [[0.1, 1.0, 0.1], [-0.1, 1.0, -0.1], [0.1, 1.0, -0.1], [-0.1, 1.0, 0.1]]

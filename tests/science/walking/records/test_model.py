@@ -45,7 +45,7 @@ def test_a_stature_in_centimetres_is_rejected() -> None:
 
 
 def test_a_walk_derives_length_speed_and_positions() -> None:
-    """A steady walk of .4 m in .4 s has a speed of 1 m/s and constant positions around it."""
+    """A steady walk of .4 m in .4 s has a speed of 1 m/s and stays at its ends before and after."""
     walk = Walk(TIMES, LINE, "7", "a.csv")
     assert walk.length_m == pytest.approx(0.4)
     assert walk.duration_s == pytest.approx(0.4)

@@ -28,7 +28,7 @@ def test_a_bend_turns_by_its_angle(degrees: float) -> None:
 
 
 def test_a_circle_has_its_curvature() -> None:
-    """A circle of radius 2 m turns by half a radian a metre, except for the excluded ends."""
+    """A circle of radius 2 m turns by half a radian per metre, except at the excluded ends."""
     assert turning_per_m(_arc(np.pi, 2.0, 400)) == pytest.approx(0.5, rel=0.03)
 
 

@@ -20,7 +20,7 @@ def test_there_are_five_populations_or_more_and_each_says_how_it_differs() -> No
 
 
 def test_people_walk_short_ways_slower() -> None:
-    """Peak speed grows with distance by 1 - exp(-d / b), within sway and variation."""
+    """Peak speed grows with distance d by 1 - exp(-d / b), within sway and variation."""
     peaks = []
     for length in (0.5, 1.0, 2.0, 4.0):
         speeds = []
