@@ -140,7 +140,10 @@ def _instrument(
 
 
 def _titles(tree: dict[str, Plain], languages: list[str]) -> Iterator[DefinitionProblem]:
-    """Yield missing titles: built-in ones exist in two languages, so others need their own."""
+    """Yield a problem for each missing title.
+
+    Built-in titles exist in two languages, so any other language needs a title of its own.
+    """
     foreign = [language for language in languages if language not in LANGUAGES]
     for path, step in _steps(tree):
         fields = ("title", "questionnaire_title") if "questionnaire" in step else ("title",)
@@ -156,7 +159,7 @@ def _titles(tree: dict[str, Plain], languages: list[str]) -> Iterator[Definition
 
 
 def _places(tree: dict[str, Plain]) -> Iterator[DefinitionProblem]:
-    """Yield tasks without boxes, for limbs that a phase uses."""
+    """Yield a problem for each task without boxes whose limb a phase uses."""
     tasks = tree.get("tasks")
     if not isinstance(tasks, dict):
         return
@@ -288,7 +291,10 @@ def _unknown_avatar(
 
 
 def picture_problems(path: Path, wordings: Mapping[str, str]) -> Iterator[DefinitionProblem]:
-    """Yield names of pictures that do not exist, which would be missing from the instructions."""
+    """Yield a problem for each named picture that does not exist.
+
+    It would be missing from the instructions.
+    """
     for language, words in wordings.items():
         for name in _PICTURE.findall(words):
             if name not in PICTURES:

@@ -15,7 +15,7 @@ from app.protocol.source import Path, Plain
 
 @dataclass(frozen=True)
 class Difference:
-    """One place that differs; its path is that in the older tree if it existed there."""
+    """One place at which two trees differ; its path is the older tree's if it existed there."""
 
     path: Path
     kind: Literal["added", "removed", "changed"]
@@ -55,7 +55,7 @@ def _lists(before: list[Plain], after: list[Plain], path: Path) -> Iterator[Diff
 
 
 def _name(value: Plain) -> str:
-    """Return what identifies a list entry, even after other parts of it have changed."""
+    """Return the text that identifies a list entry, even after other parts of it have changed."""
     if isinstance(value, dict):
         for key in ("key", "number", "limb"):
             if key in value:

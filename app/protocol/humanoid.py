@@ -12,7 +12,7 @@ from app.science.rotations import Vector
 class PieceFile(Strict):
     """A convex piece of a body part.
 
-    It has its corners in the part's frame, and how far the skin protrudes from it.
+    The file contains its corners in the part's frame, and how far the skin protrudes from it.
     """
 
     corners_m: list[Vector]
@@ -52,7 +52,7 @@ def figure_json(figure: Figure) -> str:
 
 
 def parse_figure(text: str) -> Figure:
-    """Parse the stored measures."""
+    """Parse the measures of a humanoid model from their stored JSON."""
     file = _ADAPTER.validate_json(text)
     return Figure(
         file.stature_m,

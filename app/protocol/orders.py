@@ -20,7 +20,7 @@ Sequence = tuple[str, ...]
 
 
 class LedgerRow(NamedTuple):
-    """One slot: an order, and the number of its replicate (from 1)."""
+    """One slot of the ledger: an order, and the number of its replicate (from 1)."""
 
     sequence: Sequence
     replicate: int

@@ -169,7 +169,10 @@ class Preregistration(Strict):
 def preregistration_problems(
     tree: Mapping[str, Plain], instruments: Mapping[str, Instrument]
 ) -> Iterator[DefinitionProblem]:
-    """Yield a measure not asked after the task, and unknown scores, limbs or references."""
+    """Yield the problems of a preregistration.
+
+    These are a measure not asked after the task, and unknown scores, limbs or references.
+    """
     primary = _dict(_dict(tree.get("preregistration")).get("primary"))
     if not primary:
         return

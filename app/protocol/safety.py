@@ -1,4 +1,4 @@
-"""Stop rules: limits on scores of a session, at which it is held.
+"""Stop rules: limits on scores of a session, at which the session is held.
 
 A *stop rule* checks one score each time its instrument is answered. At `warn_at` the operator is
 warned; at `stop_at` the session is held until the operator ends it or continues with a reason. The
@@ -23,7 +23,7 @@ FormKey = Annotated[
 
 
 class StopRule(Strict):
-    """One limit, which scores at or above it reach.
+    """A limit on one score; a score at or above the limit reaches it.
 
     `change_from`: the form before the blocks with the baseline; the limits then apply to the rise
     since then, not to the score itself.
@@ -58,7 +58,10 @@ class Safety(Strict):
 def safety_problems(
     tree: Mapping[str, Plain], instruments: Mapping[str, Instrument]
 ) -> Iterator[DefinitionProblem]:
-    """Yield rules on unasked instruments, on unknown scores, or beyond the score's range."""
+    """Yield the problems of stop rules.
+
+    These are instruments that are not asked, unknown scores, and limits beyond the score's range.
+    """
     rules = _list(_dict(tree.get("safety")).get("stop_rules"))
     for at, rule in enumerate(rules):
         if isinstance(rule, dict):
@@ -66,7 +69,10 @@ def safety_problems(
 
 
 def body_problems(tree: Mapping[str, Plain]) -> Iterator[DefinitionProblem]:
-    """Yield phases, such as practice, before the step in which the participant gets a body."""
+    """Yield a problem for each phase that needs a body, such as practice, before the body's step.
+
+    This is the step in which the participant gets a body.
+    """
     before = [_dict(step).get("step") for step in _list(_dict(tree.get("procedure")).get("before"))]
     for at, kind in enumerate(before):
         spec = STEP_KINDS.get(str(kind))
@@ -150,7 +156,10 @@ def _limit(
 def _start(
     path: Path, rule: dict[str, Plain], key: str, tree: Mapping[str, Plain]
 ) -> Iterator[DefinitionProblem]:
-    """Yield a `change_from` that names no form before the blocks with the same instrument."""
+    """Yield a problem if `change_from` names no suitable form.
+
+    The form must be before the blocks and have the same instrument.
+    """
     start = rule.get("change_from")
     if not isinstance(start, str):
         return

@@ -49,7 +49,10 @@ class ScalarProblem:
 
 
 def scalar_problem(text: str, *, plain: bool) -> ScalarProblem | None:
-    """Return why the scalar is invalid, or None. `plain`: unquoted, so that it may be a number."""
+    """Return the problem of an invalid scalar; None if the scalar is valid.
+
+    `plain`: unquoted, so that it may be a number.
+    """
     found = _FORBIDDEN.search(text)
     if found is not None:
         return ScalarProblem(

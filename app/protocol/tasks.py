@@ -194,7 +194,7 @@ class Colours(Strict):
 
 
 class Cues(Strict):
-    """The shape drawn on an object in that state, in addition to its colour."""
+    """The shape drawn on each object of the task in each of its states, besides its colour."""
 
     panel_done: Cue
     side_touched: Cue

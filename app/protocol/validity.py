@@ -113,7 +113,10 @@ class ValidWhen(Strict):
 
 
 def validity_problems(tree: Mapping[str, Plain]) -> Iterator[DefinitionProblem]:
-    """Yield rules on unknown phases or forms, or on more time than a phase has."""
+    """Yield the problems of the rules of validity.
+
+    These are unknown phases or forms, and minimum times longer than the phase itself.
+    """
     rules = _dict(tree.get("valid_when"))
     durations = _durations(tree)
     for at, rule in enumerate(_list(rules.get("phases"))):

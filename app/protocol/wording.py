@@ -47,7 +47,10 @@ def lines_for_avatar(avatar: str, text: str) -> str:
 def mark_problems(
     path: Path, wordings: Mapping[str, str], avatar: Plain
 ) -> Iterator[DefinitionProblem]:
-    """Yield marks of an unknown kind, within a line, or outside texts; and texts left empty."""
+    """Yield the problems of the marks in a text.
+
+    These are marks of an unknown kind, within a line, or outside texts; and texts left empty.
+    """
     for language, words in wordings.items():
         at = (*path, language)
         marks = [mark for line in words.split("\n") for mark in _MARK.finditer(line)]

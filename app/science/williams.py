@@ -1,4 +1,4 @@
-"""Williams designs: few orders that balance position and first-order carry-over.
+"""Williams designs: small sets of orders that balance position and first-order carry-over.
 
 Williams 1949, Experimental designs balanced for the estimation of residual effects of treatments.
 """

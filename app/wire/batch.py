@@ -74,7 +74,7 @@ class BatchHeader(NamedTuple):
 
     @property
     def seq_end(self) -> int:
-        """One past the last seq of the batch."""
+        """The seq after the last one of the batch."""
         return self.seq_first + self.frame_count
 
 
@@ -88,7 +88,7 @@ class Batch(NamedTuple):
 
 
 def body_bytes(frame_count: int, values_per_frame: int) -> int:
-    """Return the number of bytes that follow the header of such a batch."""
+    """Return the number of bytes that follow the header in a batch of this size."""
     return 8 * frame_count + _padded(frame_count) + 4 * frame_count * values_per_frame
 
 

@@ -171,7 +171,7 @@ class StreamPosition(Message):
 
 
 class PhaseOrder(Message):
-    """The phase to run, which the headset brings itself in line with.
+    """The phase to run, to which the headset brings its own state.
 
     Of the headset's messages only this one contains the latency. `until_completions`: a practice
     ends once this many tasks are completed, before its time is up; null for all other phases.
@@ -193,7 +193,7 @@ class PhaseOrder(Message):
 
 
 class ParticipantInfo(Message):
-    """The facts about the participant that the task needs; null until they were answered."""
+    """The facts about the participant that the task needs; null until they are known."""
 
     handedness: str | None = None
     footedness: str | None = None

@@ -33,7 +33,10 @@ class _Words:
         self._pushed_back: str | None = None
 
     def next(self, expected: str) -> str:
-        """Return the next word; at the end of the text, raise BvhError with what is `expected`."""
+        """Return the next word.
+
+        At the end of the text, raise BvhError with a description of what is `expected`.
+        """
         if self._pushed_back is not None:
             word, self._pushed_back = self._pushed_back, None
             return word

@@ -24,10 +24,10 @@ _DEFAULT_LIMITS = BvhLimits()
 
 
 def read_bvh(path: Path, *, metres_per_unit: float, limits: BvhLimits = _DEFAULT_LIMITS) -> BvhClip:
-    """Read a file; see `parse_bvh`.
+    """Read a BVH file; see `parse_bvh`.
 
     Raises:
-        BvhError: as there, and if the file is too large or not text.
+        BvhError: as for `parse_bvh`, and if the file is too large or not text.
         OSError: the file cannot be opened.
     """
     if path.stat().st_size > limits.characters:

@@ -51,7 +51,7 @@ def _joint_lines(clip: BvhClip, joint: int, depth: int, metres_per_unit: float) 
 
 
 def _written_order(clip: BvhClip, joint: int) -> list[int]:
-    """Return the joints in written order, each followed directly by its descendants."""
+    """Return the joints in the order of the file, each followed directly by its descendants."""
     children = [child for child, parent in enumerate(clip.parents) if parent == joint]
     return [joint, *(index for child in children for index in _written_order(clip, child))]
 

@@ -31,7 +31,7 @@ def turned_places(places: FloatArray, up: Up) -> FloatArray:
 
 
 def turned_rotations(rotations: FloatArray, up: Up) -> FloatArray:
-    """Convert rotations (..., 4) to the world or a parent from axes with `up` upward to y up."""
+    """Convert world or local rotations (..., 4) from axes with `up` upward to y up."""
     if up == "y":
         return rotations
     turn = np.array(_TURNS[up])

@@ -51,7 +51,7 @@ class Conventions:
 
 @dataclass(frozen=True)
 class Reading:
-    """A user's instructions on how to read a file, where it does not say so or is wrong.
+    """A user's instructions for reading a file whose own information is missing or wrong.
 
     Attributes:
         metres_per_unit: length of the file's unit; None to use the file's or a plausible one.

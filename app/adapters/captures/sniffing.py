@@ -47,7 +47,7 @@ class Head:
 
     @property
     def word(self) -> str:
-        """The first word in lower case."""
+        """The first word of the file, in lower case."""
         return self.first.split(maxsplit=1)[0].lower() if self.first else ""
 
     def first_without(self, comment: str) -> str:

@@ -1,7 +1,8 @@
 """Export a movement as a table: a row per frame, a column per number, units in the titles.
 
 Positions are in metres in the world, y up and right-handed; rotations are unit quaternions w, x, y,
-z, world_from_joint, so that a row can be read without the hierarchy. What was not visible is empty.
+z, world_from_joint, so that a row can be read without the hierarchy. Cells of values that were not
+visible are empty.
 """
 
 import csv

@@ -1,4 +1,4 @@
-"""Read what logs of headsets have in common: a time column, and each body's pose columns.
+"""Read the parts that logs of headsets share: a time column, and each body's pose columns.
 
 Times count from the first sample and are strictly increasing.
 """

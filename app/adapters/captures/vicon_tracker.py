@@ -41,7 +41,7 @@ _Row = tuple[int, list[str]]
 
 @dataclass(frozen=True)
 class _Head:
-    """The five lines before the numbers."""
+    """The five header lines of a file of Vicon Tracker, which precede the numbers."""
 
     rate_hz: float
     names: tuple[str, ...]

@@ -141,7 +141,7 @@ def _local(node: Node) -> FloatArray:
 
 
 def _turns(matrices: FloatArray) -> FloatArray:
-    """Return (N, 4) the rotations nearest to (N, 3, 3) matrices with any scale."""
+    """Return the rotations (N, 4) nearest to matrices (N, 3, 3) of any scale."""
     lengths = np.linalg.norm(matrices, axis=1, keepdims=True)
     left, _, right = np.linalg.svd(matrices / np.where(lengths > 0.0, lengths, 1.0))
     signs = np.ones((len(matrices), 3))

@@ -34,7 +34,7 @@ _RATE = re.compile(r"frame\s*rate\D*([0-9]+(?:\.[0-9]+)?)", re.IGNORECASE | re.A
 
 @dataclass(frozen=True)
 class TrackReading:
-    """A user's instructions on how to read a table, where it does not say so.
+    """A user's instructions for reading a table: facts that the table itself does not state.
 
     Attributes:
         rate_hz: frame rate, if time is a frame number.

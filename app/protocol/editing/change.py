@@ -27,7 +27,10 @@ class Change:
 
 
 def applied(tree: Plain, change: Change) -> Plain:
-    """Return the changed tree, leaving `tree` unmodified; raise ConfigError if it is impossible."""
+    """Return the changed tree and leave `tree` unmodified.
+
+    Raise ConfigError if the change is impossible.
+    """
     after = copy.deepcopy(tree)
     if not change.path:
         raise _refusal(change, "The whole file cannot be changed in one step.")

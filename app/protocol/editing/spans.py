@@ -36,7 +36,7 @@ class Span:
 
     @property
     def children(self) -> list["Span"]:
-        """The spans of its values, in file order."""
+        """The spans of the values inside this value, in file order."""
         return self.items if self.kind == "list" else list(self.entries.values())
 
     def at(self, path: Path) -> "Span | None":

@@ -74,7 +74,7 @@ def _lines(value: dict[str, Plain] | list[Plain], indent: int) -> list[str]:
 
 
 def _is_flat(value: dict[str, Plain] | list[Plain]) -> bool:
-    """Return whether it contains only short words, or mappings of them such as labels."""
+    """Return whether a value contains only short words, or mappings of them such as labels."""
     inner = value.values() if isinstance(value, dict) else value
     return all(
         not (isinstance(one, dict | list) or (isinstance(one, str) and "\n" in one))

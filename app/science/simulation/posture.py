@@ -36,7 +36,7 @@ _SOFT_FROM = 0.95
 
 
 class Posture:
-    """The segment lengths of one skeleton as plain numbers, and the placing of its limbs."""
+    """Places the limbs of one skeleton, whose segment lengths it stores as plain numbers."""
 
     def __init__(self, skeleton: Skeleton) -> None:
         self._offsets: list[Vector] = [(x, y, z) for x, y, z in skeleton.offsets_m.tolist()]

@@ -59,7 +59,7 @@ def solve_two_bone(
 
 
 def _across(way: Vector, pole: Vector) -> Vector:
-    """Return the unit component of the pole across `way`; of a spare pole if they are parallel."""
+    """Return the unit component of the pole across `way`, or of a spare pole if it has none."""
     for candidate in (pole, *_SPARE_POLES):
         along = v_dot(way, candidate)
         x = candidate[0] - along * way[0]

@@ -135,7 +135,7 @@ def _most_similar_end(movement: Movement, overlap: int, lowest: int) -> int:
 
 
 def continuous(rotations: FloatArray) -> FloatArray:
-    """Choose between q and -q in each frame so that it is the one nearer to the previous frame."""
+    """Choose q or -q in each frame, whichever is nearer to the previous frame's rotation."""
     dots = np.einsum("nji,nji->nj", rotations[1:], rotations[:-1])
     signs = np.cumprod(np.where(dots < 0.0, -1.0, 1.0), axis=0)
     result = rotations.copy()

@@ -24,7 +24,7 @@ class StatisticalTest:
         phrase: in an English sentence, such as "Friedman's test of the score agency".
         question: the question that it answers, as a heading.
         directions: of the measure along the factor; what a study may declare.
-        fewest_conditions: the number of levels of the factor that it needs at least.
+        fewest_conditions: the smallest number of levels of the factor that it accepts.
         needs_reference: whether it compares every level with a named reference level.
         assumptions: what must hold for its p value to be valid.
         effect_size: the effect size reported with p.

@@ -1,4 +1,4 @@
-"""Checks and ranks of the arrays that analyses take: one row per subject, one column per level."""
+"""Check and rank the arrays on which analyses work: a row per subject, a column per level."""
 
 import numpy as np
 import numpy.typing as npt

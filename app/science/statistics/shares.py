@@ -1,8 +1,8 @@
 """Scores and contact times as shares of a whole.
 
 Each component of embodiment has its own range (ownership -15 to 15, agency -12 to 12, location -9
-to 9): as shares of their maxima components can be compared. Contact times are divided among finger,
-hand and arm: the share that each has of the time in contact.
+to 9): as shares of their maxima components can be compared. For contact times, the shares are those
+of finger, hand and arm in the time of contact.
 """
 
 from collections.abc import Mapping

@@ -24,7 +24,7 @@ Table = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Stillness:
-    """Which joints were frozen in each frame (`frozen`, n x 22), and the state to carry on.
+    """The joints that were frozen in each frame (`frozen`, n x 22), and the state to carry over.
 
     `changed_s`, `lively_s` and `frozen_s` (22,) are those of `Memory` after the span.
     """

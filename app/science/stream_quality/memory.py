@@ -46,7 +46,7 @@ class Memory:
 
     @property
     def still_s(self) -> NDArray[np.float64]:
-        """How long each joint has been the same to the last bit, (22,) in s."""
+        """Time for which each joint has stayed the same to the last bit, (22,) in s."""
         return self.watched_s - self.changed_s
 
     def without_pose(self) -> "Memory":

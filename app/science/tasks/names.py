@@ -45,8 +45,8 @@ class Side(StrEnum):
 class Direction(StrEnum):
     """The direction of the first order: depending on the writing hand, or the same for everybody.
 
-    By hand means: right-handed people go from right to left, left-handed people from left to right
-    (Karas 2020, appendix A.1).
+    `BY_HAND` means that right-handed people go from right to left, left-handed people from left to
+    right (Karas 2020, appendix A.1).
     """
 
     BY_HAND = "by_hand"

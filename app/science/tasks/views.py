@@ -19,7 +19,7 @@ def current_goal(state: TaskState) -> str | None:
     """Return the key of the surface to touch next: a panel, the target, or the start square.
 
     The start square is the goal of a walk back. Before the start the goal is the first panel, and
-    in a pause the goal of the moment when the phase resumes; None once frozen.
+    in a pause it is the goal that will be current when the phase resumes; None once frozen.
     """
     layout = state.rules.layout
     if state.frozen:

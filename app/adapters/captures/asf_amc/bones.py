@@ -1,4 +1,4 @@
-"""Parse an ASF: sections that begin with a colon, and bones between begin and end."""
+"""Parse an ASF file: sections that begin with a colon, and bones between begin and end."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ _ORDERS = frozenset({"XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"})
 
 
 def read_asf(data: bytes, limits: Limits) -> Acclaim:
-    """Parse an ASF.
+    """Parse an ASF file, which defines a skeleton.
 
     Raises:
         CaptureError: with the line, if the grammar or a limit is violated.

@@ -1,8 +1,6 @@
-"""Parse AMC: the rows of an Acclaim movement, one line for each bone in each frame.
+"""Parse an AMC file: the rows of an Acclaim movement, one line for each bone in each frame.
 
-1
-root 10.4194 16.7048 -30.1003 -2.48972 -9.82194 -3.00914
-lowerback 7.86573 1.57272 6.3571
+1 root 10.4194 16.7048 -30.1003 -2.48972 -9.82194 -3.00914 lowerback 7.86573 1.57272 6.3571
 """
 
 from array import array
@@ -19,7 +17,7 @@ from app.science.rotations import FloatArray, conjugate, identity, multiply
 
 @dataclass(frozen=True)
 class Rows:
-    """The rows of an AMC.
+    """The rows of an AMC file.
 
     They are the values (N, channels) of each moving bone, and whether each frame had its line (N,).
     """
@@ -31,7 +29,7 @@ class Rows:
 
 
 def read_amc(data: bytes, skeleton: Acclaim, limits: Limits) -> Rows:
-    """Parse the rows; a bone without a line in a frame keeps its previous values.
+    """Parse the rows of an AMC file; a bone without a line in a frame keeps its previous values.
 
     Raises:
         CaptureError: with the line, if a bone is unknown or its values do not match its dof.

@@ -27,8 +27,8 @@ _INCH_M = 0.0254
 class Bone:
     """One bone of an ASF.
 
-    Its vector is in the file's unit, its axis angles are in radians; channels are such as ("RX",
-    "RZ").
+    Its vector is in the file's unit, its axis angles are in radians; channels are names such as
+    ("RX", "RZ").
     """
 
     name: str = ""
@@ -40,7 +40,10 @@ class Bone:
 
 @dataclass
 class Acclaim:
-    """The content of an ASF: bones in file order, parents by bone name, "root" as the root."""
+    """The content of an ASF file: the bones in file order, and their parents.
+
+    `parents` are given by bone name; the root is named "root".
+    """
 
     length_unit: float = 1.0
     degrees: bool = True

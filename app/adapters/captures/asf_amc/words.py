@@ -19,7 +19,7 @@ class Line:
 
 
 class Lines:
-    """The lines of a text; the line that ends a section is returned again."""
+    """Reads the lines of a text; the line that ends a section is returned again afterwards."""
 
     def __init__(self, data: bytes) -> None:
         self._lines = (

@@ -65,7 +65,10 @@ def read_c3d(data: bytes, *, name: str, reading: Reading, limits: Limits) -> Cap
 
 
 def gaps_note(seen: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]) -> tuple[str, ...]:
-    """Describe the share of missing positions of the markers, (N, M) visible or not."""
+    """Describe the share of missing marker positions.
+
+    `seen` (N, M) marks the positions that were visible.
+    """
     missing = 1.0 - float(seen.mean())
     if missing == 0.0:
         return ()

@@ -36,7 +36,7 @@ class Track:
 
 @dataclass(frozen=True)
 class Head:
-    """The settings by their lower-case keys, and the tracks in file order."""
+    """The head of a take: its settings by their lower-case keys, and its tracks in file order."""
 
     settings: Mapping[str, str]
     tracks: tuple[Track, ...]
@@ -57,7 +57,7 @@ class Head:
 
 
 def read_head(rows: Iterator[_Row], limits: Limits) -> Head:
-    """Parse up to and including the row that begins with "Frame".
+    """Parse the head of a take, up to and including the row that begins with "Frame".
 
     Raises:
         CaptureError: the row is missing, or columns are not labelled.

@@ -1,8 +1,8 @@
 """Describe how conditions were ordered over participants, and whether the orders are balanced.
 
-Balance counts, not which orders were drawn: every condition equally often at every position, and
-every ordered pair of conditions equally often as neighbours. `app.science.williams` generates the
-smallest sets of orders with both properties.
+What matters is balance, not which orders were drawn: every condition equally often at every
+position, and every ordered pair of conditions equally often as neighbours. `app.science.williams`
+generates the smallest sets of orders with both properties.
 """
 
 from collections import Counter

@@ -163,7 +163,7 @@ def _mode_derivatives(
 
 
 def _gradient(answers: Answers, shares: FloatArray, there: Slopes, v: FloatArray) -> FloatArray:
-    """Sum over nodes, weighted by their shares, the derivatives at fixed v."""
+    """Sum the derivatives at fixed v over the nodes, weighted by the nodes' shares."""
     own = shares[answers.codes]
     upper, lower, t = ((own * part).sum(axis=1) for part in (there.upper, there.lower, there.t))
     parts = _by_parameters(answers, upper, lower, t).sum(axis=1)
@@ -184,7 +184,7 @@ def _by_parameters(
 
 
 def _sum(answers: Answers, values: FloatArray) -> FloatArray:
-    """Sum (N, ...) over the observations of each participant."""
+    """Sum values (N, ...) over the observations of each participant."""
     total: FloatArray = np.add.reduceat(values, answers.starts, axis=0)
     return total
 

@@ -55,7 +55,7 @@ class CumulativeEffect:
 
     Attributes:
         name: for instance `latency[125]`: that level minus the reference.
-        estimate, se: and its standard error.
+        estimate, se: the estimate and its standard error.
         z, p: Wald's two-sided test that it is zero.
         low, high: 95 % confidence interval.
     """
@@ -82,7 +82,7 @@ class CumulativeModel:
         log_likelihood: at the optimum.
         parameters: number of estimated parameters.
         observations: number of observations.
-        participants: number of participants; 0 in a model without.
+        participants: number of participants; 0 in a model without participant effects.
         levels: the categories that were chosen, in order.
         unused_levels: those of the scale that nobody chose.
         converged: whether the search ended at a maximum of the likelihood.

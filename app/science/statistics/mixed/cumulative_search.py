@@ -112,7 +112,7 @@ def _climb(answers: Answers, link: Link, nodes: int, start: Parameters) -> Param
 
 
 def _finish(answers: Answers, link: Link, nodes: int, at: Parameters) -> Found:
-    """Take Newton steps, compute standard errors, and check that this is an optimum."""
+    """Take Newton steps, compute standard errors, and check that the result is an optimum."""
     free = len(at.thresholds) + len(at.beta) + (at.sd > 0.0)
     value, gradient = log_likelihood(answers, at, link, nodes)
     information = _information(answers, link, nodes, at, free)

@@ -41,7 +41,7 @@ _FEWEST_PARTICIPANTS = 3
 
 @dataclass(frozen=True, eq=False)
 class MixedModel:
-    """A fitted linear mixed model; `term_tests` has its tests.
+    """A fitted linear mixed model; `term_tests` computes its tests.
 
     Attributes:
         random_names: `intercept` and, if there is one, the slope.

@@ -38,7 +38,7 @@ class Estimate:
     """One estimate from the model, in units of the measure.
 
     Attributes:
-        estimate, se: and its standard error.
+        estimate, se: the estimate and its standard error.
         df: Satterthwaite's degrees of freedom.
         t, p: two-sided test that it is zero.
         low, high: 95 % confidence interval.

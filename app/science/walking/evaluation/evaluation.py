@@ -118,7 +118,7 @@ class Evaluation:
         )
 
     def saved_per_cycle_s(self, better: str, worse: str) -> float:
-        """Return by how much the better model reduces the walking-time error of a work cycle.
+        """Return the time by which the better model reduces a work cycle's walking-time error.
 
         The error is the CRPS relative to the travel time.
         """

@@ -33,7 +33,7 @@ class LeftOut:
 
     Attributes:
         mean, sd: over the entries.
-        entries: how many.
+        entries: number of entries.
     """
 
     mean: float

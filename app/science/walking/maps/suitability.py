@@ -27,7 +27,7 @@ TIME_CONSTANT_S = 0.1
 
 @dataclass(frozen=True)
 class SuitabilityOptions:
-    """How deviations are converted to suitability; the defaults are the paper's.
+    """Options for converting deviations to suitability; the defaults are the paper's.
 
     Attributes:
         normalisation: by the largest deviation, or between smallest and largest.
@@ -109,7 +109,7 @@ class DeviationMap:
 
 @dataclass(frozen=True, eq=False)
 class SuitabilityMap:
-    """How well each combination of parameters reproduces a walk.
+    """The suitability of each combination of parameters: how well it reproduces a walk.
 
     Attributes:
         grid: the combinations.

@@ -1,4 +1,4 @@
-"""How well draws predict an outcome: the continuous ranked probability score, and coverage.
+"""Score how well draws predict an outcome: continuous ranked probability score, and coverage.
 
     CRPS(F, t) = E|T - t| - E|T - T'| / 2,   T and T' independent from F
 

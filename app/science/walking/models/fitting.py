@@ -31,7 +31,7 @@ LEAST_TO_CHOOSE = 8
 
 @dataclass(frozen=True)
 class FitOptions:
-    """How a model is fitted; the defaults are the paper's, except for the reading.
+    """Options for fitting a model; the defaults are the paper's, except for the reading.
 
     Attributes:
         seed: of the blends, the folds and the annealing; the same seed gives the same model.

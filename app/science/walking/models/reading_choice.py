@@ -53,7 +53,7 @@ READINGS: tuple[SuitabilityOptions, ...] = (
 
 @dataclass(frozen=True)
 class ReadingScore:
-    """How well a reading predicts the walks of people who were left out.
+    """The score of a reading: how well it predicts the walks of people who were left out.
 
     Attributes:
         options: the reading.

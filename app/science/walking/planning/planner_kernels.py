@@ -34,7 +34,7 @@ def _overlap(ax: float, ay: float, bx: float, by: float, planes: FloatArray, cou
 
 @compiled
 def sees(ax: float, ay: float, bx: float, by: float, outlines: Outlines) -> bool:
-    """Return whether the straight line from a to b passes through no obstacle; exact."""
+    """Return whether the straight line from a to b passes through no obstacle; it is exact."""
     left, right = min(ax, bx), max(ax, bx)
     near, far = min(ay, by), max(ay, by)
     for at in range(len(outlines.counts)):

@@ -13,7 +13,7 @@ Bounds = tuple[float, float, float, float]
 
 
 def sees(ax: float, ay: float, bx: float, by: float, outlines: Outlines) -> bool:
-    """Return whether the straight line from a to b passes through no obstacle; exact."""
+    """Return whether the straight line from a to b passes through no obstacle; it is exact."""
     from app.science.walking.planning import planner_kernels as kernels
 
     return kernels.sees(ax, ay, bx, by, outlines)

@@ -22,7 +22,7 @@ PELVIS = (("LASI", "RASI", "LPSI", "RPSI"), ("LFWT", "RFWT", "LBWT", "RBWT"))
 
 @dataclass(frozen=True)
 class TrackingOptions:
-    """Which part of a capture is taken as the person's position, where there is a choice.
+    """Options that select which part of a capture is used as the person's position.
 
     Attributes:
         joint_map: of a skeleton; None to derive it from the joints' names.

@@ -54,7 +54,7 @@ def smoothed(xy_m: FloatArray, rate_hz: float, sigma_s: float = SIGMA_S) -> Floa
 
 @dataclass(frozen=True)
 class SegmentationRules:
-    """When a person stands still, and what counts as a walk; printed with every result.
+    """Rules for when a person stands still and what counts as a walk; printed with results.
 
     Attributes:
         still_m_s: lower speeds count as still.

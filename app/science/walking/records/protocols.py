@@ -32,7 +32,7 @@ class Planner(Protocol):
 
 @dataclass(frozen=True)
 class Course:
-    """How an agent is to follow a path, apart from its steering parameters.
+    """The task of an agent: the path to follow and its conditions, without steering parameters.
 
     Attributes:
         path: the path to follow.

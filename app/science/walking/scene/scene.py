@@ -109,7 +109,7 @@ class Scene:
                     raise SceneError(f"Path {path.name!r} names {place!r}; places are {existing}.")
 
     def check_point(self, point_m: Point, what: str) -> None:
-        """Raise SceneError if a person cannot stand there; `what` begins the message."""
+        """Raise SceneError if a person cannot stand at a point; `what` begins the message."""
         left, near, right, far = self.bounds_m
         x, y = point_m
         if not np.isfinite(point_m).all():
@@ -136,7 +136,7 @@ class Scene:
         ]
 
     def is_near_obstacle(self, point_m: Point) -> bool:
-        """Return whether a person standing there is within the clearance of an obstacle."""
+        """Return whether a person standing at a point is within the clearance of an obstacle."""
         return any(contains(corners, np.array(point_m)) for corners in self._widened)
 
     @cached_property

@@ -1,4 +1,4 @@
-"""How much a path turns: the integral of |curvature| along it, in radians per metre.
+"""Compute how much a path turns: the integral of |curvature| along it, in radians per metre.
 
 The paper sums |curvature| over the samples of a capture. At a capture's sampling rate that measures
 jitter: it gives hundreds on straight walks. Here the path is resampled at equal distances of one

@@ -37,7 +37,7 @@ class Population:
         second_speed_m_s: half of the people have this speed instead, unless it is None.
         speed_per_stature: additional m/s for each metre of stature above the mean.
         ramp_s, ramp_sd, ramp_within: time from rest to cruising, within as a share.
-        reach_m: b of the speed over distance.
+        reach_m: b in the formula for speed over distance.
         turn_exponent: of the slow-down in turns; 1/3 in people.
         stature_m, stature_sd: body heights.
         sway_m: half of the width of the sway from side to side.

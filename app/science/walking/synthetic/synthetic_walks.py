@@ -30,7 +30,7 @@ PLACE_SD_M = 0.02
 
 @dataclass(frozen=True)
 class Sample:
-    """How many people of a population walk, and how often.
+    """The size of a synthetic sample: how many people of a population walk, and how often.
 
     Attributes:
         people: number of people.
