@@ -94,7 +94,7 @@ def create_study(db: Session, text: str, now: datetime) -> StudyVersion:
 
 
 def add_version(db: Session, study: Study, text: str, now: datetime) -> StudyVersion:
-    """Return the version with this content, creating it if it is new; frozen versions stay."""
+    """Return the version with this content, creating it if it is new; frozen ones never change."""
     loaded = check_study(db, text)
     if loaded.protocol.key != study.key:
         raise Conflict(

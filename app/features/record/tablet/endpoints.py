@@ -112,7 +112,7 @@ def put_help(wish: HelpWish, db: Writing, context: Context, tablet: PairedTablet
 def put_question(
     wish: HelpWish, db: Writing, context: Context, tablet: PairedTablet
 ) -> TabletState:
-    """Tell the experimenter of a question about the text on the screen, or cancel it."""
+    """Notify the experimenter of a question about the text on the screen, or cancel it."""
     session = session_by_id(db, tablet.session_id, lock=True)
     if may_ask(state_of(session)):
         command = AskQuestion() if wish.asked else CloseQuestion(outcome="taken_back")

@@ -55,7 +55,7 @@ class LanguageChoice(BaseModel):
 
 
 class HelpWish(BaseModel):
-    """Whether the participant is calling the experimenter, for any reason or with a question."""
+    """A request to call the experimenter, for any reason or with a question, or to cancel this."""
 
     model_config = ConfigDict(extra="forbid")
 

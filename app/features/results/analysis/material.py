@@ -123,7 +123,7 @@ class Material:
 
     @property
     def limbs(self) -> set[str]:
-        """Return the limbs that the phases were done with."""
+        """Return the limbs with which the tasks of the phases were done."""
         return set(self.tables["limbs"]["limb"].dropna())
 
     @property
@@ -175,7 +175,7 @@ def read_material(db: Session, study_key: str, kind: DashboardKind) -> Material:
 
 @dataclass
 class _Reader:
-    """Read tables on demand, in the transaction that is open at that time.
+    """Reads tables on demand, in the transaction that is open at that time.
 
     The context that several tables are joined with (`contexts`) is read once for all of them.
     """

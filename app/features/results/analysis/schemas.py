@@ -16,7 +16,7 @@ FigureGroup = Literal["progress", "embodiment", "answers", "tasks", "movement", 
 
 
 class FigureFilter(BaseModel):
-    """Which sessions and rows are drawn; by default, all valid rows of all sessions.
+    """The selection of sessions and rows to draw; by default, all valid rows of all sessions.
 
     `rows`: "valid" leaves out what does not count (sessions that were broken off or are not valid
     by the study's rules, superseded and skipped steps), "all" draws it too. `since` and `until`:

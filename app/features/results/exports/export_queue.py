@@ -1,6 +1,6 @@
 """The queue of exports: ordered, made one after the other, downloaded and removed.
 
-The files are in a folder of their own beside the database that only the server can read. They are
+The files are in a separate folder next to the database, which only the server can read. They are
 removed when their owner deletes them, some time after the last download, when a participant of the
 study is erased, and whenever the server starts or stops. Cancelling an export kills its process
 immediately and removes what it had written.

@@ -11,7 +11,7 @@ ExportState = Literal["queued", "making", "ready", "failed"]
 
 
 class ExportWish(BaseModel):
-    """What to export: a study's sessions of one kind, or only one session of that kind."""
+    """The data to export: a study's sessions of one kind, or only one session of that kind."""
 
     model_config = ConfigDict(extra="forbid")
 

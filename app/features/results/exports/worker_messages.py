@@ -16,7 +16,7 @@ _LAYOUT = struct.Struct("<5q")
 
 @dataclass(frozen=True)
 class ExportOrder:
-    """What to export, and the file to write; `keep_free_bytes` of the disk are left free."""
+    """The data to export, and the file to write; `keep_free_bytes` of the disk are left free."""
 
     url: str
     study_key: str
@@ -43,7 +43,7 @@ class ExportResult:
 
 @dataclass(frozen=True)
 class ExportFailure:
-    """Why an export failed, in words for the person who ordered it."""
+    """The reason why an export failed, worded for the person who ordered it."""
 
     message: str
     remedy: str

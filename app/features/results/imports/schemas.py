@@ -26,7 +26,7 @@ class ColumnSet(_Body):
 
 
 class Mapping(_Body):
-    """What the columns and words of a file mean.
+    """The meaning of the columns and words of a file.
 
     A tidy file has one set of columns and a column of conditions; a wide one has a set of columns
     for each condition. `conditions`: word of the file -> key of a condition of the study. `words`:
@@ -189,7 +189,7 @@ class ConditionCount(BaseModel):
 
 
 class CheckView(BaseModel):
-    """What an import would do; nothing was stored, and with problems it would be rejected.
+    """The result that an import would have; nothing was stored, and problems would prevent it.
 
     `reversed_items`: those that the instrument's formulas reverse. `notes`: points to check.
     """

@@ -16,7 +16,7 @@ Indices = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class Grid:
-    """`count` moments at a constant rate, from the phase's time 0."""
+    """A grid of `count` moments at a constant rate, from the phase's time 0."""
 
     rate_hz: float
     count: int
@@ -35,7 +35,7 @@ class Grid:
 
 @dataclass
 class Sampling:
-    """Assign frames to the moments of a grid, from the pieces of one run in order.
+    """Assigns frames to the moments of a grid, from the pieces of one run in order.
 
     `offset_s` is added to the run's clock to get the phase's time. The first and last frame are
     also used for moments up to half a step before and after them.

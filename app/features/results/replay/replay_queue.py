@@ -14,7 +14,7 @@ from app.platform.context import AppContext, Part
 
 @dataclass
 class ReplayQueue(Part):
-    """Compute the movement of one phase after the other, in a thread."""
+    """Computes the movement of one phase after the other, in a thread."""
 
     database: Database
     _pool: ThreadPoolExecutor = field(

@@ -150,7 +150,7 @@ def _walls(
     spans: dict[int, _Span],
     heard: dict[int, tuple[float, datetime]],
 ) -> dict[int, Wall]:
-    """Return by epoch when its span began, by the server's clock."""
+    """Return, by epoch, the server's time at which its span began."""
     # Imported here because it loads pandas, which would slow down the server's start.
     from app.features.results.analysis.tables import run_clocks
 

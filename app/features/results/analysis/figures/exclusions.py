@@ -1,4 +1,4 @@
-"""The figure of what counts in the analysis, what is left out, and why."""
+"""The figure of the rows that count in the analysis, of those left out, and of the reasons."""
 
 import pandas as pd
 import plotly.graph_objects as go

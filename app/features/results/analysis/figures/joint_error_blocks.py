@@ -29,7 +29,7 @@ _NAMES = ("limb", "latency_ms", "block", "mean_deg", "ci95_low_deg", "ci95_high_
 
 
 def joint_error_blocks_drawing(errors: pd.DataFrame) -> Drawing:
-    """Draw the mean angle by block, one line per latency and panel per limb, of valid rows."""
+    """Draw the mean angle by block, one line per latency and panel per limb, from valid rows."""
     rows = task_angles(errors).dropna(subset=["block", "limb", "latency_ms"])
     n = participants(rows)
     if n < MIN_PARTICIPANTS:

@@ -40,7 +40,7 @@ MAX_CATEGORIES = 9
 
 @dataclass(frozen=True)
 class _Category:
-    """An answer category: value, label and look, and its side of the middle (-1, 0, 1)."""
+    """An answer category: value, label and style, and its side of the middle (-1, 0, 1)."""
 
     value: int
     label: str

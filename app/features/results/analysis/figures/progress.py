@@ -74,7 +74,7 @@ def progress_drawing(
 
 
 def _statuses(sessions: pd.DataFrame) -> "pd.Series[str]":
-    """Return the status of each session; completed but invalid sessions have one of their own."""
+    """Return the status of each session; completed but invalid sessions get a separate status."""
     off = (sessions["status"] == "completed") & ~sessions["valid"]
     return sessions["status"].mask(off, NOT_VALID)
 

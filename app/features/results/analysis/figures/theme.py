@@ -69,7 +69,7 @@ def hatched(colour: str, pattern: str) -> dict[str, object]:
 
 
 def quiet(lines: int) -> str:
-    """Return a grey for this many overlapping lines: the more lines, the fainter each."""
+    """Return the grey for a number of overlapping lines: the more lines, the fainter."""
     return f"rgba(128, 128, 128, {max(0.06, min(0.55, 12.0 / max(lines, 1))):.2f})"
 
 

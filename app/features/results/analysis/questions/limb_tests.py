@@ -79,7 +79,7 @@ def apa_of(one: Comparison) -> str:
 
 
 def listwise(data: LimbData) -> str:
-    """Return a sentence on how many participants lack a latency, or nothing if none does."""
+    """Return a sentence on how many participants lack a latency, empty if none does."""
     left = len(data.table) - len(data.complete)
     return f"{left} participants who did not complete every latency are left out." if left else ""
 

@@ -1,8 +1,8 @@
 """Format numbers, p values and intervals as papers print them, and build the reported results.
 
-p has three decimals and no zero before the point; so have other numbers that cannot exceed 1.
-Nothing is called significant: p is compared with alpha, and the comparison is reported. Intervals
-are drawn with a fixed seed, so that computing them again gives the same ones.
+p has three decimals and no zero before the point; other numbers that cannot exceed 1 have no zero
+there either. Nothing is called significant: p is compared with alpha, and the comparison is
+reported. Intervals are drawn with a fixed seed, so that computing them again gives the same ones.
 """
 
 import math

@@ -136,7 +136,7 @@ def sessions_context(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
 
 
 def _counts(sessions: pd.DataFrame) -> "pd.Series[Any]":
-    """Return which sessions count: those neither broken off nor short of requirements."""
+    """Return whether each session counts: it was not broken off and meets all requirements."""
     lacking = [bool(found) for found in sessions["shortfalls"]]
     return ~(sessions["session_status"].isin(BROKEN_OFF) | pd.Series(lacking, sessions.index))
 
