@@ -97,7 +97,7 @@ class Commands:
             raise StepFailed
 
     def underway(self) -> str:
-        """Describe what is running now."""
+        """Describe the commands that are running now."""
         with self._lock:
             return ", ".join(self._running.values())
 

@@ -135,7 +135,7 @@ class Tablet:
     client: AsyncClient
 
     async def state(self) -> Json:
-        """Return what the tablet should show now."""
+        """Return the tablet's current screen."""
         state: Json = await call_with_retry(self.client, "GET", "/api/tablet/state")
         return state
 

@@ -31,7 +31,7 @@ class Ledger(Base):
     """The ledger of one kind of sessions and one design; different kinds never share one.
 
     Versions of a study that differ only in wording share their ledger, because `design_hash` covers
-    just what determines balance (conditions and orders). `blocks` counts the seeded blocks created
+    only what determines balance (conditions and orders). `blocks` counts the seeded blocks created
     so far.
     """
 

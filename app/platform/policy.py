@@ -192,5 +192,5 @@ POLICY: dict[str, frozenset[str]] = {
 
 
 def allowed(method: str, template: str) -> frozenset[str]:
-    """Return who may call a route, by its path template; nobody if it is not listed."""
+    """Return the roles that may call a route, by its path template; empty if it is not listed."""
     return POLICY.get(f"{method.upper()} {template}", frozenset())

@@ -1,1 +1,1 @@
-"""What a study consists of: its versions and its instruments."""
+"""The design of a study: its versions and its instruments."""

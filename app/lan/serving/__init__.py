@@ -1,6 +1,6 @@
 """Serve on the lab's network: listeners, certificates, deadlines, and the help page.
 
-It is imported only by `reembody serve` and `reembody tls`: the application just needs to know where
+It is imported only by `reembody serve` and `reembody tls`: the application only needs to know where
 it can be reached (`app.lan`).
 """
 

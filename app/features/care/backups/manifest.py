@@ -16,7 +16,7 @@ FORMAT = "reembody-backup/1"
 
 @dataclass(frozen=True)
 class Manifest:
-    """When, from which engine and by which version a backup was made, with its tables' checksums.
+    """The time, engine and program version of a backup, and the checksums of its tables.
 
     `revision`: that of its schema. `engine`: sqlite or postgresql. `tables`: by name.
     """

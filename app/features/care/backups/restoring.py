@@ -17,7 +17,7 @@ LOCK_TIMEOUT = "30s"
 def hold_still(target: Connection, shapes: Sequence[TableShape]) -> None:
     """Block all other writers until this transaction ends; readers continue.
 
-    On SQLite a writing transaction does so by itself. Raises NotDurable if another writer does not
+    On SQLite, a writing transaction already does this. Raises NotDurable if another writer does not
     release its lock.
     """
     if target.dialect.name == "sqlite":

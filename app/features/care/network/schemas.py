@@ -38,14 +38,14 @@ class HelpView(BaseModel):
 
 
 class CableView(BaseModel):
-    """How to connect a headset by USB: run `command` here, then open `url` in the headset."""
+    """The connection of a headset by USB: run `command` here, then open `url` in the headset."""
 
     command: str
     url: str
 
 
 class NetworkView(BaseModel):
-    """How devices currently reach the server.
+    """The ways in which devices currently reach the server.
 
     `mode` is `loopback` (this machine only), `lan` (with HTTPS) or `without_tls` (unencrypted).
     """

@@ -68,9 +68,9 @@ def quarantine_if_damaged(settings: Settings, clock: Clock, *, every_row: bool =
 def refuse_unconfirmed_new_database(settings: Settings, *, new_database: bool) -> None:
     """Raise Conflict instead of creating an empty database where there was one before.
 
-    There was one if one is in quarantine, or if the data folder has what belongs to one: backups,
-    the list of erasures and the like. Creating one is allowed once somebody has decided: by
-    `new_database`, by a restored backup, or by a file put in its place.
+    There was one if a database is in quarantine, or if the data folder contains files that belong
+    to one, such as backups or the list of erasures. Creating one is allowed once somebody has
+    decided: by `new_database`, by a restored backup, or by a file put in its place.
     """
     file = database_file(settings)
     if file is not None:

@@ -95,7 +95,7 @@ def _name(connection: Connection, owner: Owner) -> None:
 
 
 def _holder(connection: Connection) -> Owner | None:
-    """Return who holds the lock; None if this role may not read other connections."""
+    """Return the owner of the lock; None if this role may not read other connections."""
     found = connection.execute(
         text(
             "SELECT application_name, backend_start FROM pg_stat_activity WHERE pid IN "  # noqa: S608 - constants

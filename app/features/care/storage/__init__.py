@@ -1,4 +1,4 @@
-"""Report what uses disk space, and for how many more sessions there is enough.
+"""Report the use of disk space, and how many more sessions fit on the disk.
 
 Measuring takes seconds, so one `StorageMeter` measures for all requests and caches the result.
 """

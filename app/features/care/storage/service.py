@@ -1,4 +1,4 @@
-"""Report the use of disk space for a person, and for how many more sessions there is enough."""
+"""Report the use of disk space for a person, and how many more sessions fit on the disk."""
 
 from collections.abc import Sequence
 

@@ -120,7 +120,7 @@ class InvitationToken(BaseModel):
 
 
 class InvitationLook(BaseModel):
-    """What an invitation grants, as shown before it is accepted."""
+    """The content of an invitation, as shown before it is accepted."""
 
     role: Role
     note: str

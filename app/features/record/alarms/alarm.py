@@ -47,7 +47,7 @@ class Condition:
 
     @property
     def key(self) -> tuple[str, str | None]:
-        """Return the key of its alarm, code and stream; at most one alarm per key is open."""
+        """Return the alarm's key, its code and stream; at most one alarm per key is open."""
         return self.code, self.stream
 
 

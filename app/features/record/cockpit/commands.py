@@ -96,7 +96,7 @@ def _with_reason(request: CommandRequest, reason: ContentRef) -> Command:
 
 
 def _completion_content(store: "_Store", request: CommandRequest) -> ContentRef | None:
-    """Store what comes with a completed step (a consent or heights), and return its reference."""
+    """Store the content of a completed step (a consent or heights), and return its reference."""
     step = store.current_step()
     late = step is not None and request.step_index not in (None, step.index)
     if step is not None and step.kind == "consent" and not late:

@@ -268,7 +268,7 @@ class EventView(BaseModel):
 
 
 class StreamView(BaseModel):
-    """How much of one stream is on disk, for one epoch of the headset."""
+    """The amount of one stream that is on disk, for one epoch of the headset."""
 
     stream: str
     epoch: int

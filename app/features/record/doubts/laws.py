@@ -160,7 +160,7 @@ class PhaseClaims:
 
 
 class StreamClaim(NamedTuple):
-    """How much of a stream was stored, and how much the headset says it has produced.
+    """The stored amount of a stream, and the amount that the headset says it has produced.
 
     `age_s`: how long the server had known the epoch when it last heard of it.
     """

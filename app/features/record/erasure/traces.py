@@ -1,4 +1,4 @@
-"""Remove what the tables contain about a person.
+"""Remove a person's data from the tables.
 
 What remains is the skeleton of the record: that there was a session, its slot of the ledger, and
 the chain of its events. The chain refers to texts and answers by salted hashes. The salts are
@@ -60,7 +60,7 @@ TOUCHED = tuple(model.__tablename__ for model in (*OF_SESSIONS, *OF_FORMS, *EMPT
 
 
 def remove_traces(db: Session, session_ids: Sequence[str]) -> dict[str, int]:
-    """Remove what these sessions contain about their participant; return row counts by table."""
+    """Remove the data of these sessions about their participant; return row counts by table."""
     removed: dict[str, int] = {}
     forms = select(Submission.id).where(Submission.session_id.in_(session_ids))
     for model in OF_FORMS:

@@ -23,7 +23,7 @@ class Administration(BaseModel):
 
 
 class ItemTrace(BaseModel):
-    """How one item was answered.
+    """The timing of the answer to one item, and the number of its changes.
 
     `response_s`: seconds from when the item was the next to be answered (its page was shown, or
     another item of the page was answered) to its first answer, if one was given; for typed answers,

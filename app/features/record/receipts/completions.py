@@ -33,7 +33,7 @@ Found = tuple[int, float, float, int]
 
 @dataclass(frozen=True)
 class CompletionReceipt:
-    """How many completions of a task phase are stored, and how many follow from its contacts.
+    """The number of completions stored for a task phase, and the number derived from contacts.
 
     `agree`: the same numbers at the same times, with the same durations; otherwise `reason` says
     what differs.

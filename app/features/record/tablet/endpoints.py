@@ -60,7 +60,7 @@ _READ_KINDS = tuple(
 
 @router.get("/state", response_model=TabletState)
 def get_state(request: Request, context: Context) -> Response:
-    """Return what the tablet should show now."""
+    """Return the screen that the tablet should show now."""
     with context.database.reading() as db:
         tablet = tablet_in(db, request, context)
         state = tablet_state(db, session_by_id(db, tablet.session_id))
@@ -70,7 +70,7 @@ def get_state(request: Request, context: Context) -> Response:
 
 @router.get("/paired", response_model=TabletPaired)
 def get_paired(request: Request, context: Context) -> TabletPaired:
-    """Return what the tablet should show; null (and not an error) if the tablet is not paired."""
+    """Return the tablet's screen; null (and not an error) if the tablet is not paired."""
     token = read_cookie(request, TABLET_COOKIE) or bearer_token(request)
     with context.database.reading() as db:
         try:

@@ -11,7 +11,7 @@ Screen = Literal["waiting", "held", "refused", "consent", "instructions", "form"
 
 
 class TabletState(BaseModel):
-    """What the tablet shows now; `next` is the title of the next step in the chosen language.
+    """The tablet's current screen; `next` is the title of the next step in the chosen language.
 
     `held`: the participant waits for the experimenter, and the tablet cannot continue. `refused`:
     the participant refuses to take part and the experimenter knows; `is_refused` is also true if
@@ -77,6 +77,6 @@ class RefusalWish(BaseModel):
 
 
 class TabletPaired(BaseModel):
-    """What the requesting tablet should show; null if it is not paired."""
+    """The screen of the requesting tablet; null if the tablet is not paired."""
 
     state: TabletState | None

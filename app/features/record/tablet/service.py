@@ -36,7 +36,7 @@ _CALL_WORDS = {
 
 
 def tablet_state(db: Session, session: StudySession) -> TabletState:
-    """Return what the tablet of this session should show."""
+    """Return the current screen of this session's tablet."""
     protocol = protocol_of_session(db, session)
     plan, state = plan_of(db, session), state_of(session)
     step = None if state.current is None else plan[state.current]

@@ -23,7 +23,7 @@ _MOVED = (*MOVING, "last_at")
 
 @dataclass
 class Position:
-    """How far one stream is stored within the writer's transaction; see `TelemetryStream`.
+    """The position up to which a stream is stored in the transaction; see `TelemetryStream`.
 
     `age_s`: how long the server has known the epoch.
     """

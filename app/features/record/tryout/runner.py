@@ -81,7 +81,7 @@ class Tryout:
 
     @property
     def is_on(self) -> bool:
-        """Return whether its process is running."""
+        """Return whether the process of the scripted participant is running."""
         return self.state in ("starting", "running")
 
 

@@ -115,7 +115,7 @@ async def get_export_file(export_id: str, context: Context, caller: SignedIn) ->
 
 
 def _code_of(db: Session, study_id: str, request: ExportWish) -> str:
-    """Return the participant's code of the requested session; raise NotFound if it is not there."""
+    """Return the participant's code of the requested session; raise NotFound if there is none."""
     session = session_by_id(db, request.session_id or "")
     if session.study_id != study_id or session.kind != request.kind:
         # The same message as for a session that never existed.

@@ -46,7 +46,7 @@ def post_look(key: str, request: LookRequest, db: Reading, _: SignedIn) -> LookV
 
 @router.post("/check")
 def post_check(key: str, request: CheckRequest, db: Reading, _: SignedIn) -> CheckView:
-    """Report what an import would do, with every invalid cell; nothing is stored."""
+    """Report the result that an import would have, with every invalid cell; nothing is stored."""
     return check(db, study_by_key(db, key), request.text, request.mapping)
 
 

@@ -56,7 +56,7 @@ def look(db: Session, study: Study, request: LookRequest) -> LookView:
 
 
 def check(db: Session, study: Study, text: str, mapping: Mapping) -> CheckView:
-    """Return what an import would do, without storing it; raise InvalidInput or NotFound."""
+    """Return the result that an import would have; raise InvalidInput or NotFound."""
     instrument, applied = applied_to(db, study, text, mapping)
     turning = reversed_items(instrument)
     conditions = Counter((form.condition, form.in_study) for form in applied.forms)

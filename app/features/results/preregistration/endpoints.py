@@ -17,7 +17,7 @@ router = APIRouter(tags=["preregistration"])
 def get_preregistration(
     key: str, db: Reading, context: Context, _: SignedIn, kind: DashboardKind = "people"
 ) -> PreregistrationView:
-    """Return what the study declared, what was done, and every deviation."""
+    """Return a study's declaration, the result of the declared test, and every deviation."""
     return preregistration_of(db, key, kind, context.clock.utc_now())
 
 

@@ -74,7 +74,7 @@ class DeviationView(BaseModel):
 
 
 class PreregistrationView(BaseModel):
-    """What a study declared, what was done, and deviations, with a result or `why_no_result`."""
+    """The declaration of a study and the deviations from it, with a result or `why_no_result`."""
 
     study_key: str
     kind: str

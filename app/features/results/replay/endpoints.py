@@ -17,7 +17,7 @@ PhaseId = Annotated[int, Path(ge=0, lt=2**31)]
 
 @router.get("/replay")
 def get_replay(session_id: str, phase_id: PhaseId, db: Reading, caller: SignedIn) -> Replay:
-    """Return what happened in a phase that is over, in the phase's time."""
+    """Return the replay of a phase that is over, in the phase's time, without its movement."""
     return replay_of(db, replayable(db, caller, session_id, phase_id))
 
 

@@ -6,7 +6,7 @@ end before its duration is over; only a practice may, once enough tasks are comp
 
 When the headset is lost, the server assumes that the clock is paused. What the headset did before
 it noticed is still in its journal and arrives first when it reconnects. These reports correct the
-assumption; otherwise the two sides would wait for each other for ever.
+assumption; otherwise the two sides would wait for each other forever.
 """
 
 from collections.abc import Sequence

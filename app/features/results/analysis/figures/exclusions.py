@@ -34,7 +34,7 @@ def exclusions_drawing(
 
 
 def _figure(rows: pd.DataFrame) -> go.Figure:
-    """Draw one panel each for sessions, phases and scores, because their numbers differ in size."""
+    """Draw one panel each for sessions, phases and scores, because their counts differ widely."""
     kinds = list(dict.fromkeys(rows["what"]))
     figure = new_figure(
         rows=len(kinds), titles=tuple(kind.capitalize() for kind in kinds), vertical_spacing=0.16

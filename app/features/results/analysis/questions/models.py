@@ -104,7 +104,7 @@ def carry_over_result(measure: Measure) -> Iterator[TestReport]:
 
 
 def _why(error: Exception) -> str:
-    """Return why no model was fitted; numerical failure means no residual variance."""
+    """Return the reason why no model was fitted; numerical failure means no residual variance."""
     if isinstance(error, StatisticsError):
         return str(error)
     return "Participants, latencies and limbs explain the measure completely: nothing is left over."

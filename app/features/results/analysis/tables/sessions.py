@@ -64,7 +64,7 @@ def _reasons(stored: Sequence[Mapping[str, Any]] | None, more: str | None) -> st
 
 
 def reasons_in_words(stored: Sequence[Mapping[str, Any]] | None) -> str | None:
-    """Return why a completed session is not valid, in one cell; None if it is valid."""
+    """Return the reasons why a completed session is not valid, in one cell; None if it is valid."""
     return "; ".join(one.words() for one in shortfalls_of(stored)) or None
 
 
