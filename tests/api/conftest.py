@@ -1,4 +1,4 @@
-"""The applications of the features' tests, for tests that concern all routes."""
+"""Fixtures with the running applications of the features' tests, for tests of all routes."""
 
 from tests.features.conftest import fresh_lab, lab
 

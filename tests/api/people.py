@@ -33,7 +33,7 @@ def sign_in(lab: Lab, role: str, *, studies: list[str] | None = None, name: str 
 
 
 def foreign_study(lab: Lab) -> Place:
-    """Create a second study with a session, which people of the first must not learn of."""
+    """Create a second study with a session, both unknown to the people of the first study."""
     request = {"key": FOREIGN}
     ok(lab.operator.post(f"/api/studies/{STUDY}/duplicate", json=request))
     view: Json = ok(lab.operator.post(f"/api/studies/{FOREIGN}/sessions", json={}))

@@ -100,7 +100,7 @@ def test_every_route_follows_the_policy_table(bench: Bench) -> None:
 def leaks_of(
     bench: Bench, role: str, client: TestClient, route: str, counts: Counter[str]
 ) -> Iterator[str]:
-    """Yield what a person gets from a route against the policy table."""
+    """Yield a description of each answer to a person that contradicts the policy table."""
     if role not in POLICY[route]:
         counts["wrong role"] += 1
         expected = 401 if POLICY[route] in (TABLET, HEADSET) else 403

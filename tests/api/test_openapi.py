@@ -68,7 +68,7 @@ def bench(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Bench]:
 
 
 def operations(bench: Bench) -> Iterator[Any]:
-    """Yield every operation that ends by itself."""
+    """Yield every operation whose answer ends on its own."""
     schema = schemathesis.openapi.from_url(f"{bench.server.url}/api/openapi.json")
     for result in schema.get_all_operations():
         assert isinstance(result, Ok)
@@ -124,7 +124,7 @@ def run(bench: Bench, examples: int) -> Counter[str]:
 
 
 def note_counts(counted: Counter[str]) -> None:
-    """Note the counts in the table of figures."""
+    """Add the counts to the table of measured figures."""
     for what, count in sorted(counted.items()):
         note(21, "made-up requests to every operation", what, count)
 

@@ -1,4 +1,4 @@
-"""Tests of anonymous requests: their size, their rate, and what answers repeat."""
+"""Tests of anonymous requests: limits of size and rate, and secrets in the answers."""
 
 import json
 import re

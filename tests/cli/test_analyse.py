@@ -160,7 +160,7 @@ def test_several_rows_of_a_cell_are_averaged_with_a_warning(tmp_path: Path) -> N
 
 
 def test_data_without_error_variance_have_no_f(tmp_path: Path) -> None:
-    """Data without error variance have no F but Friedman's test, with a warning."""
+    """Data without error variance get Friedman's test and a warning, but no F."""
     lines = ["person,latency,score"]
     lines += [f"P{who},{level},{who + level}" for who in range(4) for level in (0, 1, 3)]
     figures = _COMMAND.figures(_written(tmp_path, lines), *_FACTOR)

@@ -26,7 +26,7 @@ def test_an_error_is_reported_with_its_remedy(
 def test_valid_values_are_listed_on_request(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """Valid values are listed between message and remedy if the command wants it."""
+    """Valid values are listed between message and remedy if the command requests it."""
     error = NotFound("there is no avatar 'x'", valid=["a", "b"], remedy="Name another.")
     assert _said(capsys, error, with_valid=True) == (
         "reembody: there is no avatar 'x'; valid: a, b. Name another.\n"

@@ -149,7 +149,7 @@ def test_invalid_walks_are_refused(lab: Path) -> None:
 
 
 def test_invalid_scenes_and_places_are_refused(lab: Path) -> None:
-    """A scene without a way, a goal inside an obstacle and unknown places or scenes are refused."""
+    """A scene without a path, a goal in an obstacle, and unknown places or scenes are refused."""
     walks = sorted(lab.glob("walker-[0-1]-1.csv"))
     assert "no way" in _fit(lab, *walks, "--scene", lab / "closed.yaml")
     ask = ("sample", lab / "model.npz", "--stature", 1.75, "--scene", lab / "hall.yaml")

@@ -53,7 +53,7 @@ class Lab:
         return client
 
     def try_join(self, **fields: Any) -> Response:
-        """Request a new session and return the response, whatever it is."""
+        """Request a new session and return the response, even if it is an error."""
         return self.operator.post(f"/api/studies/{STUDY}/sessions", json=fields)
 
     def join(self, **fields: Any) -> Json:
@@ -72,7 +72,7 @@ class Lab:
         return events
 
     def try_command(self, view: Json, kind: str, **fields: Any) -> Response:
-        """Send a command decided on `view` and return the response, whatever it is."""
+        """Send a command that was decided on `view`; return the response, even an error."""
         body = {
             "command_id": str(uuid.uuid4()),
             "expected_version": view["version"],

@@ -1,4 +1,4 @@
-"""Machines and times for tests of certificates."""
+"""Made-up machines and dates for the tests of certificates."""
 
 from datetime import UTC, datetime
 from ipaddress import ip_address

@@ -116,7 +116,7 @@ def test_the_authority_cannot_sign_another_authority(authority: Authority) -> No
 
 
 def test_the_authority_is_valid_for_ten_years() -> None:
-    """The authority is valid for ten years; from 29 February to 28 February."""
+    """The authority is valid for ten years; one made on 29 February ends on 28 February."""
     assert new_authority(LAB_PC, NOW).certificate.not_valid_after_utc == NOW.replace(year=2036)
     leap_day = NOW.replace(year=2028, month=2, day=29)
     ends = new_authority(LAB_PC, leap_day).certificate.not_valid_after_utc
@@ -141,7 +141,7 @@ def test_a_bare_host_name_never_becomes_a_domain(host: str, expected: tuple[str,
 
 
 def test_only_the_machines_own_public_address_is_permitted() -> None:
-    """The authority permits the machine's own public address but not its neighbour."""
+    """The authority permits the machine's own public address but not the adjacent one."""
     own: Address = ip_address("203.0.113.9")
     authority = new_authority(Machine(("labpc.local",), (own,)), NOW)
     assert authority.permits(own)

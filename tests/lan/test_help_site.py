@@ -138,7 +138,7 @@ def test_the_page_speaks_the_devices_language(
 def test_the_likely_device_comes_first_and_is_open(
     client: TestClient, agent: str, first: str
 ) -> None:
-    """The instructions for the requesting device come first and open; the others follow."""
+    """The instructions for the requesting device come first, unfolded; all others follow."""
     page = client.get("/", headers={"user-agent": agent}).text
     assert page.index(f"<details open><summary>{first}") == page.index("<details")
     assert page.count("<details") == len(ENGLISH.devices)

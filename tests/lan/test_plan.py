@@ -36,7 +36,7 @@ def test_a_network_address_without_encryption_is_refused(tmp_path: Path, host: s
 
 
 def test_without_tls_allows_plain_http(tmp_path: Path) -> None:
-    """With `without_tls` a network address is served over plain HTTP, and the reach states it."""
+    """With `without_tls` a network address is served over plain HTTP, and the plan states it."""
     plan = plan_for(tmp_path, host="192.168.7.20", without_tls=True)
     assert plan.reach(LAB_PC, None) == Reach(
         mode="without_tls",
@@ -114,7 +114,7 @@ def test_equal_ports_are_refused(tmp_path: Path, given: dict[str, int], named: s
     ],
 )
 def test_a_device_is_never_sent_to_its_own_localhost(asked_at: str, given: str) -> None:
-    """A device gets the network's address, or the name by which the console was opened."""
+    """A device gets the network's address, or the host name by which the console was opened."""
     reach = Reach(mode="lan", urls=("https://192.168.7.20:8443",))
     assert reach.for_devices(asked_at) == given
 

@@ -41,7 +41,7 @@ def test_figures_have_listeners_while_someone_is_subscribed() -> None:
 
 
 def test_frames_of_any_socket_of_a_session_are_its_frames() -> None:
-    """The time of a session's last frame is kept until the last of its headsets leaves."""
+    """The time of a session's last frame is kept until the last of its headsets disconnects."""
     hub = Hub()
     hub.headset_joined("a")
     hub.headset_joined("a")

@@ -32,7 +32,7 @@ class ManualClock:
     ],
 )
 def test_an_address_counts_for_its_network(address: str | None, network: str) -> None:
-    """IPv4 is limited by address and IPv6 by its /64, as its owner has 2^64 addresses."""
+    """Limits apply to each IPv4 address and to each IPv6 /64, as one owner has 2^64 addresses."""
     assert network_of(address) == network
 
 

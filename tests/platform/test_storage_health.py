@@ -52,7 +52,7 @@ def refusal(code: int) -> OperationalError:
 
 
 def test_a_failure_is_announced_once_and_ends_with_the_next_commit() -> None:
-    """A failure is announced once, lasts until the next commit, and is one outage."""
+    """A failure is announced once, lasts until the next commit, and counts as one outage."""
     stage = Stage()
     health = stage.health()
     assert (health.state().status, health.take_outages()) == ("ok", ())

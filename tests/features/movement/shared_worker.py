@@ -12,12 +12,12 @@ class SharedWorker(Worker):
     """A worker that outlives the applications that use it."""
 
     def end(self) -> None:
-        """Keep the process running for the next application."""
+        """Ignore the end of an application, so that the process serves the next one."""
 
 
 @contextmanager
 def shared_worker(prepare: Callable[[], None], *makers: tuple[object, str]) -> Iterator[None]:
-    """Make each maker (its module and name) return one worker, and end it afterwards."""
+    """Make factories, given by module and name, return one shared worker; end it afterwards."""
     worker = SharedWorker(prepare)
     with pytest.MonkeyPatch.context() as patch:
         for module, name in makers:

@@ -1,4 +1,4 @@
-"""Tests of restoring: it gives back exactly what was backed up, or changes nothing."""
+"""Tests of restoring: a restore gives back exactly what was backed up, or changes nothing."""
 
 import hashlib
 from pathlib import Path

@@ -86,7 +86,8 @@ def test_a_page_of_zeros_is_detected(file: Path, step: int) -> None:
 def test_a_changed_value_is_not_detected_by_inspection(file: Path) -> None:
     """A changed byte inside a value is not detected: only the structure of the file is checked.
 
-    Event logs have their hash chain, movement chunks and backed-up tables their checksums.
+    Other checks protect values: event logs have a hash chain; movement chunks and the tables of a
+    backup have checksums.
     """
     data = file.read_bytes()
     place = data.index(bytes(range(256)) * 3)
@@ -163,7 +164,7 @@ def test_a_large_file_is_checked_only_after_an_unclean_end(
 
 
 def test_another_programs_database_is_known_by_its_tables(file: Path, tmp_path: Path) -> None:
-    """Another program's database is recognised by its tables; ours is not foreign."""
+    """Another program's database is recognised by its tables; our own is not called foreign."""
     other, new = tmp_path / "other.sqlite", tmp_path / "new.sqlite"
     with closing(sqlite3.connect(other)) as connection:
         connection.execute("CREATE TABLE bookmarks (x)")

@@ -106,7 +106,7 @@ def test_a_newer_programs_database_is_refused(bench: Bench, tmp_path: Path) -> N
 
 
 def test_another_programs_database_is_refused(bench: Bench, tmp_path: Path) -> None:
-    """A database with another program's tables is refused and stays unchanged."""
+    """A database with the tables of another program is refused and stays unchanged."""
     with bench.empty() as url:
         database = open_database(url)
         with database.writing() as db:

@@ -274,7 +274,7 @@ def test_a_reader_works_alongside_an_owner_that_has_prepared(tmp_path: Path) -> 
 def test_a_postgres_database_has_one_owner_whatever_the_folder(
     tmp_path: Path, postgres_url: str
 ) -> None:
-    """A PostgreSQL database has one owner, whatever the data folders, until that is killed."""
+    """A PostgreSQL database has one owner, in whatever data folders, until the owner is killed."""
     first = Settings(data_dir=tmp_path / "a", database_url=postgres_url)
     second = Settings(data_dir=tmp_path / "b", database_url=postgres_url)
     with holder(first) as (pid, _):
@@ -288,7 +288,7 @@ def test_a_postgres_database_has_one_owner_whatever_the_folder(
 
 
 def test_a_lost_postgres_lock_is_retaken_or_given_up(tmp_path: Path, postgres_url: str) -> None:
-    """A server that lost its PostgreSQL lock retakes it, or shuts down if another has it."""
+    """A server that lost its PostgreSQL lock retakes it, or shuts down if another server has it."""
     background, ended = Background(Clock()), []
     own = own_data(Settings(data_dir=tmp_path / "a", database_url=postgres_url))
     other = Settings(data_dir=tmp_path / "b", database_url=postgres_url)

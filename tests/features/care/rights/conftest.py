@@ -1,4 +1,4 @@
-"""The real server on each engine, as in the tests of the headset, for participants' rights."""
+"""Fixtures with a real server on each engine, for the tests of participants' rights."""
 
 from tests.features.record.headset.conftest import site
 

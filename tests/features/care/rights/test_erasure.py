@@ -167,7 +167,7 @@ def test_an_erasure_is_refused_while_a_session_runs(site: Site) -> None:
 
 
 def test_no_data_can_be_added_after_an_erasure(site: Site) -> None:
-    """After an erasure notes, corrections, headset data and new sessions for it are refused."""
+    """An erased participant's notes, corrections, headset data and new sessions are refused."""
     visit = withdrawn(site, "after")
     forms = ok(site.operator.get(f"/api/sessions/{visit.session_id}/answers"))
     erase(site, visit)
@@ -204,7 +204,7 @@ def test_an_erasure_ends_a_planned_session(site: Site) -> None:
 
 
 def test_a_completed_session_accepts_no_data_after_an_erasure(site: Site) -> None:
-    """After an erasure a completed session refuses data that its headset still has."""
+    """After an erasure a completed session refuses the data that its headset still has to send."""
     session_id = site.join(kind="people", participant_code=mine("done"))
     view = site.command(session_id, "start")
     site.command(session_id, "complete_step", paper_consent=SHEET)
@@ -224,7 +224,7 @@ def test_a_completed_session_accepts_no_data_after_an_erasure(site: Site) -> Non
 def test_an_erasure_mark_that_cannot_be_removed_is_tolerated(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """An erasure mark that cannot be deleted raises no error and is cleared by a later attempt."""
+    """An erasure mark that cannot be deleted raises no error and is removed by a later attempt."""
     settings = Settings(data_dir=tmp_path)
     mark_erasure(settings)
 

@@ -46,7 +46,7 @@ class Visit:
 
     @property
     def needles(self) -> tuple[bytes, bytes]:
-        """What to search for: the code, and its `height_m` twice in single precision."""
+        """The byte strings to search for: the code, and twice its `height_m` as a float32."""
         return self.code.encode(), np.float32(height_m(self.code)).tobytes() * 2
 
 
@@ -56,7 +56,7 @@ def height_m(code: str) -> float:
 
 
 def make_visit(site: Site, code: str = CANARY) -> Visit:
-    """Run part of a session with notes, answers, device names, contacts and movement of a code."""
+    """Run part of a session whose notes, answers, device names and movement contain the code."""
     session_id = site.join(kind="people", participant_code=code)
     _pair_tablet(site, session_id, name=code)
     site.command(session_id, "start")
@@ -166,7 +166,7 @@ def in_files(visit: Visit, paths: Iterable[Path]) -> dict[str, int]:
 
 
 def in_bytes(visit: Visit, data: bytes) -> int:
-    """Return how often a visit's data occur in some bytes, including inside ZIP archives."""
+    """Return how often a visit's data occur in a byte string, including inside ZIP archives."""
     count = sum(data.count(needle) for needle in visit.needles)
     if data[:4] == b"PK\x03\x04":
         printed = f"{height_m(visit.code):.2f}".encode()

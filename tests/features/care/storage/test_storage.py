@@ -67,7 +67,7 @@ def test_a_sessions_size_follows_its_recorded_movement(usage: Json) -> None:
 def test_the_forecast_is_free_space_over_mean_session_size(lab: Lab, usage: Json) -> None:
     """The forecast is the free space above the threshold, divided by the mean size of a session.
 
-    Sessions without movement are left out of the mean: they are a fraction of the size of the next.
+    Sessions without movement are left out of the mean, as they are much smaller than others.
     """
     disk = usage["disk"]
     assert disk["warn_below_bytes"] == lab.context.settings.low_disk_bytes
@@ -83,7 +83,7 @@ def test_the_forecast_is_free_space_over_mean_session_size(lab: Lab, usage: Json
 
 
 def test_a_full_disk_is_reported_with_no_sessions_left(lab: Lab, usage: Json) -> None:
-    """Below the threshold the disk usage reports low space and space for no further session."""
+    """Below the threshold, low space is reported, with room for no further session."""
     storage = lab.context.storage
     before, storage.free_bytes = storage.free_bytes, lambda _: 1000
     try:

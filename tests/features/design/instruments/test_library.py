@@ -86,7 +86,7 @@ def test_the_experts_answers_score_as_printed(lab: Lab) -> None:
 
 @pytest.mark.one_engine
 def test_a_score_without_value_names_the_missing_items(lab: Lab) -> None:
-    """A score without a value names the items it lacks, also those needed by other scores.
+    """A score without a value names its missing items, also those that other scores need.
 
     An answer outside the scale is reported as a problem.
     """
@@ -102,7 +102,7 @@ def test_a_score_without_value_names_the_missing_items(lab: Lab) -> None:
 
 
 def test_a_stored_study_keeps_its_instruments_wording(fresh_lab: Lab) -> None:
-    """A stored study keeps its instrument's wording; its next version uses the newest wording."""
+    """A stored study keeps its instruments' wording; its next version uses the newest wording."""
     shipped = ok(fresh_lab.operator.get("/api/instruments/karas2020"))
     changed = (
         shipped["yaml"]

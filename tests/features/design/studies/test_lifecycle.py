@@ -78,7 +78,7 @@ def test_a_duplicate_is_an_independent_study(fresh_lab: Lab) -> None:
 
 
 def test_an_archived_study_refuses_new_sessions(fresh_lab: Lab) -> None:
-    """An archived study is not listed and refuses sessions; restored, it continues its ledger."""
+    """An archived study is not listed and refuses sessions; a restored one continues its ledger."""
     view = fresh_lab.command(fresh_lab.join(), "start")
     refusal = error(fresh_lab.operator.post(f"{PATH}/archive"), 409, "not_now")
     assert (refusal["value"], refusal["valid"]) == (1, 0)

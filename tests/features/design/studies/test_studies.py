@@ -123,7 +123,7 @@ def test_a_version_is_frozen_from_its_first_start(fresh_lab: Lab) -> None:
 
 @pytest.mark.one_engine
 def test_a_session_keeps_the_version_it_joined(fresh_lab: Lab) -> None:
-    """A session keeps the study version it was created with when a new version is stored."""
+    """A session keeps the study version with which it was created when a new one is stored."""
     view = fresh_lab.join()
     yaml = ok(fresh_lab.operator.get(f"/api/studies/{STUDY}"))["yaml"]
     _version(fresh_lab, edit(yaml, ("duration_s: 120", "duration_s: 30")))

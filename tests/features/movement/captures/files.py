@@ -98,7 +98,7 @@ def _corner(a: float, b: float, opposite: float) -> float:
 
 
 def upload(client: TestClient, data: bytes, name: str = "walk.bvh", **more: Any) -> Response:
-    """Upload a capture and return the response, whatever it is."""
+    """Upload a capture and return the response, even if it is an error."""
     return client.post("/api/captures", params={"name": name, **more}, content=data)
 
 

@@ -16,7 +16,7 @@ LIMITED = 512 * 2**20
 
 
 def limit_to_little() -> None:
-    """Set the process's usual memory limit, but to a smaller value."""
+    """Set the process's usual memory limit to a smaller value."""
     capture_queue.MEMORY_BYTES = LIMITED
     capture_queue.limit_memory()
 

@@ -156,7 +156,7 @@ def test_a_fit_needs_more_than_one_person(walking_lab: Lab) -> None:
 
 
 def test_a_fit_is_stopped_and_resumed(walking_lab: Lab) -> None:
-    """A fit can be stopped and then resumed, each only once."""
+    """A fit can be stopped once and then resumed once."""
     walks = ok(upload_tracks(walking_lab, table(people=2)))
     released = threading.Event()
     walking_lab.context.part(FitQueue)._maker.submit(released.wait)

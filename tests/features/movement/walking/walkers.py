@@ -57,7 +57,7 @@ def fitted(lab: Lab, set_id: str, **options: Any) -> Json:
 
 
 def settled(lab: Lab, model_id: str) -> Json:
-    """Wait until a model is no longer being fitted, and return it."""
+    """Wait until the fit of a model has ended, and return the model."""
     for _ in range(600):
         model: Json = ok(lab.operator.get(f"/api/walking/models/{model_id}"))
         if model["state"] != "fitting":

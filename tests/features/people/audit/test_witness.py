@@ -61,7 +61,7 @@ def test_a_head_is_found_while_the_trail_grows(database: Database) -> None:
 
 
 def test_a_truncated_trail_is_detected_by_a_later_head(database: Database) -> None:
-    """A truncated audit trail verifies by itself, but not against a head from its removed end."""
+    """A truncated audit trail is consistent, but fails to verify against a head that it lost."""
     early, late = append(database, 0), append(database, 2)
     cut(database, 4)
     assert VERIFY.run().exit_code == 0
@@ -83,7 +83,7 @@ def test_a_rewritten_trail_is_detected_by_a_head(database: Database) -> None:
 
 
 def test_verify_reports_a_changed_audit_entry(database: Database) -> None:
-    """Verifying without naming a session reports a changed entry of the audit trail."""
+    """The command `verify` without a session reports a changed entry of the audit trail."""
     with database.writing() as db:
         db.execute(update(AuditEntry).where(AuditEntry.seq == 2).values(action="test.changed"))
     result = VERIFY.run()
@@ -110,7 +110,7 @@ def test_an_invalid_head_is_refused_with_its_format(text: str) -> None:
 
 
 def test_a_head_is_parsed_leniently() -> None:
-    """A head is parsed with spaces around it, in capitals, or with 16 digits of its hash."""
+    """A head may have spaces around it, capital letters, or only 16 digits of its hash."""
     head = TrailHead(12, "ab" * 32)
     assert TrailHead.parse(f" {head}\n") == TrailHead.parse(str(head).upper()) == head
     assert TrailHead.parse(f"12:{head.hash[:16]}").hash == head.hash[:16]

@@ -84,12 +84,12 @@ def test_a_clock_without_a_usable_probe_is_unknown(useless: Probed) -> None:
 
 
 def produced(frames: int, epoch: int = 1) -> Produced:
-    """Return a message that the client has made so many frames of both streams."""
+    """Return a client's message that it has produced this number of frames in both streams."""
     return Produced(epoch=epoch, streams={"target": frames, "actual": frames, "reports": 0})
 
 
 def stored(frames: int, epoch: int = 1) -> tuple[StreamPosition, ...]:
-    """Return stored positions of both streams after so many frames."""
+    """Return the stored positions of both streams after this number of frames."""
     return tuple(
         StreamPosition(stream=name, epoch=epoch, next_seq=frames) for name in ("target", "actual")
     )
@@ -97,7 +97,7 @@ def stored(frames: int, epoch: int = 1) -> tuple[StreamPosition, ...]:
 
 @pytest.mark.parametrize("time_scale", [1.0, 20.0])
 def test_the_backlog_is_what_was_made_but_not_stored(time_scale: float) -> None:
-    """The backlog is the time of frames that were made but not stored, in real seconds.
+    """The backlog is the duration of frames that were made but not stored, in real seconds.
 
     A client that runs twenty times as fast makes twenty times as many frames per second.
     """

@@ -66,7 +66,7 @@ def test_silence_raises_no_alarm_while_nothing_is_recorded() -> None:
 
 
 def test_a_delayed_check_does_not_count_as_silence() -> None:
-    """A check that comes far too late, as after a suspension, restarts the waiting time."""
+    """A check that comes far too late, as after a suspension, restarts the measured silence."""
     watched = running()
     ended_s = watched.play(SECOND)
     watched.check(ended_s + 60.0)

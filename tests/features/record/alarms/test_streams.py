@@ -110,7 +110,7 @@ def test_the_gap_count_restarts_with_each_phase() -> None:
 
 
 def test_resent_frames_are_checked_once() -> None:
-    """Resent and out-of-order frames are not checked again and raise no alarm."""
+    """Frames that are resent or out of order are not checked again and raise no alarm."""
     watched = Watched()
     for first in range(0, 900, 9):
         for _ in range(2):

@@ -18,7 +18,7 @@ TREMBLING = jitter(generated(1), np.random.default_rng(5))
 
 
 def at(seconds: float) -> Moment:
-    """Return the moment so many seconds after the beginning."""
+    """Return the moment this many seconds after the beginning."""
     return Moment(1000.0 + seconds, BEGAN + timedelta(seconds=seconds))
 
 
@@ -150,7 +150,7 @@ class Watched:
 
 
 def there_and_back(recording: Recording) -> Recording:
-    """Return a recording of twice the length, in which the body moves back the way it came."""
+    """Return a recording of twice the length, in which the body then moves back the same way."""
     length_s = len(recording) / 90.0
     return Recording(
         np.concatenate((recording.times_s, recording.times_s + length_s)),

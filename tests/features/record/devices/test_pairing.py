@@ -132,7 +132,7 @@ def test_an_unpaired_device_is_refused_immediately(lab: Lab) -> None:
 
 @pytest.mark.one_engine
 def test_a_device_is_revoked_in_its_own_session_only(lab: Lab) -> None:
-    """Unpairing a device through another session is refused as not found."""
+    """Unpairing a device through a session to which it does not belong is refused as not found."""
     session_id, other = lab.join()["id"], lab.join()["id"]
     tablet = lab.tablet(session_id)
     device_id = lab.view(session_id)["devices"][0]["id"]
@@ -210,7 +210,7 @@ def test_the_link_opens_the_tablets_page_with_the_code(lab: Lab) -> None:
 
 @pytest.mark.one_engine
 def test_no_device_is_sent_to_its_own_localhost(lab: Lab) -> None:
-    """If only its own machine reaches the server, a pairing has no link and no QR code."""
+    """A server that only its own machine can reach gives a pairing no link and no QR code."""
     path = f"/api/sessions/{lab.join()['id']}/pairings"
     here = {"host": "localhost:8321"}
     for device in ("tablet", "headset"):

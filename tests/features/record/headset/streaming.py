@@ -29,7 +29,7 @@ class Streamer:
     last_sent_s: float = 0.0
 
     def stream(self, for_s: float, *, running: bool = True, at_once: bool = False) -> None:
-        """Send frames of `for_s` seconds, in real time unless `at_once`."""
+        """Send the frames of `for_s` seconds, in real time unless `at_once` is set."""
         began_s, frames = time.monotonic(), round(for_s * RATE_HZ)
         for done in range(0, frames, PER_BATCH):
             self.send_batch(running=running)

@@ -44,7 +44,7 @@ def cleared(site: Site, session_id: str, code: str, within_s: float = 8.0) -> Js
 def fall_asleep(site: Site, headset: Headset, session_id: str, for_s: float) -> tuple[float, float]:
     """Stream for a second, send nothing for `for_s`, then resume and finish the phase.
 
-    Returns after how many seconds the phase was paused, and the length of the gap in its frames.
+    Returns the seconds until the phase was paused, and the length of the gap in its frames.
     """
     streamer = in_free_movement(site, session_id, headset)
     streamer.stream(1.0)

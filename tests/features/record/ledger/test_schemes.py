@@ -1,8 +1,9 @@
 """Tests that every design stays balanced with simultaneous joins and with dropouts.
 
-The short form has a hundred joins for the design with most orders, and forty for each other one: at
-least four times all its orders, with the same remainder as a hundred has. The database does not
-depend on the design, so PostgreSQL, whose locks differ, is tested with one design.
+The short form has a hundred joins for the design with the most orders and forty for each of the
+others, which is at least four times the number of its orders and leaves the same remainder as a
+hundred. The database does not depend on the design, so PostgreSQL, whose locks differ, is tested
+with one design.
 """
 
 from collections import Counter
@@ -76,7 +77,7 @@ def test_every_scheme_stays_balanced(
     database_url: str,
     many: bool,  # noqa: FBT001 - by name
 ) -> None:
-    """With every design no order is more than one ahead, before and after dropouts.
+    """In every design the most frequent order leads by at most one, before and after dropouts.
 
     A slot that was given back is taken again, and none is taken twice.
     """

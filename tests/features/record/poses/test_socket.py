@@ -114,7 +114,7 @@ def test_a_blinded_console_gets_the_avatar_once_the_condition_is_shown(fresh_lab
 
 @pytest.mark.one_engine
 def test_a_console_that_stops_drawing_resumes_with_the_newest_frame(lab: Lab) -> None:
-    """A console that stops confirming frames gets no more than a few, and then the newest one."""
+    """A console that stops confirming frames gets only a few more, and later the newest one."""
     session_id = lab.join()["id"]
     with watching(lab, session_id) as socket:
         socket.receive_json()

@@ -22,7 +22,7 @@ def checks_of(lab: Lab, session_id: str) -> dict[str, Json]:
 
 
 def codes_of(lab: Lab, session_id: str) -> dict[str, str]:
-    """Return the finding of each check by key."""
+    """Return the code of each check's finding, by the key of the check."""
     return {key: check["code"] for key, check in checks_of(lab, session_id).items()}
 
 
@@ -33,7 +33,7 @@ def override(lab: Lab, session_id: str, check: str, reason: str = "the lab has o
 
 
 def wear(lab: Lab, session_id: str, **signal: float | None) -> None:
-    """Connect a headset with these figures in its signal."""
+    """Connect a headset whose signal has these figures."""
     lab.headset_token(session_id)
     lab.context.hub.headset_joined(session_id)
     lab.context.hub.note_signal(session_id, {**SOUND, **signal})

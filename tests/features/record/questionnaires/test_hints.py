@@ -67,7 +67,7 @@ def test_identical_answers_give_a_hint_to_the_operator_only(
 def test_half_of_the_ratings_below_a_second_are_implausibly_fast(
     lab: Lab, session_id: str, tablet: TestClient, times_s: list[float], kinds: list[str]
 ) -> None:
-    """A form with at least five ratings and a median response time below one second is fast."""
+    """A form of five or more ratings with a median response time below 1 s gets the hint `fast`."""
     ok(send(tablet, filled(due(tablet), item_traces=traces(*times_s))))
     assert hints(lab, session_id) == [{"kind": kind, "items": 14, "seconds": 1.0} for kind in kinds]
 

@@ -44,7 +44,7 @@ class StoredSession:
 
 @pytest.fixture
 def stored(database_url: str) -> Iterator[StoredSession]:
-    """Yield a session with 400 frames of both bodies in epoch 1 and 100 of the target in 2."""
+    """Yield a session: 400 frames of both bodies in epoch 1, 100 of the target in epoch 2."""
     database = open_database(database_url)
     with database.writing() as db:
         build_study(db)

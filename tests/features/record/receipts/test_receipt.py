@@ -59,7 +59,7 @@ def test_a_new_session_has_an_empty_receipt(lab: Lab) -> None:
 
 @pytest.mark.one_engine
 def test_a_receipt_needs_a_login(lab: Lab) -> None:
-    """A receipt needs a login, and is not found for an unknown session."""
+    """A receipt needs a login, and that of an unknown session is not found."""
     session = lab.join()
     assert lab.stranger().get(f"/api/sessions/{session['id']}/receipt").status_code == 401
     assert lab.operator.get("/api/sessions/nothing/receipt").status_code == 404

@@ -29,7 +29,7 @@ def index_of(key: str) -> int:
 
 @dataclass
 class Run:
-    """A session without a database."""
+    """A session that is run without a database."""
 
     state: SessionState = field(default_factory=lambda: initial_state(len(PLAN)))
     events: list[Event] = field(default_factory=list)

@@ -12,7 +12,7 @@ HAND = "block1.hand"
 
 
 def test_starting_enters_the_first_step() -> None:
-    """A started session is active in its first step."""
+    """A started session is active and at its first step."""
     run = Run()
     assert run.do(c.Start()) == [e.SessionStarted()]
     assert (run.state.status, run.state.current) == (SessionStatus.ACTIVE, 0)

@@ -1,4 +1,4 @@
-"""Tests of the engine for a refused consent and for a question."""
+"""Tests of the engine when a participant refuses consent or has a question."""
 
 import pytest
 
@@ -139,7 +139,7 @@ def test_entering_the_body_needs_a_headset() -> None:
 
 
 def test_a_question_is_asked_and_closed_once() -> None:
-    """A question is recorded once while it is open and does not hold the session."""
+    """While open, a question is recorded only once, and it does not hold the session."""
     run = Run()
     for _ in range(2):
         run.do(c.AskQuestion())

@@ -47,7 +47,7 @@ def test_only_the_rise_counts(lab: Lab, start: int, later: int, codes: list[str]
 
 
 def test_a_missing_first_score_raises_a_warning(lab: Lab) -> None:
-    """If the first form was skipped, a warning says that the rise is unknown."""
+    """If the first form was skipped, a warning states that the rise of the score is unknown."""
     view = lab.skip_to(session(lab), FMS)
     ok(answer_fms(lab, view["id"], 2))
     assert [one["code"] for one in lab.view(view["id"])["alarms"]] == ["stop_rule_unknown"]

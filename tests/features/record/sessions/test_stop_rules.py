@@ -39,7 +39,7 @@ def test_a_rating_at_the_warning_limit_raises_a_warning(lab: Lab) -> None:
 
 
 def test_a_rating_at_the_stop_limit_holds_the_session(lab: Lab) -> None:
-    """A rating at the stop limit holds the session, with a critical alarm and a neutral tablet."""
+    """A rating at the stop limit holds the session with a critical alarm; the tablet is neutral."""
     view = answered(lab, 15)
     assert view["held"] == {
         "rule": 0,

@@ -39,7 +39,7 @@ def done() -> SessionState:
 
 
 def delays(state: SessionState, achieved_s: float | None = 0.2) -> dict[int, PhaseDelay]:
-    """Return the same achieved latency for every phase, with 0.1 s set."""
+    """Return the same achieved latency for every phase, whose set latency is 0.1 s."""
     return {one.phase_id: PhaseDelay(0.1, achieved_s) for one in state.ended_phases}
 
 

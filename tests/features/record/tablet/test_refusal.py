@@ -39,7 +39,7 @@ def types(lab: Lab, view: Json) -> list[str]:
 
 
 def test_a_refusal_reaches_the_operator_and_holds_the_session(lab: Lab) -> None:
-    """A refusal raises an alarm, is recorded and holds the session; the tablet asks nothing."""
+    """A refusal raises an alarm, is recorded and holds the session; the tablet asks no more."""
     view, tablet = at_consent(lab)
     screen = send_refusal(tablet, refusal_request())
     assert (screen["screen"], screen["is_refused"]) == ("refused", True)
@@ -119,7 +119,7 @@ def test_a_participant_who_retracts_a_refusal_may_consent(lab: Lab) -> None:
 
 @pytest.mark.one_engine
 def test_the_operator_reopens_the_consent_with_a_reason(lab: Lab) -> None:
-    """The operator may reopen a refused consent with a reason, which does not give it."""
+    """The operator may reopen a refused consent with a reason; this does not give the consent."""
     view, tablet = at_consent(lab)
     error(lab.try_command(view, "reopen_consent", reason="again"), 409, "not_now")
     send_refusal(tablet, refusal_request())

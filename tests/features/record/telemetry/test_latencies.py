@@ -30,7 +30,7 @@ def session_id(lab: Lab, request: pytest.FixtureRequest) -> str:
 
 
 def phases(lab: Lab, session_id: str) -> dict[float, Phase]:
-    """Return one task phase per latency set."""
+    """Return one task phase for each set latency."""
     with lab.database.reading() as db:
         found = db.scalars(
             select(Phase).where(Phase.session_id == session_id, Phase.kind == "task")

@@ -12,7 +12,7 @@ from tests.features.lab import Lab
 
 
 def rows(lab: Lab, session_id: str, count: int, next_seq: int) -> list[dict[str, Any]]:
-    """Return stream positions of as many epochs."""
+    """Return the stream positions of `count` epochs."""
     now = lab.context.clock.utc_now()
     numbers = dict.fromkeys(("produced", "frames_stored", "frames_flagged", "phase_id"), 3)
     return [

@@ -1,4 +1,4 @@
-"""Tests that a stopped rehearsal ends its session, whatever orders still arrive."""
+"""Tests that a stopped rehearsal ends its session, whatever commands still arrive."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -14,7 +14,7 @@ Json = dict[str, Any]
 
 @dataclass(frozen=True)
 class Overtaken(Operator):
-    """An operator after each of whose views another pending command arrives."""
+    """An operator who is overtaken: after each view another pending command arrives."""
 
     lab: Lab
     on_the_way: list[str]

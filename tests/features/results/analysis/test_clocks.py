@@ -131,8 +131,8 @@ def test_utc_is_consistent_across_runs_of_the_client(
 ) -> None:
     """UTC is consistent across two runs of the client with different clocks.
 
-    It is set anew if the server's monotonic clock went back, or is so little ahead that the server
-    must have restarted after the first run.
+    It is taken from the wall clock afresh if the server's monotonic clock went back, or is so
+    little ahead that the server must have restarted after the first run.
     """
     session_id = _session(database)
     probes = _stored(database, session_id, WIFI).probes

@@ -132,7 +132,7 @@ def test_simulated_data_are_marked_and_separate(database: Database) -> None:
 
 @pytest.mark.one_engine
 def test_figures_without_data_have_a_sentence(database: Database) -> None:
-    """Without participants every figure is a sentence that says what is missing."""
+    """Without participants every figure is replaced by a sentence about what is missing."""
     _build(database)
     for entry in _dashboard(database).figures:
         assert entry.figure is None

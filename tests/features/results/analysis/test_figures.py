@@ -200,7 +200,7 @@ def test_a_phase_without_a_contact_counts_as_zero() -> None:
 
 
 def test_no_contacts_at_all_give_a_sentence() -> None:
-    """Without any contact the figure is a sentence."""
+    """Without any contact the figure is replaced by a sentence."""
     phases = _phases({"P-1": {0.0: 1}, "P-2": {0.0: 1}})
     none = pd.DataFrame([_contact("P-1", 0.0, "LeftHand", 1.0, 4.0)]).iloc[:0]
     drawing = contacts_drawing(phases, none)
@@ -230,7 +230,7 @@ def test_progress_shows_every_order() -> None:
 
 
 def test_a_confounding_of_limb_and_time_is_stated() -> None:
-    """A note states that limb and time are confounded, only if one limb always came first."""
+    """A note on the confounding of limb and time appears only if one limb always came first."""
     counts = {"P-1": {0.0: 1}}
     hand, foot = _phases(counts), _phases(counts, limb="foot").assign(position=2)
     assert "hand phase always came first" in limb_note(pd.concat([hand, foot]))

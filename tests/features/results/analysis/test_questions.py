@@ -123,7 +123,7 @@ def test_alpha_is_the_declared_one(database: Database) -> None:
 
 @pytest.mark.one_engine
 def test_one_participant_gives_no_measures(database: Database) -> None:
-    """With one participant there are no measures and no error."""
+    """With one participant the answers have no measures and raise no error."""
     assert _found(database, 1).measures == []
 
 

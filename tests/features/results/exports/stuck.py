@@ -8,7 +8,7 @@ LONG_S = 120.0
 
 
 def never_done(order: Any) -> None:
-    """Begin a file, write the process id next to it, and sleep for two minutes."""
+    """Create a file, write the process id next to it, and sleep for two minutes."""
     order.to.with_suffix(".part").write_bytes(b"half")
     order.to.with_suffix(".pid").write_text(str(os.getpid()))
     time.sleep(LONG_S)

@@ -110,7 +110,7 @@ def test_an_export_file_is_downloaded_whole_or_in_parts(site: Lab) -> None:
 
 
 def test_an_export_of_one_session_is_visible_to_its_owner_only(small_site: Lab) -> None:
-    """An export of one session contains nobody else and is visible only to its owner."""
+    """An export of one session has no other participant and is visible only to its owner."""
     client = small_site.operator
     sessions = ok(client.get(f"/api/studies/{STUDY}/sessions"))
     one = next(row for row in sessions if row["participant_code"] == "P-0002")

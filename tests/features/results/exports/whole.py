@@ -1,4 +1,4 @@
-"""A whole export as tests read it: its files by name, and their rows."""
+"""Helpers that make a whole export and read its files and their rows."""
 
 import csv
 import io

@@ -121,7 +121,7 @@ def test_every_invalid_cell_is_reported_and_nothing_is_imported(lab: Lab) -> Non
 
 
 def test_the_same_file_is_refused_until_it_is_undone(lab: Lab) -> None:
-    """A file is refused a second time until its import is undone with a reason."""
+    """A file cannot be imported a second time until its import is undone with a reason."""
     text = tidy(["P1,x,3", "P1,y,4"])
     mapping = look(lab, text, instrument="fms")["proposal"]
     first = ok(import_answers(lab, text, mapping))

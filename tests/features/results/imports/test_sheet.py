@@ -1,4 +1,4 @@
-"""Tests of files that are not valid tables, which are described in plain words."""
+"""Tests that a file which is not a valid table is refused with a plain description."""
 
 import pytest
 

@@ -140,7 +140,7 @@ def test_unrecorded_time_is_a_gap(lab: Lab, phase: Phase) -> None:
 
 @pytest.mark.one_engine
 def test_contacts_completions_and_forms_are_on_the_phases_time(lab: Lab, phase: Phase) -> None:
-    """A replay has contacts, completed tasks and forms on the phase's time, and its surfaces."""
+    """A replay has contacts, completed tasks and forms on the phase's time axis, and surfaces."""
     shown = ok(lab.operator.get(path(phase)))
     assert shown["view"] == "full"
     assert shown["duration_s"] == pytest.approx(DURATION_S, abs=0.02)

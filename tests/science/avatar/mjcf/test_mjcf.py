@@ -138,7 +138,7 @@ def test_nothing_of_the_body_touches_itself_in_the_t_pose() -> None:
 
 
 def test_hinges_know_the_inertia_they_move() -> None:
-    """A hinge's inertia is the greater of its mass-matrix diagonals straight and bent."""
+    """A hinge's inertia is the greater mass-matrix diagonal of straight and of bent limbs."""
     body = build_body(1.75)
     masses = body_masses(body, 72.0)
     settings = default_settings(body, masses)
