@@ -200,7 +200,7 @@ def _network(scope: Scope) -> str:
 
 
 async def _whole(receive: Receive, limit: int) -> bytes:
-    """Read the body; raise TooLarge as it arrives, ClientDisconnect if the client disconnects."""
+    """Read the body; raise TooLarge beyond `limit`, ClientDisconnect if the client disconnects."""
     pieces, size, more = [], 0, True
     while more:
         message = await receive()

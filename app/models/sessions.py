@@ -89,7 +89,7 @@ class SessionContent(Base):
 
 
 class Phase(Base):
-    """One attempt of a timed step (free movement, practice or task), computed from the events.
+    """One attempt at a timed step (free movement, practice or task), computed from the events.
 
     `phase_id` counts within the session and identifies the phase's telemetry. `active_s` is the
     participant's active time: pauses and walks back do not count.

@@ -20,7 +20,7 @@ FEWEST_BYTES = 1024 * 1024
 
 @dataclass(eq=False)
 class SpaceReserve:
-    """The reserve's file in `folder`; None where the database is on another machine."""
+    """The reserve's file in `folder`, which is None where the database is on another machine."""
 
     folder: Path | None
     is_released: bool = False

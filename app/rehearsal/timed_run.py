@@ -190,5 +190,5 @@ class FreeRun(TimedRun):
         """Ignore touches."""
 
     def news(self, _t_s: float) -> list[ReportBody]:
-        """Return no reports."""
+        """Return an empty list: free movement has nothing to report."""
         return []

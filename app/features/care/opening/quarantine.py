@@ -65,7 +65,7 @@ class Quarantine:
         return sorted(note.parent for note in self.folder.glob(f"*/{UNRESOLVED}"))
 
     def resolve(self, *places: Path) -> None:
-        """Mark these folders, or all, as decided, so that they no longer prevent a start."""
+        """Mark the given folders, or all, as resolved, so that they no longer prevent a start."""
         for place in places or self.unresolved():
             (place / UNRESOLVED).rename(place / RESOLVED)
 

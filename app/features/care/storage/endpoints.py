@@ -1,4 +1,4 @@
-"""The HTTP endpoint of the use of disk space."""
+"""The HTTP endpoint that reports the use of disk space."""
 
 from fastapi import APIRouter
 

@@ -1,4 +1,4 @@
-"""Measure database and disk, which may take seconds, for all requests, and cache the result."""
+"""Measure the sizes of database and disk once for all requests, since that may take seconds."""
 
 import shutil
 import threading

@@ -82,10 +82,10 @@ def save_instrument(db: Session, text: str, now: datetime) -> InstrumentVersion:
 
 
 def uses(db: Session, seen: ColumnElement[bool]) -> dict[tuple[str, str], list[str]]:
-    """Return which studies use which wording: (instrument key, content hash) -> study keys.
+    """Return the studies that use each wording: (instrument key, content hash) -> study keys.
 
-    Only the newest versions of studies that are not archived count: those of new sessions.
-    `seen`: the condition under which the reader may see a study.
+    Only the newest versions of studies that are not archived count: those of new sessions. `seen`:
+    the condition under which the reader may see a study.
     """
     found: dict[tuple[str, str], list[str]] = {}
     rows = db.execute(

@@ -76,7 +76,7 @@ def detail_of(db: Session, key: str, seen: ColumnElement[bool]) -> InstrumentDet
 
 
 def preview_of(instrument: Instrument) -> Preview:
-    """Return the instrument as a form, in the order of seed 0, one that a tablet could get."""
+    """Return the instrument as a form, with the item order of seed 0, as a tablet could get it."""
     seed = 0
     return Preview(
         instrument=instrument_as_json(instrument),

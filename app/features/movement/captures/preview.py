@@ -85,7 +85,7 @@ def encode(points: Points) -> bytes:
 def step_for(
     frames: int, rate_hz: float, numbers_a_frame: int, max_numbers: int = MAX_NUMBERS
 ) -> int:
-    """Return n such that every nth frame stays below `MAX_HZ` and `max_numbers`."""
+    """Return n so that keeping every nth frame stays below `MAX_HZ` and `max_numbers`."""
     for_rate = math.ceil(rate_hz / MAX_HZ - 1e-6)
     return max(1, for_rate, math.ceil(frames * numbers_a_frame / max_numbers))
 

@@ -34,7 +34,7 @@ def compressed_beside(path: Path) -> Path:
 
 
 def store(db: Session, content_hash: str, size: int, compressed: Path) -> None:
-    """Store a compressed content, unless it is in the database already."""
+    """Store compressed content, unless the database already contains it."""
     insert = (postgresql if db.get_bind().dialect.name == "postgresql" else sqlite).insert
     new = insert(CaptureContent).values(hash=content_hash, size=size)
     if db.execute(new.on_conflict_do_nothing().returning(CaptureContent.hash)).first() is None:
@@ -63,7 +63,7 @@ def size_of(db: Session, content_hash: str) -> int:
 
 
 def drop_unused(db: Session, content_hash: str) -> None:
-    """Delete a content that no capture, humanoid model, set of walks or walking model uses."""
+    """Delete stored content that no capture, humanoid model, set of walks or walking model uses."""
     captures = select(CaptureRow.id).where(
         or_(CaptureRow.content_hash == content_hash, CaptureRow.companion_hash == content_hash)
     )

@@ -1,4 +1,4 @@
-"""Record refused sign-ins on the audit trail, at most one entry per address and time window.
+"""Record refused sign-ins in the audit trail, at most one entry per address and time window.
 
 The first refusal from an address is recorded immediately. Subsequent ones within the window are
 counted and appended as one entry when the window ends, and so on while they continue. So a flood of

@@ -52,5 +52,5 @@ def count_sessions(db: Session, study: Study, kind: str) -> int:
 
 
 def download_place(actor: str) -> str:
-    """Return the place to record for a downloaded copy: who downloaded it, as no more is known."""
+    """Return the recorded place of a downloaded copy: only who downloaded it is known."""
     return f"downloaded by {actor.removeprefix('account:')}"

@@ -130,7 +130,7 @@ class Completed(NamedTuple):
 
 
 class Coverage(NamedTuple):
-    """What the frames of a phase cover: active time with gaps, the gaps, and invalid timestamps."""
+    """The coverage of a phase by frames: active time with gaps, the gaps, invalid timestamps."""
 
     frames: int
     span_s: float

@@ -33,7 +33,7 @@ class Judgement:
 
 @dataclass(frozen=True)
 class Scored:
-    """A stored form, with what a stop rule needs of it."""
+    """A stored form, reduced to the data that stop rules need."""
 
     instrument: str
     administration: str

@@ -1,7 +1,8 @@
 """Compress chunks in a separate process, which reads the batches itself and returns the chunks.
 
 In a thread, compression would delay the event loop and the writer, since they share one
-interpreter. The process never writes to the database, and ends with the server, however that ends.
+interpreter. The process never writes to the database, and ends with the server, however the server
+ends.
 """
 
 import contextlib

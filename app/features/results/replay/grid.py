@@ -48,7 +48,7 @@ class Sampling:
     _last: Frames | None = None
 
     def take(self, piece: Frames) -> tuple[Indices, Frames]:
-        """Return the moments that this piece decides, and the frame of each."""
+        """Return the moments whose frame this piece determines, and the frame of each."""
         rising = self._rising(piece)
         joined = rising if self._last is None else concatenate([self._last, rising])
         if len(rising) == 0:

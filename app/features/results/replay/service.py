@@ -96,7 +96,7 @@ def frames_stored(db: Session, phase: Phase) -> int:
 
 
 def movement_tag(db: Session, phase_view: Replayable) -> str:
-    """Return an entity tag, with its quotes, that changes whenever the movement may."""
+    """Return an entity tag, with its quotes, that changes whenever the movement may change."""
     phase = phase_view.phase
     state = (
         *(phase.session_id, phase.phase_id, phase.status, phase.active_s, frames_stored(db, phase)),

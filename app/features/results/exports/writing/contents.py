@@ -149,7 +149,7 @@ class Contents:
         return Member(path, self._counted(path, pieces))
 
     def _counted(self, path: str, pieces: Iterator[bytes]) -> Iterator[bytes]:
-        """Yield the same pieces, then add the file's line count and hash to `files`."""
+        """Yield the given pieces, then add the file's line count and hash to `files`."""
         digest, lines = hashlib.sha256(), 0
         for piece in pieces:
             digest.update(piece)

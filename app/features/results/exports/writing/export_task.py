@@ -79,7 +79,7 @@ def _write_export(order: ExportOrder) -> ExportResult:
 
 
 def watched(members: Iterable[Member], progress: Progress) -> Iterator[Member]:
-    """Yield the same members, and count rows and sessions in `progress` as they are written."""
+    """Yield the given members, and count rows and sessions in `progress` as they are written."""
     for member in members:
         yield (
             Member(member.path, _counted(member.pieces, progress))
