@@ -1,10 +1,10 @@
 """Check that a database contains only what this program can have written.
 
-Checksums show that a file is what was written, and SQLite's own check that its structure is intact.
-Neither shows that the tables are those of the product, that a column of times contains times, or
-that an account's role exists: a damaged value, or a forged backup, would crash the server where it
-is read. `wrong_tables` and `wrong_rows` check this without reading long values; `RestoredContent`
-checks rows that were just inserted into a database, before they are committed.
+Checksums show that a file is unchanged since it was written, and SQLite's own check that its
+structure is intact. Neither shows that the tables are those of the product, that a column of times
+contains times, or that an account's role exists: a damaged value, or a forged backup, would crash
+the server where it is read. `wrong_tables` and `wrong_rows` check this without reading long values;
+`RestoredContent` checks rows that were just inserted into a database, before they are committed.
 """
 
 import json

@@ -108,7 +108,7 @@ _UNREADABLE = (
 
 @dataclass(frozen=True)
 class Lifetimes:
-    """How long restored credentials may last from `now` on, by the settings of the installation."""
+    """The longest lifetimes of restored credentials from `now` on, set by the installation."""
 
     now: datetime
     login: timedelta

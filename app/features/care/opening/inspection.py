@@ -1,8 +1,8 @@
 """Detect damage of a SQLite file without changing it.
 
-Only what the bytes of the file prove counts as damage. Anything else that prevents reading the
-file (permissions, a disk that does not respond, a lock) raises NotDurable instead: then
-nothing is known about the database, and it stays where it is.
+Only damage that the bytes of the file prove is reported. Anything else that prevents reading the
+file (permissions, a disk that does not respond, a lock) raises NotDurable instead: then nothing is
+known about the database, and it stays where it is.
 
 Use it only in a process that has not opened the file with SQLite: on POSIX, closing any handle of a
 file drops the locks that SQLite's own handles hold.

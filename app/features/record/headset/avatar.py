@@ -1,9 +1,9 @@
 """The physics avatar of a session: built for the participant, recorded, and sent to the headset.
 
-The model follows from configuration, stature and scene. It is recorded as a whole all the same: a
-later version of the product may build a different model, and what a participant met must remain
-known. The model reveals the participant's measurements, so it is stored as content next to the
-event log and is removed by an erasure.
+The model follows from configuration, stature and scene. It is nevertheless recorded as a whole: a
+later version of the product may build a different model, and the avatar that a participant had must
+remain on record. The model reveals the participant's measurements, so it is stored as content next
+to the event log and is removed by an erasure.
 """
 
 from collections.abc import Mapping

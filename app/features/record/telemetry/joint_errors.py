@@ -1,9 +1,10 @@
 """Compute the joint errors of a phase over its active time: a summary, and their course over time.
 
-Both are stored for two references: what the avatar was commanded at that moment (`present`: what
-the latency costs) and the delayed command (`command`: how good the controller is). For a physics
-avatar, the reference is the participant's pose as its hinges can reproduce it, before their limits
-are applied; how often the limits clipped it is stored as well. Both can be recomputed at any time.
+Both are stored for two references: the pose that was commanded at that moment (`present`, which
+shows the effect of the latency) and the delayed command (`command`, which shows the quality of the
+controller). For a physics avatar, the reference is the participant's pose as its hinges can
+reproduce it, before their limits are applied; how often the limits clipped it is stored as well.
+Both can be recomputed at any time.
 """
 
 from collections.abc import Iterator, Sequence

@@ -23,7 +23,7 @@ class LiveTelemetry:
     Counting is cheap and always done; figures are computed only while a console is subscribed.
 
     `hinges`: those of a physics avatar, so that its live errors equal the stored ones, which are
-    relative to what the hinges are commanded. None for a delayed copy.
+    relative to the pose that the hinges are commanded. None for a delayed copy.
     """
 
     hinges: HingeReference | None = None

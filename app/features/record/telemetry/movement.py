@@ -1,8 +1,8 @@
 """Read a phase's movement for its summaries: what the avatar did, and what it should have done.
 
 A phase has one `Run` for each epoch that took part in it; every epoch has its own clock. The actual
-body's frames are those of the phase. The target's begin earlier, since what the avatar does at the
-start of a phase was commanded before it.
+body's frames are those of the phase. The target's frames begin earlier, since the avatar's movement
+at the start of a phase was commanded before it.
 """
 
 import logging

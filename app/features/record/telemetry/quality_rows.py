@@ -1,6 +1,6 @@
 """Compute the data quality of a phase over its active time, one row per stream.
 
-This repeats the checks that raise alarms while the phase runs, but on what was stored. Faults in
+This repeats the checks that raise alarms while the phase runs, but on the stored data. Faults in
 pauses and on walks back do not count, because those frames are not analysed.
 """
 

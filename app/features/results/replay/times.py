@@ -136,7 +136,7 @@ def _batch_times(row: TelemetryBatch) -> list[float]:
 
 
 def _only_epoch(db: Session, phase: Phase) -> int:
-    """Return the run of a phase that has no movement."""
+    """Return the first epoch with contacts of a phase without movement; 1 if there are none."""
     query = select(func.min(Contact.epoch)).where(
         Contact.session_id == phase.session_id, Contact.phase_id == phase.phase_id
     )

@@ -20,7 +20,7 @@ PAIRS_IN_A_GROUP = 4
 class HelpFacts:
     """The facts on the page: its own address, the https address, and the authority's certificate.
 
-    `port` is the one that a USB cable forwards to.
+    `port` is the port that a USB cable forwards to.
     """
 
     here: str

@@ -1,6 +1,6 @@
 """The help page's texts in English and German, and the choice of language for a browser.
 
-`*bold*` is what a person looks for on the device's screen, `` `code` `` what they type.
+`*bold*` marks what a person looks for on the device's screen, `` `code` `` what they type.
 """
 
 from dataclasses import dataclass

@@ -3,8 +3,8 @@
 The session stays in the export with what its participant answered and did; only what reveals its
 condition is removed. Cells are emptied if a column names the condition, the avatar's latency, or a
 hash: with three possible latencies, trying them on the hash finds the right one. Rows are left out
-if a table has what the avatar did next to what the participant did, since the one lags behind the
-other by the latency. Of the frames only the participant's own remain.
+if a table has what the avatar did next to what the participant did, since the avatar lags behind
+the participant by the latency. Of the frames only the participant's own remain.
 """
 
 import json
