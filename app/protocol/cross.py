@@ -240,7 +240,7 @@ def avatar_problems(
     """Yield avatar problems: physics needs a configuration, a delayed copy must not have one.
 
     Args:
-        tree: of the study file.
+        tree: the tree of the study file.
         avatars: key -> number of the newest version; None if unknown.
     """
     moved, named = tree.get("avatar"), tree.get(_AVATAR_KEY)

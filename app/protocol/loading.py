@@ -58,13 +58,13 @@ def load_study(
     """Load a study file (YAML).
 
     Args:
-        text: of the file.
+        text: the text of the file.
         instruments: those that it may refer to, by key.
         avatars: those that it may refer to: key -> number of the newest version. None skips the
             check.
 
     Raises:
-        ConfigError: with every problem of the file.
+        ConfigError: the file is invalid; the error lists every problem.
     """
     source = study_source(text)
     between = cross_problems(source.tree, _STUDY.schema, instruments, avatars)

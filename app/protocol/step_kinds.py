@@ -66,8 +66,8 @@ class StepKindSpec:
             command.
         takes_s: our estimate of the time that it takes in addition to reading its text, seconds;
             None if the study specifies it, or if there is only reading.
-        phases: of a timed kind, its texts by limb; the key None stands for a phase without a limb.
-        phase_key: of a timed kind, the phase's key in the rules of a study; `{limb}` is replaced.
+        phases: the texts of a timed kind by limb; the key None stands for a phase without a limb.
+        phase_key: for a timed kind, the phase's key in the rules of a study; `{limb}` is replaced.
         counts: its phases are the study's data. All others are recorded, but in no figure or test.
         needs_body: it must come after the step in which the participant gets a body.
         records_movement: movement is recorded in it, once the participant has a body.

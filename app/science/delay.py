@@ -33,7 +33,7 @@ def delayed_pose(
         rotations: (N, 22, 4) the participant's local rotations, wxyz.
         query_times_s: (M,) times at which to compute the pose. The undelayed hips are interpolated
             at these times too.
-        delay_s: at least zero.
+        delay_s: the delay, at least zero.
 
     Raises:
         DelayError: there are no samples, the times do not increase, or the delay is not valid.

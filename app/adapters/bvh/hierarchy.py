@@ -86,7 +86,7 @@ def read_hierarchy(lines: Iterator[tuple[int, str]], limits: BvhLimits) -> Hiera
     """Parse numbered lines up to and including the one with the word MOTION.
 
     Raises:
-        BvhError: with the line, if the grammar or a limit is violated.
+        BvhError: the grammar or a limit is violated; the error names the line.
     """
     words, tree = _Words(lines), Hierarchy()
     words.expect("HIERARCHY")

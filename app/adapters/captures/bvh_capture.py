@@ -35,7 +35,7 @@ def read_bvh_capture(data: bytes, *, name: str, reading: Reading, limits: Limits
     """Read a BVH file; see `app.adapters.bvh` for its grammar.
 
     Raises:
-        CaptureError: the line and the reason.
+        CaptureError: the file cannot be read; the error gives the line and the reason.
     """
     del name
     bounds = BvhLimits(

@@ -38,9 +38,10 @@ class Conventions:
 
     Attributes:
         length: the file's unit, such as "cm" or "0.056444 m".
-        axes: such as "y up, right-handed".
-        rotations: such as "quaternion x, y, z, w", "Euler ZYX, degrees" or "none".
-        rate: such as "120 Hz".
+        axes: the axes, such as "y up, right-handed".
+        rotations: the form of rotations, such as "quaternion x, y, z, w", "Euler ZYX, degrees" or
+            "none".
+        rate: the sampling rate, such as "120 Hz".
     """
 
     length: Convention
@@ -83,7 +84,7 @@ class Capture:
     Attributes:
         format: key of the format, such as "bvh" or "motive-csv".
         motion: a skeleton's movement, markers, or rigid bodies.
-        conventions: by which it was read.
+        conventions: the conventions by which it was read.
         notes: what users should know, each a sentence: gaps, repairs, omitted columns.
     """
 

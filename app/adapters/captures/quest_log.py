@@ -35,7 +35,7 @@ def read_quest_log(data: bytes, *, name: str, reading: Reading, limits: Limits) 
     """Read a movement log of an Oculus headset.
 
     Raises:
-        CaptureError: the line and the reason.
+        CaptureError: the file cannot be read; the error gives the line and the reason.
     """
     del name
     rows = csv_rows(text_lines(data))

@@ -19,7 +19,7 @@ def read_capture(
     """Read a capture of any known format, determined by its content; the name is only a hint.
 
     Args:
-        data: the file.
+        data: the content of the file.
         name: its name, for its extension and for names of things that the file does not name.
         reading: what the user specifies where the file is silent or wrong, and companion files.
         limits: the largest sizes that are accepted.
@@ -28,7 +28,8 @@ def read_capture(
         The movement in metres, y up and right-handed, with the conventions by which it was read.
 
     Raises:
-        CaptureError: the format is unknown, or the file violates its rules: with line and reason.
+        CaptureError: the format is unknown, or the file violates its rules; the error gives the
+            line and the reason.
     """
     if len(data) > limits.bytes:
         raise CaptureError(f"the file has {len(data)} bytes, up to {limits.bytes} are read.")

@@ -40,7 +40,7 @@ def csv_rows(
 
     Args:
         lines: all lines of the file.
-        separator: between cells.
+        separator: the character between cells.
         quoted: whether a quote at the start of a cell opens a quotation, which may span lines.
     """
     reader = csv.reader(
@@ -76,8 +76,8 @@ def read_numbers(
     """Read the chosen columns, (index, title), of every row that is not blank.
 
     Raises:
-        CaptureError: with line and column: a row is too short, a cell is neither empty nor a finite
-            number, there are no rows, or more numbers than allowed.
+        CaptureError: (with line and column) a row is too short, a cell is neither empty nor a
+            finite number, there are no rows, or more numbers than allowed.
     """
     # At least two columns, because itemgetter with one index does not return a tuple.
     pick: Any = itemgetter(*(index for index, _ in columns), columns[0][0])

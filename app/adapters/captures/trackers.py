@@ -117,8 +117,8 @@ class TrackedCells:
     Attributes:
         lines: (N,) line of each sample in the file.
         times_s: (N,) from the first sample on.
-        cells: (N, B, C) three coordinates, then the rotation, as in the file.
-        repairs: notes on rows left out.
+        cells: (N, B, C) values: three coordinates, then the rotation, as in the file.
+        repairs: notes on rows that were left out.
         left_out: a note that names the columns that are not movement.
     """
 
@@ -141,7 +141,7 @@ def read_cells(
     """Read the time column and the bodies' columns.
 
     Raises:
-        CaptureError: the line and the reason.
+        CaptureError: a row cannot be read; the error gives the line and the reason.
     """
     order = [time, *(column for body in bodies for column in (*body.places, *body.rotations))]
     columns = [(column, header[column]) for column in order]

@@ -46,7 +46,7 @@ def read_trc(data: bytes, *, name: str, reading: Reading, limits: Limits) -> Cap
     """Read a table of markers; an empty cell means that a marker was not visible.
 
     Raises:
-        CaptureError: with the line, if header or rows cannot be read.
+        CaptureError: the header or a row cannot be read; the error names the line.
     """
     if len(data) > limits.bytes:
         raise CaptureError(f"{name} has {len(data)} bytes: up to {limits.bytes} are read.")

@@ -50,8 +50,8 @@ def read_uxf_tracker(data: bytes, *, name: str, reading: Reading, limits: Limits
     """Read a tracker file of UXF.
 
     Raises:
-        CaptureError: the line and the reason; also for trackers without movement of bodies, such as
-            gaze.
+        CaptureError: the file cannot be read; the error gives the line and the reason. Also for
+            trackers without movement of bodies, such as gaze.
     """
     separator = _separator(data)
     # UXF does not quote: a quotation mark in a lab's own column is an ordinary character.

@@ -53,7 +53,7 @@ def read_vicon_tracker(data: bytes, *, name: str, reading: Reading, limits: Limi
     """Read a CSV of objects exported by Vicon Tracker.
 
     Raises:
-        CaptureError: the line and the reason.
+        CaptureError: the file cannot be read; the error gives the line and the reason.
     """
     del name
     rows = csv_rows(text_lines(data))

@@ -20,8 +20,8 @@ class MovementWriter:
 
     Attributes:
         key: used in addresses and as the file extension.
-        media_type: of the files.
-        name: as shown on buttons.
+        media_type: the media type of the files.
+        name: the name shown on buttons.
         write: yields the text in pieces.
     """
 

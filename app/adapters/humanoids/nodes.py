@@ -31,10 +31,10 @@ class Tree:
     """All nodes of a file.
 
     Attributes:
-        names: unique names.
+        names: unique names of the nodes.
         parents: index of the parent, -1 for root nodes.
         order: every node after its parent.
-        world: (N, 4, 4) world_from_node.
+        world: (N, 4, 4) matrices world_from_node.
     """
 
     names: tuple[str, ...]

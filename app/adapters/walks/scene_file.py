@@ -43,8 +43,9 @@ def load_scene(text: str) -> Scene:
     """Parse a scene file.
 
     Raises:
-        ConfigError: with every problem of the file: unknown keys, values that are not numbers, an
-            outline that is not convex, a place inside an obstacle, a path to an unknown place.
+        ConfigError: the file is invalid; the error lists every problem: unknown keys, values that
+            are not numbers, an outline that is not convex, a place inside an obstacle, a path to an
+            unknown place.
     """
     source = read_source(text)
     if not isinstance(source.tree, dict):

@@ -38,7 +38,7 @@ class TrackReading:
 
     Attributes:
         rate_hz: frame rate, if time is a frame number.
-        metres_per_unit: of x and y; None to use the header's unit, or else metres.
+        metres_per_unit: the unit of x and y; None to use the header's unit, or else metres.
         statures_m: stature by subject.
         kind: whether people or a program walked.
     """
@@ -70,12 +70,12 @@ def read_tracks(data: bytes, *, name: str, reading: TrackReading = _AS_IT_IS) ->
     """Read the tracks of all people of a table, in the order in which they appear.
 
     Args:
-        data: the file.
-        name: of the file, which becomes the source of the tracks.
+        data: the content of the file.
+        name: the name of the file, which becomes the source of the tracks.
         reading: what the file does not specify.
 
     Raises:
-        CaptureError: with the line: a missing column, a cell that is not a number, NaN, a person
+        CaptureError: (with the line) a missing column, a cell that is not a number, NaN, a person
             with only one sample, times that do not increase, positions that are not in metres.
     """
     lines = list(text_lines(data))

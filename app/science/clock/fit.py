@@ -24,8 +24,8 @@ def fit_clock(probes: ClockProbes, limits: ClockLimits = DEFAULT_LIMITS) -> Cloc
     """Map the client's clock to the server's clock.
 
     Args:
-        probes: of one client run, in the order in which they were made. Probes without an answer
-            are ignored; those that cannot be true are left out and counted.
+        probes: the probes of one client run, in the order in which they were made. Probes without
+            an answer are ignored; those that cannot be true are left out and counted.
         limits: the assumptions about the clocks.
 
     Returns:

@@ -1,10 +1,10 @@
 """Map client times to server times, with an error bound at every moment.
 
 Within a client run the client's monotonic clock is taken as the reference: it may jump ahead or
-stand still, and is assumed to have gone back only where a probe has an earlier time than the
-previous probe. Stretches follow each other in the order in which they were made; each begins where
-the client time of the previous ones ended, so they never overlap, and the curve through all knots
-is made non-decreasing. A later client time therefore never has an earlier server time. Durations
+stop, and is assumed to have gone back only where a probe has an earlier time than the previous
+probe. Stretches follow each other in the order in which they were made; each begins where the
+client time of the previous ones ended, so they never overlap, and the curve through all knots is
+made non-decreasing. A later client time therefore never has an earlier server time. Durations
 should still be computed from client times, which are finer.
 
 The bound at a moment takes into account every stretch that may cover it:

@@ -31,8 +31,8 @@ def arm(
     """Return centres (N, 3) and axes (N, 3, 3) of upper arm, forearm and hand.
 
     Args:
-        side: "Left" or "Right".
-        chest_axes: (N, 3, 3).
+        side: the arm, "Left" or "Right".
+        chest_axes: (N, 3, 3) axes of the chest.
         shoulder, wrist: (N, 3) centres.
         outer_elbow: (N, 3) marker on the outer side, or the centre with a half width of 0.
         half_width_m: distance from that marker to the centre.

@@ -26,7 +26,7 @@ def fit_skeleton(motion: MarkerMotion | BodyMotion) -> Fitted:
     that it is level when the body stands tall (feet: when they move least).
 
     Args:
-        motion: y up, metres.
+        motion: the captured markers or bodies, y up, in metres.
 
     Returns:
         The movement of a rig whose joints are named like the body's, and what it leaves out.

@@ -20,9 +20,9 @@ class Landmarks:
     Attributes:
         set: the marker set by which they were identified.
         markers: landmark -> name of its marker.
-        places, seen: by landmark.
+        places, seen: positions and visibility, by landmark.
         names: all markers of the capture.
-        frames: N.
+        frames: the number of frames, N.
     """
 
     set: MarkerSet

@@ -95,7 +95,7 @@ def bridged(values: FloatArray, rate_hz: float) -> tuple[FloatArray, BoolArray]:
     """Fill gaps of up to half a second by linear interpolation.
 
     Args:
-        values: (N, K) with NaN rows where nothing was seen.
+        values: (N, K) values, with NaN rows where nothing was seen.
         rate_hz: frames per second.
 
     Returns:

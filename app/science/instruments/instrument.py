@@ -61,7 +61,7 @@ class Instrument:
 
     @cached_property
     def by_key(self) -> dict[str, Item]:
-        """Items by their key."""
+        """The items of the instrument, by key."""
         return {item.key: item for item in self.items}
 
     def scale_of(self, item: Item) -> Scale | None:

@@ -51,7 +51,7 @@ class JointErrors:
 
     Attributes:
         values_rad: (N, 21, 4) in the order of ERROR_JOINTS and ERROR_AXES; zero where not valid.
-        valid: (N, 21) which samples count.
+        valid: (N, 21) whether each sample counts.
     """
 
     values_rad: FloatArray
@@ -151,8 +151,8 @@ def summarise_joint_errors(
     """Summarise a phase's errors per joint and axis.
 
     Args:
-        errors: of N frames.
-        clipping: of the same frames; None for a body without limits.
+        errors: the errors of N frames.
+        clipping: the clipping of the same frames; None for a body without limits.
 
     Raises:
         JointErrorError: the clipping has another number of frames.

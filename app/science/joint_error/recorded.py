@@ -42,7 +42,7 @@ class ReferenceMotion:
 
     Attributes:
         rotations: (N, 22, 4) local rotations wxyz, unclamped; not finite where they are unknown.
-        clipping: of the same frames; None for an avatar without limits.
+        clipping: the clipping of the same frames; None for an avatar without limits.
     """
 
     rotations: FloatArray
@@ -58,11 +58,11 @@ class Recorded:
     """One run of a recording, with the participant's and the avatar's frames on one clock.
 
     Attributes:
-        times_s: (N,) of the participant's frames, s; any values are allowed.
-        reference: of the same N frames.
+        times_s: (N,) times of the participant's frames, s; any values are allowed.
+        reference: the reference of the same N frames.
         partners: (M,) for each frame of the avatar, the index of the corresponding frame of the
             participant.
-        actual_times_s: (M,) of the avatar's frames, s; only those that count.
+        actual_times_s: (M,) times of the avatar's frames, s; only those that count.
         actual: (M, 22, 4) the avatar's local rotations.
     """
 

@@ -55,10 +55,11 @@ class StreamPair:
     """The target and the actual stream of one client run, on that run's own clock.
 
     Attributes:
-        target_times_s: (n,), starting one lag before the phase; may contain invalid times.
+        target_times_s: (n,) times of the target's frames, starting one lag before the phase; may
+            contain invalid times.
         target_rotations: (n, 22, 4) local rotations wxyz; invalid ones are left out joint by joint.
-        actual_times_s: (m,) of the phase.
-        actual_rotations: (m, 22, 4).
+        actual_times_s: (m,) times of the phase's frames.
+        actual_rotations: (m, 22, 4) local rotations wxyz.
         active: (m,) mask of the actual frames that are in active time; only these are compared.
     """
 
@@ -79,7 +80,7 @@ class AchievedLatency:
         movement_s: active time during which the target's fastest joint turned above 20 deg/s.
         samples: number of active frames of the actual body with at least one usable joint.
         frame_s: median interval between frames of the actual body.
-        correlation: of all angular velocities at the best lag, -1 to 1.
+        correlation: the correlation of all angular velocities at the best lag, -1 to 1.
         reason: why there is no latency, or a reservation about it; else None.
     """
 
@@ -108,7 +109,7 @@ def achieved_latency(
     All frames count as active if `active` is None.
 
     Raises:
-        AchievedLatencyError: as `latency_of_runs`.
+        AchievedLatencyError: as for `latency_of_runs`.
     """
     every = np.ones(np.shape(actual_times_s), dtype=np.bool_) if active is None else active
     run = StreamPair(target_times_s, target_rotations, actual_times_s, actual_rotations, every)

@@ -38,7 +38,7 @@ class Track:
     """The usable frames of one stream, in order.
 
     Attributes:
-        times_s: (n,) ascending.
+        times_s: (n,) ascending times of the frames.
         rotations: (n, joints, 4) quaternions, each in the hemisphere of the previous one.
         valid: (n, joints) mask of the usable rotations; (n, 1) if all joints of a frame share it.
         active: (n,) mask of the frames that are in active time.
@@ -72,9 +72,9 @@ def track_of(times_s: FloatArray, rotations: FloatArray, active: BoolArray) -> T
     """Keep the frames whose time is finite and later than all previous ones; mask bad rotations.
 
     Args:
-        times_s: (n,), may be unordered or not finite.
-        rotations: (n, joints, 4), may contain any values.
-        active: (n,).
+        times_s: (n,) times, which may be unordered or not finite.
+        rotations: (n, joints, 4) rotations, which may contain any values.
+        active: (n,) mask of the frames that are in active time.
     """
     usable = np.where(np.isfinite(times_s), times_s, -np.inf)
     before = np.concatenate(([-np.inf], np.maximum.accumulate(usable)[:-1]))

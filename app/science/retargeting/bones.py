@@ -27,7 +27,8 @@ class Bone:
     Attributes:
         body_joint: name of the joint of the body.
         joint: index in the rig.
-        direction: (3,) of the bone in the joint's own frame, of any length above zero.
+        direction: (3,) direction of the bone in the joint's own frame, of any length above
+            zero.
         axis: (3,) unit vector it is aligned to, in the axes (before the rig's facing).
     """
 

@@ -30,9 +30,9 @@ def held_shifts(
 
     Args:
         positions_m, world: joints (N, J, 3) and world_from_joint (N, J, 4) of the avatar.
-        legs: the joints of its legs.
-        contacts: when the feet are held.
-        ground: under the avatar.
+        legs: the joints of the avatar's legs.
+        contacts: the times at which the feet are held.
+        ground: the ground under the avatar.
         settling_s: time in which a foot returns to its own speed before and after a contact.
     """
     settle = max(1, round(settling_s * contacts.rate_hz))

@@ -82,10 +82,10 @@ def lock_feet(
 
     Args:
         motion: the avatar's movement, after the transfer.
-        joint_map: of the avatar.
-        contacts: of the source, from `find_contacts`, with the same number of frames.
-        ground: under the avatar.
-        limits: of the correction.
+        joint_map: the joint map of the avatar.
+        contacts: the contacts of the source, from `find_contacts`, with the same number of frames.
+        ground: the ground under the avatar.
+        limits: the limits of the correction.
 
     Raises:
         RigError: the legs are not mapped, or the contacts have a different number of frames.

@@ -40,11 +40,11 @@ class Step:
     """One lift of a foot, from contact to contact.
 
     Attributes:
-        side: the foot.
+        side: whether it is the left or the right foot.
         lift_s, contact_s: when it leaves the ground and comes down, from the first frame.
         length_m: forward travel of the ball from contact to contact.
-        height_m: from its lowest to its highest position on the way.
-        contact_height_m: of the ball above the ground at contact.
+        height_m: difference in height between its lowest and its highest position on the way.
+        contact_height_m: the height of the ball above the ground at contact.
     """
 
     side: Side
@@ -60,9 +60,9 @@ class FootPath:
     """The path of the ball of one foot.
 
     Attributes:
-        side: the foot.
-        forward_m: (N,) along the direction of travel.
-        height_m: (N,) above the ground.
+        side: whether it is the left or the right foot.
+        forward_m: (N,) distance along the direction of travel.
+        height_m: (N,) height above the ground.
     """
 
     side: Side
@@ -83,8 +83,8 @@ class Walk:
         rate_hz: frames per second.
         leg_length_m: thigh plus shin.
         thigh_share: thigh over thigh plus shin, the mean of both legs.
-        feet: left and right path.
-        contacts: when the feet are down.
+        feet: the paths of the left and the right foot.
+        contacts: the times at which the feet are down.
         steps: whole lifts in the order of their start; lifts cut off by the capture are left out.
         slide_m_s: mean horizontal speed of feet in contact; None without contact.
     """
@@ -117,12 +117,12 @@ def walk_figures(
     """Measure a walk.
 
     Args:
-        motion: of a body with legs.
+        motion: the movement of a body with legs.
         legs: its leg joints, from `legs_of`.
-        ground: under the body; heights are above it.
-        contacts: of another body with the same movement, to measure the same stretches of time;
-            None to detect this body's own. With the other body's contacts every lift counts,
-            whatever its height here.
+        ground: the ground under the body; heights are measured from it.
+        contacts: the contacts of another body with the same movement, to measure the same stretches
+            of time; None to detect this body's own. With the other body's contacts every lift
+            counts, whatever its height here.
     """
     positions, world = motion.world()
     balls, hips = legs.balls_m(positions, world), positions[:, legs.hips]

@@ -99,7 +99,7 @@ class Grid:
     Beyond the grid the height of the nearest corner or edge continues.
 
     Attributes:
-        corner_m: (x, z) of heights_m[0, 0].
+        corner_m: position (x, z) of heights_m[0, 0].
         cell_m: side of a cell.
         heights_m: (X, Z), row i at x = corner + i cell, column j at z = corner + j cell.
     """

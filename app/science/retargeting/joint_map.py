@@ -50,8 +50,10 @@ class Proposal:
         joint_map: body joint -> rig joint.
         sources: body joint -> whether it was identified by its name or by its place in the
             hierarchy.
-        unmapped_body_joints: of the 22 body joints; in an avatar these keep their T-pose.
-        unmapped_rig_joints: they move nothing, and in an avatar keep their rest pose.
+        unmapped_body_joints: those of the 22 body joints that are not mapped; in an avatar they
+            keep their T-pose.
+        unmapped_rig_joints: joints of the rig that are not mapped; they move nothing, and in an
+            avatar they keep their rest pose.
     """
 
     joint_map: JointMap

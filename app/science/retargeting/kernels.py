@@ -31,8 +31,8 @@ def transfer(
 
     Args:
         roots, rotations: (N, 3), (N, S, 4) of the source.
-        joints, numbers: the `Plan`.
-        scratch: (2, W, 4, BLOCK).
+        joints, numbers: the arrays of the `Plan`.
+        scratch: (2, W, 4, BLOCK) working memory.
         lift_m: the hips are at scale * source + (0, lift_m, 0).
         roots_out, rotations_out: (N, 3), (N, A, 4) results.
     """

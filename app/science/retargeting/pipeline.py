@@ -51,7 +51,7 @@ class Retargeted:
     """A movement retargeted to an avatar.
 
     Attributes:
-        motion: the avatar's.
+        motion: the avatar's movement.
         scale: factor on the hips' travel.
         scaled_by: "legs", or what determined the scale where one of the bodies has no legs.
         carried: body joints that move the avatar.
@@ -91,8 +91,8 @@ def retarget_motion(
         source_map: body joint -> joint of its rig.
         avatar: any rig; its rest pose is aligned to the T-pose automatically.
         avatar_map: body joint -> joint of the avatar.
-        ground: under the avatar.
-        lock: hold the avatar's feet while the source's are down.
+        ground: the ground under the avatar.
+        lock: whether to hold the avatar's feet while the source's are down.
         standing_frame: a frame in which the source stands on the ground.
 
     Raises:

@@ -55,11 +55,11 @@ class TPose:
     """A rig in its T-pose.
 
     Attributes:
-        rig: the body.
+        rig: the rig, in its own rest pose.
         axes: the frame it was aligned in.
         facing: (4,) world_from_axes, a rotation about up: how the rig faces at rest.
-        local_rotations: (J, 4) parent_from_joint.
-        world_rotations: (J, 4) world_from_joint.
+        local_rotations: (J, 4) rotations parent_from_joint.
+        world_rotations: (J, 4) rotations world_from_joint.
         positions_m: (J, 3) in the world, the root at its rest position.
         bones: the bones that were aligned, root to leaf.
     """

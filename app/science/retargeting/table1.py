@@ -55,11 +55,11 @@ class Table1Row:
     """One joint of the table; angles are Unreal's roll, pitch and yaw in the parent, degrees.
 
     Attributes:
-        joint: name in the mannequin.
+        joint: name of the joint in the mannequin.
         initial, printed, computed: the initial pose, the T-pose as printed, as computed here.
         difference_deg: angle of the rotation from the printed to the computed one. It is the
             measure of agreement, as three angles can differ by much where rotations hardly differ.
-        largest_angle_difference_deg: of roll, pitch and yaw individually.
+        largest_angle_difference_deg: the largest difference of roll, pitch and yaw individually.
         inconsistent_in_source: whether the row contradicts the rest of the printed table.
     """
 

@@ -161,7 +161,7 @@ class Retargeter:
         the hips rise and fall with the ground below them.
 
         Args:
-            motion: of the source.
+            motion: the movement of the source.
             ground: flat at height zero by default.
             standing_frame: a frame in which the source stands; negative counts from the end.
 

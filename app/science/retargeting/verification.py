@@ -37,7 +37,7 @@ class AvatarFigures:
     """Measures of one avatar's walk, to compare with the source's.
 
     Attributes:
-        name: as it was given.
+        name: the name as it was given.
         leg_ratio: its leg length over the source's.
         walk: lifts, steps and slide from its own contacts.
         slide_m_s: mean horizontal speed of its feet while the *source's* are down, the measure by
@@ -55,8 +55,8 @@ class Verification:
     """Result of checking whether a walk keeps its character on every avatar.
 
     Attributes:
-        source: the person.
-        avatars: in the given order.
+        source: the figures of the captured person.
+        avatars: the figures of the avatars, in the given order.
         lifts_agree: every avatar lifts each foot as often as the source.
         largest_timing_difference_s: between the same lift, or the following contact, of any two of
             the bodies; None where the numbers of lifts disagree, 0 where there is no lift.
@@ -77,10 +77,10 @@ def verify(
     """Compare a captured walk with the same walk on each avatar.
 
     Args:
-        source: the capture.
+        source: the captured movement.
         source_map: its joint map.
         avatars: (name, movement after the transfer, joint map) for each.
-        ground: under the avatars; the source's is flat.
+        ground: the ground under the avatars; the source's is flat.
 
     Raises:
         RigError: legs are not mapped, or an avatar has a different number of frames than the

@@ -1,7 +1,7 @@
 """Define a skeleton of any kind, and its movement.
 
 The world is y up and right-handed, lengths are metres, rotations unit quaternions wxyz. A rig's
-*rest pose* is the one that its file or its author calls so; it need not be a T-pose
+*rest pose* is the pose that its file or its author defines as such; it need not be a T-pose
 (`app.science.retargeting.t_pose` makes one). In order of joints, with q_j the local rotation,
 
     world_from_j = world_from_parent q_j

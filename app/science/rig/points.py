@@ -44,7 +44,7 @@ class BodyMotion:
     """N samples of B rigid bodies, each with a position and a rotation in the world.
 
     Attributes:
-        names: of the bodies.
+        names: the names of the bodies.
         times_s: (N,) since the first sample; loggers seldom keep a constant sampling rate.
         positions_m: (N, B, 3), NaN where a body was not observed.
         rotations: (N, B, 4) world_from_body, NaN where a body was not observed.

@@ -21,7 +21,7 @@ class Aim:
     """Plans the movements of one limb of a person.
 
     Attributes:
-        traits: how the person moves.
+        traits: the traits of the person's movement.
         latency_s: delay that the person sees at present, which slows movements.
         tempo: factor on movement times, larger for a foot.
         press_m: how far an end point lies beyond a surface, against the approach.

@@ -47,7 +47,7 @@ class SimulatedParticipant:
         base: looping background movement: `loop(resample(retarget(...), 90.0))` or
             `idle_movement(...)`.
         rng: source of all randomness; seed it and keep the seed.
-        traits: how the person moves; drawn from rng if None.
+        traits: the traits of the person's movement; drawn from rng if None.
         home_m: (x, z) where the person stands at first and for hand tasks.
 
     Raises:

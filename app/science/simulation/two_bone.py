@@ -25,7 +25,7 @@ class TwoBone:
     Attributes:
         upper, lower: unit directions of the two bones.
         normal: unit normal of their plane: the direction to the end crossed with the pole's side.
-        short_m: by how much the end was out of reach; 0 if it is reached.
+        short_m: distance by which the end was out of reach; 0 if it is reached.
     """
 
     upper: Vector

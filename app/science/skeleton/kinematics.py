@@ -42,8 +42,8 @@ class WorldPose:
     """Poses of the joints in the world.
 
     Attributes:
-        positions_m: (..., 22, 3).
-        rotations: (..., 22, 4) world_from_joint.
+        positions_m: (..., 22, 3) positions of the joints.
+        rotations: (..., 22, 4) rotations world_from_joint.
     """
 
     positions_m: FloatArray
@@ -57,7 +57,7 @@ class BodySegments:
     Attributes:
         axes_m: (..., 22, 2, 3) start and end of each capsule's axis in the world; equal for a
             sphere.
-        radii_m: (22,).
+        radii_m: (22,) radius of each capsule.
     """
 
     axes_m: FloatArray

@@ -21,7 +21,7 @@ def flat_soles(world: FloatArray, skeleton: Skeleton, root_m: FloatArray) -> Flo
     """Return world_from_joint rotations (N, 22, 4) with feet and toes flat where they stand.
 
     Args:
-        world: (N, 22, 4) world_from_joint.
+        world: (N, 22, 4) rotations world_from_joint.
         skeleton: gives the pitch of a flat foot, from ankle to toes.
         root_m: (N, 3) hips, whose height above the floor needs to be known only up to a constant.
     """

@@ -19,11 +19,12 @@ class StatisticalTest:
     """A test of one within-subjects factor, the added latency.
 
     Attributes:
-        key: in study files, so it is never renamed.
-        name: as lists and fields show it.
-        phrase: in an English sentence, such as "Friedman's test of the score agency".
+        key: the name of the test in study files, so it is never renamed.
+        name: the name of the test in lists and fields.
+        phrase: the test as named in an English sentence, such as "Friedman's test of the score
+            agency".
         question: the question that it answers, as a heading.
-        directions: of the measure along the factor; what a study may declare.
+        directions: the directions of the measure along the factor that a study may declare.
         fewest_conditions: the smallest number of levels of the factor that it accepts.
         needs_reference: whether it compares every level with a named reference level.
         assumptions: what must hold for its p value to be valid.

@@ -17,7 +17,7 @@ class Sample:
     Attributes:
         values: (n participants, k levels), complete; any unit.
         levels: names of the columns, in the order of the factor.
-        direction: of the measure along the factor.
+        direction: the direction of the measure along the factor.
         reference: the level with which the others are compared; None for the first.
         holm: whether several comparisons are adjusted by Holm's rule.
         alpha: significance level, with which p is compared.

@@ -60,7 +60,7 @@ def aligned_contrasts(
 
     Args:
         values: complete, (n, a) or (n, a, b), all factors within subjects.
-        levels: of each factor, in the order of the axes after the first.
+        levels: the levels of each factor, in the order of the axes after the first.
         axes: which of these axes are contrasted together: (1,), (2,) or (1, 2).
 
     Raises ConstantData if there is no residual, StatisticsError for axes or levels that do not

@@ -37,7 +37,7 @@ class AlignedRanks:
 
     Attributes:
         effects: main effects first; each from its own ranks.
-        n: subjects.
+        n: number of subjects.
         caution: the objection to the method; to be shown with every number.
     """
 

@@ -32,12 +32,12 @@ class Interval:
 
     Attributes:
         estimate: the statistic of the data as observed.
-        low, high: the ends.
-        confidence: 0 to 1.
+        low, high: the ends of the interval.
+        confidence: the confidence level, 0 to 1.
         method: "BCa", or "percentile" where BCa is not defined (the acceleration cannot be computed
             from leaving out subjects).
         resamples: number of draws.
-        n: subjects.
+        n: number of subjects.
     """
 
     estimate: float
@@ -61,7 +61,8 @@ def bootstrap_interval(
 
     Args:
         data: (n, ...), one entry per subject, complete.
-        statistic: of many draws at once: takes (draws, n, ...), returns (draws,).
+        statistic: function that computes the statistic of many draws at once: it takes (draws, n,
+            ...) and returns (draws,).
         rng: seeded by the caller, so that the interval is reproducible.
 
     Raises TooFewData for fewer than 2 subjects, StatisticsError for a confidence outside 0..1 or a

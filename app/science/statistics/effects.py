@@ -124,7 +124,7 @@ def mauchly(covariance: FloatArray, freedom: int) -> tuple[float, float]:
     """Return Mauchly's W = det(S) / (tr(S) / d)^d and its p, by Box's second-order approximation.
 
     Args:
-        covariance: (d, d) of orthonormal contrasts, on `freedom` degrees of freedom.
+        covariance: (d, d) covariance of orthonormal contrasts, on `freedom` degrees of freedom.
         freedom: subjects minus groups; below d, W is undefined and both results are NaN.
 
     R and pingouin use the number of levels, not of contrasts, in the last term of p.

@@ -30,7 +30,7 @@ class ErrorRate:
         measure: the simulated kind of measure: `item`, `measure`, `scale`.
         kind: what `rate` counts: rejections at 5 %, or intervals of 95 % that contain the truth.
         exact: whether the test guarantees not to exceed 5 % in this scenario.
-        participants: of each data set; 0 for all sizes together.
+        participants: the number of participants of each data set; 0 for all sizes together.
         sets: data sets on which it could be computed.
         failed: data sets on which it could not, not counted in `sets`.
         rate: 0 to 1.
@@ -74,7 +74,7 @@ class ErrorRates:
     """The table of measured error rates.
 
     Attributes:
-        seed: of all data sets.
+        seed: the seed of all data sets.
         design: the simulated design, as in `NullDesign`.
         rows: one per test, scenario and number of participants.
     """

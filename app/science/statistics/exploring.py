@@ -27,13 +27,13 @@ class Explored:
     """The association of one demographic variable with the scores.
 
     Attributes:
-        variable: its name.
+        variable: the name of the variable.
         kind: "number" or "category".
         effect: Spearman's rho, or epsilon squared.
         p, p_holm: two-sided; adjusted for all that was explored together. NaN if there are too few
             data.
         n: subjects with both values; n_left_out: the others.
-        why_not: why it could not be computed; empty if it could.
+        why_not: the reason why the association could not be computed; empty if it could.
         label: to be shown with every number.
     """
 
@@ -65,9 +65,9 @@ def explore(
     """Explore the association of the scores of n subjects with each variable; numbers first.
 
     Args:
-        scores: (n,), NaN where missing.
-        numbers: (n,) each, NaN where missing.
-        categories: n words each, None or "" where missing.
+        scores: (n,) scores, NaN where missing.
+        numbers: numeric variables by name, (n,) each, NaN where missing.
+        categories: categorical variables by name, n words each, None or "" where missing.
 
     Raises StatisticsError for columns of another length. A variable that cannot be computed is in
     the result with its reason.

@@ -39,15 +39,15 @@ class Friedman:
     """The result of Friedman's test of n subjects at k levels; ranks have no unit.
 
     Attributes:
-        statistic: Q, corrected for ties.
-        df: k - 1.
-        p: by `method`.
-        p_asymptotic: of the chi-square distribution, always given in addition.
+        statistic: the statistic Q, corrected for ties.
+        df: degrees of freedom, k - 1.
+        p: the p value, computed by `method`.
+        p_asymptotic: the p value from the chi-square distribution, always given in addition.
         kendall_w: effect size, 0 to 1, corrected for ties.
         method: "exact" (permutation distribution with these ties) or "asymptotic".
-        note: why it is not exact; empty if it is.
-        n: subjects.
-        mean_ranks: of each level, 1 to k.
+        note: the reason why p is not exact; empty if it is.
+        n: number of subjects.
+        mean_ranks: the mean rank of each level, 1 to k.
     """
 
     statistic: float

@@ -27,10 +27,11 @@ class MeanInterval:
     """A mean and its confidence interval, in the unit of the measure.
 
     Attributes:
-        mean, low, high: the interval is symmetric.
-        sd: over subjects; for "within", of the values without the subjects' means, corrected.
-        confidence: 0 to 1.
-        n: subjects.
+        mean, low, high: the mean and the ends of its interval, which is symmetric.
+        sd: standard deviation over subjects; for "within", of the values without the subjects'
+            means, corrected.
+        confidence: the confidence level, 0 to 1.
+        n: number of subjects.
         kind: "between" for a single condition; "within" for comparing conditions by eye.
     """
 

@@ -33,7 +33,7 @@ class PageTrend:
     """The result of Page's test of n subjects at k levels, for a rise and for a fall.
 
     Attributes:
-        statistic: L of the levels in the given order.
+        statistic: the statistic L of the levels in the given order.
         p: one-sided, that they rise; by `method`.
         p_falling: one-sided, that they fall: the same test with the order reversed.
         p_given_ties: like `p`, exact for the observed ties; NaN where asymptotic.

@@ -49,7 +49,7 @@ class Comparison:
         a, b: the levels; positive effects mean that a is larger.
         test: the signed-rank test of a - b, with n and the number left out.
         p_holm: its p, adjusted for all comparisons made together.
-        median_difference: of a - b over the pairs, in the unit of the measure.
+        median_difference: the median of a - b over the pairs, in the unit of the measure.
     """
 
     a: str

@@ -28,13 +28,13 @@ class AgainstReference:
     """The comparisons of every other level with the reference.
 
     Attributes:
-        reference: the level compared with.
+        reference: the level with which the others are compared.
         comparisons: in the order of levels; `a` is the level, `b` the reference, so that a positive
             effect means that the measure is larger than at the reference.
         first_that_differs: the first level, in order, whose adjusted p is at most alpha; None if
             there is none. It is not a threshold: levels in between are untested, and a later one
             may not differ.
-        alpha: of the whole family.
+        alpha: the significance level of the whole family.
         alternative: "less" means that a level is below the reference.
     """
 

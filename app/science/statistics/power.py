@@ -24,10 +24,10 @@ class Expected:
 
     Attributes:
         partial_eta_squared: between 0 and 1; .01, .06 and .14 are called small, medium, large.
-        levels: m, at least 2.
-        correlation: between two levels over subjects, below 1.
-        epsilon: sphericity, 1 / (m - 1) to 1.
-        alpha: of the test.
+        levels: the number of levels m, at least 2.
+        correlation: the correlation between two levels over subjects, below 1.
+        epsilon: the sphericity, 1 / (m - 1) to 1.
+        alpha: the significance level of the test.
     """
 
     partial_eta_squared: float

@@ -38,9 +38,9 @@ class Cronbach:
     """Cronbach's alpha of k items answered by n subjects; without unit.
 
     Attributes:
-        alpha: at most 1; negative if items correlate negatively.
+        alpha: Cronbach's alpha, at most 1; negative if items correlate negatively.
         low, high: ends of Feldt's interval.
-        confidence: 0 to 1.
+        confidence: the confidence level, 0 to 1.
         without_item: alpha of the others, for each item; empty for two items.
         n: subjects with all items; n_left_out: the others (listwise).
     """
@@ -112,9 +112,9 @@ class Omega:
     """McDonald's omega of k items answered by n subjects.
 
     Attributes:
-        omega: 0 to 1.
-        interval: BCa over subjects.
-        loadings: of each item, in the unit of the answers.
+        omega: McDonald's omega, 0 to 1.
+        interval: the BCa bootstrap interval over subjects.
+        loadings: the loading of each item, in the unit of the answers.
         heywood: whether an item's loading explains more than its variance (the model does not fit,
             or there are too few subjects); its error counts as zero.
         n: subjects with all items; n_left_out: the others (listwise).

@@ -45,8 +45,8 @@ class SignedRank:
     Attributes:
         w: the smaller of W+ and W-.
         w_plus, w_minus: rank sums of the positive and of the negative differences.
-        p: by `method`, for `alternative`.
-        p_asymptotic: of the normal approximation, always given in addition.
+        p: the p value, computed by `method` for `alternative`.
+        p_asymptotic: the p value from the normal approximation, always given in addition.
         rank_biserial: matched, -1 to 1; positive if x is larger. 0 if all differences are zero.
         method: "exact" or "asymptotic".
         alternative: "greater" means that x is larger than y.

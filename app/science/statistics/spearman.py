@@ -29,10 +29,10 @@ class Spearman:
     """The rank correlation of n pairs.
 
     Attributes:
-        rho: -1 to 1.
-        p: two-sided.
+        rho: the rank correlation, -1 to 1.
+        p: the two-sided p value.
         low, high: ends of the confidence interval.
-        confidence: 0 to 1.
+        confidence: the confidence level, 0 to 1.
         n: pairs with both values; n_left_out: the others (pairwise).
     """
 

@@ -36,7 +36,7 @@ class Complete:
     """The values of the subjects that have every cell.
 
     Attributes:
-        values: (n, a) or (n, a, b), no NaN.
+        values: (n, a) or (n, a, b) values without NaN.
         subjects: n names, in the order of rows.
         left_out: names of those with a missing cell.
     """
@@ -53,10 +53,10 @@ class Cells:
     Attributes:
         subjects: n names, as they first appear.
         factors: one name for each axis after the first.
-        levels: of each factor, in order (see `levels.py`).
+        levels: the levels of each factor, in order (see `levels.py`).
         values: (n, a) or (n, a, b) mean of each cell; NaN where nothing was measured.
         rows: same shape, the number of values in each mean.
-        n_empty: rows without a value.
+        n_empty: number of rows without a value.
     """
 
     subjects: tuple[str, ...]
@@ -106,7 +106,7 @@ def cells_of(
         subjects: one name per row.
         within: each within-subjects factor's name, with one level per row.
         measure: one value per row, as number or text; NaN or one of MISSING where missing.
-        measure_name, subject_name: for messages.
+        measure_name, subject_name: names of the two columns, for messages.
         lines: the line of each row in its file, for messages; by default rows count from 1.
 
     Raises:

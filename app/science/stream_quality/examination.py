@@ -56,7 +56,7 @@ def examine(
         times_s: (n,) client monotonic time of each frame, in s.
         rotations: (n, 22, 4) local rotations wxyz, as received.
         positions_m: (n, 3) position of the hips.
-        limits: what counts as a fault.
+        limits: the limits beyond which something counts as a fault.
         usual_s: typical interval between frames; None uses the median of this span.
         before: memory of the previous spans; with the same `usual_s` the result does not depend on
             where a recording is cut into spans.

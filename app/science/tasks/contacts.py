@@ -6,7 +6,7 @@ distance between segment and block is at most its radius. World frame, metres.
 Two cheap tests come first, because a body is usually far from all surfaces: whether the part's
 bounding box meets the one box around *all* surfaces, and then whether it meets *this* surface.
 
-A contact that flickers at its edge would be counted many times. So a contact, once begun, may
+A contact that flickers at its edge would be counted many times. So a contact that has begun may
 continue until the part is `release_margin_m` further away than where it began (hysteresis).
 """
 
@@ -80,7 +80,7 @@ def touching_and_near(
 def touching_frames(
     arrays: SurfaceArrays, segments_m: Floats, radii_m: Floats, release_margin_m: float = 0.0
 ) -> tuple[Bools, Bools]:
-    """Return what `touching_and_near` returns, for N frames: two arrays, bool (N, S, P).
+    """Return the results of `touching_and_near` for N frames: two arrays, bool (N, S, P).
 
     `segments_m`: (N, P, 2, 3); `radii_m`: (P,). Raises ValueError if the shapes do not fit.
     """

@@ -90,7 +90,7 @@ class TaskLayout:
 
     @cached_property
     def by_key(self) -> dict[str, Surface]:
-        """Surfaces by their key."""
+        """The surfaces of the layout, by key."""
         return {surface.key: surface for surface in self.surfaces}
 
     @cached_property

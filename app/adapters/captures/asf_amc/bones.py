@@ -13,7 +13,7 @@ def read_asf(data: bytes, limits: Limits) -> Acclaim:
     """Parse an ASF file, which defines a skeleton.
 
     Raises:
-        CaptureError: with the line, if the grammar or a limit is violated.
+        CaptureError: the grammar or a limit is violated; the error names the line.
     """
     out = Acclaim()
     readers = {":units": _units, ":root": _root, ":bonedata": _bones, ":hierarchy": _hierarchy}

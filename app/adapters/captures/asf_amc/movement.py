@@ -32,7 +32,8 @@ def read_amc(data: bytes, skeleton: Acclaim, limits: Limits) -> Rows:
     """Parse the rows of an AMC file; a bone without a line in a frame keeps its previous values.
 
     Raises:
-        CaptureError: with the line, if a bone is unknown or its values do not match its dof.
+        CaptureError: a bone is unknown or its values do not match its dof; the error names the
+            line.
     """
     moving = {b.name: b for b in (skeleton.root, *skeleton.bones.values()) if b.channels}
     # A frame is stored as one quaternion for each bone, moving or not.

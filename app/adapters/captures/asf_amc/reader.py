@@ -26,7 +26,7 @@ def read_asf_amc(data: bytes, *, name: str, reading: Reading, limits: Limits) ->
     """Read an AMC; its skeleton is the companion file whose name ends in .asf.
 
     Args:
-        data: the AMC.
+        data: the content of the AMC file.
         name: its name, such as "02_01.amc", for messages.
         reading: `companions` must contain the ASF; a unit or upward axis overrides the file's.
         limits: the largest sizes that are accepted.

@@ -107,7 +107,7 @@ def _trial_frames(parameters: Parameters) -> int:
 
 
 def read_points(data: bytes, at: Layout, kept: list[int]) -> FloatArray:
-    """Return the kept points (N, M, 3) in the file's unit, NaN where one was not visible."""
+    """Return the selected points (N, M, 3) in the file's unit, NaN where one was not visible."""
     shape, word = (at.frames, at.points, 4), 4 if at.real else 2
     if at.real and at.processor.vax:
         halves: np.ndarray[tuple[int, ...], np.dtype[np.uint16]] = np.ndarray(

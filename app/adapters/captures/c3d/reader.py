@@ -28,7 +28,7 @@ def read_c3d(data: bytes, *, name: str, reading: Reading, limits: Limits) -> Cap
     """Read the markers of a C3D file, without analogue channels and events.
 
     Args:
-        data: the file.
+        data: the content of the file.
         name: its name, for messages.
         reading: a unit or upward axis that overrides the file's.
         limits: the largest sizes that are accepted.

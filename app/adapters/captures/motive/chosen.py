@@ -15,10 +15,10 @@ class Chosen:
     """The tracks to read, and their names.
 
     Attributes:
-        kind: of all the tracks together.
-        tracks, names: in file order.
-        parents: of a skeleton's bones, -1 for the root.
-        notes: what was left out.
+        kind: the kind of all the tracks together.
+        tracks, names: the tracks and their names, in file order.
+        parents: the parents of a skeleton's bones, -1 for the root.
+        notes: notes on what was left out.
     """
 
     kind: Literal["skeleton", "bodies", "markers"]

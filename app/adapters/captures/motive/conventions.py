@@ -31,8 +31,8 @@ class Timing:
     Attributes:
         rate_hz: frame rate of the grid.
         slots: (N,) index of each row on a regular grid from 0; missing frames leave gaps.
-        rate: the convention.
-        notes: about rates and missing frames.
+        rate: the convention of the sampling rate.
+        notes: notes on rates and missing frames.
     """
 
     rate_hz: float

@@ -31,7 +31,7 @@ def read_motive(data: bytes, *, name: str, reading: Reading, limits: Limits) -> 
     """Read a CSV export of Motive.
 
     Raises:
-        CaptureError: the line and the reason.
+        CaptureError: the file cannot be read; the error gives the line and the reason.
     """
     del name
     rows: Iterator[tuple[int, list[str]]] = csv_rows(text_lines(data))

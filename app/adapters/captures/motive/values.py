@@ -41,7 +41,7 @@ def read_values(
     """Read the tracks' columns of every row.
 
     Raises:
-        CaptureError: the line and the reason.
+        CaptureError: a row cannot be read; the error gives the line and the reason.
     """
     turned = all(track.turned for track in tracks)
     axes = [*"XYZ", *(_axes(tracks) if turned else "")]

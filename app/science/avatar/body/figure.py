@@ -33,7 +33,7 @@ class Figure:
     """Measurements of a model in the T-pose; frames as in `app.science.avatar.body.parts`.
 
     Attributes:
-        stature_m: of the model itself.
+        stature_m: the stature of the model itself.
         places_m: part -> position of its joint above the floor, in the order of `PART_NAMES`.
         segments_m: lengths by the names of `proportions.SEGMENT_NAMES`, as far as they could be
             measured.

@@ -27,10 +27,10 @@ class AvatarProblem:
     """An invalid value in the settings of an avatar, and how to correct it.
 
     Attributes:
-        path: to the value, such as `axes.LeftUpperLegX.kp_nm_per_rad`.
+        path: the path to the value, such as `axes.LeftUpperLegX.kp_nm_per_rad`.
         message: what is wrong.
-        value: what was given.
-        valid: which values are valid.
+        value: the given value.
+        valid: a description of the valid values.
         remedy: what to do.
     """
 
@@ -67,13 +67,13 @@ class AxisSettings:
     Attributes:
         kp: stiffness, in N m per radian; zero or more.
         kd: damping, in N m s per radian; zero or more.
-        max_torque_nm: of the motor, in either direction; zero lets the limb hang.
+        max_torque_nm: the torque limit of the motor, in either direction; zero lets the limb hang.
         low_rad: lower limit, at least -pi.
         high_rad: upper limit, at most pi, and not below `low_rad`. Zero, the T-pose, need not lie
             between them.
 
     Raises:
-        AvatarSettingsError: with every invalid value.
+        AvatarSettingsError: a value is invalid; the error lists all that are.
     """
 
     kp: float

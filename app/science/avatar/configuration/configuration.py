@@ -50,7 +50,7 @@ class Configuration:
     Attributes:
         axes: axis -> settings, always in the order of `AXIS_NAMES`. A part that a model lacks is
             absent; a part that is present has all of its axes.
-        total_mass_kg: of the body, distributed among its parts.
+        total_mass_kg: the mass of the body, distributed among its parts.
         population: supplies the relative masses of the parts.
         gravity: whether gravity acts on the body.
         self_collision: whether parts collide with each other as the layers define.
@@ -59,7 +59,7 @@ class Configuration:
         target_space: `local` drives each joint to the participant's joint angles; `world` to the
             angles that give the part the participant's orientation in the room, so that a limb that
             is pushed aside gives way and still points in the right direction.
-        colliders: of all parts but those in `part_colliders`.
+        colliders: the colliders of all parts but those in `part_colliders`.
         part_colliders: body part -> colliders.
         humanoid: SHA-256 of the file of the model that gives the body its joints, lengths and skin;
             None for a body of the participant's stature. `mesh` colliders need one.
@@ -68,7 +68,7 @@ class Configuration:
             held at the T-pose's.
 
     Raises:
-        AvatarSettingsError: with every invalid value.
+        AvatarSettingsError: a value is invalid; the error lists all that are.
     """
 
     axes: Mapping[str, AxisSettings]

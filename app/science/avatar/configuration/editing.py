@@ -15,7 +15,7 @@ def lock(
     """Lock a group of body parts, as by a plaster cast, and keep its limits for unlocking.
 
     Args:
-        configuration: the one to edit.
+        configuration: the configuration to edit.
         group: a body group or a part.
         held_rad: axis of the group -> angle at which it is held; axes that are absent are held at
             the T-pose's, as far as the limits allow. Locking a locked group replaces its angles.

@@ -55,9 +55,9 @@ class SingleJoint:
         part: HumanBodyBones name of a driven part.
         low_rad: lower limit about the primary axis.
         high_rad: upper limit about the primary axis.
-        drive: of the primary axis.
+        drive: the drive of the primary axis.
         limits_rad: other axis -> its symmetric limit, zero or more, in the part's order.
-        shared_drive: of the other axes; None if there are none.
+        shared_drive: the drive of the other axes; None if there are none.
 
     Raises:
         AvatarSettingsError: the part is not driven, the axes are not the part's, or a limit is

@@ -30,9 +30,9 @@ def bounded_step(
     """Return the x (n,) that minimises the programme in the module docstring.
 
     Args:
-        hessian: H, (n, n).
-        linear: b, (n,).
-        low, high: bounds, (n,).
+        hessian: the matrix H, (n, n).
+        linear: the vector b, (n,).
+        low, high: the bounds of x, (n,).
     """
     at_low: _Flags = np.zeros(len(linear), dtype=np.bool_)
     at_high = at_low.copy()

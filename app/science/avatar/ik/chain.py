@@ -66,7 +66,7 @@ class Chain:
         mujoco.mj_kinematics(self.model, data)
 
     def prepare_jacobians(self) -> None:
-        """Compute what `jacobian` needs; to be called after each `place`."""
+        """Prepare the data that `jacobian` needs; call this after each `place`."""
         mujoco.mj_comPos(self.model, self.data)
 
     def position_m(self, goal: int) -> FloatArray:

@@ -32,7 +32,7 @@ class Goals:
     """Poses of the tracked parts in the world, in the order of `GOAL_PARTS`.
 
     Attributes:
-        positions_m: (6, 3).
+        positions_m: (6, 3) positions of the parts' joints.
         rotations: (6, 4) wxyz, world_from_part, unit.
         tracked: (6,) whether each part is tracked at this moment; rows of the others are not read.
 

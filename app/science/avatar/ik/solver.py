@@ -128,7 +128,7 @@ class InverseKinematics:
         model: an avatar's, as `mjcf.build_mjcf` writes it, with any scene.
         rest_rad: axis -> preferred angle; others rest at zero, and axes that the model lacks are
             ignored.
-        weights: of the goals and of the rest pose.
+        weights: the weights of the goals and of the rest pose.
         steps: Gauss-Newton steps per frame.
 
     Raises:

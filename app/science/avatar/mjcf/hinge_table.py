@@ -28,7 +28,7 @@ class HingeTable:
     The n hinges are in the model's order.
 
     Attributes:
-        names: of the axes with a hinge.
+        names: the names of the axes with a hinge.
         columns: (n,) columns of these axes in `AXIS_NAMES`.
         joints: (n,) rows of `jnt_range`.
         angles: (n,) indices into `qpos`.

@@ -1,4 +1,4 @@
-"""Compute what each hinge moves, and the armature and damping that the model adds to it.
+"""Compute the inertia that each hinge moves, and the armature and damping added to the hinge.
 
 Armature is inertia of the hinge itself: it resists only the turning of a part against its parent.
 It keeps motors stable. A joint between two light neighbours that are free to give way moves only
@@ -117,7 +117,7 @@ def with_locks(
     The new direction is the one in the frame that is already turned by the locked axes.
 
     Args:
-        axes: of one part, outermost first.
+        axes: the axes of one part, outermost first.
         locked_rad: for each axis, the angle it is locked at; None where it is free.
     """
     turn: Quaternion = IDENTITY

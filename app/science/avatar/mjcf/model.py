@@ -34,9 +34,9 @@ class AvatarModel:
     """The model of an avatar with what it was built from.
 
     Attributes:
-        configuration: as it was given.
-        body: its parts.
-        masses: of the parts.
+        configuration: the configuration as it was given.
+        body: the body with its parts.
+        masses: the masses of the parts.
         mjcf: the model as MuJoCo reads it.
     """
 
@@ -78,7 +78,7 @@ def avatar_model(
     Args:
         configuration: gains, limits, masses and colliders. Locked groups have no hinges in the
             model.
-        stature_m: of the person.
+        stature_m: the stature of the person.
         segments_m: measured lengths, by the names of `proportions.SEGMENT_NAMES`; not allowed with
             a figure.
         figure: the model that the configuration names, in its own size; parts that it lacks are

@@ -18,7 +18,7 @@ class SceneBox:
     """One immovable box whose edges are parallel to the world's axes.
 
     Attributes:
-        name: of its geom; contacts are reported by this name.
+        name: the name of its geom; contacts are reported by this name.
         solid: whether it can be touched; a mark on the floor cannot.
     """
 

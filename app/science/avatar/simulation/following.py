@@ -61,8 +61,8 @@ class FollowedFrame:
     """The result of one frame: targets and the avatar's state.
 
     Attributes:
-        targets: of the participant's current pose in `local`; in `world` of the delayed and
-            compensated pose.
+        targets: the targets of the participant's current pose in `local`; in `world` of the delayed
+            and compensated pose.
         state: the avatar at the frame's time.
     """
 

@@ -30,8 +30,8 @@ class SurfaceTouches:
     """The touches of one avatar on S surfaces.
 
     Args:
-        avatar: in a scene with the surfaces (`scene.scene_of`).
-        surfaces: their names.
+        avatar: the avatar, in a scene with the surfaces (`scene.scene_of`).
+        surfaces: the names of the surfaces.
         margin_m: distance at which a touch ends.
     """
 

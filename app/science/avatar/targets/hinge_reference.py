@@ -68,8 +68,8 @@ class HingeReference:
         An invalid rotation makes the targets that depend on it unknown in its frame.
 
         Args:
-            times_s: (N,) of the frames, with any values. After a gap, or a time that does not
-                increase, the hinges restart from rest.
+            times_s: (N,) times of the frames, with any values. After a gap, or a time that does
+                not increase, the hinges restart from rest.
             rotations: (N, 22, 4) the participant's local rotations wxyz, as received.
         """
         target_rotations = np.empty(rotations.shape)

@@ -22,12 +22,13 @@ class TargetPlan:
     """Arrays that describe D driven parts, in the order of the body, for the compiled code.
 
     Attributes:
-        rows: (D,) their rows in `PART_NAMES`.
+        rows: (D,) the parts' rows in `PART_NAMES`.
         folded: (D, K) rows of the part itself and of the undriven parts between it and the next
             driven part above, upwards; padded with -1.
         columns: (D,) each part's first column in `AXIS_NAMES`.
-        counts: (D,) its number of axes.
-        frames: (D, 3, 3) its axes as columns, completed to three so that they are right-handed.
+        counts: (D,) each part's number of axes.
+        frames: (D, 3, 3) each part's axes as columns, completed to three so that they are
+            right-handed.
         hands: (D,) 1 for a right-handed frame, -1 for a left-handed one.
         bends: (H, 2) the bone above each elbow or knee, and the part below, as indices from 0 to D
             - 1.

@@ -65,8 +65,8 @@ class Targets:
     """Target angles of one frame, or of N frames; columns in the order of `AXIS_NAMES`.
 
     Attributes:
-        angles_rad: (..., 91) within the limits; zero for axes of absent parts.
-        unclamped_rad: (..., 91) before clamping.
+        angles_rad: (..., 91) angles within the limits; zero for axes of absent parts.
+        unclamped_rad: (..., 91) angles before clamping.
         residual_rad: (..., 52) in the order of `PART_NAMES`: angle between the part's rotation and
             the one that the unclamped angles make; zero for parts with three axes, and for parts
             without any.
@@ -147,7 +147,7 @@ class TargetAngles:
 
         Args:
             rotations: (N, 22, 4) as for `follow`, N above zero.
-            fingers: (N, 4) by part name.
+            fingers: (N, 4) rotations parent_from_part of fingers, by part name.
             restarts: (N,) whether to `forget` before each frame; None for the first one only.
 
         Raises:
@@ -232,8 +232,8 @@ def joint_rotations(angles_rad: FloatArray, hips: FloatArray) -> FloatArray:
     """Return the local rotations of the 22 joints (..., 22, 4) at angles (..., 91).
 
     Args:
-        angles_rad: (..., 91).
-        hips: (..., 4) world_from_hips.
+        angles_rad: (..., 91) angles in the order of `AXIS_NAMES`.
+        hips: (..., 4) rotation world_from_hips.
     """
     parts = rotations_of(angles_rad, JOINT_INDEX)
     rows = [hips if name == "Hips" else parts[name] for name in JOINT_INDEX]

@@ -18,8 +18,8 @@ class Assessment:
     """The result of testing the gains of a configuration.
 
     Attributes:
-        configuration: as it was given.
-        stature_m: of the body that was tested.
+        configuration: the configuration as it was given.
+        stature_m: the stature of the body that was tested.
         axes: every axis, in the configuration's order; its status is `accepted`, `locked`, or
             `flagged: ` and the reason.
         wall_s: elapsed time by the given clock.
@@ -45,9 +45,9 @@ def assess(
 
     Args:
         configuration: supplies gains, mass, locks, limits and torque limits.
-        stature_m: of the body.
+        stature_m: the stature of the body.
         options: only the accepted overshoot and the number of workers are used.
-        figure, wall_s, progress, cancelled: as for `tune`.
+        figure, wall_s, progress, cancelled: the same as for `tune`.
 
     Raises:
         BodyError: the body cannot be built.

@@ -22,7 +22,7 @@ class AxisAttempts:
     """The tuning attempts of one axis, whose gains its mirrored axis may share.
 
     Attributes:
-        gains: of the latest attempt; after `settle`, the best ones.
+        gains: the gains of the latest attempt; after `settle`, the best ones.
     """
 
     def __init__(self, axis: str, settings: AxisSettings, options: TuningOptions) -> None:

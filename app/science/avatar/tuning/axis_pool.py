@@ -15,12 +15,12 @@ Result = TypeVar("Result")
 
 
 class AxisPool:
-    """Run a task for each of many axes in parallel threads.
+    """Runs a task for each of many axes in parallel threads.
 
     Args:
         workers: number of threads.
-        progress: called after each axis, in the caller's thread.
-        cancelled: checked after each axis.
+        progress: function that is called after each axis, in the caller's thread.
+        cancelled: function that is called after each axis and returns whether to stop.
     """
 
     def __init__(

@@ -31,10 +31,10 @@ class Laboratory:
 
     Attributes:
         body: without shapes, see `without_shapes`.
-        masses: of its parts.
-        settings: of every axis, in force.
-        hinges: of every axis; their inertia determines the relay's torque.
-        options: of the tuning.
+        masses: the masses of its parts.
+        settings: the settings of every axis, in force.
+        hinges: the hinges of every axis; their inertia determines the relay's torque.
+        options: the options of the tuning.
         wall_s: a monotonic clock.
         cancelled: returns whether the tuning was cancelled.
     """

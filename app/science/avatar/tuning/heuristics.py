@@ -29,7 +29,7 @@ class Heuristic:
     """A rule that computes gains from the measured oscillation of an axis.
 
     Attributes:
-        key: by which it is chosen.
+        key: the key by which the rule is chosen.
         source: the publication, or how it was derived.
         kp_per_ku: kp as a share of the ultimate gain; None for rules that use the inertia.
         td_per_pu: kd / kp as a share of the period.

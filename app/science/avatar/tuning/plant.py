@@ -86,10 +86,11 @@ def axis_plant(
 
     Args:
         body: the whole body; `without_shapes` makes it faster.
-        masses: of its parts.
-        settings: of every axis; locked ones stay at their angle, the others at their rest angle.
+        masses: the masses of its parts.
+        settings: the settings of every axis; locked ones stay at their angle, the others at their
+            rest angle.
         axis: name of the axis that turns.
-        pose: of elbows and knees, as far as their limits allow.
+        pose: the pose of elbows and knees, as far as their limits allow.
     """
     import mujoco
 

@@ -41,10 +41,10 @@ class RelaySettings:
     """The settings of one experiment; they are recorded with its result.
 
     Attributes:
-        torque_nm: d, in either direction. It is the experiment's and not bounded by the motor of
-            the axis.
-        damping_nm_s: c, of the hinge, instead of the body's own.
-        hysteresis_rad: e.
+        torque_nm: the torque d, in either direction. It is the experiment's own and not bounded by
+            the motor of the axis.
+        damping_nm_s: the damping c of the hinge, in place of the body's own.
+        hysteresis_rad: the hysteresis e of the relay.
         warm_up_cycles: number of first cycles that are not measured.
         cycles: number of cycles that are measured; they must agree within 1 %, or the measurement
             continues.
@@ -69,10 +69,10 @@ class Oscillation:
     """The limit cycle that was measured.
 
     Attributes:
-        amplitude_rad: a, half of the peak-to-peak swing.
-        period_s: Pu.
-        ultimate_gain_nm_rad: Ku.
-        inertia_kg_m2: I.
+        amplitude_rad: the amplitude a, half of the peak-to-peak swing.
+        period_s: the period Pu.
+        ultimate_gain_nm_rad: the ultimate gain Ku.
+        inertia_kg_m2: the moment of inertia I.
         simulated_s: duration of the experiment in simulated time.
     """
 

@@ -28,12 +28,13 @@ class TuningOptions:
 
     Attributes:
         heuristic: a key of `HEURISTICS`.
-        mirror: tune the left side, copy its gains to the right.
+        mirror: whether to tune only the left side and copy its gains to the right.
         attempts: maximum number of relay experiments per axis, each aiming at a lower frequency.
-        accepted_overshoot_percent: of the step response; an axis that exceeds it is retried.
+        accepted_overshoot_percent: the accepted overshoot of the step response; an axis that
+            exceeds it is retried.
         longest_s: simulated time after which an axis counts as not oscillating.
         longest_wall_s: the same in wall-clock time.
-        workers: threads; 1 to 64.
+        workers: number of threads, 1 to 64.
 
     Raises:
         TuningError: an unknown heuristic, or a number out of range.
@@ -81,9 +82,9 @@ class Experiment:
     """The relay experiment from which the gains of an axis were computed.
 
     Attributes:
-        relay: its settings.
-        found: what was measured.
-        pose: of elbows and knees.
+        relay: the settings of the experiment.
+        found: the oscillation that was measured.
+        pose: the pose of elbows and knees.
         aimed_hz: natural frequency that the relay was chosen for.
     """
 
@@ -98,11 +99,11 @@ class AxisTuning:
     """The result of tuning one axis.
 
     Attributes:
-        name: of the axis.
+        name: the name of the axis.
         kp, kd: its resulting gains, N m/rad and N m s/rad.
         status: `tuned`, `retried`, `locked`, or `flagged: ` and the reason. An axis that is locked
             or did not oscillate keeps its previous gains.
-        note: more about the status.
+        note: further information about the status.
         attempts: number of relay experiments on it.
         experiment: the one that gave the gains; None if there was none.
         mirrored_from: the axis whose gains were copied.
@@ -131,8 +132,8 @@ class TuningReport:
 
     Attributes:
         configuration: the given one with the new gains.
-        stature_m: of the body it was tuned on.
-        options: of the tuning.
+        stature_m: the stature of the body it was tuned on.
+        options: the options of the tuning.
         axes: every axis of the configuration, in its order.
         wall_s: elapsed time by the given clock.
     """

@@ -88,7 +88,7 @@ def objection(
     Args:
         step: the step response with these gains.
         clearance: 2 J / (kd h); see `Trial.clearance`.
-        accepted_overshoot_percent: of the step.
+        accepted_overshoot_percent: the accepted overshoot of the step.
     """
     if clearance < CHATTER_CLEARANCE:
         return (

@@ -46,9 +46,9 @@ class Spread:
     """Mean and 95th percentile of a set of absolute errors; NaN for an empty set.
 
     Attributes:
-        mean_deg: their mean.
-        p95_deg: 95 % of them are at most this.
-        samples: their number; one axis in one frame is one sample.
+        mean_deg: mean of the errors.
+        p95_deg: 95th percentile of the errors.
+        samples: number of errors; one axis in one frame is one sample.
     """
 
     mean_deg: float
@@ -102,10 +102,10 @@ def track(
     """Let a body follow a movement without delay and return its errors.
 
     Args:
-        configuration: of the body; its target space is used.
-        stature_m: of the body.
-        movement: of a skeleton of that stature, longer than half a second, at the sampling rate of
-            a headset (`skeleton.resample`).
+        configuration: the configuration of the body; its target space is used.
+        stature_m: the stature of the body.
+        movement: the movement of a skeleton of that stature, longer than half a second, at the
+            sampling rate of a headset (`skeleton.resample`).
         scene: the surroundings of the body.
         figure: the model that the configuration names.
 

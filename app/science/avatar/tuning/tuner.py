@@ -45,12 +45,12 @@ def tune(
     Args:
         configuration: supplies mass, locks, limits and torque limits; axes that are locked or do
             not oscillate keep its gains.
-        stature_m: of the body.
+        stature_m: the stature of the body.
         options: see `TuningOptions`; None for the defaults.
         figure: the model that the configuration names; it has all parts of the configuration.
         wall_s: a monotonic clock in seconds, such as `time.monotonic`.
-        progress: called after each axis.
-        cancelled: checked repeatedly.
+        progress: function that is called after each axis.
+        cancelled: function that is called repeatedly and returns whether to stop.
 
     Raises:
         BodyError: the body cannot be built.

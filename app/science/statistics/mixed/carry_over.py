@@ -59,7 +59,7 @@ class CarryOver:
         condition: F test of the condition, adjusted for period and carry-over.
         period, carry_over: F tests.
         sequence: F test between participants; None if the orders do not allow it.
-        differences: of carry-over between conditions, with 95 % intervals.
+        differences: the differences of carry-over between conditions, with 95 % intervals.
         largest_possible: the largest carry-over difference that the intervals leave possible, in
             units of the measure.
         left_out: observations without a known previous condition, other than the first period.

@@ -23,8 +23,8 @@ class Orders:
     Attributes:
         counts: how many participants had each complete order.
         incomplete: participants who lack a period; they are not in the counts below.
-        positions: by condition, how often it was first, second, ...
-        neighbours: by (condition, the next one), how often.
+        positions: for each condition, how often it was first, second, ...
+        neighbours: for each pair (condition, next condition), how often it occurred.
         balanced_positions, balanced_neighbours: whether all of these counts are equal.
         missing: orders of the Williams design that no participant had; empty if there are orders
             outside the design.

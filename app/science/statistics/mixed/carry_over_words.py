@@ -22,8 +22,8 @@ def conclude(
     """Return the conclusions from the tests of carry-over, period and (if there is one) sequence.
 
     Args:
-        orders: of the conditions.
-        tests: of carry-over, period and sequence.
+        orders: the orders of the conditions.
+        tests: the tests of carry-over, period and sequence.
         largest: the largest carry-over difference that the intervals leave possible.
     """
     carry_over, period, sequence = tests

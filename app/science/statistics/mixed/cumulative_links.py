@@ -27,7 +27,7 @@ class Slopes:
     """log p and its derivatives, each of the shape of the predictor.
 
     Attributes:
-        log_p: of the given answer.
+        log_p: the logarithm of the probability of the given answer.
         t, tt, ttt: derivatives by the predictor.
         upper, upper_t, upper_tt: derivative by the upper threshold, and its derivatives by the
             predictor.

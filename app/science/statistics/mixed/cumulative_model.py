@@ -75,11 +75,12 @@ class CumulativeModel:
 
     Attributes:
         link: distribution of the latent variable.
-        nodes: of the quadrature; 1 is Laplace's approximation, 0 a model without participants.
-        thresholds, effects: estimates.
+        nodes: the number of nodes of the quadrature; 1 is Laplace's approximation, 0 a model
+            without participants.
+        thresholds, effects: the estimated thresholds and effects.
         participant_sd: sigma, on the latent scale; 0 if estimated as zero or not in the model.
         participant_sd_se: its standard error; NaN where sigma is 0.
-        log_likelihood: at the optimum.
+        log_likelihood: the log-likelihood at the optimum.
         parameters: number of estimated parameters.
         observations: number of observations.
         participants: number of participants; 0 in a model without participant effects.
@@ -87,9 +88,9 @@ class CumulativeModel:
         unused_levels: those of the scale that nobody chose.
         converged: whether the search ended at a maximum of the likelihood.
         messages: what a reader must know about the fit, in sentences; empty if nothing.
-        gradient: (parameters,) of the log-likelihood where the search ended.
-        design: of the effects; None for a model with thresholds only.
-        covariance: (p, p) of the effects; NaN without standard errors.
+        gradient: (parameters,) gradient of the log-likelihood where the search ended.
+        design: the design of the effects; None for a model with thresholds only.
+        covariance: (p, p) covariance of the effects; NaN without standard errors.
     """
 
     link: Link
@@ -135,8 +136,8 @@ def fit_cumulative_model(
     Args:
         answers: N categories as whole numbers, larger is more.
         participants: N names; None treats all answers as independent (CLM).
-        design: of the same N observations; its intercept is dropped in favour of the thresholds.
-            None fits thresholds only.
+        design: the design of the same N observations; its intercept is dropped in favour of the
+            thresholds. None fits thresholds only.
         link: "logit" or "probit".
         nodes: 1 for Laplace, up to 50 for adaptive Gauss-Hermite quadrature; 10 are enough.
         scale: the categories that could be chosen, to report those that were not.

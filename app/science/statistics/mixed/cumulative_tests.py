@@ -39,7 +39,7 @@ class LikelihoodRatio:
     Attributes:
         statistic: twice the difference of the log-likelihoods.
         df: parameters that the smaller model lacks.
-        p: of the chi-square distribution.
+        p: the p value from the chi-square distribution.
         converged: whether both fits have converged; otherwise the test is meaningless.
         method: how the likelihoods were computed.
     """
@@ -95,7 +95,7 @@ def cumulative_term_tests(
 
     Args:
         answers, participants, link, nodes: as for `fit_cumulative_model`.
-        design: with all terms.
+        design: the design with all terms.
         terms: which to test; all of them if empty.
 
     Raises:
@@ -160,8 +160,8 @@ def cumulative_contrasts(
     """Compare the levels of a factor on the latent scale.
 
     Args:
-        model: fitted, with a design.
-        factor: whose levels are compared.
+        model: a fitted model with a design.
+        factor: the factor whose levels are compared.
         by: another factor, within each level of which they are compared.
         against: a level with which all others are compared; all pairs if empty.
 

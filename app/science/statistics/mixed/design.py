@@ -28,8 +28,8 @@ class Design:
     """The fixed part of a model.
 
     Attributes:
-        matrix: (N, p), the first column is the intercept.
-        names: p coefficients.
+        matrix: (N, p) predictors; the first column is the intercept.
+        names: the names of the p coefficients.
         factors: in the order of the grid's axes, the last varying fastest.
         covariates: each a term of its own, without interactions.
         interactions: the products of factors, by name.

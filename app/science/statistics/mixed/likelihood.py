@@ -71,10 +71,10 @@ class Restricted:
 
     Attributes:
         beta: (p,) fixed effects.
-        covariance: (p, p) of beta.
+        covariance: (p, p) covariance of beta.
         criterion: -2 l.
-        gradient: (m,) of the criterion.
-        hessian: (m, m) of the criterion.
+        gradient: (m,) gradient of the criterion.
+        hessian: (m, m) Hessian of the criterion.
         slopes: (m, p, p) derivatives of `covariance` by each parameter.
     """
 

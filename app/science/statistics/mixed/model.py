@@ -48,11 +48,11 @@ class MixedModel:
         random_covariance: (k, k) G, in squared units of the measure (per unit of the slope).
         residual_sd: sigma, in units of the measure.
         reml_criterion: -2 times the restricted log-likelihood; depends on the design's coding.
-        observations, participants: their numbers.
+        observations, participants: the numbers of observations and participants.
         converged: whether the search ended at a minimum of the criterion.
         singular: whether a variance is zero or a correlation of random effects is 1.
         messages: what a reader must know about the fit, in sentences; empty if nothing.
-        design: the fixed part.
+        design: the fixed part of the model.
         restricted: fixed effects, their covariance, and the derivatives for degrees of freedom.
     """
 
@@ -86,7 +86,7 @@ def fit_mixed_model(
     Args:
         values: (N,) the measure, finite.
         participants: N names.
-        design: of the same N observations.
+        design: the design of the same N observations.
         random_slope: a single column whose effect differs between participants, correlated with
             their intercepts. The design should contain it too, or its mean effect is taken as zero.
 

@@ -69,7 +69,7 @@ class TermTest:
         term: `latency`, `limb`, `latency:limb`, or a covariate.
         f: the statistic.
         df_term, df_error: numerator and (Satterthwaite's) denominator degrees of freedom.
-        p: of the F distribution.
+        p: the p value from the F distribution.
     """
 
     term: str
@@ -149,8 +149,8 @@ def contrasts(
     """Return differences of marginal means, with Holm's correction.
 
     Args:
-        model: fitted.
-        factor: whose levels are compared.
+        model: the fitted model.
+        factor: the factor whose levels are compared.
         by: another factor, within each level of which they are compared.
         against: a level with which all others are compared; all pairs if empty.
 

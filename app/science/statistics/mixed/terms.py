@@ -60,7 +60,7 @@ def factor(name: str, values: Sequence[Label], levels: Sequence[Label] | None = 
     """Return a factor of observed values.
 
     Args:
-        name: of the factor.
+        name: the name of the factor.
         values: N observed levels; none may be missing.
         levels: all of them in order, the reference first; by default those observed, sorted.
 

@@ -33,7 +33,7 @@ class Outcome:
     """The predictions of one model for N walks.
 
     Attributes:
-        model: its name.
+        model: the name of the model.
         draws_s: (N, S) predicted travel times; S = 1 for models that do not draw.
         crps_s: (N,) score of each prediction.
         lost: number of draws whose agent did not arrive.
@@ -61,10 +61,10 @@ class Evaluation:
     """The predictions of several models for the same N walks.
 
     Attributes:
-        truth_s: (N,) travel times.
-        lengths_m: (N,) of the planned paths.
+        truth_s: (N,) actual travel times.
+        lengths_m: (N,) lengths of the planned paths.
         subjects, courses: N each; walks of one course are repetitions by one or several people.
-        outcomes: by model.
+        outcomes: the outcome of each model.
     """
 
     truth_s: FloatArray
@@ -138,10 +138,10 @@ def evaluate(
     """Predict walks with several models and score the predictions.
 
     Args:
-        models: with distinct names.
-        follower: the one their maps were made with.
-        walks: of people on whom the models were not fitted; the caller must ensure this.
-        rng: for the draws.
+        models: the models, with distinct names.
+        follower: the follower with which the models' maps were made.
+        walks: the walks of people on whom the models were not fitted; the caller must ensure this.
+        rng: random generator for the draws.
         draws: number of draws per walk, for models that draw.
         course_of: returns the course of a walk, by default the walk's note; walks of the same
             course are repetitions.

@@ -32,7 +32,7 @@ class LeftOut:
     """Deviations of estimated suitability, in percent of its range.
 
     Attributes:
-        mean, sd: over the entries.
+        mean, sd: mean and standard deviation over the entries.
         entries: number of entries.
     """
 

@@ -29,7 +29,7 @@ class ErrorSummary:
 
     Attributes:
         count: number of errors.
-        percentiles_s: at `PERCENTILES`.
+        percentiles_s: the percentiles of the errors at `PERCENTILES`.
         shapiro_p: p of the Shapiro-Wilk test of normality; NaN for fewer than three errors, or if
             all are equal.
         mean_signed_s: mean of prediction minus truth.
@@ -70,8 +70,8 @@ class Comparison:
     """Two models compared on the same walks by Wilcoxon's signed-rank test.
 
     Attributes:
-        first, second: their names.
-        p: two-sided.
+        first, second: the names of the two models.
+        p: the two-sided p value.
         rank_biserial: positive if the first model has larger errors.
         power: probability of detecting an effect as large as observed, see `signed_rank_power`.
         difference_s: mean of first minus second.
@@ -107,9 +107,9 @@ def signed_rank_power(pairs: int, effect: float, alpha: float = ALPHA) -> float:
     observed effect adds no information to p; it is computed because the paper reports it.
 
     Args:
-        pairs: N.
+        pairs: the number of pairs.
         effect: mean difference over the standard deviation of differences.
-        alpha: of the test.
+        alpha: the significance level of the test.
     """
     from scipy import special
 

@@ -15,9 +15,9 @@ class Way(NamedTuple):
     """A path prepared for the agents: P points, P - 1 legs.
 
     Attributes:
-        points: (P, 2).
+        points: (P, 2) points of the path.
         units: (P - 1, 2) direction of each leg.
-        lengths: (P - 1,).
+        lengths: (P - 1,) length of each leg.
         before: (P,) distance along the path up to each point.
     """
 

@@ -52,7 +52,7 @@ class SteeringFollower:
     """Follows paths with parameters (v_max, a_max, omega); a `PathFollower`.
 
     Attributes:
-        rules: the same for all agents.
+        rules: the rules, which are the same for all agents.
     """
 
     rules: FollowingRules = FollowingRules()

@@ -24,11 +24,11 @@ class BlendingSpace:
     """Suitability maps over the space of dependencies.
 
     Attributes:
-        grid: of the maps.
-        scaling: of the dependencies.
+        grid: the grid of the maps.
+        scaling: the scaling of the dependencies.
         z: (M, m) position of each entry; walks first, then blends.
         values: (M, K) suitability map of each entry.
-        blends: parents of the entries after the walks.
+        blends: the blends, which are the entries after the walks.
         k: number of neighbours that contribute to a result.
     """
 
@@ -101,11 +101,11 @@ def blending_space(
     """Make a blending space from walks, densified by blends.
 
     Args:
-        grid: of the maps.
-        scaling: of the dependencies.
+        grid: the grid of the maps.
+        scaling: the scaling of the dependencies.
         vectors: (N, m) dependencies of the walks.
         values: (N, K) their suitability maps.
-        rng: for the blends.
+        rng: random generator for the blends.
         entries: number of entries, blends included; there are no blends if there are more walks.
         k: number of neighbours; all entries if there are fewer.
 

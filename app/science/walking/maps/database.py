@@ -27,12 +27,12 @@ class WalkDatabase:
     Attributes:
         grid: combinations of steering parameters, K of them.
         metric: measure of deviation.
-        names: m dependencies.
+        names: the names of the m dependencies.
         vectors: (N, m) their values.
-        deviations: (N, K).
+        deviations: (N, K) deviations of all combinations.
         arrivals_s: (N, K) travel times, NaN where an agent did not arrive.
         durations_s: (N,) travel times of the walks themselves.
-        lengths_m: (N,) of the planned paths.
+        lengths_m: (N,) lengths of the planned paths.
         subjects, sources, kinds: N each.
     """
 

@@ -68,7 +68,7 @@ def drawn_blends(z: FloatArray, count: int, rng: np.random.Generator) -> Blends:
     Args:
         z: (N, m) positions of the walks in the space.
         count: number of blends.
-        rng: for the targets and the weights.
+        rng: random generator for the targets and the weights.
 
     Raises:
         WalkingError: there are fewer than two walks, or the count is negative.

@@ -76,8 +76,8 @@ class RadialBasis:
     """Multiquadrics around the nodes of a grid.
 
     Attributes:
-        grid: the nodes.
-        epsilon: the width.
+        grid: the grid of the nodes.
+        epsilon: the width of the multiquadrics.
     """
 
     grid: ParameterGrid

@@ -29,8 +29,8 @@ class Tree:
     Attributes:
         points: (N, m) in the order of the leaves.
         order: (N,) index of each point in the caller's order.
-        axes, lows, firsts, lasts: (nodes,).
-        splits: (nodes,).
+        axes, lows, firsts, lasts: (nodes,) integers of each node.
+        splits: (nodes,) value at which each node splits.
     """
 
     points: FloatArray

@@ -30,8 +30,9 @@ class SuitabilityOptions:
     """Options for converting deviations to suitability; the defaults are the paper's.
 
     Attributes:
-        normalisation: by the largest deviation, or between smallest and largest.
-        power: p > 0 of the result.
+        normalisation: whether to normalise by the largest deviation, or between smallest and
+            largest.
+        power: the exponent p > 0 applied to the result.
         threshold: suitability below it counts as 0, in [0, 1).
         time_constant_s: tau, None to ignore travel time.
     """

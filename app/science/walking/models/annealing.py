@@ -30,10 +30,10 @@ class StaticFit:
     """The result of fitting the static model.
 
     Attributes:
-        vector: (n,) found by annealing.
-        deviation: its mean deviation.
+        vector: (n,) the vector found by annealing.
+        deviation: the mean deviation of the vector.
         node: (n,) the grid's best node.
-        node_deviation: its mean deviation.
+        node_deviation: the mean deviation of the node.
     """
 
     vector: FloatArray

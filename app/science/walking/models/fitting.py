@@ -34,11 +34,12 @@ class FitOptions:
     """Options for fitting a model; the defaults are the paper's, except for the reading.
 
     Attributes:
-        seed: of the blends, the folds and the annealing; the same seed gives the same model.
+        seed: the seed of the blends, the folds and the annealing; the same seed gives the same
+            model.
         k: number of neighbours.
-        entries: of the densified space.
-        reading: of maps as suitability; None to choose it by leaving people out, if there are at
-            least `LEAST_TO_CHOOSE` of them.
+        entries: the number of entries of the densified space.
+        reading: the reading of maps as suitability; None to choose it by leaving people out,
+            if there are at least `LEAST_TO_CHOOSE` of them.
     """
 
     seed: int = 1
@@ -53,10 +54,10 @@ class FittedWalking:
 
     Attributes:
         database: the walks they were fitted to.
-        options: as given.
+        options: the options as given.
         reading: the reading that was chosen, or given.
-        scores: of all readings that were compared, best first; empty if none were.
-        space: of P_adapt and P_prob.
+        scores: the scores of all readings that were compared, best first; empty if none were.
+        space: the space of P_adapt and P_prob.
         static: P_stat.
     """
 

@@ -47,8 +47,8 @@ class Predictor:
     """Predicts walks with one model and one follower.
 
     Attributes:
-        model: gives the vectors.
-        follower: the one that the model's maps were made with.
+        model: the model that gives the vectors.
+        follower: the follower with which the model's maps were made.
         begin_m_s, brakes: 0 and True from rest to rest; otherwise the walk is part of a longer one.
     """
 

@@ -57,7 +57,7 @@ class ReadingScore:
 
     Attributes:
         options: the reading.
-        crps_s: mean over the walks.
+        crps_s: the mean CRPS over the walks.
     """
 
     options: SuitabilityOptions

@@ -38,7 +38,7 @@ class Density:
     Attributes:
         space: the space from which it was blended.
         grid_values: (K,) the blended map at nodes.
-        coefficients: (K,) of radial basis functions; empty if these are not used.
+        coefficients: (K,) coefficients of radial basis functions; empty if these are not used.
     """
 
     space: BlendingSpace

@@ -125,7 +125,7 @@ class ProbabilisticModel:
     """P_prob: draws from the blended map.
 
     Attributes:
-        space: the maps.
+        space: the blending space of the maps.
         sampler: mixture, or the paper's rejection.
         interpolation: for rejection; the mixture is always multilinear.
     """

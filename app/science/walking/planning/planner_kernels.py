@@ -156,7 +156,7 @@ def lazy_theta(lattice: Lattice, start: int, goal: int, outlines: Outlines) -> I
     checked, and if it is blocked the best expanded neighbour becomes the parent.
 
     Args:
-        lattice: its states are modified.
+        lattice: the lattice, whose states are modified.
         start, goal: two different nodes, row * columns + column.
         outlines: the obstacles.
 

@@ -25,11 +25,11 @@ class TrackingOptions:
     """Options that select which part of a capture is used as the person's position.
 
     Attributes:
-        joint_map: of a skeleton; None to derive it from the joints' names.
-        point: of a skeleton; None for the centre of mass if all joints it needs are present, else
-            the hips.
+        joint_map: the joint map of a skeleton; None to derive it from the joints' names.
+        point: the tracked point of a skeleton; None for the centre of mass if all joints it needs
+            are present, else the hips.
         body: the rigid body worn on the belt; None if there is only one.
-        torso_depth_m, off_skin_m: of the person at the belt.
+        torso_depth_m, off_skin_m: the measures of the person at the belt.
         markers: the markers whose mean is tracked; None for the four of the pelvis.
     """
 

@@ -25,7 +25,7 @@ class Census:
             above.
         counts: (B,) number of paths in each interval.
         share_up_to: (B,) share of all paths up to each interval's upper bound.
-        quartiles_m: first, second and third.
+        quartiles_m: the first, second and third quartile.
         cutoff_m: the length that a share of `cutoff` of the paths exceeds.
         total_m: sum of all lengths.
     """

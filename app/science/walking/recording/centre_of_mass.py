@@ -39,7 +39,7 @@ def centre_of_mass(motion: RigMotion, joint_map: Mapping[str, str]) -> FloatArra
     """Return the centre of mass (N, 3) in the world, metres.
 
     Args:
-        motion: of a whole body.
+        motion: the movement of a whole body.
         joint_map: body joint -> rig joint, as `propose_joint_map` derives it from names.
 
     Raises:

@@ -60,7 +60,7 @@ class SegmentationRules:
         still_m_s: lower speeds count as still.
         still_s: shortest duration of a stop; shorter pauses belong to the walk.
         shortest_m: smallest distance between a walk's start and goal.
-        sigma_s: smoothing.
+        sigma_s: standard deviation of the smoothing filter.
     """
 
     still_m_s: float = 0.1

@@ -89,7 +89,7 @@ def track_of_belt(
 
     Args:
         motion: the tracker's movement, possibly among others.
-        body: its name.
+        body: the name of the tracker.
         walker: the person who wears it.
         torso_depth_m: front to back at the belt; half of it lies between skin and middle.
         off_skin_m: distance of the tracker's origin from the skin.

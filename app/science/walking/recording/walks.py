@@ -24,7 +24,7 @@ def dependencies_of(
     """Return the dependencies of a walk along a path, for an entry or for a query to the model.
 
     Args:
-        path: as planned.
+        path: the planned path.
         stature_m: the person's height; None leaves it out.
         others: any further numbers by name, such as a load in kilograms.
 

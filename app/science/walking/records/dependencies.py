@@ -22,8 +22,8 @@ class Scaling:
     """The means and scales of m dependencies.
 
     Attributes:
-        names: of the dependencies, in the order of a vector's columns.
-        means: (m,) in their own units.
+        names: the names of the dependencies, in the order of a vector's columns.
+        means: (m,) means in the dependencies' own units.
         inverse_sds: (m,) one over the standard deviation; 0 if all walks have the same value.
     """
 

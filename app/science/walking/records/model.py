@@ -33,8 +33,8 @@ class Track:
     """One person's position on the floor over time.
 
     Attributes:
-        times_s: (N,) increasing.
-        xy_m: (N, 2) finite.
+        times_s: (N,) increasing times.
+        xy_m: (N, 2) finite positions.
         subject: the person; walks of one subject are never split between training and test.
         source: origin of the data, such as a file's name.
         kind: human or synthetic.
@@ -68,11 +68,11 @@ class Walk:
     """One walk from a start to a goal, smoothed.
 
     Attributes:
-        times_s: (N,) from 0, increasing.
+        times_s: (N,) increasing times from 0.
         xy_m: (N, 2) the centre of mass on the floor.
-        subject, source, kind, stature_m: as of its track.
-        begins_still, ends_still: whether the person stood before and after. If a recording
-            begins or ends during the walk, its agent starts at speed or does not brake.
+        subject, source, kind, stature_m: the same as those of its track.
+        begins_still, ends_still: whether the person stood before and after. If a recording begins
+            or ends during the walk, its agent starts at speed or does not brake.
         note: information for the reader, such as the name of the scene's path.
     """
 
@@ -167,7 +167,7 @@ class PlannedWalk:
 
     Attributes:
         walk: the reference.
-        path: from the walk's start to its goal.
+        path: the planned path from the walk's start to its goal.
         dependencies: name -> number; `LENGTH`, `TURNING`, `STATURE` and any others that were given.
     """
 

@@ -90,8 +90,8 @@ class Reference:
     """A person's walk sampled at the follower's time steps, with which agents are compared.
 
     Attributes:
-        xy_m: (N, 2) at 0, dt, 2 dt, ... up to the end of the walk.
-        dt_s: the step.
+        xy_m: (N, 2) positions at 0, dt, 2 dt, ... up to the end of the walk.
+        dt_s: the time step.
         length_m: distance walked.
         duration_s: exact travel time.
     """

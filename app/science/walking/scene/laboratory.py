@@ -33,8 +33,8 @@ def pole_scene(turned_deg: float, distance_m: float, clearance_m: float = CLEARA
 
     Args:
         turned_deg: the angle by which the walk turns, 5 to 180.
-        distance_m: from the start past the pole to the goal.
-        clearance_m: of the scene.
+        distance_m: distance from the start past the pole to the goal.
+        clearance_m: the clearance of the scene.
     """
     if not (5.0 <= turned_deg <= 180.0 and 1.0 <= distance_m <= 100.0):
         raise WalkingError(

@@ -75,8 +75,8 @@ class Scene:
     """A floor with obstacles, named places and paths.
 
     Attributes:
-        name, title: key, and displayed name.
-        bounds_m: (left, near, right, far) of the rectangle in which people walk.
+        name, title: the key, and the displayed name.
+        bounds_m: edges (left, near, right, far) of the rectangle in which people walk.
         obstacles: any number; they may overlap.
         places: name -> point.
         paths: in the order in which people walk them.

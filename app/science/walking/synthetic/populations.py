@@ -38,7 +38,7 @@ class Population:
         speed_per_stature: additional m/s for each metre of stature above the mean.
         ramp_s, ramp_sd, ramp_within: time from rest to cruising, within as a share.
         reach_m: b in the formula for speed over distance.
-        turn_exponent: of the slow-down in turns; 1/3 in people.
+        turn_exponent: the exponent of the slow-down in turns; 1/3 in people.
         stature_m, stature_sd: body heights.
         sway_m: half of the width of the sway from side to side.
     """
@@ -151,9 +151,9 @@ def walk_along(person: Person, path: PlannedPath, rng: np.random.Generator) -> T
     """Let a person walk a path once, standing for a moment before and after.
 
     Args:
-        person: who walks.
+        person: the person who walks.
         path: the scene's shortest path, which is rounded and bowed.
-        rng: for everything that differs from walk to walk.
+        rng: random generator for everything that differs from walk to walk.
     """
     line = _course(person, path, rng)
     arc = arc_of(line)

@@ -34,7 +34,7 @@ class Sample:
 
     Attributes:
         people: number of people.
-        repetitions: of each path by each person.
+        repetitions: the number of repetitions of each path by each person.
         seed: a different seed gives different people.
         prefix: put before their names, so that two samples never share a person.
     """
