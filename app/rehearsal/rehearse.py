@@ -161,7 +161,10 @@ async def assembled(
     *,
     journal: Journal | None = None,
 ) -> AsyncIterator[Cast]:
-    """Create a session with three paired devices, ready to start; raise like `rehearse`."""
+    """Create a session with three paired devices, ready to start.
+
+    Raises the same errors as `rehearse`.
+    """
     clock = FrameClock(plan.speed)
     rng = np.random.default_rng(plan.seed)
     person = make_person(rng, plan.capture)

@@ -55,7 +55,10 @@ class LanguageChoice(BaseModel):
 
 
 class HelpWish(BaseModel):
-    """A request to call the experimenter, for any reason or with a question, or to cancel this."""
+    """A request to call the experimenter, or to cancel the call.
+
+    The call is for any reason or with a question.
+    """
 
     model_config = ConfigDict(extra="forbid")
 

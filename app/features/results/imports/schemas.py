@@ -189,7 +189,7 @@ class ConditionCount(BaseModel):
 
 
 class CheckView(BaseModel):
-    """The result that an import would have; nothing was stored, and problems would prevent it.
+    """A preview of an import's result; nothing was stored. An import with problems is rejected.
 
     `reversed_items`: those that the instrument's formulas reverse. `notes`: points to check.
     """
