@@ -1,1 +1,1 @@
-"""Tests mirror `app/`; `support/` contains their infrastructure."""
+"""Tests of the product: the folders mirror `app/`; `support/` contains infrastructure."""

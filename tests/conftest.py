@@ -82,7 +82,7 @@ def _cheap_workers() -> None:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Deselect the long tests unless `--long` is given: not skipped, since nothing is missing."""
+    """Deselect long tests unless `--long` is given; a skip would suggest a missing requirement."""
     if config.getoption("--long"):
         return
     long = [item for item in items if _is_long(item)]
@@ -138,6 +138,6 @@ def live_server(tmp_path: Path) -> Iterator[LiveServer]:
 
 @pytest.fixture(scope="module")
 def shared_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveServer]:
-    """Provide a real server for a whole module: its tests must not depend on its state."""
+    """Provide one real server for all tests of a module, which must not depend on its state."""
     with LiveServer(tmp_path_factory.mktemp("live")) as server:
         yield server

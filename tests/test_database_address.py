@@ -1,4 +1,4 @@
-"""Tests that a wrong database URL gives one sentence, exit code 2, and no password."""
+"""Tests that a wrong database URL causes one sentence and exit code 2, and prints no password."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -83,7 +83,7 @@ def test_any_text_is_parsed_as_a_url_or_rejected(rest: str) -> None:
     ],
 )
 def test_a_url_is_printed_without_role_and_password(url: str, shown: str) -> None:
-    """A URL is printed without role and password."""
+    """A database URL is printed without its role and password."""
     assert shown_address(url) == shown
 
 
@@ -91,7 +91,7 @@ def test_a_url_is_printed_without_role_and_password(url: str, shown: str) -> Non
 def test_the_file_that_is_opened_is_the_one_that_is_locked(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The file that is opened is the one that is locked, also through a link and back.
+    """The file that is opened is the one that is locked, also for a path with a link and `..`.
 
     The driver and the system resolve such a path differently.
     """
@@ -111,7 +111,7 @@ def test_the_file_that_is_opened_is_the_one_that_is_locked(
 def test_a_folder_with_a_question_mark_is_rejected(tmp_path: Path) -> None:
     """A folder with a question mark is rejected before anything is created.
 
-    The path in the URL would end there, and the database be created elsewhere.
+    The path in the URL would end there, and the database would be created elsewhere.
     """
     settings = Settings(data_dir=tmp_path / "why?")
     with pytest.raises(InvalidInput, match="question mark") as refused:
@@ -134,7 +134,7 @@ def test_an_empty_variable_is_rejected(name: str, monkeypatch: pytest.MonkeyPatc
 def test_invalid_settings_are_reported_without_values(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Invalid settings are reported by variable without their values."""
+    """Invalid settings are reported by the names of their variables, without the values."""
     monkeypatch.setenv("REEMBODY_PORT", SECRET)
     with pytest.raises(InvalidInput, match="REEMBODY_PORT") as refused:
         read_settings()
@@ -174,7 +174,7 @@ def test_each_command_reports_an_invalid_url_and_exits_with_2(
 
 @contextmanager
 def database(cluster: Cluster, name: str, *, encoding: str = "UTF8") -> Iterator[str]:
-    """Create a database with an encoding and return its URL."""
+    """Create a database with the given encoding and return its URL."""
     with psycopg.connect(
         host=str(cluster.folder), user="postgres", dbname="postgres", autocommit=True
     ) as connection:

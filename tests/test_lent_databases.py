@@ -8,7 +8,7 @@ from tests.support.postgres import fresh_postgres
 
 
 def number_of(database: Database) -> int:
-    """Return PostgreSQL's number of a database, which does not depend on its name."""
+    """Return PostgreSQL's number (OID) of a database, which does not depend on its name."""
     with database.engine.connect() as connection:
         query = "SELECT oid FROM pg_database WHERE datname = current_database()"
         return int(connection.exec_driver_sql(query).scalar_one())

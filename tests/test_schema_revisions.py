@@ -1,4 +1,4 @@
-"""Tests that a new database equals the result of all migrations without running them."""
+"""Tests that a new database is created without migrations, but equals their result."""
 
 import sqlite3
 from contextlib import closing

@@ -73,5 +73,5 @@ Bench = SqliteBench | PostgresBench
 
 
 def _name(url: str) -> str:
-    """Return the database name in `postgresql+psycopg://postgres@/NAME?host=...`."""
+    """Return NAME from a URL of the form `postgresql+psycopg://postgres@/NAME?host=...`."""
     return url.partition("?")[0].rpartition("/")[2]

@@ -112,7 +112,7 @@ def number_pattern(latency_ms: float) -> str:
 
 
 def canaries(latencies_ms: Sequence[float], *, more: Sequence[str] = ()) -> re.Pattern[bytes]:
-    """Return a pattern that matches the latencies in every unit and notation, and `more` words."""
+    """Return a pattern that matches the latencies in any notation, and the words in `more`."""
     numbers = "|".join(number_pattern(one) for one in latencies_ms)
     words = "|".join(re.escape(one) for one in more)
     tail = f"|{words}" if words else ""
@@ -120,7 +120,7 @@ def canaries(latencies_ms: Sequence[float], *, more: Sequence[str] = ()) -> re.P
 
 
 def build_world(lab: Lab, worlds: Sequence[str] = WORLDS) -> list[Canaried]:
-    """Create one study for each of `worlds`."""
+    """Create one study with its sessions for each entry of `worlds`."""
     with lab.database.writing() as db:
         return [_build(lab, db, WORLDS.index(world), world) for world in worlds]
 
@@ -239,7 +239,7 @@ def people(lab: Lab, roles: Sequence[str] = ROLES) -> dict[str, TestClient]:
 def fetch(
     search: Search, role: str, client: TestClient, all_: Sequence[Canaried], routes: Sequence[str]
 ) -> None:
-    """Request each of `routes` (path templates, without streams) for every study and search it."""
+    """Request each of `routes` (path templates, no streams) for every study and search it."""
     for route in routes:
         search.routes.add(route)
         told = [(one, path) for one in all_ for path in _paths(route, one)]
@@ -269,7 +269,7 @@ def _paths(route: str, one: Canaried) -> Iterator[str]:
 
 
 def pieces_of(route: str, one: Canaried, body: bytes) -> Iterator[tuple[str, bytes]]:
-    """Yield the searchable parts of a response.
+    """Yield the parts of a response that are searched for canaries.
 
     An archive is split into its files, and the fields that belong to the study design are left out.
     """
@@ -301,7 +301,7 @@ def _has_avatar(samples: bytes) -> bool:
 
 
 def _mark(one: Canaried) -> bytes:
-    """Return a canary of the study, which stands for a leak that no pattern can find."""
+    """Return a canary of the study, to represent a leak that no pattern can find."""
     return f"canary{WORLDS.index(one.world)}small".encode()
 
 
@@ -328,7 +328,7 @@ def fetch_jobs(search: Search, role: str, client: TestClient, all_: Sequence[Can
 
 
 def call_errors(search: Search, role: str, client: TestClient, all_: Sequence[Canaried]) -> None:
-    """Search the responses to calls that change nothing or are rejected."""
+    """Send calls that change nothing or are rejected, and search their responses."""
     for one in all_:
         session = f"/api/sessions/{one.session_ids[0]}"
         command = {"command_id": "c" * 12, "expected_version": 1}
@@ -362,7 +362,7 @@ def listen(lab: Lab, search: Search, role: str, client: TestClient, one: Canarie
 
 
 def _news(lab: Lab, client: TestClient, session_id: str) -> bytes:
-    """Return what the live stream sends at first, and after telemetry has arrived."""
+    """Return the text that the live stream sends on opening, and after telemetry has arrived."""
     heard: list[bytes] = []
     path = f"/api/sessions/{session_id}/live"
     scope = {

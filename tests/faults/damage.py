@@ -51,7 +51,7 @@ class Folder:
 
 @dataclass(frozen=True)
 class Case:
-    """A description of one damage, and how the start with it ended.
+    """The damage done to one copy of the folder, and how the start with it ended.
 
     `end`: served, quarantined (and a restore brought everything back), refused (with a message, and
     with every file left in place) or traceback. `errors`: responses that a server must not give.
@@ -69,7 +69,7 @@ class Case:
 
 
 def damaged(folder: Path, rng: np.random.Generator) -> str:
-    """Flip bits of one file, truncate it or write zeros over a part; return a description."""
+    """Flip bits of one file, truncate it or write zeros over a part; describe the damage."""
     file = folder / FILES[rng.integers(len(FILES))]
     data = bytearray(file.read_bytes())
     where = int(rng.integers(len(data)))
@@ -91,7 +91,7 @@ def damaged(folder: Path, rng: np.random.Generator) -> str:
 
 
 def tried(folder: Folder, to: Path, rng: np.random.Generator) -> Case:
-    """Damage a copy at `to` and start with it; if it is quarantined, restore the backup."""
+    """Start on a copy at `to` after damaging it; if it is quarantined, restore the backup."""
     shutil.copytree(folder.data, to)
     what = damaged(to, rng)
     settings = Settings(data_dir=to)
@@ -171,7 +171,7 @@ def _no_output() -> Iterator[None]:
 def many(
     folder: Folder, elsewhere: Path, count: int, seed: int, *, processes: int = 1
 ) -> list[Case]:
-    """Try `count` kinds of damage, each drawn with its own seed."""
+    """Try `count` random damages, each drawn with its own seed."""
     if processes == 1:
         return [_numbered(folder, elsewhere, seed, number) for number in range(count)]
     with ProcessPoolExecutor(processes, multiprocessing.get_context("spawn")) as pool:

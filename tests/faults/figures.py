@@ -18,7 +18,7 @@ FILE_VARIABLE = "REEMBODY_FAULT_FIGURES"
 
 @dataclass(frozen=True)
 class FaultFigure:
-    """One figure of one fault."""
+    """One figure that a fault test measured, with the row of its fault in the matrix."""
 
     row: int
     fault: str

@@ -34,7 +34,7 @@ class Interrupted(Exception):
 
 @dataclass(frozen=True)
 class Found:
-    """A database's revision, a description of its schema, and the contents of its tables."""
+    """The state of a database: its revision, a description of its schema, its tables' contents."""
 
     revision: str | None
     schema: dict[str, Any]
@@ -42,7 +42,7 @@ class Found:
 
 
 def steps() -> list[Step]:
-    """Return every migration step, oldest first; `base` is an empty database."""
+    """Return every migration step, oldest first; the revision `base` is an empty database."""
     script = ScriptDirectory.from_config(alembic_config("sqlite://"))
     newest_first = [revision.revision for revision in script.walk_revisions()]
     revisions = ["base", *reversed(newest_first)]
@@ -50,7 +50,7 @@ def steps() -> list[Step]:
 
 
 def upgrade(url: str, revision: str) -> None:
-    """Migrate to a revision as the product does."""
+    """Migrate a database to a revision in the same way as the product."""
     if revision != "base":
         command.upgrade(alembic_config(url), revision)
 
@@ -138,7 +138,7 @@ def stopped_after(changes: int) -> Iterator[None]:
 
 
 def killed_after(url: str, revision: str, after_s: float) -> bool:
-    """Migrate in a process that is killed `after_s` after its first statement; return if it was."""
+    """Migrate in a process killed `after_s` after its first statement; return if it was killed."""
     arguments = [sys.executable, "-m", "tests.faults.interrupted", url, revision, str(after_s)]
     ended = subprocess.run(arguments, check=False, capture_output=True, text=True)
     assert ended.returncode in (0, -signal.SIGKILL), ended.stderr

@@ -105,7 +105,7 @@ class Outcome:
 
 @dataclass
 class Found:
-    """The state after one run; every list is empty if all checks passed."""
+    """The problems found after one run; every list is empty if all checks passed."""
 
     operation: str
     site: Site
@@ -159,7 +159,7 @@ def back_up(folder: Path, _: Source) -> None:
 
 
 def export(folder: Path, _: Source) -> None:
-    """Export to a folder outside the data folder."""
+    """Export the data to a folder outside the data folder."""
     begin(folder)
     export_to_folder(STUDY, folder / "out" / "export", Activity(""), "all")
 
@@ -178,7 +178,7 @@ def restore(folder: Path, _: Source, *, replace: bool = False) -> None:
 
 
 def upload(folder: Path, _: Source) -> None:
-    """Upload a capture."""
+    """Upload a capture to a server on the folder."""
     with serving(folder, counted=False) as client:
         ok(client.post("/api/login", json=CREDENTIALS))
         begin(folder)
@@ -186,7 +186,7 @@ def upload(folder: Path, _: Source) -> None:
 
 
 def erase(folder: Path, source: Source) -> None:
-    """Erase a participant."""
+    """Erase the participant through a server on the folder."""
     with serving(folder, counted=False) as client:
         ok(client.post("/api/login", json=CREDENTIALS))
         begin(folder)
@@ -261,7 +261,7 @@ def source_in(folder: Path) -> Source:
 
 
 def facts(data: Path) -> set[str]:
-    """Return what must never be lost: every event, submission, position of a stream and account."""
+    """Return what must never be lost: each event, submission, stream position and account."""
     file = data / DATABASE
     if not file.is_file():
         return set()
@@ -276,12 +276,12 @@ def facts(data: Path) -> set[str]:
 
 
 def erased_away(fact: str) -> bool:
-    """Return whether an erasure removes such a fact."""
+    """Return whether the erasure of the participant removes this fact."""
     return fact.startswith(("frames", "form"))
 
 
 def looked_at(operation: str, folder: Path, source: Source, outcome: Outcome) -> dict[str, Any]:
-    """Start a server after a run, or repeat the operation if there are no data; return problems."""
+    """Start a server after a run, or repeat the operation if no data exist; return problems."""
     lost, before = [], facts_of_source(source)
     again = operation if operation in EMPTY and not outcome.ok else "start"
     recovered = done(again, folder, source)
@@ -317,7 +317,7 @@ def looked_at(operation: str, folder: Path, source: Source, outcome: Outcome) ->
 
 
 def facts_of_source(source: Source) -> set[str]:
-    """Return the facts of the source folder, read from a copy: reading would empty its log."""
+    """Return the facts of the source folder, read from a copy: reading empties the log."""
     with tempfile.TemporaryDirectory() as copy:
         shutil.copytree(source.folder / "data", Path(copy) / "data")
         return facts(Path(copy) / "data")
@@ -354,7 +354,7 @@ def faults_at(site: Site) -> Iterator[Fault]:
 
 
 def in_a_child(work: Callable[[], Any], result: Path) -> Any:
-    """Return the result of `work` in a child process: this process must never open a database."""
+    """Return the result of `work`, run in a child: this process must never open a database."""
     child = os.fork()
     if child == 0:
         try:
@@ -402,7 +402,7 @@ def sites_of(operation: str, source: Source, elsewhere: Path) -> list[Site]:
 
 
 def all_of(operation: str, source: Source, elsewhere: Path, most: int | None) -> dict[str, Any]:
-    """Inject every fault at every call of one operation, or about `most` of them, evenly spread."""
+    """Inject every fault at every call of one operation, or about `most` faults, evenly spread."""
     sites = chosen(sites_of(operation, source, elsewhere))
     faults = [fault for site in sites for fault in faults_at(site)]
     if most is not None and len(faults) > most:

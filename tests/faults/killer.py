@@ -17,12 +17,12 @@ RECOVERS_WITHIN_S = 60.0
 
 @dataclass(frozen=True)
 class Kill:
-    """One kill: the record as the killed server left it and as the next server continued it.
+    """One kill of the server, and the stored record before and after the restart.
 
     `lost`: acknowledged frames and reports that are not on disk. `surplus`: the number of rows that
     differ from the stored positions. `acked_active_s` and `used_active_s`: active time of the
     current phase that the server had acknowledged, and that the headset had used. `recovery_s`:
-    from the kill until the headset was connected again.
+    time in s from the kill until the headset was connected again.
     """
 
     target: Target

@@ -89,7 +89,7 @@ HAND, FOOT, FREE = "block1.hand", "block1.foot", "free_roam"
 
 
 def _reports(what: str, change: Callable[[Json], list[Json]]) -> Edit:
-    """Return an edit of the bodies of reports of one kind, or with one `what` of a phase."""
+    """Return an edit that changes reports of one kind, or phase reports with one `what`."""
 
     def edit(message: Message) -> list[Message]:
         if isinstance(message, Frames) or message["type"] != "report":
@@ -103,7 +103,7 @@ def _reports(what: str, change: Callable[[Json], list[Json]]) -> Edit:
 
 
 def _once(change: Callable[[Json], Json], after: int = 0) -> Callable[[Json], list[Json]]:
-    """Apply `change` to a single body: the one after the first `after` bodies."""
+    """Return an edit that applies `change` to one body only: the first one after `after` bodies."""
     seen = [0]
 
     def changed(body: Json) -> list[Json]:
@@ -114,7 +114,7 @@ def _once(change: Callable[[Json], Json], after: int = 0) -> Callable[[Json], li
 
 
 def _frames(change: Callable[[Frames, int], Frames]) -> Edit:
-    """Return an edit of frame batches; `change` is given the number of the batch."""
+    """Return an edit of frame batches; `change` receives the number of the batch."""
     seen = [0]
 
     def edit(message: Message) -> list[Message]:
@@ -149,7 +149,7 @@ def _slow_clock(headset: SimulatedHeadset, rng: np.random.Generator) -> None:
 
 
 def _batch_ahead(claimed_s: float) -> Lie:
-    """Claim the whole phase in one batch, then replace the headset: the next has nothing to do."""
+    """Claim the whole phase in one batch, then replace the headset, which has no time left."""
 
     def lie(headset: SimulatedHeadset, rng: np.random.Generator) -> None:
         headset.weather = Weather(new_client_at_s=float(rng.uniform(1.0, 3.0)))
@@ -183,7 +183,7 @@ def _standing_gain(headset: SimulatedHeadset, rng: np.random.Generator) -> None:
 
 
 def _fell(headset: SimulatedHeadset, rng: np.random.Generator) -> None:
-    """Report an active time at the end of the freeze that is less than at time up."""
+    """Report less active time at the end of the freeze than when the time was up."""
     headset.edit = _reports("ended", lambda b: [{**b, "active_s": rng.uniform(0.0, 7.0)}])
 
 
@@ -237,7 +237,7 @@ def _completion(change: Callable[[Json, np.random.Generator], Json]) -> Lie:
 
 
 def _many_completions(headset: SimulatedHeadset, rng: np.random.Generator) -> None:
-    """Report more completions than the touched targets allow."""
+    """Report more completed movements than the touched targets allow."""
     more = int(rng.integers(2, 40))
 
     def change(body: Json) -> list[Json]:
@@ -247,7 +247,7 @@ def _many_completions(headset: SimulatedHeadset, rng: np.random.Generator) -> No
 
 
 def _in_free(kind: str) -> Lie:
-    """Report a contact or a completion in free movement, where there is nothing to touch."""
+    """Report a contact or a completion in free movement, which has no targets to touch."""
 
     def lie(headset: SimulatedHeadset, rng: np.random.Generator) -> None:
         body: Json = {

@@ -1,6 +1,6 @@
-"""Watch a server from outside while it cannot write and headsets stream.
+"""Observe a server from outside while it cannot write and headsets stream.
 
-The watch sends requests throughout, as people would: reads, notes, starts, the server's health. It
+The observer sends requests throughout, as people would: reads, notes, starts and health checks. It
 records every response, when the alarm became visible, when a new start was rejected, and when the
 server had recovered.
 """
@@ -28,7 +28,7 @@ READS = (f"/api/studies/{STUDY}/sessions", "/api/studies", f"/api/studies/{STUDY
 
 @dataclass
 class Watch:
-    """The observations of one outage.
+    """The observations made during one outage.
 
     Times in s: `noticed_s` from the cause to the alarm; `alarm_s` and `refusal_s` since the first
     commit that failed; `recovery_s` since the server could write again. `acked_during`: messages

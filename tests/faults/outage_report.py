@@ -20,7 +20,7 @@ def reconciled(server: LiveServer, headsets: Sequence[StreamingHeadset]) -> list
 
 
 def check_outage(watch: Watch, found: Sequence[Reconciliation]) -> None:
-    """Assert that an outage lost nothing and was handled correctly.
+    """Assert that an outage lost no data and that the server responded correctly.
 
     Everything sent is stored exactly once; reads continued; no response had status 500; requests
     that would start something were rejected with a message.

@@ -20,7 +20,7 @@ from tests.support.server import LiveServer
 
 @contextmanager
 def record_of(server: LiveServer) -> Iterator[Session]:
-    """Open the database of a server, whether or not it is running."""
+    """Open the database of a server, which need not be running."""
     database = open_database(f"sqlite:///{server.data_dir / 'reembody.sqlite'}")
     try:
         with database.reading() as db:
@@ -31,7 +31,7 @@ def record_of(server: LiveServer) -> Iterator[Session]:
 
 @dataclass(frozen=True)
 class OnDisk:
-    """The certain state of a session: its position in the plan and how far each stream is stored.
+    """The stored state of a session: its position in the plan and the position of each stream.
 
     `held` counts the rows' frames of each stream; it equals `stored` unless data are stored twice
     or missing.

@@ -32,7 +32,7 @@ class Target:
 
 
 def kind_of(step: int | None, step_kind: str | None, phase_status: str | None) -> str:
-    """Return what is happening at a step, as a kind of the schedule."""
+    """Return the kind of activity at a step, in the terms of the schedule."""
     if step_kind == "task":
         return phase_status or "ready"
     if step_kind in ("questionnaire", "free_roam", "debrief"):
@@ -41,7 +41,7 @@ def kind_of(step: int | None, step_kind: str | None, phase_status: str | None) -
 
 
 def seen(state: HeadsetState | None) -> tuple[int, str]:
-    """Return the step and kind that the headset currently has."""
+    """Return the step at which the headset currently is, and its kind."""
     if state is None:
         return 0, "setup"
     status = None if state.phase is None else state.phase.status

@@ -30,7 +30,7 @@ FIRST_FOOT_STEP = next(step.index for step in PLAN if step.limb == "foot")
 def short_study(
     *, phase_s: float = PHASE_S, roam_s: float = ROAM_S, around_s: float = AROUND_S
 ) -> str:
-    """Return the study file; preparation and freeze of a task each last `around_s`."""
+    """Return the study file, with preparation and freeze of each task lasting `around_s`."""
     return edited(
         ("key: reembodiment-latency", f"key: {KEY}"),
         ONE_LATENCY_LESS,
@@ -53,12 +53,12 @@ def add_short_study(server: LiveServer) -> str:
 
 @dataclass(frozen=True)
 class Watch:
-    """Wait for moments of a rehearsal."""
+    """Wait until a rehearsal reaches a given state."""
 
     cast: Cast
 
     async def phase(self, phase_id: int, is_it: Callable[[PhaseOrder], bool]) -> None:
-        """Wait until the headset has this phase in a state for which `is_it` is true."""
+        """Wait until the headset is in this phase and `is_it` is true of the phase's state."""
         while True:
             state = self.cast.headset.client.state
             order = None if state is None else state.phase

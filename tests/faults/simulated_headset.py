@@ -52,7 +52,7 @@ TOUCH_S, BETWEEN_S = 0.08, 0.2
 
 @dataclass(frozen=True)
 class Frames:
-    """A batch of frames before it is encoded; `times_s` (n,), `flags` (n,)."""
+    """A batch of frames before it is encoded; `times_s` and `flags` have the shape (n,)."""
 
     stream: StreamName
     epoch: int
@@ -63,7 +63,7 @@ class Frames:
     active_s: float
 
     def packed(self) -> bytes:
-        """Return the batch as it is sent."""
+        """Return the batch encoded as a headset sends it."""
         closed_s = float(np.nan_to_num(self.times_s[-1], nan=0.0, posinf=0.0, neginf=0.0))
         return encode_batch(
             self.stream,
@@ -96,12 +96,12 @@ class World:
 
     @property
     def clock(self) -> Clock:
-        """Return both clocks for the application."""
+        """Return both clocks as one clock of the application."""
         return Clock(lambda: self.wall, lambda: round(self.monotonic_s * 1e9))
 
 
 class PromptWriter(TelemetryWriter):
-    """Commit in the caller's thread: a group of arrivals, or all pending ones on request."""
+    """A writer that commits in the caller's thread: a group, or all arrivals on request."""
 
     def submit(self, arrival: Arrival) -> None:
         """Queue an arrival for the next commit; commit immediately if it reports a lost headset."""
@@ -179,7 +179,7 @@ class Site:
         return cls(context, world, writer, key)
 
     def join(self, *, kind: str = "test", time_scale: float = 1.0, step: str) -> str:
-        """Create a session that is at this step, with its earlier steps skipped."""
+        """Create a session at this step, with its earlier steps skipped."""
         with self.context.database.writing() as db:
             session = join(
                 db,
@@ -268,7 +268,7 @@ class Weather:
 
     @classmethod
     def drawn(cls, rng: np.random.Generator) -> "Weather":
-        """Draw any combination of faults, with at most one that stops the clock."""
+        """Draw a combination of faults, at most one of which stops the clock."""
         weather = cls(
             drift=float(rng.uniform(-1e-4, 1e-4)),
             jitter_s=float(rng.uniform(0.0, 0.03)),
@@ -296,8 +296,8 @@ class SimulatedHeadset:
     """A headset in one phase: its clock, sequence numbers, journal and task.
 
     `edit` may change, drop or add messages before they are journaled: this is where a lie is
-    inserted. `pace` is how many real seconds pass in one of the headset's, 1 over the time scale
-    for a correct one.
+    inserted. `pace` is the number of real seconds per second of the headset's clock: the inverse of
+    the time scale for a correct headset.
     """
 
     site: Site
@@ -419,7 +419,7 @@ class SimulatedHeadset:
         yield from self._say({"type": "produced", "epoch": self.epoch, "streams": counts})
 
     def _paused(self, for_s: float) -> Iterator[Json | bytes]:
-        """Let the operator pause and, after a while, resume the phase."""
+        """Let the operator pause the phase and resume it after a while."""
         yield from self._delivered()
         self.site.command(self.session_id, c.Pause())
         self._tick(TICK_S)
@@ -466,7 +466,7 @@ class SimulatedHeadset:
         self.seq += len(times_s)
 
     def _touch(self, t_s: float, active_s: float) -> None:
-        """Touch the next surface in the order for a moment, if it is due."""
+        """Touch the next surface in the order for a moment, if a touch is due."""
         if active_s < self._next_touch_s or active_s + TOUCH_S > self.duration_s - 0.01:
             return
         self._next_touch_s = active_s + BETWEEN_S

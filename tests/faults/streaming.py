@@ -25,7 +25,7 @@ MOST_WAITING = 400
 
 @dataclass(frozen=True)
 class StreamingHeadset:
-    """A headset paired with a session that has not started."""
+    """A headset that only streams, paired with a session that has not started."""
 
     session_id: str
     token: str
@@ -68,10 +68,10 @@ async def stream(
     *,
     real_time: bool = True,
 ) -> None:
-    """Stream from all headsets in parallel while `more()`; return when all is acknowledged.
+    """Stream from all headsets in parallel while `more()`; return when everything is acknowledged.
 
     In real time each makes 90 frames a second however slow the server is, as a body does; otherwise
-    as many as the server accepts.
+    each makes as many as the server accepts.
     """
     async with asyncio.TaskGroup() as group:
         for seed, headset in enumerate(headsets):

@@ -58,7 +58,7 @@ def record(server: LiveServer) -> Iterator[Session]:
 
 @dataclass
 class Made:
-    """A backup made while a session streamed. `acked`: acknowledged before the command."""
+    """A backup made while a session streamed; `acked` was acknowledged before the command."""
 
     session_id: str
     said: CommandResult
@@ -146,7 +146,7 @@ def check_rows(db: Session, file: Path) -> None:
 
 
 def go_on(server: LiveServer, session_id: str) -> None:
-    """Assert that the session is at the same step with a stopped clock, and pair its headset."""
+    """Assert that the session is at the same step with its clock stopped; pair its headset."""
     with server.client() as client:
         assert client.post("/api/login", json=CREDENTIALS).is_success
         view = client.get(f"/api/sessions/{session_id}").json()

@@ -1,4 +1,4 @@
-"""Tests that a blinded operator never meets the condition in a whole session (fault 33).
+"""Tests that a blinded operator never receives the condition during a whole session (fault 33).
 
 The conditions of this study have names and latencies that occur nowhere else, so finding one of
 them in anything that is sent to an operator is a leak.
@@ -66,25 +66,25 @@ def canary_study() -> str:
 
 
 def _around(match: re.Match[bytes]) -> str:
-    """Return the matched word with the text before and after it."""
+    """Return the matched text with some text before and after it."""
     return match.string[max(0, match.start() - 60) : match.end() + 20].decode(errors="replace")
 
 
 @dataclass
 class Spy:
-    """A signed-in account that keeps everything it receives."""
+    """A signed-in account that records everything it receives."""
 
     client: httpx2.AsyncClient
     role: str
     heard: list[tuple[str, bytes]] = field(default_factory=list)
 
     def leaks(self) -> list[str]:
-        """Return where the condition was found in the received data, and the text."""
+        """Return each place where the condition was found in the received data, with the text."""
         found = [(where, CANARIES.search(body)) for where, body in self.heard]
         return [f"{where}: {_around(match)}" for where, match in found if match]
 
     async def look(self, session_id: str) -> None:
-        """Request everything that the role may request."""
+        """Request everything that the account's role may request."""
         for name, who in POLICY.items():
             method, template = name.split()
             if method == "GET" and self.role in who and not template.endswith("/live"):
@@ -134,7 +134,7 @@ async def _done(asked: Any) -> Any:
 
 
 def _moment(cast: Cast) -> tuple[object, ...]:
-    """Return the current kind of step, with its limb and latency."""
+    """Return the kind of the current step, with its limb and latency."""
     state = cast.headset.client.state
     if state is None:
         return ()
@@ -264,7 +264,7 @@ def test_a_copy_with_an_open_sessions_condition_is_audited(fresh_lab: Lab) -> No
 
 
 def test_a_session_that_gave_up_its_slot_does_not_reveal_the_order(fresh_lab: Lab) -> None:
-    """The order of a session that gave up its slot stays hidden until the slot is completed.
+    """A session that gave up its slot does not reveal the order until the slot is completed.
 
     Showing the condition of that session does not reveal it either.
     """

@@ -37,7 +37,7 @@ Wear = Callable[[Cast, Relay], Coroutine[Any, Any, None]]
 
 @dataclass(frozen=True)
 class Outcome:
-    """The session's view and events after the rehearsal."""
+    """The session's view and events after a rehearsal with faults."""
 
     session_id: str
     view: dict[str, Any]
@@ -53,7 +53,7 @@ class Outcome:
 
 
 def rehearse_with(server: LiveServer, wear: Wear, ledger: LedgerJournal) -> Outcome:
-    """Run a short session through a relay while `wear` injects a fault, and check its result."""
+    """Run a short session through a relay while `wear` injects a fault, and check the result."""
     study = add_short_study(server)
     outcome = asyncio.run(_perform(server, study, wear, ledger))
     active_s = [phase["active_s"] for phase in outcome.view["phases"]]
@@ -78,7 +78,7 @@ async def _perform(server: LiveServer, study: str, wear: Wear, ledger: LedgerJou
 
 
 def worn_while(fault: Callable[[Cast, Relay], Coroutine[Any, Any, None]]) -> Wear:
-    """Return a function that wears the headset to the end while `fault` happens."""
+    """Return a function that wears the headset to the end of the session while `fault` happens."""
 
     async def wear(cast: Cast, relay: Relay) -> None:
         async with asyncio.TaskGroup() as group:

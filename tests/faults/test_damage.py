@@ -36,12 +36,12 @@ def try_many(folder: Folder, elsewhere: Path, count: int, processes: int = 1) ->
 
 
 def test_damage_ends_in_serving_or_in_quarantine(folder: Folder, tmp_path: Path) -> None:
-    """A start with damaged files never ends in a traceback, and a restored backup serves."""
+    """A start with damaged files never ends in a traceback, and a restored backup can be served."""
     try_many(folder, tmp_path, SHORT)
 
 
 @pytest.mark.long
 @pytest.mark.timeout(14_400)
 def test_much_damage_ends_in_serving_or_in_quarantine(folder: Folder, tmp_path: Path) -> None:
-    """A thousand starts with damaged files never end in a traceback, and restored backups serve."""
+    """No start of a thousand with damaged files ends in a traceback; restored backups serve."""
     try_many(folder, tmp_path, LONG, os.cpu_count() or 1)

@@ -97,7 +97,7 @@ def new_session(client: httpx2.Client) -> dict[str, Any]:
 
 
 def command(client: httpx2.Client, session: dict[str, Any], kind: str) -> httpx2.Response:
-    """Send a command for the current version of a session."""
+    """Send a command based on the current version of a session."""
     version = client.get(f"/api/sessions/{session['id']}").json()["version"]
     body = {"command_id": str(uuid.uuid4()), "expected_version": version, "type": kind}
     words = {"reason": "the disk is full", "text": "x" * 1500}
@@ -105,7 +105,7 @@ def command(client: httpx2.Client, session: dict[str, Any], kind: str) -> httpx2
 
 
 def erased(client: httpx2.Client, session: dict[str, Any]) -> httpx2.Response:
-    """Request the erasure of a session's participant."""
+    """Request the erasure of a session's participant and return the response."""
     people = client.get(f"/api/studies/{STUDY}/participants").json()
     one = next(one for one in people if one["code"] == session["participant_code"])
     path = f"/api/studies/{STUDY}/participants/{one['id']}/erasure"
@@ -121,7 +121,7 @@ def made_export(client: httpx2.Client) -> str:
 
 
 def health(client: httpx2.Client) -> dict[str, Any]:
-    """Return the server's health."""
+    """Return the health that the server reports."""
     told: dict[str, Any] = client.get("/api/health").json()
     return told
 

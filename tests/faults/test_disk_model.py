@@ -44,7 +44,7 @@ os.write(one.fileno(), b"again")
 
 
 def event(what: str, stamp: int, data: bytes = b"", *, offset: int = 0, path: str = FILE) -> Event:
-    """Return a call that returns before the next one begins."""
+    """Return the event of a call that returns before the next call begins."""
     return Event(what, what, path, 2 * stamp, 2 * stamp + 1, 0, 0, offset=offset, data=data)
 
 
@@ -57,7 +57,7 @@ def disk_after(events: Sequence[Event], until: int = NEVER - 1) -> Disk:
 
 @pytest.fixture
 def started() -> list[Event]:
-    """Provide the calls that make a file certain, with three sectors of ones."""
+    """Provide the calls that write a file of three sectors of ones and make it certain."""
     return [
         event("create", 1),
         event("write", 2, b"1" * 1536),
@@ -77,7 +77,7 @@ def test_synced_data_survive_in_every_mood(started: list[Event]) -> None:
 
 
 def test_every_sector_has_one_of_its_versions_in_all_mixtures(started: list[Event]) -> None:
-    """Each of three sectors under two writes holds one of its versions, and all mixtures occur."""
+    """After two writes, each of three sectors has one of its versions, and all mixtures occur."""
     disk = disk_after(
         [*started, event("write", 5, b"2" * 1536), event("write", 6, b"3" * 600, offset=300)]
     )
@@ -97,7 +97,7 @@ def test_every_sector_has_one_of_its_versions_in_all_mixtures(started: list[Even
 
 
 def test_a_sync_covers_only_what_had_returned_before_it_began(started: list[Event]) -> None:
-    """A sync does not cover another thread's write that had not returned when it began."""
+    """A sync does not cover another thread's write that had not returned when the sync began."""
     overlapping = replace(event("write", 5, b"2" * 512), ended=13)
     disk = disk_after([*started, overlapping, event("sync", 6)])
     assert disk.certain()["a"] == b"1" * 1536
@@ -152,7 +152,7 @@ def test_the_tracer_returns_the_exit_code(tmp_path: Path) -> None:
 
 
 def test_promises_are_read_from_bytes_in_any_pieces() -> None:
-    """An acknowledgement sent whole or in pieces counts as made when its last byte is sent."""
+    """An acknowledgement, sent whole or in pieces, is made when its last byte is sent."""
     head = b"HTTP/1.1 101 Switching Protocols\r\nupgrade: websocket\r\n\r\n"
     welcome = b'{"type": "welcome", "session_id": "s", "positions": []}'
     ack = b'{"type":"ack","positions":[{"stream":"target","epoch":1,"next_seq":%06d}]}' % 12

@@ -70,14 +70,14 @@ def signed_in(server: LiveServer, url: str) -> Iterator[Site]:
 
 @dataclass(frozen=True)
 class Search:
-    """Search everything that the product stores or exports for one visit."""
+    """A search of everything that the product stores or exports for one visit."""
 
     site: Site
     visit: Visit
     elsewhere: Path
 
     def residuals(self) -> int:
-        """Return the number of finds in tables, files, the log, a new export and a new backup."""
+        """Return the number of matches in tables, files, the log, a new export and a new backup."""
         return (
             sum(in_tables(self.visit, self.site.database.engine).values())
             + sum(self.files().values())
@@ -85,12 +85,12 @@ class Search:
         )
 
     def files(self) -> dict[str, int]:
-        """Return the finds in the data folder with the write-ahead log, and in the server's log."""
+        """Return the matches in the data folder, its write-ahead log and the server's log."""
         folder = self.site.server.data_dir
         return in_files(self.visit, [*folder.rglob("*"), self.site.server._log_file])
 
     def in_new_copies(self) -> int:
-        """Return the finds in a new export of everything and a new backup."""
+        """Return the matches in a new export of everything and in a new backup."""
         answer = self.site.operator.get(f"/api/studies/{STUDY}/export?kind=all")
         assert answer.is_success
         to = self.elsewhere / f"{len(list(self.elsewhere.iterdir()))}.reembody"
@@ -100,7 +100,7 @@ class Search:
 
 @pytest.fixture
 def elsewhere(tmp_path: Path) -> Path:
-    """Provide a folder outside the server's, for backups."""
+    """Provide a folder for backups that is outside the server's folder."""
     folder = tmp_path / "elsewhere"
     folder.mkdir()
     return folder
@@ -118,7 +118,7 @@ def refused_after_withdrawal(site: Site, visit: Visit) -> int:
 
 
 def settled(site: Site, visit: Visit, within_s: float = 60.0) -> Mapping[str, int]:
-    """Return where a visit is found once its last batches have been folded into chunks."""
+    """Return the places of a visit's data after its last batches were folded into chunks."""
     give_up_s = time.monotonic() + within_s
     waiting = select(func.count()).where(TelemetryBatch.session_id == visit.session_id)
     while True:
@@ -220,7 +220,7 @@ def test_a_restored_backup_does_not_undo_an_erasure(
 
 
 def in_a_new_installation(folder: Path, visit: Visit, backup: Path, listed: Path) -> int:
-    """Restore a backup where only the list of erasures was copied; return the residuals."""
+    """Restore a backup where only the list of erasures exists; return the residuals."""
     server = LiveServer(folder)
     server.data_dir.mkdir(parents=True)
     shutil.copyfile(listed, server.data_dir / listed.name)
@@ -230,7 +230,7 @@ def in_a_new_installation(folder: Path, visit: Visit, backup: Path, listed: Path
 
 
 def test_an_older_database_file_is_erased_at_the_start(tmp_path: Path) -> None:
-    """An older database file copied into place is erased at the start from the list of erasures."""
+    """The start repeats past erasures on an older database file that was copied into place."""
     older = tmp_path / "older.sqlite"
     with installed(tmp_path / "live", "sqlite") as site:
         visit = make_visit(site)
@@ -253,7 +253,7 @@ def test_an_older_database_file_is_erased_at_the_start(tmp_path: Path) -> None:
 
 
 def test_a_lost_list_of_erasures_is_rebuilt(tmp_path: Path) -> None:
-    """A lost list of erasures is rebuilt from the table at every start, with ids only."""
+    """A lost list of erasures is rebuilt from the table at every start, and contains only ids."""
     with installed(tmp_path / "live", "sqlite") as site:
         visit = make_visit(site)
         site.command(visit.session_id, "withdraw", reason="enough")

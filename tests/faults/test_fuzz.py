@@ -38,7 +38,7 @@ ODD = ("null", "-1", "1e400", "NaN", '""', "[]", "{}", "true", "9" * 400, '"\\u0
 
 
 def malformed_batch(rng: np.random.Generator) -> bytes:
-    """Return a batch with bytes changed, cut or doubled, or random bytes."""
+    """Return a batch with bytes changed, cut or duplicated, or random bytes."""
     data = bytearray(BATCH)
     match int(rng.integers(5)):
         case 0:
@@ -88,7 +88,7 @@ def crashes(rng: np.random.Generator, count: int) -> int:
 
 
 def test_a_malformed_message_raises_only_its_own_error() -> None:
-    """A malformed message only ever raises the error for malformed input."""
+    """A malformed message never raises any error except the one for malformed input."""
     found = crashes(np.random.default_rng(21), SHORT)
     note(21, f"malformed messages ({SHORT:,})", "crashes", found)
     assert found == 0

@@ -1,6 +1,7 @@
-"""Tests that a failed disk call is reported in words, with nothing lost, left over or moved.
+"""Tests that a failed disk call is reported with a message, and that no data are lost or moved.
 
-The benchmark `io_faults` does this at every call of eight operations; here are a few of each kind.
+The benchmark `io_faults` does this at every call of eight operations; these tests try a few calls
+of each kind.
 """
 
 import json
@@ -24,7 +25,7 @@ FEW, MANY = 5, 40
 
 @pytest.fixture(scope="module")
 def source(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Provide the data folder with which every run begins."""
+    """Provide the data folder from which every run starts."""
     folder = tmp_path_factory.mktemp("source")
     refused = why_not(folder)
     if refused or injecting_machine() is None:
@@ -34,7 +35,7 @@ def source(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def tried(source: Path, operation: str, most: int) -> list[dict[str, Any]]:
-    """Inject about `most` faults into an operation and return the findings."""
+    """Inject about `most` faults into an operation and return the problems found."""
     result = source.with_name("result.json")
     workers = nursery().workers.hex()
     arguments = [str(source), operation, workers, str(most), str(result)]

@@ -115,7 +115,7 @@ async def _rehearse(
 
 
 def check_kill(kill: Kill) -> None:
-    """Assert that acknowledged data are stored once and the session resumes at the same place."""
+    """Assert that acknowledged data are stored once and that the session resumes where it was."""
     assert (kill.lost, kill.surplus) == (0, 0), kill
     before, after = kill.before, kill.after
     assert after.version >= before.version, kill

@@ -12,14 +12,14 @@ FOOT = next(step.key for step in PLAN if step.limb == "foot")
 
 
 def lost(cause: str, active_s: float = 20.0) -> Run:
-    """Return a run in a foot phase whose headset was lost while the clock ran."""
+    """Return a run in a foot phase in which the headset was lost while the clock ran."""
     run = Run().begin(FOOT)
     run.do(c.HeadsetLost(active_s=active_s, cause=cause))
     return run
 
 
 def phase_of(run: Run) -> PhaseState:
-    """Return the current phase."""
+    """Return the current phase of a run."""
     assert run.state.phase is not None
     return run.state.phase
 

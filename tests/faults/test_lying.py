@@ -49,7 +49,7 @@ def honest(site: Site, count: int) -> list[Outcome]:
 
 
 def tell(outcomes: list[Outcome], what: str) -> list[str]:
-    """Report the figures and return every stream with an unexpected outcome."""
+    """Report the figures of the streams and return every stream with an unexpected outcome."""
     lies = what == "lying"
     wrong = [
         f"{one.seed} {one.lie}: {one.status} {one.refusals} {[d.words for d in one.doubts]}"
@@ -73,7 +73,7 @@ def test_no_honest_headset_is_doubted(site: Site) -> None:
 
 
 def test_a_doubt_is_on_the_receipt_and_raises_an_alarm(site: Site) -> None:
-    """A doubt is named on the receipt, invalidates the phase and raises an alarm that says so."""
+    """A doubt is named on the receipt, invalidates the phase and raises an alarm that names it."""
     told = play(site, 1, "8 s in a moment")
     Summariser(site.context)._run(told.session_id, 1, tuple(SUMMARIES))
     with site.context.database.reading() as db:
@@ -89,7 +89,7 @@ def test_a_doubt_is_on_the_receipt_and_raises_an_alarm(site: Site) -> None:
 
 
 def test_a_wrong_count_is_corrected_by_a_later_true_one(site: Site) -> None:
-    """A frame count beyond reason is corrected by a later true one, and no frame is missing."""
+    """An impossibly high frame count is corrected by a later true one, and no frame is missing."""
     told = play(site, 3, "more made than can be, then the truth")
     with site.context.database.reading() as db:
         receipt = receipt_of(db, told.session_id)
@@ -128,7 +128,7 @@ def test_a_client_that_takes_over_gets_no_impossible_active_time(site: Site) -> 
 
 
 def stream_row(session_id: str, epoch: int, now: datetime) -> TelemetryStream:
-    """Return the row of a stream that received one report."""
+    """Return the database row of a stream that received one report."""
     return TelemetryStream(
         session_id=session_id,
         stream="reports",

@@ -50,7 +50,7 @@ def bench(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
 
 @dataclass(frozen=True)
 class Known:
-    """A filled database before a step, and its state before and after an undisturbed step."""
+    """A filled database before a step, and its state before and after an undisturbed run."""
 
     url: str
     old: Found
@@ -61,7 +61,7 @@ class Known:
 
 @contextmanager
 def undisturbed(bench: Bench, step: Step) -> Iterator[Known]:
-    """Take the step once, undisturbed, on a copy of a filled database."""
+    """Run the step once, undisturbed, on a copy of a filled database."""
     before, after = step
     with bench.empty() as url:
         upgrade(url, before)
@@ -80,7 +80,7 @@ def undisturbed(bench: Bench, step: Step) -> Iterator[Known]:
 
 @pytest.fixture(scope="module")
 def known_of(bench: Bench) -> Iterator[Callable[[Step], Known]]:
-    """Provide the undisturbed result of a step, computed once for all tests."""
+    """Provide the undisturbed result of each step, computed once for all tests."""
     with ExitStack() as stack:
         yield cache(lambda step: stack.enter_context(undisturbed(bench, step)))
 
@@ -104,7 +104,7 @@ def test_a_step_stopped_at_every_statement_on_postgresql(step: Step) -> None:
 
 
 def stop_often(bench: Bench, step: Step, known: Known, most: int | None) -> None:
-    """Stop after each statement, or after `most` evenly spread ones including the last."""
+    """Stop the step after each statement, or after `most` evenly spread ones including the last."""
     stops = np.unique(np.linspace(1, known.changes, most or known.changes, dtype=int)).tolist()
     assert stops[-1] == known.changes > 1
     for changes in stops:
@@ -124,12 +124,12 @@ def stop_often(bench: Bench, step: Step, known: Known, most: int | None) -> None
 
 
 def of_all(stops: list[int], known: Known) -> str:
-    """Format how many of the step's statements were tried."""
+    """Format how many of the step's statements were tried, of how many."""
     return f"{len(stops)} of {known.changes}"
 
 
 def engine_of(bench: Bench) -> str:
-    """Return the engine's name for a figure."""
+    """Return the engine's name as it is printed in a figure."""
     return type(bench).__name__.removesuffix("Bench")
 
 

@@ -1,6 +1,6 @@
 """Tests that a second server or a writing command is refused on data that a server uses.
 
-The short form tries a few times what `--long` tries fifty times.
+The short form repeats each attempt a few times, `--long` fifty times.
 """
 
 import asyncio
@@ -39,7 +39,7 @@ ANSWERS_WITHIN_S = 60.0
 
 @pytest.fixture
 def times(request: pytest.FixtureRequest) -> int:
-    """Provide the number of tries."""
+    """Provide the number of attempts."""
     return LONG if request.config.getoption("--long") else SHORT
 
 
@@ -78,7 +78,7 @@ def test_a_second_server_affects_no_phase_and_no_export(
 
 
 async def refused_beside_a_running_phase(server: LiveServer, times: int) -> None:
-    """Start second servers one after the other while a task phase runs."""
+    """Start second servers one after the other while a task phase runs, and count the refusals."""
     plan = RehearsalPlan(
         server.url, add_short_study(server), speed=1.0, seed=3, password=ADMIN_PASSWORD
     )
@@ -124,7 +124,7 @@ def test_commands_that_write_are_refused_and_those_that_read_are_not(
 ) -> None:
     """While a server runs, commands that need the data exclusively are refused and others work.
 
-    Exclusive are restoring and storing a tuning.
+    The commands that need it are those that restore a backup or store a tuning.
     """
     session_id, file = running_session(live_server), tmp_path / "all.reembody"
     works = [
@@ -154,9 +154,9 @@ def test_commands_that_write_are_refused_and_those_that_read_are_not(
 def test_a_running_servers_database_is_refused_under_another_name(
     live_server: LiveServer, tmp_path: Path
 ) -> None:
-    """A running server's database is refused under an SQLite URI or through a hard link.
+    """A running server's database is refused when named by an SQLite URI or through a hard link.
 
-    Either would lock another folder. The attempt creates no file.
+    With either name, the lock would be taken in another folder. The attempt creates no file.
     """
     file, other = live_server.data_dir / "reembody.sqlite", tmp_path / "other"
     other.mkdir()
@@ -185,7 +185,7 @@ def test_a_running_servers_database_is_refused_under_another_name(
 
 
 def test_a_database_of_postgres_has_one_server(tmp_path: Path) -> None:
-    """A PostgreSQL database has only one server, also if the data folders differ.
+    """A PostgreSQL database has only one server, even if the data folders differ.
 
     This holds for servers started simultaneously and one after the other.
     """
@@ -221,7 +221,7 @@ def test_a_server_starts_immediately_after_a_kill(tmp_path: Path) -> None:
 def pair(
     server: LiveServer, *environments: Mapping[str, str]
 ) -> Iterator[tuple[list[Child], list[tuple[Child, Path]]]]:
-    """Start two servers simultaneously, on ports of their own.
+    """Start two servers simultaneously, each on its own port.
 
     Yield those that serve, and those that do not with their log files.
     """

@@ -31,7 +31,7 @@ def press_together(lab: Lab, view: Json, pool: ThreadPoolExecutor) -> list[Respo
 
 
 def press_many_times(lab: Lab, times: int) -> Counter[str]:
-    """Count sessions that started twice or not at all, or whose loser was not informed."""
+    """Count sessions that started twice or not at all, or did not inform the losing operator."""
     found: Counter[str] = Counter()
     with ThreadPoolExecutor(2) as pool:
         for _ in range(times):
@@ -48,7 +48,7 @@ def press_many_times(lab: Lab, times: int) -> Counter[str]:
 
 
 def test_one_of_two_simultaneous_starts_succeeds(lab: Lab) -> None:
-    """Of two simultaneous starts one succeeds, and the other is shown the winner's event."""
+    """Of two simultaneous starts one succeeds, and the other's response names the first."""
     found = press_many_times(lab, SHORT)
     note(25, f"two operators press start (x{SHORT})", "double starts", found["double"])
     note(25, f"two operators press start (x{SHORT})", "losers not told", found["unseen"])

@@ -45,7 +45,7 @@ def _stored(heard: Json) -> int:
 
 
 def shuffled(rng: np.random.Generator) -> list[tuple[int, int]]:
-    """Cut the frames at random places; duplicate, overlap and reorder the pieces."""
+    """Cut the frames into batches at random; duplicate, overlap and reorder the batches."""
     cuts = sorted({0, FRAMES, *rng.integers(1, FRAMES, 20).tolist()})
     pieces = list(pairwise(cuts))
     again = [pieces[at] for at in rng.integers(0, len(pieces), 10)]

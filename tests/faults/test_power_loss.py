@@ -109,7 +109,7 @@ def streamed(
     *,
     command: Sequence[str] = REEMBODY,
 ) -> Recording:
-    """Return the first recording that contains enough, or the longest.
+    """Return the first recording that contains enough acknowledgements, or else the longest.
 
     A traced server on a busy machine takes a while until it acknowledges anything.
     """
@@ -122,13 +122,13 @@ def streamed(
 
 
 def crash(recording: Recording, count: int, seed: int) -> list[Crash]:
-    """Emulate `count` power losses, in every place and mood."""
+    """Emulate `count` power losses, around every kind of call and in every mood of the disk."""
     rng = np.random.default_rng(seed)
     return experiment.crash_at(recording, experiment.draw_crash_points(recording, count, rng), rng)
 
 
 def check(crashes: Sequence[Crash]) -> None:
-    """Assert that nothing is lost, altered, duplicated or torn, and all moods were tried."""
+    """Assert that no data are lost, altered, duplicated or torn, and that all moods were tried."""
     for one in crashes:
         verdict = one.verdict
         assert verdict.corrupt == "", one
@@ -140,7 +140,7 @@ def check(crashes: Sequence[Crash]) -> None:
 
 
 def ack_figures(proof: AckProof) -> str:
-    """Format the proof in one line."""
+    """Format the comparison of acknowledgements with flushes in one line."""
     half, most = np.percentile(proof.waits_ms, [50, 99])
     return (
         f"\nacks {proof.acks}, flushes {proof.syncs}, acks before their flush {proof.early}; "

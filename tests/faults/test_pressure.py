@@ -30,7 +30,7 @@ READERS, ALONE_S, STREAM_S = 10, 1.0, 4.0
 
 @dataclass
 class TimedLedger(LedgerJournal):
-    """A journal that also measures how long each message waits for its acknowledgement."""
+    """A journal that also measures the time from each message to its acknowledgement."""
 
     added_s: dict[int, float] = field(default_factory=dict)
     waited_s: list[float] = field(default_factory=list)
@@ -69,7 +69,7 @@ def watched_memory(server: LiveServer) -> Iterator[list[int]]:
 @pytest.mark.timeout(120)
 @pytest.mark.parametrize("burst_s", [2.0, pytest.param(5.0, marks=pytest.mark.long)])
 def test_a_burst_is_stored_without_loss(live_server: LiveServer, burst_s: float) -> None:
-    """A burst from four headsets at ten times their rate is queued and stored without loss."""
+    """A burst from four headsets at ten times their rate is queued and stored completely."""
     headsets = [
         StreamingHeadset(one.session_id, one.token, TimedLedger())
         for one in pair_headsets(live_server, HEADSETS)
@@ -114,7 +114,7 @@ async def _burst_one(server: LiveServer, headset: StreamingHeadset, burst_s: flo
 
 @pytest.mark.timeout(120)
 def test_consoles_that_do_not_read_delay_no_headset(live_server: LiveServer) -> None:
-    """Ten live streams that are never read lose only their own events and slow down no headset."""
+    """Ten consoles that never read lose only their own events, and delay no headset."""
     (headset,) = pair_headsets(live_server, 1)
     (other,) = pair_headsets(live_server, 1)
     before_s = _stream_for(live_server, headset, ALONE_S)

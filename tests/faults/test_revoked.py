@@ -22,14 +22,14 @@ NOTICED_WITHIN_S = 30.0
 
 @pytest.fixture(scope="module")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveServer]:
-    """Provide a server as operators start it."""
+    """Provide a server that is started as operators start it."""
     with LiveServer(tmp_path_factory.mktemp("revoked")) as server:
         yield server
 
 
 @dataclass
 class Reader:
-    """A client whose open stream is read in a thread; `ended_s` is when it ended."""
+    """A client with an open stream, read in a thread; `ended_s` is the time at which it ended."""
 
     client: httpx2.Client
     path: str
@@ -57,7 +57,7 @@ def reading(client: httpx2.Client, path: str) -> Iterator[Reader]:
 
 @contextmanager
 def signed_in(server: LiveServer) -> Iterator[httpx2.Client]:
-    """Yield a client with a login of its own."""
+    """Yield a client with its own login."""
     with server.client() as client:
         credentials = {"username": "admin", "password": ADMIN_PASSWORD}
         client.post("/api/login", json=credentials).raise_for_status()
@@ -71,13 +71,13 @@ def joined(client: httpx2.Client) -> str:
 
 
 def code(client: httpx2.Client, session_id: str, device: str) -> str:
-    """Return a new pairing code."""
+    """Return a new pairing code for a session."""
     path = f"/api/sessions/{session_id}/pairings"
     return str(client.post(path, json={"device": device}).raise_for_status().json()["code"])
 
 
 def shut_out_after_s(reader: Reader, end: Callable[[], object]) -> float:
-    """Return how many seconds after `end` the stream was closed."""
+    """Call `end` and return how many seconds later the stream was closed."""
     before_s = time.monotonic()
     end()
     assert reader.ended.wait(NOTICED_WITHIN_S), "the stream went on"
@@ -85,7 +85,7 @@ def shut_out_after_s(reader: Reader, end: Callable[[], object]) -> float:
 
 
 def test_ending_a_login_closes_its_streams(server: LiveServer) -> None:
-    """Logging out, or an admin's ending of logins, closes a live stream; then requests get 401."""
+    """Logging out, or an admin ending logins, closes a live stream, and later requests get 401."""
     with signed_in(server) as admin:
         session_id = joined(admin)
         path = f"/api/sessions/{session_id}/live"

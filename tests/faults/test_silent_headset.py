@@ -52,7 +52,7 @@ def test_a_silent_headset_is_paused_and_gets_its_whole_time(
 
 
 async def _hold_frames(headset: Headset, noticed: Coroutine[Any, Any, None]) -> None:
-    """Stop the frames until the server has noticed; other messages continue."""
+    """Send no frames until the server has noticed; other messages continue."""
     awake = asyncio.Event()
     due = headset._sleep_until_due
 

@@ -29,7 +29,7 @@ ASKED = 200
 
 @pytest.fixture(scope="module")
 def lan(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LanServer]:
-    """Provide a server with all its ports open."""
+    """Provide a server with all its network ports open."""
     with LanServer(tmp_path_factory.mktemp("slow")) as server:
         yield server
 
@@ -136,7 +136,7 @@ def test_an_unfinished_request_is_closed(lan: LanServer) -> None:
 @pytest.mark.timeout(120)
 @pytest.mark.long
 def test_a_slow_large_upload_is_read_to_its_end(lan: LanServer) -> None:
-    """A capture sent at 140 kB/s for longer than a usual body may take is read to its end."""
+    """A capture is read to its end at 140 kB/s, even if this exceeds the usual time for a body."""
     with lan.client() as client:
         credentials = {"username": "admin", "password": ADMIN_PASSWORD}
         client.post("/api/login", json=credentials).raise_for_status()

@@ -17,7 +17,7 @@ THREADS = 50
 
 
 def command(lab: Lab, view: Json, kind: str, **fields: object) -> Response:
-    """Send a command based on this view of the session."""
+    """Send a command based on the given view of the session."""
     body = {
         "command_id": str(uuid.uuid4()),
         "expected_version": view["version"],

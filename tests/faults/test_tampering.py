@@ -26,7 +26,7 @@ Attack = Callable[[Session], object]
 
 
 def attacks(rows: list[SessionEvent]) -> Iterator[Attack]:
-    """Yield a change of each column, a removal of each event, an insertion and a truncation."""
+    """Yield SQL that changes each column, removes each event, inserts one, or truncates the log."""
     table = SessionEvent.__table__
     for row in rows:
         here = (table.c.session_id == row.session_id, table.c.seq == row.seq)
@@ -65,7 +65,7 @@ def test_every_change_of_the_log_is_found(lab: Lab) -> None:
 
 
 def _is_found(lab: Lab, session_id: str, attack: Attack) -> bool:
-    """Return whether an attack is detected, and roll it back."""
+    """Return whether an attack is detected; roll the attack back afterwards."""
     with lab.database.engine.connect() as connection:
         transaction = connection.begin()
         with Session(connection, join_transaction_mode="create_savepoint") as db:

@@ -25,7 +25,7 @@ MOST_GROWTH_MIB = 64
 
 @pytest.fixture(scope="module")
 def lan(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LanServer]:
-    """Provide a server with all its ports open."""
+    """Provide a server with all its network ports open."""
     with LanServer(tmp_path_factory.mktemp("large")) as server:
         yield server
 
@@ -43,7 +43,7 @@ def _bounded(lan: LanServer, what: str) -> Iterator[None]:
 
 
 def test_too_large_a_body_is_refused(lan: LanServer) -> None:
-    """A too large body gets 413 before it fills the memory, with or without a declared length."""
+    """A body that is too large gets 413 before it fills the memory, even if undeclared."""
     limit = Settings().max_body_bytes
     with lan.client() as client:
         client.get("/api/health")
@@ -83,7 +83,7 @@ def _sent_until_closed(connection: socket.socket) -> int:
 
 
 def test_too_large_a_capture_is_refused(lan: LanServer) -> None:
-    """A capture above its own larger limit gets 413; an anonymous upload gets 401."""
+    """A capture above the larger limit for captures gets 413; an anonymous upload gets 401."""
     most = Settings().max_capture_bytes
     address = "/api/captures?name=walk.bvh"
     with lan.client() as client:
@@ -114,7 +114,7 @@ def _blocks(mebibytes: int) -> Iterator[bytes]:
 def _sent_in_chunks(
     port: int, mebibytes: int, address: str = "/api/login", cookie: str = ""
 ) -> bytes:
-    """Send chunks until the server answers, which it does long before the end."""
+    """Send chunks until the server responds, which it does long before the end of the body."""
     with socket.create_connection(("127.0.0.1", port), timeout=30) as connection:
         head = f"POST {address} HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
         head += f"Cookie: {cookie}\r\nTransfer-Encoding: chunked\r\n\r\n"
@@ -128,7 +128,7 @@ def _sent_in_chunks(
 
 
 def test_too_large_a_frame_is_refused(lan: LanServer) -> None:
-    """A too large frame closes the headset's socket with code 1009, over ws and wss."""
+    """A frame that is too large closes the headset's socket with code 1009, over ws and wss."""
     (headset,) = pair_headsets(lan, 1)
     for url, trust in ((lan.url, None), (lan.secure_url, lan.trusting())):
         scheme = url.partition(":")[0]

@@ -1,4 +1,4 @@
-"""Tests of the server's wall clock being set in mid-phase, as a time service does."""
+"""Tests that the server's wall clock may be set in mid-phase, as a time service does."""
 
 import json
 from collections.abc import Iterator
@@ -32,7 +32,7 @@ class Headset:
     next_frame: int = 0
 
     def hear(self, kind: str) -> Json:
-        """Return the next message of a kind."""
+        """Return the next message of this kind from the server."""
         while True:
             heard: Json = json.loads(self.socket.receive_text())
             if heard["type"] == kind:
@@ -50,7 +50,7 @@ class Headset:
             pass
 
     def move(self, t_s: float, active_s: float, phase_id: int) -> None:
-        """Send nine frames up to `t_s`."""
+        """Send nine frames with timestamps up to `t_s`."""
         times_s = t_s - np.arange(8, -1, -1) / 90.0
         first, self.next_frame = self.next_frame, self.next_frame + 9
         self.socket.send_bytes(
@@ -85,7 +85,7 @@ def wall() -> WallClock:
 
 @pytest.fixture
 def stepped(database_url: str, wall: WallClock) -> Iterator[Lab]:
-    """Provide a running application that uses this wall clock."""
+    """Provide a running application that uses the wall clock of the test."""
     with running_lab(database_url, Clock(utc_now=wall.utc_now)) as lab:
         yield lab
 
@@ -140,7 +140,7 @@ def _run_phase(lab: Lab, session_id: str, headset: Headset, wall: WallClock) -> 
 
 
 def _negative_intervals(lab: Lab, session_id: str) -> int:
-    """Return how many phases, contacts, completions and gaps between events are negative."""
+    """Return how many phases, contacts, completions and gaps between events last below zero."""
     with lab.database.reading() as db:
         phases = phases_table(db, STUDY, "people")
         contacts = contacts_table(db, STUDY, "people")

@@ -1,4 +1,4 @@
-"""Tests that a study file that would expand beyond measure is rejected while it is parsed.
+"""Tests that a study file that would expand enormously is rejected while it is parsed.
 
 Fault 37 of the matrix. Each bomb is parsed in a process of its own, so that its peak memory is its
 own; a parser that expanded them would need gigabytes.
@@ -50,7 +50,7 @@ print(json.dumps([refused, after[0] - before[0], after[1] - before[1]]))
 
 @pytest.mark.parametrize("name", BOMBS)
 def test_a_bomb_is_refused_before_it_grows(name: str) -> None:
-    """Loader and editor reject a YAML bomb with a line and a remedy, at little time and memory."""
+    """Loader and editor reject a YAML bomb with line and remedy, in little time and memory."""
     done = subprocess.run(
         [sys.executable, "-c", READ], input=BOMBS[name], capture_output=True, text=True, timeout=120
     )

@@ -1,4 +1,4 @@
-"""Run the server with a database that does not flush, to show that tests notice it.
+"""Run the server with a database that does not flush, to show that tests detect this.
 
 Usage: `python -m tests.faults.weakened NORMAL serve ...`.
 """
@@ -15,7 +15,7 @@ from app.database import prepare_connection
 
 
 def weaken(level: str) -> None:
-    """Set `synchronous` of every future connection."""
+    """Set SQLite's `synchronous` option on every future connection."""
 
     def prepare(dbapi_connection: DBAPIConnection, _record: ConnectionPoolEntry) -> None:
         prepare_connection(dbapi_connection, _record)

@@ -1,1 +1,1 @@
-"""Infrastructure of the tests: databases, servers, browsers and the stages of `./run test`."""
+"""Infrastructure of the tests: databases, servers, browsers, and the stages of `./run test`."""

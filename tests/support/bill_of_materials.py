@@ -1,8 +1,8 @@
 """Generate the CycloneDX bill of materials of the product from the two lock files.
 
-`python -m tests.support.bill_of_materials > docs/sbom.cdx.json` rewrites it; a test compares, so a
-dependency cannot be added without being listed. The locks name every package with its hashes, so
-nothing needs to be installed or downloaded.
+`python -m tests.support.bill_of_materials > docs/sbom.cdx.json` rewrites it; a test compares the
+file, so a dependency cannot be added without being listed. The locks name every package with its
+hashes, so nothing needs to be installed or downloaded.
 """
 
 import json
@@ -112,7 +112,7 @@ def _component(kind: str, name: str, version: str) -> Json:
 
 
 def _dependencies(depended: dict[str, list[str]]) -> list[Json]:
-    """Convert the users of each package into the dependencies of each package."""
+    """Return the dependencies of each package, from the users of each package."""
     known = {ref.rpartition("@")[0]: ref for ref in depended} | {"reembody": "reembody"}
     needs: dict[str, set[str]] = {"reembody": set()}
     for ref, users in depended.items():

@@ -69,7 +69,7 @@ class PageWatch:
     _allowed: list[re.Pattern[str]] = field(default_factory=list)
 
     def allow(self, pattern: str) -> None:
-        """Expect problems that contain this regular expression, e.g. `status of 409`."""
+        """Allow problems that match this regular expression, e.g. `status of 409`."""
         self._allowed.append(re.compile(pattern))
 
     def attach(self, context: BrowserContext) -> None:
@@ -106,10 +106,10 @@ class ContextFactory:
         motion: Motion = "reduce",
         **options: Any,  # Playwright's own, such as base_url or has_touch
     ) -> BrowserContext:
-        """Return a watched context; `size` is width x height in CSS pixels.
+        """Return a watched context; `size` is width and height in CSS pixels.
 
-        Software renders every frame of an animation, so dialogs appear without one, as they do for
-        people who prefer that; `motion="no-preference"` enables animations.
+        Animations are rendered in software, which is slow, so they are disabled, as for people who
+        prefer reduced motion; `motion="no-preference"` enables animations.
         """
         width, height = size
         context = self.browser.new_context(

@@ -97,7 +97,7 @@ How the published files that the tests use are read. In brackets: where each con
 
 @dataclass(frozen=True)
 class Row:
-    """The result of reading one file, or several of one kind; ranges where the files differ."""
+    """The result of reading one file or several of one kind, with ranges where they differ."""
 
     name: str
     outcome: str
@@ -151,7 +151,7 @@ def rows(data: Path) -> Iterator[Row]:
 
 
 def files(data: Path) -> list[Path]:
-    """Return the files of captures and logs."""
+    """Return the shared files of captures and logs."""
     found = (path for folder in _FOLDERS for path in sorted((data / folder).rglob("*")))
     return [
         path
@@ -210,7 +210,7 @@ def _first_sentence(text: str) -> str:
 
 
 def _kind(name: str) -> str:
-    """Return the kind of a file: UXF writes one per trial, those of one tracker are one kind."""
+    """Return the kind of a file; the files of one UXF tracker, one per trial, are of one kind."""
     if not name.startswith("logs/uxf/"):
         return name
     return "logs/uxf/*/" + re.sub(r"_T\d+", "_T*", name.rsplit("/", 1)[1])

@@ -1,10 +1,10 @@
 """`./run check [PATHS]`: check for everything that a change may have broken, in 1 to 4 minutes.
 
-With paths: format and lint of these, types and import contracts of everything, and the tests that
-mirror them; `tests/` has the folders of `app/`, and a folder without a mirror has its parent's
-tests. Without: everything. In both cases no server, no PostgreSQL and no browser is started: tests
-that need one run only in `./run test` (`tests.support.unit_tests`), and so do the tests of faults,
-unless their path is given.
+With paths, it checks the format and lint of these, the types and import contracts of everything,
+and runs the tests that mirror them; `tests/` has the folders of `app/`, and a folder without a
+mirror has its parent's tests. Without paths, it checks everything. In both cases no server, no
+PostgreSQL and no browser is started: tests that need one run only in `./run test`
+(`tests.support.unit_tests`), and so do the tests of faults, unless their path is given.
 """
 
 import argparse
@@ -43,7 +43,7 @@ class NoSuchPath(ValueError):
 
 @dataclass(frozen=True)
 class Chosen:
-    """The paths to check, from the repository's root; those of the pages from theirs."""
+    """The paths to check: relative to the repository, or for pages to the frontend."""
 
     python: tuple[Path, ...]
     pages: tuple[Path, ...]
@@ -133,7 +133,7 @@ def _page_stages(paths: Sequence[Path]) -> list[Stage]:
 
 
 def _units(tests: Sequence[Path]) -> Stage:
-    """Return the stage of unit tests; few tests run in one process, as each has a start-up cost."""
+    """Return the stage of unit tests; a few tests run in one process to save start-up time."""
     options = ["-p", "tests.support.unit_tests", "-rfE"]
     if TESTS not in tests:
         return pytest_stage("unit tests", *options, *map(str, tests))

@@ -1,9 +1,9 @@
 """Find a Chromium without requiring an installation.
 
-In this order: the program `$CHROMIUM`, a system one, the npm package `@sparticuz/chromium`, which
-contains Chromium's headless shell with the libraries and fonts that a bare machine lacks. The
-package is installed once into `.cache/` of the checkout. (Playwright's own download is not used: it
-fetches from a host that closed networks do not reach.)
+It tries, in this order, the program `$CHROMIUM`, a system Chromium, and the npm package
+`@sparticuz/chromium`, which contains Chromium's headless shell with the libraries and fonts that a
+bare machine lacks. The package is installed once into `.cache/` of the checkout. (Playwright's own
+download is not used: it fetches from a host that closed networks do not reach.)
 """
 
 import hashlib
@@ -61,7 +61,7 @@ def packaged_chromium() -> Chromium:
 
 
 def axe_script() -> Path:
-    """Return the path of the accessibility checker axe-core: the frontend's, else our own."""
+    """Return the path of the accessibility checker axe-core: the frontend's copy, else ours."""
     frontend = REPOSITORY / "frontend" / "node_modules" / "axe-core" / "axe.min.js"
     if frontend.is_file():
         return frontend

@@ -36,7 +36,7 @@ QUOTED = re.compile(r"'(\w+)'")
 
 
 def tables_of(engine: Engine | Connection) -> list[Table]:
-    """Return the product's current tables, those that are referred to first."""
+    """Return the product's current tables; a table comes before those that refer to it."""
     if isinstance(engine, Connection):
         return _tables_in(statements_of(engine), engine)
     return _reflected(engine)
@@ -90,7 +90,7 @@ _tables_in = remembered(_reflected)
 
 
 def fill(engine: Engine, rows: int = ROWS) -> None:
-    """Insert `rows` rows into every table; each refers to those of the same number."""
+    """Insert `rows` rows into every table; each row refers to the rows with the same number."""
     writes = engine.execution_options(reembody_writes=True)
     with writes.begin() as connection:
         schema = statements_of(connection)

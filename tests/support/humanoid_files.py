@@ -1,4 +1,4 @@
-"""Write skinned humanoid models as files, and files that are not humanoid.
+"""Write files of skinned humanoid models, and of models that are not humanoid.
 
 The models are those of `tests.support.humanoid_model`. Bones have rotations of their own at rest,
 as those of real rigs have.
@@ -24,7 +24,7 @@ def humanoid_file(model: Model | None = None) -> bytes:
 
 
 def box_file() -> bytes:
-    """Return the file of a box on a node, without bones."""
+    """Return the file of a model without bones: a box on a node."""
     return humanoid_file(Model(parts=(), skin=()))
 
 
@@ -54,7 +54,7 @@ _DOG: Mapping[str, tuple[str | None, tuple[float, float, float], str]] = {
 
 
 def dog_file(*, humans_names: bool = False) -> bytes:
-    """Return the file of a dog, with bone names of an animal rig or of a human."""
+    """Return the file of a dog model, with the bone names of an animal rig or of a human."""
     names = list(_DOG)
     nodes: list[dict[str, Any]] = []
     for name, (above, place, human) in _DOG.items():
@@ -140,7 +140,7 @@ class _File:
         return above
 
     def _root(self) -> Array:
-        """Return file_from_model: a turn, and the up axis."""
+        """Return file_from_model: a rotation, and the change of the up axis."""
         # Facing -z becomes facing +z, then the requested turn is applied.
         turn = _matrix(np.array((0.0, np.pi + self._model.facing_rad, 0.0)))
         if self._model.up == "z":

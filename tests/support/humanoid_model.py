@@ -1,7 +1,7 @@
 """A synthetic humanoid model: its bones, their positions, and the skin around them.
 
-It has the joints of a person of 1.7 m with shorter arms and shoulders that lie further back, and a
-box of skin around each bone.
+It has the joints of a person of 1.7 m with shorter arms and shoulders further back, and a box of
+skin around each bone.
 """
 
 from collections.abc import Callable, Mapping, Sequence

@@ -26,7 +26,7 @@ class LanServer(LiveServer):
 
     @property
     def secure_url(self) -> str:
-        """Return the base URL of https."""
+        """Return the base URL of the https port."""
         return f"https://127.0.0.1:{self.lan_port}"
 
     @property
@@ -39,7 +39,7 @@ class LanServer(LiveServer):
         return httpx2.get(f"{self.help_url}/reembody-ca.crt").raise_for_status().content
 
     def trusting(self) -> ssl.SSLContext:
-        """Return the trust of a device that has installed only the authority's certificate."""
+        """Return the TLS context of a device that installed only the authority's certificate."""
         context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
         context.load_verify_locations(cadata=self.authority())
         return context

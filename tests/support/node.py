@@ -1,4 +1,4 @@
-"""Run the Node of the development requirements, so that no machine needs its own."""
+"""Run the Node that the development requirements install, so that no machine needs its own."""
 
 import hashlib
 import os

@@ -125,7 +125,7 @@ class Nursery:
         self._one_question = threading.Lock()
 
     def start(self, wish: Wish) -> Child:
-        """Start a command in a child of the nursery and return its process."""
+        """Start a command in a child process of the nursery and return that process."""
         started = self.ask(
             {
                 "arguments": list(wish.arguments),
@@ -150,7 +150,7 @@ class Nursery:
 
 
 def nursery() -> Nursery:
-    """Return the nursery of this process; it ends with it."""
+    """Return the nursery of this process; the nursery ends with this process."""
     with _BEGINNING:
         return _nursery()
 
@@ -168,7 +168,7 @@ def _plain_environment() -> dict[str, str]:
 
 
 def serve_wishes(wishes: socket.socket) -> dict[str, Any] | None:
-    """Answer requests until the connection closes (None); in each child, return its request."""
+    """Answer requests until the connection closes (return None); in a child, return its request."""
     while asked := wishes.recv(MOST_BYTES):
         request = json.loads(asked)
         if "reap" in request:
@@ -208,7 +208,7 @@ def become(request: dict[str, Any]) -> None:
 
 
 def main() -> None:
-    """Import, then answer requests; a child leaves the loop and runs its command."""
+    """Import the product, then answer requests; a child leaves the loop and runs its command."""
     for name in EAGER:
         __import__(name)
     if STUDIES in os.environ:
@@ -239,7 +239,7 @@ def make_passwords_cheap() -> None:
 
 
 def ship_studies_from(folder: Path) -> None:
-    """Create new databases of this process with the studies of `folder` from now on."""
+    """Provide new databases of this process with the studies of `folder` from now on."""
     from app.features.design.studies import service
 
     instruments = service.shipped_files().instruments

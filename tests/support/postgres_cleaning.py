@@ -1,8 +1,8 @@
-"""Restore a PostgreSQL database to its state before a test, and check that it is.
+"""Restore a PostgreSQL database to its state before a test, and check the result.
 
-Rows are removed, and the counters of their keys reset. Anything else that a test may have changed
-is in the catalogues, and shows in their marks: tables, columns, constraints, indices, triggers,
-functions, schemas, settings, sequences, and the revision that is stored in the database.
+Rows are removed, and the counters of their keys reset. Any other change that a test may have made
+is recorded in the catalogues, and changes their marks: tables, columns, constraints, indices,
+triggers, functions, schemas, settings, sequences, and the revision that is stored in the database.
 """
 
 from pathlib import Path

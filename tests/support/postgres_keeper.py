@@ -1,8 +1,8 @@
 """Run PostgreSQL until the test run ends.
 
-A process of its own: it ends PostgreSQL on request (SIGTERM) and when the test run has ended for
-any reason, so that a killed run leaves no server behind. The last thing it does is to write
-`stopped` into its folder.
+The keeper is a separate process: it ends PostgreSQL on request (SIGTERM) and when the test run has
+ended for any reason, so that a killed run leaves no server behind. The last thing it does is to
+write `stopped` into its folder.
 
 Arguments: the owner's pid, the account (uid, gid), the folder, then PostgreSQL's command line.
 """
@@ -39,7 +39,7 @@ def keep(owner: psutil.Process, server: subprocess.Popen[bytes]) -> None:
 
 
 def alive(owner: psutil.Process) -> bool:
-    """Return whether a process runs; an ended process that was not collected does not."""
+    """Return whether a process is running; a process that has ended but was not reaped is not."""
     try:
         return owner.is_running() and owner.status() != psutil.STATUS_ZOMBIE
     except psutil.NoSuchProcess:
@@ -59,7 +59,7 @@ def shut_down(server: subprocess.Popen[bytes]) -> None:
 
 
 def on_term(_number: int, _frame: FrameType | None) -> None:
-    """End the wait in `keep`."""
+    """Interrupt the wait in `keep` when SIGTERM arrives."""
     raise StopRequested
 
 

@@ -1,4 +1,4 @@
-"""How often a test repeats itself: fewer times in the usual run, the full number with `--long`."""
+"""Choose how often a test repeats: few times in the usual run, the full number with `--long`."""
 
 _at_length = False
 

@@ -1,7 +1,7 @@
 """The real server, as a process that tests can send requests to, kill and restart.
 
 It runs what an operator runs (`reembody serve`): the tests go through argument parsing, settings,
-migrations and the network, and a `kill()` is a real crash. Only the imports were made before
+migrations and the network, and a `kill()` is a real crash. Only the imports are done in advance
 (tests/support/nursery.py).
 """
 
@@ -63,7 +63,7 @@ class LiveServer:
 
     @property
     def url(self) -> str:
-        """Return `http://localhost:PORT`: browsers treat this name as secure, not every address."""
+        """Return `http://localhost:PORT`, a name that browsers treat as secure."""
         return f"http://localhost:{self.port}"
 
     @property
@@ -75,11 +75,11 @@ class LiveServer:
 
     @property
     def log(self) -> str:
-        """Return everything it wrote to standard output and error, over all its starts."""
+        """Return everything the server wrote to standard output and error, over all its starts."""
         return self._log_file.read_text(errors="replace") if self._log_file.exists() else ""
 
     def start(self) -> Self:
-        """Start it and wait until it responds; raise `RuntimeError` with its log if it fails."""
+        """Start the server and wait until it responds; raise `RuntimeError` with its log if not."""
         if self._process is not None:
             raise RuntimeError(f"the server already runs as process {self._process.pid}")
         needs("a server")
@@ -112,7 +112,7 @@ class LiveServer:
         return process
 
     def stop(self) -> None:
-        """Terminate it as a service manager does; kill it if it does not end."""
+        """Terminate the server as a service manager does; kill it if it does not end."""
         self._end(signal.SIGTERM)
 
     def kill(self) -> None:
@@ -120,7 +120,7 @@ class LiveServer:
         self._end(signal.SIGKILL)
 
     def restart(self) -> Self:
-        """Restart it on the same port and data."""
+        """Restart the server on the same port and data."""
         self.stop()
         return self.start()
 

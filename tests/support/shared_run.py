@@ -1,8 +1,8 @@
-"""One folder for everything that the processes of one test run share.
+"""Provide one folder for everything that the processes of one test run share.
 
 pytest-xdist spreads a run over worker processes that start and end independently. The process that
-was called (the controller, or the only process) creates the folder, passes it to the workers in an
-environment variable, and removes it at the end.
+was started first (the controller, or the only process) creates the folder, passes it to the workers
+in an environment variable, and removes it at the end.
 """
 
 import fcntl
@@ -18,7 +18,7 @@ OWNER_VARIABLE = "REEMBODY_TEST_RUN_OWNER"
 
 
 def open_run() -> None:
-    """Create the folder; call it in the controller before workers start."""
+    """Create the run's folder; call this in the controller before workers start."""
     # Not the temporary folder of the environment: the path of a unix socket ends after 107 bytes,
     # and PostgreSQL, run as `nobody` where the tests run as root, must be able to reach it.
     short = Path("/tmp")  # noqa: S108  # mkdtemp makes the name unguessable
@@ -35,12 +35,12 @@ def run_folder() -> Path:
 
 
 def owner_pid() -> int:
-    """Return the id of the process whose end is the end of the run."""
+    """Return the id of the process whose end marks the end of the run."""
     return int(os.environ[OWNER_VARIABLE])
 
 
 def close_run() -> None:
-    """Remove the folder; call it in the controller after everything using it has stopped."""
+    """Remove the run's folder; call this in the controller when nothing uses it any more."""
     shutil.rmtree(run_folder(), ignore_errors=True)
 
 
@@ -55,7 +55,7 @@ def locked(path: Path) -> Iterator[None]:
 
 @contextmanager
 def once(name: str) -> Iterator[Path | None]:
-    """Do something in only one process of the run: yield the mark to write, or None if done.
+    """Run a block in only one process of the run: yield the mark to write, or None if already done.
 
     The caller decides what to write into the mark; the other processes can read it.
     """

@@ -1,4 +1,4 @@
-"""Ship studies with a delayed copy as the avatar in the servers of tests.
+"""Let test servers ship studies whose avatar is a delayed copy instead of a physics avatar.
 
 The product's studies use a physics avatar, and a headset that cannot simulate one is refused. Most
 tests concern something else, and their headsets are a few lines long. A test of physics stores

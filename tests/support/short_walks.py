@@ -4,11 +4,11 @@ Carlisle and Kuo (2023), "Optimization of energy and time predicts dynamic speed
 walking", eLife 12; data in the repository kuo-lab/short_walk_experiment (MATLAB files).
 
 A file of one walk contains both feet. Each path is integrated from a sensor on the foot at 128 Hz,
-is rotated about the vertical by an angle of its own, and drifts while the foot stands before its
+is rotated about the vertical by an angle of its own, and drifts while the foot is still before its
 first step. `FFstart` and `FFend` are the frames at which a foot is flat, one for each stride. So
-each foot counts from its first flat frame to its last, is rotated so that it ends straight ahead,
-and is interpolated between its flat positions: this omits the swing of a foot, which the body does
-not follow. The mean of both feet represents the centre of mass.
+each path is used from the foot's first flat frame to its last, is rotated so that it ends straight
+ahead, and is interpolated between its flat positions: this omits the swing of a foot, which the
+body does not follow. The mean of both feet represents the centre of mass.
 """
 
 import io
@@ -31,7 +31,7 @@ _STILL_S = 1.0
 
 @dataclass(frozen=True, eq=False)
 class ShortWalkTable:
-    """Peak speed and duration of every walk; NaN where a trial is missing (zero in the file)."""
+    """Peak speed and duration of every walk; NaN for missing trials (zero in the file)."""
 
     distances_m: tuple[float, ...]
     peak_speeds_m_s: FloatArray
@@ -51,7 +51,7 @@ def read_short_walk_table(data: bytes) -> ShortWalkTable:
 
 
 def read_foot_walk(data: bytes, *, name: str, subject: str, stature_m: float | None = None) -> Walk:
-    """Read one walk, which leads straight ahead, from rest to rest.
+    """Read one walk, rotated to lead straight ahead, from rest to rest.
 
     Raises:
         CaptureError: the file is not a MATLAB file, or lacks a foot's path or flat frames.
@@ -86,7 +86,7 @@ def _foot(content: dict[str, Any], key: str) -> tuple[FloatArray, FloatArray]:
 
 
 def _between(times_s: FloatArray, flat_s: FloatArray, ahead_m: FloatArray) -> FloatArray:
-    """Interpolate monotonically between the flat places, at rest before and after."""
+    """Interpolate monotonically between the flat positions, with rest before and after."""
     knots_s = np.concatenate([[flat_s[0] - _STILL_S], flat_s, [flat_s[-1] + _STILL_S]])
     knots_m = np.concatenate([ahead_m[:1], ahead_m, ahead_m[-1:]])
     within = np.clip(times_s, flat_s[0], flat_s[-1])

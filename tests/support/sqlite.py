@@ -9,7 +9,7 @@ from tests.support.shared_run import once, run_folder
 
 
 def fresh_sqlite(path: Path) -> str:
-    """Make `path` a migrated, empty database and return its URL."""
+    """Create a migrated, empty database at `path` and return its URL."""
     shutil.copyfile(_template(), path)
     return f"sqlite:///{path}"
 

@@ -2,7 +2,7 @@
 
 A stage that fails does not prevent the others from running: one call shows everything that is
 wrong. Two stages run at a time and print their output when they end, so no core stays idle for
-long. A stage that must run alone does so, and prints as it goes.
+long. A stage that must run alone prints its output while it runs.
 """
 
 # ruff: noqa: T201  # what it prints is what it is for
@@ -34,7 +34,7 @@ ONE_AT_A_TIME = Lock()
 class Stage:
     """A command, its folder, and the preparation it needs.
 
-    `alone`: nothing else may run at the same time. `aloud`: it prints as it goes.
+    `alone`: nothing else may run at the same time. `aloud`: its output is printed while it runs.
     """
 
     name: str
@@ -48,7 +48,7 @@ class Stage:
 
 @dataclass(frozen=True)
 class Outcome:
-    """The result of a stage."""
+    """The result of running one stage."""
 
     stage: Stage
     ended: Ended
@@ -61,7 +61,7 @@ class Outcome:
 
 
 def inherited() -> dict[str, str]:
-    """Return the environment of a stage: compiled modules are shared between stages."""
+    """Return the environment variables of a stage, which let stages share compiled modules."""
     return {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
 
 
@@ -95,7 +95,7 @@ def _run_beside(stage: Stage, *, brief: bool) -> Outcome:
 
 
 def _run_aloud(stage: Stage) -> Outcome:
-    """Run a stage that prints as it goes."""
+    """Run a stage and print its output while it runs."""
     print(_heading(stage.name), flush=True)
     outcome = _run(stage)
     print(_ending(outcome), flush=True)
@@ -103,7 +103,7 @@ def _run_aloud(stage: Stage) -> Outcome:
 
 
 def _run_silently(stage: Stage, *, brief: bool) -> Outcome:
-    """Run a stage and print its output in one piece, separate from a parallel stage's."""
+    """Run a stage and print its output at the end, in one piece."""
     with tempfile.TemporaryFile() as output:
         outcome = _run(stage, output)
         output.seek(0)
@@ -144,7 +144,7 @@ def _ending(outcome: Outcome) -> str:
 
 
 def summed(outcomes: Sequence[Outcome]) -> Tally:
-    """Return the sum of the tallies of all pytest runs."""
+    """Return the sum of the counts of all pytest runs."""
     total = Tally()
     for outcome in outcomes:
         total.add(outcome.tally)
@@ -182,7 +182,7 @@ def _times(ended: Ended) -> str:
 
 
 def as_json(outcomes: Sequence[Outcome], wall_s: float) -> dict[str, Any]:
-    """Return the results for machines; `./run test --help` describes them."""
+    """Return the results as JSON; `./run test --help` describes the fields."""
     total = summed(outcomes)
     return {
         "ok": all(outcome.passed for outcome in outcomes),
@@ -209,7 +209,7 @@ def _counts(tally: Tally) -> dict[str, int]:
 
 
 def exit_with(main: Callable[[list[str]], int]) -> NoReturn:
-    """Exit with what `main` returns for the arguments, or as shells do after an interrupt."""
+    """Exit with the code that `main` returns, or as shells do after an interrupt."""
     try:
         sys.exit(main(sys.argv[1:]))
     except KeyboardInterrupt:

@@ -58,7 +58,7 @@ def pytest_stage(name: str, *arguments: str, alone: bool = False, aloud: bool = 
 
 
 def node_stage(name: str, *command: str) -> Stage:
-    """Return a stage of the pages."""
+    """Return a stage that runs Node in the frontend."""
     environment = node_environment()
     return Stage(name, [*command], FRONTEND, environment, prepare=_install_packages_once)
 
@@ -112,7 +112,7 @@ def stages(*, long: bool) -> list[Stage]:
 
 
 def compile_ours() -> None:
-    """Compile all modules once, so that servers that may not write need not compile them."""
+    """Compile all our modules once: a server without write permission cannot cache them."""
     for folder in ("app", "migrations", "tests"):
         compileall.compile_dir(REPOSITORY / folder, quiet=1)
 

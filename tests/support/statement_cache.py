@@ -1,9 +1,9 @@
 """Share compiled SQL between all databases of a test process.
 
-SQLAlchemy caches compiled SQL per engine and per dialect object. Almost every test has a database
-and so an engine of its own, which would compile the same hundred statements again: this takes
+SQLAlchemy caches compiled SQL per engine and per dialect object. Almost every test has its own
+database and so its own engine, which would compile the same hundred statements again: this takes
 longer than the database takes to answer them. Here all engines of a process share one cache, and
-two dialects are the same key if they write the same SQL.
+two dialects count as the same key if they generate the same SQL.
 """
 
 from typing import Any

@@ -17,7 +17,7 @@ SLOWEST = 20
 class Tally:
     """Counts of one run or of several; an error outside a test's own body counts as failed.
 
-    `slowest` are names with seconds, the slowest first, including their fixtures.
+    `slowest` contains test names and durations in seconds, including fixtures, slowest first.
     """
 
     passed: int = 0
@@ -37,7 +37,7 @@ class Tally:
 
     @classmethod
     def read(cls, path: Path) -> "Tally":
-        """Read the tally of a run; empty if it wrote none."""
+        """Read the counts of a run; they are empty if the run wrote none."""
         return cls(**json.loads(path.read_text())) if path.exists() else cls()
 
 

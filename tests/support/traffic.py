@@ -1,4 +1,4 @@
-"""Wait until a page is idle: none of its requests is pending.
+"""Wait until a page is idle: no request of the page is pending.
 
 Going from `#/a` to `#/b` loads no document, so the browser's own "network idle" stays true all the
 time and waits for nothing.

@@ -33,7 +33,7 @@ NOT_FOUND = 127
 
 @dataclass(frozen=True)
 class Ended:
-    """How a command ended, and the time of all its processes; `code` is negative for a signal."""
+    """How a command ended, and the processor time of its tree; `code` is negative for a signal."""
 
     code: int
     wall_s: float
@@ -42,7 +42,7 @@ class Ended:
 
     @property
     def processor_s(self) -> float:
-        """Return user and system time."""
+        """Return the sum of user and system time."""
         return self.user_s + self.system_s
 
     @property
@@ -61,7 +61,7 @@ def run_warded(
 ) -> Ended:
     """Run `command` in `folder` with a warden of its own; `output` and `errors` are Popen's.
 
-    Raises `OSError` if the warden itself cannot start. An exception that arrives meanwhile waits
+    Raises `OSError` if the warden itself cannot start. An exception raised meanwhile is delayed
     until the warden has ended everything.
     """
     began_s = time.monotonic()
@@ -100,7 +100,7 @@ def _end(warden: "subprocess.Popen[bytes]", patience_s: float) -> None:
 
 
 class _Stop(Exception):
-    """Raised when everything is to end now."""
+    """Raised when everything must end immediately."""
 
 
 def _stop(number: int, _frame: FrameType | None) -> NoReturn:
@@ -108,7 +108,7 @@ def _stop(number: int, _frame: FrameType | None) -> NoReturn:
 
 
 def _control(option: int, value: int) -> None:
-    """Call prctl on systems that have it."""
+    """Call prctl on systems that provide it."""
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(option, value, 0, 0, 0)
 
@@ -165,7 +165,7 @@ def _wait_for(command: int) -> int:
 
 
 def _all_ended(within_s: float) -> bool:
-    """Wait for every child, also newly adopted ones; return False if it takes too long."""
+    """Wait for every child, including newly adopted ones; return False if it takes too long."""
     deadline_s = time.monotonic() + within_s
     while time.monotonic() < deadline_s:
         try:
@@ -177,7 +177,7 @@ def _all_ended(within_s: float) -> bool:
 
 
 def _end_all() -> None:
-    """Ask every child to end, also newly adopted ones; later kill those that remain."""
+    """Terminate every child, including newly adopted ones; later kill those that remain."""
     kills_from_s = time.monotonic() + ENDS_WHEN_ASKED_WITHIN_S
     asked: set[int] = set()
     while not _all_ended(5 * LOOKS_EVERY_S):
@@ -198,7 +198,7 @@ def _signal_all(children: Iterable[int], number: int) -> None:
 
 
 def _children() -> list[int]:
-    """Return our own child processes.
+    """Return the child processes of this process.
 
     In /proc, the second word after the name in brackets is the parent.
     """

@@ -20,7 +20,7 @@ MOODS = ("nothing", "everything", "scattered", "most", "few", "later first", "ea
 
 @dataclass
 class _Name:
-    """The files that a name may refer to: the certain one (or none), then each change."""
+    """The files that a name may refer to: the certain one, if any, then one for each change."""
 
     certain: TracedFile | None = None
     changes: list[tuple[int, TracedFile | None]] = field(default_factory=list)
@@ -30,7 +30,7 @@ class _Name:
         return self.changes[-1][1] if self.changes else self.certain
 
     def sync(self, began: int) -> None:
-        """Make changes certain that precede a completed sync of the folder, begun at `began`."""
+        """Make changes certain that were complete when a sync of the folder began at `began`."""
         while self.changes and self.changes[0][0] < began:
             self.certain = self.changes.pop(0)[1]
 
@@ -134,7 +134,7 @@ def _size(sizes: list[int], rng: Rng, mood: str) -> int:
 
 
 def _choice(rng: Rng, mood: str, count: int) -> Choice:
-    """Return the function that chooses the version of a sector, for a mood."""
+    """Return the function that selects the version of each sector in this mood of the disk."""
     cut = int(rng.integers(count + 1))
 
     def choose(places: list[int]) -> int:
@@ -159,7 +159,7 @@ def _choice(rng: Rng, mood: str, count: int) -> Choice:
 
 
 def timeline(events: Sequence[Event]) -> list[tuple[int, bool, Event]]:
-    """Return (stamp, whether it is the return, event) of every call that did not fail, in order."""
+    """Return (stamp, whether it is the return, event) for every successful call, in order."""
     moments = [(event.began, False, event) for event in events if not event.failed]
     moments += [
         (event.ended, True, event) for event in events if not event.failed and event.ended != NEVER

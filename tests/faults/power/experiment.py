@@ -24,7 +24,7 @@ Flush = tuple[int, int, Mapping[Position, int]]
 
 @dataclass(frozen=True)
 class Recording:
-    """A run of a server: its calls, its promises, and the journals of its headsets."""
+    """A recorded run of a server: its calls, its promises, and its headsets' journals."""
 
     folder: Path
     events: Sequence[Event]
@@ -39,7 +39,7 @@ class Recording:
         return str((self.folder / "data").resolve())
 
     def with_earlier_acks(self) -> "Recording":
-        """Return the run as if the server had acknowledged before the flush.
+        """Return the run as if the server had sent each acknowledgement before the flush.
 
         Each promise counts from the moment when the last sync before it began.
         """
@@ -67,7 +67,7 @@ def record_streaming(
 
 @dataclass(frozen=True)
 class AckProof:
-    """The acknowledgements of a recording, compared with the flushes that made them true.
+    """The acknowledgements of a recording, compared with the flushes that made their data durable.
 
     `early`: acknowledgements sent before a completed flush contained the promised data. `waits_ms`:
     for each of the others, the time from that flush's return to the send.
@@ -80,7 +80,7 @@ class AckProof:
 
 
 def prove_acks(recording: Recording) -> AckProof:
-    """After each flush, open the certain data and compare its positions with the acknowledgements.
+    """After each flush, open the data that are certain and compare them with the acknowledgements.
 
     SQLite's own recovery thus decides whether the bytes on disk contain a position.
     """

@@ -14,7 +14,7 @@ Choice = Callable[[list[int]], int]
 
 @dataclass
 class TracedFile:
-    """The certain content of a file, and the uncertain changes, oldest first."""
+    """One file on the disk: its certain content, and its uncertain changes, oldest first."""
 
     certain: bytearray = field(default_factory=bytearray)
     changes: list[Event] = field(default_factory=list)
@@ -45,10 +45,10 @@ class TracedFile:
         return found
 
     def image(self, sector: int, choose: Choice, size: int, fill: bytes) -> bytes:
-        """Return the file as the disk holds it, with sector versions selected by `choose`.
+        """Return one possible content of the file, with sector versions selected by `choose`.
 
-        The result is cut or extended to `size`; unwritten parts are filled from `fill` (as long as
-        the greatest size).
+        The result is cut or extended to `size`; unwritten parts are filled from `fill` (at least as
+        long as the greatest size).
         """
         held = bytearray(fill[: max(self.sizes())])
         held[: len(self.certain)] = self.certain
@@ -69,7 +69,7 @@ class _Versions:
     file: TracedFile
 
     def at(self, start: int, end: int, places: list[int]) -> bytes:
-        """Return a whole sector, padded with zeros if the file ends within it."""
+        """Return the bytes of one whole sector, padded with zeros if the file ends within it."""
         piece = bytearray(self.file.certain[start:end])
         piece += bytes(end - start - len(piece))
         for place in places:

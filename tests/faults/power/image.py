@@ -27,8 +27,8 @@ DATABASE = "reembody.sqlite"
 class Verdict:
     """The comparison of a disk image with the promises.
 
-    `lost`: promised frames, reports and sessions that are missing. `corrupt`: what SQLite reports
-    about a broken file, empty if it is sound.
+    `lost`: promised frames, reports and sessions that are missing. `corrupt`: SQLite's report about
+    a broken file, empty if the file is sound.
     """
 
     corrupt: str = ""
@@ -69,7 +69,7 @@ def write_image(folder: Path, image: Image) -> Path:
 
 
 def positions_in(database: Path) -> dict[Position, int]:
-    """Return how far each stream is stored; empty if the table does not exist yet."""
+    """Return up to which position each stream is stored; empty if the table does not exist yet."""
     with closing(sqlite3.connect(database)) as connection:
         try:
             rows = connection.execute(
@@ -83,7 +83,7 @@ def positions_in(database: Path) -> dict[Position, int]:
 
 
 def judge(database: Path, promised: Promised, ledgers: Mapping[str, LedgerJournal]) -> Verdict:
-    """Start with an image and compare it with the promises; `ledgers` by session.
+    """Start on an image and compare it with the promises; `ledgers` are the journals by session.
 
     A start that quarantines the database as damaged counts as corruption, too.
     """

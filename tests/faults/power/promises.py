@@ -16,7 +16,7 @@ TEXT, HEADER_END = 0x1, b"\r\n\r\n"
 
 @dataclass(frozen=True)
 class Promise:
-    """A statement that these positions (all of `seq <` the number) and sessions are on disk.
+    """The server's statement that these positions (all `seq <` the number) and sessions are stored.
 
     `began`: the stamp of the call that sent it. `is_ack`: an acknowledgement, not a welcome or the
     response to a request.
@@ -72,7 +72,7 @@ def _on_websocket(talk: "_Talk") -> Iterator[Promise]:
 
 @dataclass
 class _Talk:
-    """The bytes of a connection in order; `last` is the call that sent the last byte taken."""
+    """The bytes sent on a connection, in order; `last` is the call that sent the last byte read."""
 
     sends: Sequence[Event]
     _at: int = 0

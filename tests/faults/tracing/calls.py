@@ -1,7 +1,7 @@
 """The system calls that change files or send data, with their numbers.
 
-Opening is only traced if it may create or empty a file, closing not at all: neither changes what a
-disk holds.
+An opening is traced only if it may create or empty a file; a closing is never traced, since it does
+not change the contents of a disk.
 """
 
 import platform
@@ -77,12 +77,12 @@ class Machine:
 
     @property
     def name(self) -> dict[int, str]:
-        """Return the names of the calls by number."""
+        """Return the names of the calls, keyed by number."""
         return {number: name for name, number in self.number.items()}
 
 
 def this_machine() -> Machine | None:
-    """Return the current machine, or None if its calls are not listed."""
+    """Return the numbers for the current machine, or None if its calls are not listed."""
     kind = platform.machine()
     if platform.system() != "Linux" or kind not in NUMBERS:
         return None

@@ -23,7 +23,7 @@ Arguments = Sequence[int]
 
 @dataclass(frozen=True)
 class Reader:
-    """Read the calls of traced threads. Files outside `folder` are ignored."""
+    """Decode the calls of traced threads; files outside `folder` are ignored."""
 
     folder: Path
 
@@ -57,7 +57,7 @@ class Reader:
         return _event(what, call, target, size=size)
 
     def _named(self, thread: int, call: str, arguments: Arguments) -> Event | None:
-        """Read calls that name a file by its path."""
+        """Decode calls that name a file by its path."""
         at = call in WITH_FOLDER
         path = path_of(thread, arguments[0] if at else AT_FDCWD, arguments[1 if at else 0])
         if call.startswith(("rename", "link")):
@@ -81,7 +81,7 @@ class Reader:
 
 
 def _opened(call: str, path: str, arguments: Arguments) -> Event | None:
-    """Return the event of an opening that creates a missing file or empties an existing one."""
+    """Return the event of an open call that creates a missing file or empties an existing one."""
     flags = O_CREAT | O_TRUNC if call == "creat" else arguments[OPEN_FLAGS_AT[call]]
     exists = Path(path).exists()
     if not exists:
@@ -116,7 +116,7 @@ def _event(
 
 
 def target_of(thread: int, file: int) -> str:
-    """Return the path of a thread's open file, or `socket:[NUMBER]`; empty if it has none."""
+    """Return the path of a thread's open file, or `socket:[NUMBER]`; empty if there is none."""
     try:
         return str(Path(f"/proc/{thread}/fd/{_signed(file)}").readlink())
     except OSError:

@@ -141,7 +141,7 @@ class Injector:
     def _asked(
         self, thread: int, call: str, arguments: Sequence[int]
     ) -> tuple[str, str, bool] | None:
-        """Return kind, file and whether it is for writing; None for calls outside the folder."""
+        """Return a call's kind, file and whether it writes; None for calls outside the folder."""
         if call in _BY_PATH:
             at = call in _WITH_FOLDER
             path = path_of(thread, arguments[0] if at else AT_FDCWD, arguments[1 if at else 0])

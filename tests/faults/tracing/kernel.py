@@ -51,7 +51,7 @@ class _Program(ctypes.Structure):
 
 @dataclass(frozen=True)
 class Stop:
-    """A stop at a system call: `values` are number and arguments, or at the exit the result."""
+    """A stop at a system call: `values` are its number and arguments, or its result on return."""
 
     at_exit: bool
     values: tuple[int, ...]
@@ -80,7 +80,7 @@ def stop_of(thread: int) -> Stop:
 
 
 def read_memory(thread: int, address: int, length: int) -> bytes:
-    """Return bytes of the traced process's memory; fewer if its memory ends."""
+    """Return bytes of the traced process's memory, or fewer if the memory ends before."""
     file = os.open(f"/proc/{thread}/mem", os.O_RDONLY)
     try:
         return os.pread(file, length, address)

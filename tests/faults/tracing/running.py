@@ -31,7 +31,7 @@ def traced_server(folder: Path, command: Sequence[str] = REEMBODY) -> LiveServer
 
 
 def why_not(folder: Path) -> str | None:
-    """Return why tracing is impossible here, or None; leaves a trace of a small command."""
+    """Return why tracing is impossible here, or None; this traces a small command."""
     done = subprocess.run(
         traced(folder / RECORD, folder, ["true"]),
         cwd=REPOSITORY,

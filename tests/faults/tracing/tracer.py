@@ -26,7 +26,7 @@ GROUP_STOPS = (signal.SIGSTOP, signal.SIGTSTP, signal.SIGTTIN, signal.SIGTTOU)
 
 @dataclass
 class Tracer:
-    """Follow one command and all its children."""
+    """Trace one command and all its child processes."""
 
     machine: Machine
     reader: Reader
@@ -129,7 +129,7 @@ def trace(record: Path, folder: Path, command: Sequence[str]) -> int:
 
 
 def _become(command: Sequence[str], machine: Machine, gate: int) -> None:
-    """Wait for the tracer, install the filter and execute the command, in the child."""
+    """In the child, wait for the tracer, install the filter and execute the command."""
     try:
         os.read(gate, 1)
         kernel.only_stop_at(machine)
