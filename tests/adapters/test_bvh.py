@@ -1,4 +1,4 @@
-"""Reading and writing BVH."""
+"""Tests of reading and writing BVH."""
 
 import csv
 from pathlib import Path

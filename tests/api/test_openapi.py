@@ -1,4 +1,4 @@
-"""Generated requests to every operation of the OpenAPI document, on the real server.
+"""Tests that send generated requests to every operation of the OpenAPI document.
 
 No request may cause a server error, and every answer must fit the document.
 """

@@ -91,7 +91,7 @@ def test_each_level_is_compared_with_the_reference(tmp_path: Path) -> None:
 
 
 def test_the_text_output_has_means_tests_and_methods(tmp_path: Path) -> None:
-    """The text output has means, each test on a line, and how p was computed."""
+    """The text output has means, each test on a line, and the method by which p was computed."""
     result = _COMMAND.run(_written(tmp_path, _lines()), *_FACTOR, "--art")
     assert result.exit_code == 0, result.output
     assert "score by latency (0, 125, 350): 5 of 5 subjects complete." in result.stdout

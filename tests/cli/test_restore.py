@@ -1,4 +1,4 @@
-"""Tests of `reembody restore`: its output, its options and what it leaves behind."""
+"""Tests of `reembody restore`: its output, its options and the files that it leaves."""
 
 import json
 import re
@@ -175,7 +175,7 @@ def test_a_backup_without_people_is_restored_without_a_warning(data: Path, tmp_p
 def test_a_restore_that_fails_leaves_nothing(
     earlier: Earlier, data: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A restore into a missing data folder that fails leaves nothing behind."""
+    """A restore into a missing data folder that fails leaves no files or folders."""
 
     def fail(*_: object) -> int:
         raise OSError(5, "Input/output error")

@@ -1,4 +1,4 @@
-"""The journal in files: added messages survive any end of the process."""
+"""Tests that messages added to a journal in files survive any end of the process."""
 
 import resource
 import signal

@@ -1,4 +1,4 @@
-"""The client's journal keeps every message until it is on the server's disk."""
+"""Tests that the client's journal keeps messages until they are on the server's disk."""
 
 from hypothesis import given
 from hypothesis import strategies as st

@@ -1,4 +1,4 @@
-"""Clock probes of the client: readings are reported unchanged, and missing ones as null."""
+"""Tests of the client's clock probes: readings are reported unchanged, missing ones as null."""
 
 import asyncio
 from dataclasses import dataclass, field

@@ -1,4 +1,4 @@
-"""The Python client against the real server: frames produced, stored and missing."""
+"""Tests of the Python client on the real server: frames produced, stored and missing."""
 
 import asyncio
 import time

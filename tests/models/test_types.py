@@ -1,4 +1,4 @@
-"""Column types return what was stored, or raise an error if it is damaged."""
+"""Tests that column types return what was stored, or raise an error if it is damaged."""
 
 from datetime import UTC, datetime, timedelta, timezone
 

@@ -1,4 +1,4 @@
-"""The avatar of a study: moved by physics with a configuration, or a delayed copy."""
+"""Tests of the avatar of a study: moved by physics, or a delayed copy."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""The file of an avatar's configuration: lossless, hashed by content, with located problems."""
+"""Tests of the file of an avatar's configuration: lossless, hashed, with located problems."""
 
 import json
 import math

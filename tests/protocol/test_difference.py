@@ -1,4 +1,4 @@
-"""The differences between two versions: each place once, lists aligned."""
+"""Tests of the differences between two versions: each place once, lists aligned."""
 
 from app.protocol.difference import Difference, differences
 from app.protocol.source import Plain

@@ -1,4 +1,4 @@
-"""The dry run of a visit: times of the study are exact, others are marked as estimates."""
+"""Tests of the dry run of a visit: exact times of the study, and marked estimates."""
 
 from itertools import pairwise
 

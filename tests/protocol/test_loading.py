@@ -1,4 +1,4 @@
-"""Loading a study file: one hash for one content, and all problems together."""
+"""Tests of loading a study file: one hash for one content, and all problems together."""
 
 import dataclasses
 import json

@@ -1,4 +1,4 @@
-"""Practice, stop rules and signed consent in a study file."""
+"""Tests of practice, stop rules and signed consent in a study file."""
 
 import json
 

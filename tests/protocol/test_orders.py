@@ -1,4 +1,4 @@
-"""Counterbalancing: its laws of balance, and ledgers that grow without changing."""
+"""Tests of counterbalancing: its laws of balance, and ledgers that grow without changing."""
 
 from collections import Counter
 from itertools import pairwise

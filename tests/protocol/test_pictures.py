@@ -1,4 +1,4 @@
-"""Pictures in a study's texts."""
+"""Tests of pictures in a study's texts."""
 
 import re
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""A study describes the boxes of the limbs that it uses."""
+"""Tests that a study describes the boxes of the limbs that it uses."""
 
 import yaml
 

@@ -1,4 +1,4 @@
-"""The steps of a session of the shipped study and its variants."""
+"""Tests of the steps of a session of the shipped study and its variants."""
 
 import pytest
 

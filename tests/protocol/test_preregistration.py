@@ -1,4 +1,4 @@
-"""The preregistration in a study file: part of the content and checked against the rest."""
+"""Tests of the preregistration in a study file: part of the content, checked with the rest."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""The problems of an invalid study file: all of them, each with its place and remedy."""
+"""Tests that all problems of an invalid study file are reported with place and remedy."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Broken study and instrument files raise errors with useful problems.
+"""Tests that broken study and instrument files raise errors with useful problems.
 
 A valid file is broken at a random place. Then it is either still valid or rejected with
 ConfigError, each problem with its place and a remedy; nothing else is ever raised.

@@ -1,4 +1,4 @@
-"""The shipped latency study against the thesis and its own texts."""
+"""Tests of the shipped latency study against the thesis and against its own texts."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Reading YAML strictly: plain types, positions of values, and rejected constructs."""
+"""Tests of reading YAML strictly: plain types, positions of values, rejected constructs."""
 
 import contextlib
 

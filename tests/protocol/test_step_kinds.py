@@ -1,4 +1,4 @@
-"""The table of step kinds, and the places that must agree with it."""
+"""Tests of the table of step kinds, and the places that must agree with it."""
 
 import re
 from pathlib import Path

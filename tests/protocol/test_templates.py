@@ -1,4 +1,4 @@
-"""The study templates: each is a complete study that can be run unchanged."""
+"""Tests that each study template is a complete study that can be run unchanged."""
 
 from pathlib import Path
 

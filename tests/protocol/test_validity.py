@@ -1,4 +1,4 @@
-"""The rules that decide whether a completed session is valid."""
+"""Tests of the rules that decide whether a completed session is valid."""
 
 import json
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Lines of a study's texts that apply to one kind of avatar only."""
+"""Tests of lines of a study's texts that apply to one kind of avatar only."""
 
 import re
 from pathlib import Path
@@ -23,9 +23,9 @@ PASSES = re.compile(r"can pass through|hindurchgehen")
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
 def test_the_instructions_describe_the_boxes_for_the_avatar(file: Path) -> None:
-    """Instructions say that boxes stop a physics avatar and let a delayed copy pass.
+    """Instructions state that boxes stop a physics avatar and let a delayed copy pass.
 
-    In both languages, in the file and in its stored form.
+    This holds in both languages, in the file and in its stored form.
     """
     text = file.read_text(encoding="utf-8")
     for words, expected, unexpected in (
@@ -58,7 +58,7 @@ def test_both_variants_are_in_the_content() -> None:
     ],
 )
 def test_an_invalid_avatar_mark_is_rejected(words: str, path: str, message: str) -> None:
-    """A mark of no avatar, within a line, or that leaves no text is rejected."""
+    """A mark is rejected if its avatar is unknown, if it is within a line or if no text is left."""
     text = edited(("en: Please hold still for a few seconds.", f'en: "{words}"'))
     [problem] = problems(text)
     assert problem.path == path

@@ -1,4 +1,4 @@
-"""The delay buffer of the delayed-copy avatar."""
+"""Tests of the delay buffer of the delayed-copy avatar."""
 
 import numpy as np
 import pytest

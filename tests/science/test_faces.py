@@ -1,4 +1,4 @@
-"""Code outside of a science package imports only what its `__init__` exports."""
+"""Tests that code outside of a science package imports only what its `__init__` exports."""
 
 import ast
 from collections.abc import Iterator

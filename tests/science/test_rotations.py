@@ -1,4 +1,4 @@
-"""Quaternion algebra: products, vectors, Euler angles, slerp and swings."""
+"""Tests of quaternion algebra: products, vectors, Euler angles, slerp and swings."""
 
 import numpy as np
 import pytest

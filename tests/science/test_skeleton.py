@@ -1,4 +1,4 @@
-"""The skeleton and its forward kinematics."""
+"""Tests of the skeleton and its forward kinematics."""
 
 import numpy as np
 import pytest

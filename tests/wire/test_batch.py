@@ -1,4 +1,4 @@
-"""The binary batch: frames survive bit by bit, and anything invalid is rejected."""
+"""Tests that binary batches keep every bit of their frames, and invalid ones are rejected."""
 
 import struct
 import zlib

@@ -1,4 +1,4 @@
-"""The JSON messages, which are sent in addition to the batches."""
+"""Tests of the JSON messages, which are sent in addition to the batches."""
 
 import contextlib
 from typing import Any

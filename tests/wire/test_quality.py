@@ -1,4 +1,4 @@
-"""Flags of frames: every invalid frame is flagged, and no valid one."""
+"""Tests that every invalid frame is flagged, and no valid one."""
 
 import numpy as np
 import pytest

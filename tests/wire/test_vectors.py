@@ -1,4 +1,4 @@
-"""The wire format's vectors, which all implementations share, agree with this one."""
+"""Tests that this implementation agrees with the wire format's shared vectors."""
 
 import json
 from typing import Any

@@ -1,4 +1,4 @@
-"""Reading Acclaim's ASF and AMC files."""
+"""Tests of reading Acclaim's ASF and AMC files."""
 
 from pathlib import Path
 

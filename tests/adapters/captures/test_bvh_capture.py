@@ -1,4 +1,4 @@
-"""BVH as a capture: units and axes detected or chosen, rest rows and moving bones handled."""
+"""Tests of BVH as a capture: units, axes, rest rows and joints with position channels."""
 
 import csv
 from pathlib import Path

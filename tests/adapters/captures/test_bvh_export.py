@@ -1,4 +1,4 @@
-"""BVH files that we write are read correctly by other programs."""
+"""Tests that other programs read the BVH files that we write correctly."""
 
 import warnings
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Reading C3D, the binary files of marker systems."""
+"""Tests of reading C3D, the binary files of marker systems."""
 
 from dataclasses import replace
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The documentation's table of formats and files agrees with the code."""
+"""Tests that the documentation's table of formats and files agrees with the code."""
 
 from pathlib import Path
 

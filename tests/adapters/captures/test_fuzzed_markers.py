@@ -1,4 +1,4 @@
-"""Damaged C3D, TRC and ASF/AMC files: a capture or an error, never a crash or a hang."""
+"""Tests that damaged C3D, TRC and ASF/AMC files are read or rejected without a crash or hang."""
 
 import pytest
 
@@ -19,6 +19,6 @@ def test_damaged_files_are_read_or_rejected(key: str) -> None:
 @pytest.mark.long
 @pytest.mark.parametrize("key", _SEEDS)
 def test_many_damaged_files_are_read_or_rejected(key: str) -> None:
-    """Eighty times as many damaged marker files are read or rejected."""
+    """Eighty times as many damaged marker files as in the short test are read or rejected."""
     name, seeds = _SEEDS[key]
     assert_family_survives(seeds, name, 80 * _SHORT)

@@ -1,4 +1,4 @@
-"""Damaged tables and BVH: a capture or an error, never a crash, a hang or a full memory."""
+"""Tests that damaged tables and BVH files are read or rejected, within bounds of memory."""
 
 import tracemalloc
 
@@ -33,7 +33,7 @@ def test_damaged_files_are_read_or_rejected(key: str) -> None:
 @pytest.mark.long
 @pytest.mark.parametrize("key", _SEEDS)
 def test_many_damaged_files_are_read_or_rejected(key: str) -> None:
-    """Eighty times as many damaged files are read or rejected."""
+    """Eighty times as many damaged files as in the short test are read or rejected."""
     name, seeds = _SEEDS[key]
     assert_survives(seeds, name, 80 * _SHORT[key])
 

@@ -1,4 +1,4 @@
-"""Reading logs of headsets: UXF's trackers from Unity, and the Quest's own."""
+"""Tests of reading logs of headsets: UXF's trackers from Unity, and the Quest's own."""
 
 from pathlib import Path
 

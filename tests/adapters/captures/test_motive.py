@@ -1,4 +1,4 @@
-"""Reading Motive's CSV in every dialect: skeletons, rigid bodies and markers."""
+"""Tests of reading Motive's CSV in every dialect: skeletons, rigid bodies and markers."""
 
 from dataclasses import replace
 from pathlib import Path

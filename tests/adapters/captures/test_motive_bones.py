@@ -1,4 +1,4 @@
-"""The hierarchy of Motive's bones in files that do not state it."""
+"""Tests of the hierarchy of Motive's bones in files that do not state it."""
 
 import numpy as np
 import pytest

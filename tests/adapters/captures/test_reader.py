@@ -1,4 +1,4 @@
-"""`read_capture`: the format is detected by content, and unknown files are rejected."""
+"""Tests that `read_capture` detects formats by content and rejects unknown files."""
 
 import re
 

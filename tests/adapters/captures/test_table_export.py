@@ -1,4 +1,4 @@
-"""A movement as CSV: column titles with units, one row per frame, unseen values empty."""
+"""Tests of a movement as CSV: titles with units, one row per frame, unseen values empty."""
 
 import csv
 import io

@@ -1,4 +1,4 @@
-"""Reading TRC, a text table of markers."""
+"""Tests of reading TRC, a text table of markers."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Reading Vicon Tracker's CSV: rotation vectors, z up, objects that disappear."""
+"""Tests of reading Vicon Tracker's CSV: rotation vectors, z up, objects that disappear."""
 
 from itertools import permutations
 from pathlib import Path

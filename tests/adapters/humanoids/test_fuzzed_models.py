@@ -1,4 +1,4 @@
-"""Damaged models: a humanoid or an error, never a crash, a hang or a warning."""
+"""Tests that damaged models are read or rejected without a crash, a hang or a warning."""
 
 import contextlib
 import json
@@ -99,5 +99,5 @@ def test_damaged_bytes_are_read_or_rejected(data: bytes) -> None:
 @settings(_BOUNDED, max_examples=3_000)
 @given(st.one_of(edited(), damaged()))
 def test_many_damaged_models_are_read_or_rejected(data: bytes) -> None:
-    """Ten times as many damaged models are read or rejected."""
+    """Ten times as many damaged models as in the short test are read or rejected."""
     survives(data)

@@ -1,4 +1,4 @@
-"""Humanoid models are read correctly, whatever the layout of their files."""
+"""Tests that humanoid models are read correctly, whatever the layout of their files."""
 
 import math
 from functools import partial

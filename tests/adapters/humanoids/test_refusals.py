@@ -1,4 +1,4 @@
-"""Files that are no humanoid, or invalid, raise an error with the place and the reason."""
+"""Tests that files that are invalid or no humanoid raise an error with place and reason."""
 
 import json
 import math

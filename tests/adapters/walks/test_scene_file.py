@@ -1,4 +1,4 @@
-"""Scene files: what they can describe, and their error messages."""
+"""Tests of scene files: what they can describe, and their error messages."""
 
 import json
 import re

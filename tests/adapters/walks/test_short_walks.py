@@ -1,4 +1,4 @@
-"""Reading the short walks of Carlisle and Kuo: the table, and walks from foot paths."""
+"""Tests of reading the short walks of Carlisle and Kuo: the table and the foot paths."""
 
 import io
 from pathlib import Path

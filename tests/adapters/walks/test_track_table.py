@@ -1,4 +1,4 @@
-"""Reading tables of tracks: headers, units, rates and errors with their line."""
+"""Tests of reading tables of tracks: headers, units, rates and errors with their line."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Edits of a file's text change what they should and leave every other character unchanged."""
+"""Tests that edits of a file's text change what they should and no other character."""
 
 import copy
 

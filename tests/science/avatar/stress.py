@@ -21,7 +21,7 @@ WALL_FACE_M = -0.31
 
 @dataclass(frozen=True)
 class WallImpact:
-    """What happened when a hand was driven into a wall.
+    """The result of driving a hand into a wall.
 
     Attributes:
         speed_m_s: speed of the hand just before it touched.

@@ -1,4 +1,4 @@
-"""The band of all lines between bounds: the polygon algorithm against a general solver."""
+"""Tests of the band of all lines between bounds: polygon algorithm against general solver."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Breaks in the clocks' course: single wrong probes, jumps of either clock, and gaps."""
+"""Tests of breaks in the clocks: single wrong probes, jumps of either clock, and gaps."""
 
 from dataclasses import replace
 
@@ -67,7 +67,7 @@ def test_a_jump_is_reported_with_its_size_and_its_clock(
 
 
 def test_without_a_wall_clock_only_a_server_that_goes_back_is_caught() -> None:
-    """Without a wall clock, a server's jump ahead cannot be told from a suspended client."""
+    """Without a wall clock, a server's jump ahead looks the same as a suspended client."""
     for server_step_s, whose in ((30.0, "client"), (-30.0, "server")):
         stepping = replace(PLAIN, server_step_s=server_step_s)
         probes = simulate(stepping, np.random.default_rng(4)).probes

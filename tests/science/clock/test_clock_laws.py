@@ -1,4 +1,4 @@
-"""Properties of every clock mapping, and cases with a known solution."""
+"""Tests of properties of every clock mapping, and cases with a known solution."""
 
 from dataclasses import replace
 

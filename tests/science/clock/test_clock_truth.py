@@ -1,4 +1,4 @@
-"""The clock mapping against simulated clocks. `./run bench clock` prints the figures."""
+"""Tests of the clock mapping on simulated clocks. `./run bench clock` prints the figures."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""How the fit handles markers that were not seen, and what it rejects."""
+"""Tests of how the fit handles markers that were not seen, and of what it rejects."""
 
 import numpy as np
 import pytest

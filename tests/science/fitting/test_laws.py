@@ -1,4 +1,4 @@
-"""Properties of the fit: bones and rotations of a synthetic person are recovered."""
+"""Tests that the fit recovers the bones and rotations of a synthetic person."""
 
 import numpy as np
 import pytest

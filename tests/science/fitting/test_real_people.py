@@ -1,4 +1,4 @@
-"""Fits of captured people: the skeletons have human lengths and walk as people do."""
+"""Tests that skeletons fitted to captured people have human lengths and walk as people do."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Validation of submitted answers, and the order in which items are asked."""
+"""Tests of validating submitted answers, and of the order in which items are asked."""
 
 import math
 

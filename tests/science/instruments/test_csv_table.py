@@ -1,4 +1,4 @@
-"""Scoring CSV files as written by spreadsheets."""
+"""Tests of scoring CSV files as written by spreadsheets."""
 
 import csv
 import io

@@ -1,4 +1,4 @@
-"""Validation of instrument definitions: all contradictions are found and reported."""
+"""Tests that all contradictions in an instrument's definition are found and reported."""
 
 from collections.abc import Sequence
 

@@ -1,4 +1,4 @@
-"""The language of score formulas: its laws, limits and errors."""
+"""Tests of the language of score formulas: its laws, limits and errors."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Scoring of answers: properties, the expert of the thesis, and invalid answers."""
+"""Tests of scoring answers: properties, the expert of the thesis, and invalid answers."""
 
 import itertools
 import math

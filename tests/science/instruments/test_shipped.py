@@ -1,4 +1,4 @@
-"""The shipped instruments against hand-computed scores from their sources."""
+"""Tests of the shipped instruments against hand-computed scores from their sources."""
 
 from itertools import count
 

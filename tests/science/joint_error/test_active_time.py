@@ -1,4 +1,4 @@
-"""Active time computed from the frames of a recording."""
+"""Tests of active time computed from the frames of a recording."""
 
 import numpy as np
 import pytest

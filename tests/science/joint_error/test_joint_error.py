@@ -1,4 +1,4 @@
-"""The joint error between target and actual rotations."""
+"""Tests of the joint error between target and actual rotations."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The course of a joint error over active time."""
+"""Tests of the course of a joint error over active time."""
 
 import numpy as np
 import pytest

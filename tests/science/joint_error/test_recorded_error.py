@@ -1,4 +1,4 @@
-"""The joint error of a recording, against the present target and the delayed command."""
+"""Tests of a recording's joint error against the present target and the delayed command."""
 
 import math
 from collections.abc import Mapping

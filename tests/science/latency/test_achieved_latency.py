@@ -1,4 +1,4 @@
-"""Achieved latency: known latencies are recovered and the intervals cover them."""
+"""Tests that known latencies are recovered and lie within the stated intervals."""
 
 from dataclasses import astuple, replace
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Achieved latency where the data do not allow a number: the reason is given instead."""
+"""Tests that a reason is given where the data do not allow a latency."""
 
 import re
 from dataclasses import astuple, replace

@@ -1,4 +1,4 @@
-"""Captured walks on avatars of three sizes, with the joint maps that are proposed for them."""
+"""Tests of captured walks on avatars of three sizes, with the proposed joint maps."""
 
 from pathlib import Path
 

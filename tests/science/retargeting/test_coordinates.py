@@ -1,4 +1,4 @@
-"""Coordinates of OptiTrack and of Unreal, and Unreal's Euler angles."""
+"""Tests of coordinates of OptiTrack and of Unreal, and Unreal's Euler angles."""
 
 import numpy as np
 import pytest

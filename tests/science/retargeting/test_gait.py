@@ -1,4 +1,4 @@
-"""Contacts, steps and leg angles of synthetic walks whose truth is known."""
+"""Tests of contacts, steps and leg angles of synthetic walks whose truth is known."""
 
 import numpy as np
 import pytest

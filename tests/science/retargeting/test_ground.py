@@ -1,4 +1,4 @@
-"""Grounds: their heights at given places, and invalid grounds."""
+"""Tests of grounds: their heights at given places, and invalid grounds."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Joint maps: proposed from names and hierarchy, and validated when edited by hand."""
+"""Tests of joint maps: proposed from names and hierarchy, validated when edited by hand."""
 
 import numpy as np
 import pytest

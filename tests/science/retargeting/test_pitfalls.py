@@ -1,4 +1,4 @@
-"""What happens if the paper's printed formulas are followed literally, one mistake at a time.
+"""Tests of following the paper's printed formulas literally, one mistake at a time.
 
 Each test makes one mistake on the mannequin and shows how wrong its T-pose becomes, so that the
 mistake is not reintroduced. Without a mistake `_aligned` gives the product's own T-pose.

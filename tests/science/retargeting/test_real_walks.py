@@ -1,4 +1,4 @@
-"""CMU's captured walks on avatars: steps, lifts and foot sliding of real people."""
+"""Tests of CMU's captured walks on avatars: steps, lifts and foot sliding of real people."""
 
 from itertools import pairwise
 from pathlib import Path

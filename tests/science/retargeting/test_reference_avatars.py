@@ -1,4 +1,4 @@
-"""Reference avatars: their proportions, names and limits."""
+"""Tests of reference avatars: their proportions, names and limits."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Captures on the product's skeleton: moving in place, resampled and looped."""
+"""Tests of captures on the product's skeleton: moving in place, resampled and looped."""
 
 from pathlib import Path
 

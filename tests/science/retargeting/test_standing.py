@@ -1,4 +1,4 @@
-"""Where a retargeted avatar stands and travels, also with parts of the body missing."""
+"""Tests of where a retargeted avatar stands and travels, also without parts of the body."""
 
 import numpy as np
 import numpy.typing as npt

@@ -1,4 +1,4 @@
-"""The T-pose: properties that hold for any skeleton."""
+"""Tests of the T-pose: properties that hold for any skeleton."""
 
 from collections.abc import Iterator
 from functools import lru_cache

@@ -1,4 +1,4 @@
-"""The paper's Table 1 is reproduced except for the row that contradicts the others."""
+"""Tests that the paper's Table 1 is reproduced except for its one inconsistent row."""
 
 import numpy as np
 import pytest

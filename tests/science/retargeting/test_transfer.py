@@ -1,4 +1,4 @@
-"""Movement transferred between any two bodies, and the compiled code against plain arrays."""
+"""Tests of transferring movement between any two bodies, compiled and on plain arrays."""
 
 import numpy as np
 import pytest

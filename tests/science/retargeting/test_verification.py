@@ -1,4 +1,4 @@
-"""The paper's verification: one walk on avatars of several sizes, and locked feet."""
+"""Tests of the paper's verification: one walk on avatars of several sizes, and locked feet."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Simulated questionnaire answers."""
+"""Tests of simulated questionnaire answers."""
 
 import numpy as np
 import pytest

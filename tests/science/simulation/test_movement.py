@@ -1,4 +1,4 @@
-"""How the simulated participant moves: smoothly, reproducibly and in a closed loop."""
+"""Tests that the simulated participant moves smoothly, reproducibly and in a closed loop."""
 
 from pathlib import Path
 
@@ -95,7 +95,7 @@ def test_without_a_goal_the_base_movement_is_played_whole() -> None:
 
 
 def test_a_walking_capture_does_not_stride_at_the_boxes(shared_data: Path) -> None:
-    """During a hand task the feet of a walking capture stand, except for single side steps."""
+    """In a hand task a walking capture's feet stay in place, except for single side steps."""
     path = shared_data / "motion" / "cmu_bvh" / "02_01.bvh"
     clip = captured_movement(path, SKELETON)
     base = loop(resample(clip, RATE_HZ))

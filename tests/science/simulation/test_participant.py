@@ -1,4 +1,4 @@
-"""Where the simulated participant reaches, steps and walks, and which goals are rejected."""
+"""Tests of reaching, stepping and walking by the simulated participant, and of bad goals."""
 
 import numpy as np
 import pytest

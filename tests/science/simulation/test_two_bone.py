@@ -1,4 +1,4 @@
-"""Inverse kinematics of two-bone limbs, and smooth paths."""
+"""Tests of inverse kinematics of two-bone limbs, and smooth paths."""
 
 import numpy as np
 import pytest
@@ -124,7 +124,7 @@ def test_a_path_begins_ends_and_lasts_as_requested() -> None:
 
 
 def test_waiting_puts_off_the_rest_of_a_path() -> None:
-    """A path with a wait before a leg stands still until then."""
+    """A path that waits before a leg stays in place until the wait is over."""
     points: list[Vector] = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0)]
     path = path_through(points, 0.0, 1.0).waiting_to_enter(1, 5.0)
     np.testing.assert_allclose(path.at(5.0), (1.0, 0.0, 0.0), atol=1e-12)

@@ -1,4 +1,4 @@
-"""Properties of every test in the registry of statistical tests."""
+"""Tests of the properties of every test in the registry of statistical tests."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Aligned ranks: the effects that alignment keeps or removes, and contrasts."""
+"""Tests of aligned ranks: the effects that alignment keeps or removes, and contrasts."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Effects of order, sequence and carry-over in a Williams design."""
+"""Tests of effects of order, sequence and carry-over in a Williams design."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Cumulative link models against R's `ordinal`, and their own properties."""
+"""Tests of cumulative link models against R's `ordinal`, and of their own properties."""
 
 import csv
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Simulated data sets without effects, and the shipped table of the tests' error rates."""
+"""Tests of simulated data sets without effects, and of the table of the tests' error rates."""
 
 import json
 from pathlib import Path

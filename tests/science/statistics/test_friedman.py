@@ -1,4 +1,4 @@
-"""Friedman's test: enumeration, invariances and limits."""
+"""Tests of Friedman's test: enumeration, invariances and limits."""
 
 from itertools import permutations, product
 

@@ -1,4 +1,4 @@
-"""Published results, reproduced digit by digit, each with its source."""
+"""Tests that published results, each with its source, are reproduced digit by digit."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -163,7 +163,7 @@ def test_workload_of_four_ways_of_pointing(shared_data: Path) -> None:
 
 
 def test_ties_do_not_depend_on_how_a_mean_was_rounded(shared_data: Path) -> None:
-    """Sums and means of the same answers tie alike: p .199; unrounded means would give .190."""
+    """Sums and means of the same answers have the same ties: p .199; unrounded means give .190."""
     table = rows(shared_data / "questionnaires" / "tlxscores.csv")
     sums = _workload(table, sum)
     means = _workload(table, lambda points: sum(5.0 * (one - 1.0) for one in points) / 6.0)

@@ -1,4 +1,4 @@
-"""The linear mixed model against lme4 and lmerTest, and against the analysis of variance."""
+"""Tests of the linear mixed model against lme4, lmerTest and the analysis of variance."""
 
 import csv
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Workload in a virtual room: the authors' analysis of their published scores, reproduced.
+"""Tests that the published analysis of workload in a virtual room is reproduced.
 
 NASA-TLX of 16 people with four ways of answering, one in each of four sessions. The figures are
 those printed by lme4, lmerTest and emmeans in the authors' notebook: `analysis/

@@ -1,4 +1,4 @@
-"""Page's trend test: enumeration, symmetry and limits."""
+"""Tests of Page's trend test: enumeration, symmetry and limits."""
 
 import math
 from itertools import permutations, product

@@ -1,4 +1,4 @@
-"""Alpha, omega, bootstrap intervals and power: identities and limits."""
+"""Tests of alpha, omega, bootstrap intervals and power: identities and limits."""
 
 import math
 

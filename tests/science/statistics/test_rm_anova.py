@@ -1,4 +1,4 @@
-"""Repeated-measures ANOVA: identities, invariances and designs that cannot be tested."""
+"""Tests of repeated-measures ANOVA: identities, invariances, designs that cannot be tested."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Signed ranks, Holm's adjustment and pairwise comparisons: enumeration and properties."""
+"""Tests of signed ranks, Holm's adjustment and pairwise comparisons."""
 
 import math
 from itertools import product

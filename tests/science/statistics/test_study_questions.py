@@ -1,4 +1,4 @@
-"""Analyses of a latency study: planned comparisons, shares, correlations and demographics."""
+"""Tests of a latency study's planned comparisons, shares, correlations and demographics."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Tables of cells from tidy rows: order of levels, duplicates, missing and invalid rows."""
+"""Tests of tables of cells from tidy rows: order, duplicates, missing and invalid rows."""
 
 import math
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""Precision and recall of the fault detection on generated and captured movement."""
+"""Tests of precision and recall of the fault detection on generated and captured movement."""
 
 import sys
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The quality check on recordings whose faults are known to the frame."""
+"""Tests of the quality check on recordings whose faults are known to the frame."""
 
 import numpy as np
 import pytest

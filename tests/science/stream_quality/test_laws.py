@@ -1,4 +1,4 @@
-"""Properties of the quality check for every recording, whatever its faults."""
+"""Tests of the quality check's properties for every recording, whatever its faults."""
 
 import numpy as np
 import pytest

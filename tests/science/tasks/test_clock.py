@@ -1,4 +1,4 @@
-"""The active clock, which is stopped during pauses."""
+"""Tests of the active clock, which is stopped during pauses."""
 
 from itertools import pairwise
 

@@ -1,4 +1,4 @@
-"""Capsule contacts are exact, and the fast forms agree with the plain one."""
+"""Tests that capsule contacts are exact, and that the fast forms agree with the plain one."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Several inputs at the same instant."""
+"""Tests of several inputs at the same instant."""
 
 from app.science.tasks import (
     Command,

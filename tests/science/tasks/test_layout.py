@@ -1,4 +1,4 @@
-"""Boxes become surfaces that enclose their cavity, or are rejected."""
+"""Tests that boxes become surfaces that enclose their cavity, or are rejected."""
 
 from dataclasses import replace
 from itertools import combinations

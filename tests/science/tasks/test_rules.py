@@ -1,4 +1,4 @@
-"""Properties of the task rules and of the record over random phases, and invalid inputs."""
+"""Tests of the task rules and the record on random phases, and of invalid inputs."""
 
 from collections import Counter
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Frames become contact changes with hysteresis; rejected frames change nothing."""
+"""Tests that frames become contact changes with hysteresis, and rejected frames none."""
 
 import numpy as np
 import pytest

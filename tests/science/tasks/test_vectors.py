@@ -1,4 +1,4 @@
-"""The shared vectors of the task rules, which the headset must reproduce too."""
+"""Tests of the task rules' vectors, which the headset must reproduce too."""
 
 from dataclasses import asdict
 

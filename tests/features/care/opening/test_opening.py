@@ -180,7 +180,7 @@ def test_an_empty_database_does_not_resolve_the_quarantine(tmp_path: Path) -> No
 
 
 def test_creating_a_database_survives_being_killed(tmp_path: Path) -> None:
-    """A start that is killed while creating the database leaves no partial one behind."""
+    """A start that is killed while it creates the database leaves no partial database."""
     program = (
         "import os, signal, sys, threading\n"
         "from pathlib import Path\n"

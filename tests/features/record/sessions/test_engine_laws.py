@@ -1,4 +1,4 @@
-"""Laws of the session engine that hold for every sequence of commands."""
+"""Tests of laws of the session engine that hold for every sequence of commands."""
 
 import contextlib
 import json

@@ -21,7 +21,7 @@ def alarms(view: Json) -> dict[str, str]:
 
 @pytest.mark.one_engine
 def test_a_rating_below_every_limit_has_no_effect(lab: Lab) -> None:
-    """A rating below every limit raises no alarm and holds nothing."""
+    """A rating below every limit raises no alarm and does not hold the session."""
     view = answered(lab, 9)
     assert (view["held"], alarms(view)) == (None, {})
     assert "begin_phase" in view["allowed"]

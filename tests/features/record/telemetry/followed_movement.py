@@ -1,4 +1,4 @@
-"""Streams as a motor-driven body would send them: the actual one follows the target, filtered.
+"""Streams of a motor-driven body: the actual stream follows the target stream, filtered.
 
 Each number of the actual stream goes through a critically damped second-order filter, as a joint
 under proportional-derivative control does, after the study's delay; then the quaternions are

@@ -58,7 +58,7 @@ def _present(runs: Sequence[Run], active_s: float) -> JointErrorCourseRow:
 
 
 def _growing(frames: int) -> FloatArray:
-    """Return angles (rad) that grow evenly over so many frames."""
+    """Return angles (rad) that grow evenly over this many frames."""
     return GROWTH_RAD_PER_S / RATE_HZ * np.arange(frames, dtype=np.float64)
 
 

@@ -32,7 +32,7 @@ def rows(lab: Lab, session_id: str, count: int, next_seq: int) -> list[dict[str,
 
 @pytest.mark.parametrize("count", [1, 2, 63, 64, 65, 200])
 def test_every_row_is_stored_as_given(lab: Lab, count: int) -> None:
-    """Any number of rows is stored as given, in whatever order their columns come."""
+    """Any number of rows is stored as given, regardless of the order of their columns."""
     session_id = str(lab.join()["id"])
     given = rows(lab, session_id, count, 7)
     with lab.database.writing() as db:

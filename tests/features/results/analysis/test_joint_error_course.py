@@ -22,7 +22,7 @@ MEANS = ("0 ms", "125 ms")
 
 
 def _courses(growth_deg: float, code: str, latency: float, **changes: Any) -> list[dict[str, Any]]:
-    """Return rows of a phase whose error grows by so much per bin."""
+    """Return rows of a phase whose error grows by this amount per bin."""
     row = {
         "participant_code": code,
         "phase_kind": "task",

@@ -1,4 +1,4 @@
-"""A stand-in for a long export, which imports nothing that its process would load slowly."""
+"""A stand-in for a long export, without imports that would slow its process down."""
 
 import os
 import time

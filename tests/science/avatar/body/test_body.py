@@ -1,4 +1,4 @@
-"""The avatar's body: its joint positions, optional parts and segment lengths."""
+"""Tests of the avatar's body: its joint positions, optional parts and segment lengths."""
 
 import numpy as np
 import pytest
@@ -178,7 +178,7 @@ def test_children_of_a_missing_part_attach_to_the_next_part_above() -> None:
 
 
 def test_the_shapes_of_a_missing_part_stay_where_they_were() -> None:
-    """The spine takes over the shapes of a missing Chest and UpperChest."""
+    """The shapes of a missing Chest and UpperChest are attached to the spine."""
     body = build_body(1.75, parts=_without("Chest", "UpperChest"))
     shapes = body.parts["Spine"].shapes
     assert len(shapes) == 3

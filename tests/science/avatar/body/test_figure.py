@@ -1,4 +1,4 @@
-"""Bodies built from a humanoid model: the model's joints and lengths, a person's masses."""
+"""Tests of bodies built from a humanoid model: its joints and lengths, a person's masses."""
 
 from dataclasses import replace
 from math import dist

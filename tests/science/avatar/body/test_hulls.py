@@ -1,4 +1,4 @@
-"""Convex pieces: they enclose their points, have few corners and are deterministic."""
+"""Tests that convex pieces enclose their points, have few corners and are deterministic."""
 
 import numpy as np
 import pytest

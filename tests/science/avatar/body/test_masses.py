@@ -1,4 +1,4 @@
-"""Masses, centres of mass and inertia of the body parts."""
+"""Tests of masses, centres of mass and inertia of the body parts."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Settings of one axis: validation, locking, and angles that are stored without loss."""
+"""Tests of one axis's settings: validation, locking, and angles stored without loss."""
 
 import math
 from dataclasses import replace

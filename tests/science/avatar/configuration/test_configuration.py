@@ -1,4 +1,4 @@
-"""Avatar configurations: validation, groups, locks, and the edits that make a new one."""
+"""Tests of avatar configurations: validation, groups, locks, and edits."""
 
 import math
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""The ranges of the axes, and which layers of the body collide."""
+"""Tests of the ranges of the axes, and of the layers of the body that collide."""
 
 from math import degrees, pi
 

@@ -1,4 +1,7 @@
-"""The two joint templates and their conversion: Karas (2020), sections 2.2.3, 4.2.3, 6.3."""
+"""Tests of the two joint templates and their conversion.
+
+Karas (2020), sections 2.2.3, 4.2.3 and 6.3.
+"""
 
 import math
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""The bounded least-squares step, against its defining conditions and against SciPy."""
+"""Tests of the bounded least-squares step against its defining conditions and SciPy."""
 
 import numpy as np
 import pytest

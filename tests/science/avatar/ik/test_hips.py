@@ -1,4 +1,4 @@
-"""Estimating the hips from the head and the shins."""
+"""Tests of estimating the hips from the head and the shins."""
 
 from math import radians
 

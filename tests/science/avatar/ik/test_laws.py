@@ -1,4 +1,4 @@
-"""Properties of the inverse kinematics that hold for all goals."""
+"""Tests of properties of the inverse kinematics that hold for all goals."""
 
 import mujoco
 import numpy as np

@@ -1,4 +1,4 @@
-"""Inverse kinematics from simulated trackers on captured movements of real people."""
+"""Tests of inverse kinematics from simulated trackers on captured movements of real people."""
 
 from pathlib import Path
 

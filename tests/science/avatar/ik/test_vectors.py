@@ -1,4 +1,4 @@
-"""The shared vectors of physics and inverse kinematics, which the browser must reproduce too."""
+"""Tests of the vectors of physics and inverse kinematics that the browser must match too."""
 
 import re
 

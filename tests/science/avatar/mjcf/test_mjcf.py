@@ -1,4 +1,4 @@
-"""The avatar as a MuJoCo model: its bodies, hinges, motors and scene."""
+"""Tests of the avatar as a MuJoCo model: its bodies, hinges, motors and scene."""
 
 import hashlib
 import os

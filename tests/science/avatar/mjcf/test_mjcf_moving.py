@@ -1,4 +1,4 @@
-"""The avatar's model in motion: it stands, follows, touches and stays stable."""
+"""Tests that the avatar's model in motion stands, follows, touches and stays stable."""
 
 from dataclasses import replace
 from math import radians

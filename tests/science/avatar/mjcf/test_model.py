@@ -1,4 +1,4 @@
-"""The avatar model of a configuration: deterministic, and with the configuration's settings."""
+"""Tests that a configuration's avatar model is deterministic and has the right settings."""
 
 from dataclasses import replace
 from xml.etree import ElementTree as ET

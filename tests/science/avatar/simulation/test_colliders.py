@@ -1,4 +1,4 @@
-"""Convex pieces as colliders: against a wall, next to each other, and switched at run time."""
+"""Tests of convex pieces as colliders: at walls, next to each other, switched at run time."""
 
 from dataclasses import replace
 from typing import Any

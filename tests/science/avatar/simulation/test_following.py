@@ -1,4 +1,4 @@
-"""Targets relative to the parent joint, and targets in the space of the room."""
+"""Tests of targets relative to the parent joint, and of targets in the space of the room."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""The simulated avatar follows its targets, touches boxes and stays stable."""
+"""Tests that the simulated avatar follows its targets, touches boxes and stays stable."""
 
 import math
 from pathlib import Path

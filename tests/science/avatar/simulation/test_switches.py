@@ -1,4 +1,4 @@
-"""Settings of an avatar that can be changed while it runs."""
+"""Tests of the settings of an avatar that can be changed while it runs."""
 
 import math
 

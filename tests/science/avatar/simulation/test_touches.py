@@ -1,4 +1,4 @@
-"""Boxes that are shown and hidden, and which of their surfaces the avatar touches."""
+"""Tests of showing and hiding boxes, and of the surfaces that the avatar touches."""
 
 import numpy as np
 import pytest

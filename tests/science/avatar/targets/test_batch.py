@@ -1,4 +1,4 @@
-"""Converting a whole recording to angles gives the same as converting frame by frame."""
+"""Tests that converting a whole recording to angles equals converting frame by frame."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The reference motion of a physics avatar: the part of the pose that its hinges can follow."""
+"""Tests of a physics avatar's reference motion: the part of the pose its hinges can follow."""
 
 import math
 from pathlib import Path

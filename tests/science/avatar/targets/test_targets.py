@@ -1,4 +1,4 @@
-"""Converting poses to hinge angles and back: properties, gimbal lock, real captures."""
+"""Tests of converting poses to hinge angles and back: properties, gimbal lock, captures."""
 
 import math
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""How closely and with what delay a tuned avatar follows captured movements of people."""
+"""Tests of the error and the delay with which a tuned avatar follows captured people."""
 
 import time
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""The tuning of a body: its results, the axes it skips, and how it ends."""
+"""Tests of the tuning of a body: its results, the axes it skips, and how it ends."""
 
 import time
 from dataclasses import replace

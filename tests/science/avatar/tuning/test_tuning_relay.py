@@ -1,4 +1,4 @@
-"""The relay experiment, on single hinges of known inertia and damping."""
+"""Tests of the relay experiment, on single hinges of known inertia and damping."""
 
 from dataclasses import replace
 from itertools import count

@@ -1,4 +1,4 @@
-"""Retries of the tuning when the first gains of an axis are not accepted."""
+"""Tests of retries of the tuning when the first gains of an axis are not accepted."""
 
 import time
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Figures of a step response, the step of each axis, and the reasons to reject gains."""
+"""Tests of step responses: their figures, the step of each axis, and reasons to reject gains."""
 
 from math import degrees, exp, log, pi, radians, sqrt
 

@@ -1,4 +1,4 @@
-"""How closely a body follows a movement, depending on its gains."""
+"""Tests of the error with which a body follows a movement, depending on its gains."""
 
 from dataclasses import replace
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Walking models fitted to a few real people and tested on others."""
+"""Tests of walking models that are fitted to a few real people and tried on others."""
 
 from pathlib import Path
 

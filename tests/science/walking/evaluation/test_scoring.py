@@ -1,4 +1,4 @@
-"""Scores of predicted travel times, and leave-one-out errors."""
+"""Tests of scores of predicted travel times, and leave-one-out errors."""
 
 import numpy as np
 import pytest

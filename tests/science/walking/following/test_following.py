@@ -1,4 +1,4 @@
-"""The path-following agent: its limits of motion, and two implementations that agree."""
+"""Tests of the path-following agent: limits of motion, and two forms that agree."""
 
 import numpy as np
 import pytest

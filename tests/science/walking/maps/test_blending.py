@@ -1,4 +1,4 @@
-"""The dependency blending space: scaling, blends, neighbours and weights."""
+"""Tests of the dependency blending space: scaling, blends, neighbours and weights."""
 
 from collections.abc import Mapping
 

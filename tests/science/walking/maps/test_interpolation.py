@@ -1,4 +1,4 @@
-"""Interpolation of maps between their nodes."""
+"""Tests of interpolation of maps between their nodes."""
 
 import numpy as np
 import pytest

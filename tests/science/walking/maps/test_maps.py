@@ -1,4 +1,4 @@
-"""Suitability maps: known parameters are recovered, readings follow their formulas, runs resume."""
+"""Tests of suitability maps: recovered parameters, formulas of readings, resumed runs."""
 
 from collections.abc import Callable
 from functools import partial

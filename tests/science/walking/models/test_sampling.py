@@ -1,4 +1,4 @@
-"""Draws from blended maps: the mixture and rejection sampling have the same density."""
+"""Tests that the mixture and rejection sampling draw from a blended map's density."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The three steering models, their fitting, and the choice of a reading."""
+"""Tests of the three steering models, their fitting, and the choice of a reading."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The planner: short collision-free paths, deterministic, with clear errors."""
+"""Tests that the planner finds short collision-free paths deterministically."""
 
 import math
 

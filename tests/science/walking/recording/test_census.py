@@ -1,4 +1,4 @@
-"""The census of path lengths: counts by interval, shares and the cutoff."""
+"""Tests of the census of path lengths: counts by interval, shares and the cutoff."""
 
 import numpy as np
 import pytest

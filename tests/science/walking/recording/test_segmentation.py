@@ -1,4 +1,4 @@
-"""Tracks are cut into walks where the person stands still."""
+"""Tests that tracks are cut into walks where the person stands still."""
 
 import numpy as np
 import pytest
@@ -44,7 +44,7 @@ def test_a_short_pause_belongs_to_the_walk() -> None:
 
 
 def test_a_walk_cut_by_the_recording_is_marked() -> None:
-    """A walk that the recording cuts is marked as not beginning or not ending at rest."""
+    """A walk that the recording cuts off is marked as not beginning or not ending at rest."""
     track = _walked((4.0, 4.0))
     middle = slice(120, 360)
     cut = Track(track.times_s[middle], track.xy_m[middle], "7", "made")

@@ -1,4 +1,4 @@
-"""Floor tracks from captures of skeletons, belt trackers and markers."""
+"""Tests of floor tracks from captures of skeletons, belt trackers and markers."""
 
 from pathlib import Path
 

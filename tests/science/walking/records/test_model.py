@@ -1,4 +1,4 @@
-"""Tracks, walks and paths: validation and derived values."""
+"""Tests of tracks, walks and paths: validation and derived values."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Scenes: outlines, clearance and validation."""
+"""Tests of scenes: outlines, clearance and validation."""
 
 import numpy as np
 import pytest

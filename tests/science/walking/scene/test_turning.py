@@ -1,4 +1,4 @@
-"""Turning per metre: it depends on a path's shape, not on its sampling."""
+"""Tests that turning per metre depends on a path's shape and not on its sampling."""
 
 import numpy as np
 import pytest

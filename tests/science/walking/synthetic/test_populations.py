@@ -1,4 +1,4 @@
-"""Synthetic walkers have the properties that their populations describe."""
+"""Tests that synthetic walkers have the properties that their populations describe."""
 
 from dataclasses import replace
 
