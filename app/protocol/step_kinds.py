@@ -56,21 +56,23 @@ class StepKindSpec:
 
     Args:
         key: the word in study files, plans, events and tables.
-        name: its title, if the study specifies none and no limb is involved.
+        name: the title of a step, if the study specifies none and no limb is involved.
         icon: one of the pages' icons, whose names are in `frontend/src/shared/ui/Icon.tsx`. A step
             with a limb shows the limb.
-        guidance: for the experimenter while the step is current; None if it is in `phases`.
-        screen: what the tablet shows meanwhile.
-        command: what the experimenter does to carry it out; it determines the family.
+        guidance: the guidance for the experimenter while the step is current; None if it is in
+            `phases`.
+        screen: the screen that the tablet shows during the step.
+        command: the command with which the experimenter carries it out; it determines the family.
         done: the label of the button that completes it; None if it has its own form or another
             command.
         takes_s: our estimate of the time that it takes in addition to reading its text, seconds;
             None if the study specifies it, or if there is only reading.
         phases: the texts of a timed kind by limb; the key None stands for a phase without a limb.
         phase_key: for a timed kind, the phase's key in the rules of a study; `{limb}` is replaced.
-        counts: its phases are the study's data. All others are recorded, but in no figure or test.
-        needs_body: it must come after the step in which the participant gets a body.
-        records_movement: movement is recorded in it, once the participant has a body.
+        counts: whether its phases are the study's data. All others are recorded, but in no figure
+            or test.
+        needs_body: whether it must come after the step in which the participant gets a body.
+        records_movement: whether movement is recorded in it, once the participant has a body.
     """
 
     key: StepKind

@@ -85,7 +85,7 @@ class Capture:
         format: key of the format, such as "bvh" or "motive-csv".
         motion: a skeleton's movement, markers, or rigid bodies.
         conventions: the conventions by which it was read.
-        notes: what users should know, each a sentence: gaps, repairs, omitted columns.
+        notes: sentences that users should know: gaps, repairs, omitted columns.
     """
 
     format: str

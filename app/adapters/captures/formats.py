@@ -29,14 +29,14 @@ class CaptureFormat:
 
     Attributes:
         key: stored with each capture, so it is never renamed.
-        title: its full name, for messages.
+        title: the full name of the format, for messages.
         extensions: the extensions of its files, in lower case. If no other format has an extension,
             it identifies the format of a file that is not recognised by its content.
         recognises: whether the beginning of a file is of this format.
         reader: "module.function" below `app.adapters.captures`, which is imported when a file of
             this format is read: a server starts without it.
         name: the name shown in lists.
-        source: what a file contains, and which programs write it.
+        source: the content of such files, and the programs that write them.
     """
 
     key: str

@@ -20,8 +20,10 @@ def read_capture(
 
     Args:
         data: the content of the file.
-        name: its name, for its extension and for names of things that the file does not name.
-        reading: what the user specifies where the file is silent or wrong, and companion files.
+        name: the name of the file, used for its extension and to name things that the file leaves
+            unnamed.
+        reading: the user's instructions where the file's own information is missing or wrong, and
+            companion files.
         limits: the largest sizes that are accepted.
 
     Returns:

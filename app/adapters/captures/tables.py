@@ -26,7 +26,7 @@ class NumberTable:
 
     Attributes:
         lines: (N,) line of each row in the file, from 1.
-        values: (N, C), NaN for empty cells.
+        values: (N, C) numbers, NaN for empty cells.
     """
 
     lines: npt.NDArray[np.int64]

@@ -23,7 +23,7 @@ class SampleTimes:
 
     Attributes:
         kept: (N,) indices of the rows whose time is later than that of the row before.
-        times_s: (N,) from the first of them on.
+        times_s: (N,) times of these rows, counted from the first.
         notes: a sentence if rows were left out.
     """
 
@@ -116,7 +116,7 @@ class TrackedCells:
 
     Attributes:
         lines: (N,) line of each sample in the file.
-        times_s: (N,) from the first sample on.
+        times_s: (N,) times, counted from the first sample.
         cells: (N, B, C) values: three coordinates, then the rotation, as in the file.
         repairs: notes on rows that were left out.
         left_out: a note that names the columns that are not movement.

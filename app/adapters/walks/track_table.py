@@ -72,7 +72,7 @@ def read_tracks(data: bytes, *, name: str, reading: TrackReading = _AS_IT_IS) ->
     Args:
         data: the content of the file.
         name: the name of the file, which becomes the source of the tracks.
-        reading: what the file does not specify.
+        reading: the information that the file does not specify.
 
     Raises:
         CaptureError: (with the line) a missing column, a cell that is not a number, NaN, a person

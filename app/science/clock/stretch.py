@@ -39,7 +39,8 @@ class Stretch:
         offsets_s: (w + 1,) server minus client at the knots, as the server's clock was read.
         end_drift: drift before the first knot and after the last one, s/s.
         server_first_s, server_last_s: readings of the server's clock at both ends.
-        wall_first_s, wall_last_s: as `Piece.wall_s`, over the probes nearest to each end.
+        wall_first_s, wall_last_s: the same difference as `Piece.wall_s`, over the probes nearest to
+            each end.
         slack_s: the slack of the limits plus the step in which the client's clock is read.
         drift: the drift limit.
     """

@@ -21,7 +21,7 @@ class Landmarks:
         set: the marker set by which they were identified.
         markers: landmark -> name of its marker.
         places, seen: positions and visibility, by landmark.
-        names: all markers of the capture.
+        names: the names of all markers of the capture.
         frames: the number of frames, N.
     """
 

@@ -40,10 +40,10 @@ class Part:
     """A joint as measured in N frames.
 
     Attributes:
-        centre_m: (N, 3), NaN where it is unknown.
-        axes: (N, 3, 3) with the joint's x, y, z in the world as columns, which in the T-pose are
-            the world's; None where they cannot be determined and the parent's are used.
-        seen: (N,) false where a marker it is computed from was bridged over a gap.
+        centre_m: (N, 3) position of the joint, NaN where it is unknown.
+        axes: (N, 3, 3) matrices with the joint's x, y, z in the world as columns, which in the
+            T-pose are the world's; None where they cannot be determined and the parent's are used.
+        seen: (N,) mask, false where a marker it is computed from was bridged over a gap.
     """
 
     centre_m: FloatArray

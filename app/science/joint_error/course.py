@@ -85,7 +85,7 @@ def active_times(times_s: FloatArray, active: npt.NDArray[np.bool_]) -> FloatArr
     ones, adds nothing.
 
     Args:
-        times_s: (N,) on one clock, in the order in which the frames were made; any values are
+        times_s: (N,) times on one clock, in the order in which the frames were made; any values are
             allowed.
         active: (N,) whether the phase's clock ran.
 

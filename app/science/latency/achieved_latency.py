@@ -76,12 +76,12 @@ class AchievedLatency:
 
     Attributes:
         latency_s: the lag of the actual body behind the target; None where it is unknown.
-        low_s, high_s: its 95 % confidence interval.
+        low_s, high_s: the latency's 95 % confidence interval.
         movement_s: active time during which the target's fastest joint turned above 20 deg/s.
         samples: number of active frames of the actual body with at least one usable joint.
         frame_s: median interval between frames of the actual body.
         correlation: the correlation of all angular velocities at the best lag, -1 to 1.
-        reason: why there is no latency, or a reservation about it; else None.
+        reason: the reason why there is no latency, or a reservation about it; else None.
     """
 
     latency_s: float | None
@@ -122,7 +122,8 @@ def latency_of_runs(
     """Measure the latency of a phase from all client runs that took part in it.
 
     Args:
-        runs: any number; each is compared on its own clock, and one lag is fitted to all of them.
+        runs: the streams of any number of runs; each is compared on its own clock, and one lag is
+            fitted to all of them.
         lowest_s, highest_s: the range of lags to search.
 
     Raises:

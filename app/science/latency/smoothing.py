@@ -58,7 +58,7 @@ class Curves:
 
     Attributes:
         values: (k, joints, 4) near-unit quaternions.
-        rates: (k, joints, 4) their change per second.
+        rates: (k, joints, 4) change of the values per second.
         known: (k, joints or 1) mask of the times with frames close by on both sides; elsewhere
             values and rates are zero.
     """

@@ -41,7 +41,8 @@ class Step:
 
     Attributes:
         side: whether it is the left or the right foot.
-        lift_s, contact_s: when it leaves the ground and comes down, from the first frame.
+        lift_s, contact_s: times at which the foot leaves the ground and comes down, from the first
+            frame.
         length_m: forward travel of the ball from contact to contact.
         height_m: difference in height between its lowest and its highest position on the way.
         contact_height_m: the height of the ball above the ground at contact.
@@ -118,7 +119,7 @@ def walk_figures(
 
     Args:
         motion: the movement of a body with legs.
-        legs: its leg joints, from `legs_of`.
+        legs: the leg joints of the body, from `legs_of`.
         ground: the ground under the body; heights are measured from it.
         contacts: the contacts of another body with the same movement, to measure the same stretches
             of time; None to detect this body's own. With the other body's contacts every lift

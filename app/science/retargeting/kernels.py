@@ -30,11 +30,11 @@ def transfer(
     """Transfer N frames from a source to an avatar.
 
     Args:
-        roots, rotations: (N, 3), (N, S, 4) of the source.
+        roots, rotations: (N, 3) and (N, S, 4) frames of the source.
         joints, numbers: the arrays of the `Plan`.
         scratch: (2, W, 4, BLOCK) working memory.
         lift_m: the hips are at scale * source + (0, lift_m, 0).
-        roots_out, rotations_out: (N, 3), (N, A, 4) results.
+        roots_out, rotations_out: (N, 3) and (N, A, 4) resulting frames of the avatar.
     """
     source = Body(joints[0], numbers[0], _filled(joints[1]), _filled(joints[2]))
     avatar = Body(joints[3], numbers[1], _filled(joints[4]), _filled(joints[5]))

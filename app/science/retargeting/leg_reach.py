@@ -48,7 +48,7 @@ def reach_for(
     Args:
         hip_m, knee_m, ankle_m: positions of the joints.
         target_m: positions that the ankles should reach.
-        right: (N, 3) from the left to the right hip joint; knees bend forward of it.
+        right: (N, 3) vector from the left to the right hip joint; knees bend forward of it.
     """
     thigh, shin, way = knee_m - hip_m, ankle_m - knee_m, ankle_m - hip_m
     a, b, to_target = _length(thigh), _length(shin), target_m - hip_m

@@ -60,7 +60,7 @@ class TPose:
         facing: (4,) world_from_axes, a rotation about up: how the rig faces at rest.
         local_rotations: (J, 4) rotations parent_from_joint.
         world_rotations: (J, 4) rotations world_from_joint.
-        positions_m: (J, 3) in the world, the root at its rest position.
+        positions_m: (J, 3) positions in the world, the root at its rest position.
         bones: the bones that were aligned, root to leaf.
     """
 

@@ -49,7 +49,7 @@ class Retargeter:
         source_t_pose, avatar_t_pose: the pose that they share.
         carried: body joints that both maps contain, which move the avatar.
         scale: factor on the hips' travel.
-        scaled_by: what determined the scale; `legs` unless a body has no legs.
+        scaled_by: the body part that determined the scale; `legs` unless a body has no legs.
         moved_by: (A,) the source joint that moves each of the avatar's, -1 for none.
         foot_points: the points of the avatar that stand on the ground.
         factors: (A, 4) right factors on the source joints' world rotations; for a joint that none
@@ -71,7 +71,7 @@ class Retargeter:
         Args:
             source, avatar: any two skeletons, y up.
             source_map, avatar_map: body joint -> joint of that rig; both need the hips.
-            source_local_axes, avatar_local_axes: see `t_pose`.
+            source_local_axes, avatar_local_axes: the `local_axes` of each rig; see `t_pose`.
 
         Raises:
             JointMapError: a map does not match its rig, or leaves the hips out.

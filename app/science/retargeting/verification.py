@@ -38,7 +38,7 @@ class AvatarFigures:
 
     Attributes:
         name: the name as it was given.
-        leg_ratio: its leg length over the source's.
+        leg_ratio: the avatar's leg length over the source's.
         walk: lifts, steps and slide from its own contacts.
         slide_m_s: mean horizontal speed of its feet while the *source's* are down, the measure by
             which retargeting and foot locking are judged; None without contact.
@@ -78,7 +78,7 @@ def verify(
 
     Args:
         source: the captured movement.
-        source_map: its joint map.
+        source_map: the joint map of the capture.
         avatars: (name, movement after the transfer, joint map) for each.
         ground: the ground under the avatars; the source's is flat.
 

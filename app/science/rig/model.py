@@ -111,7 +111,7 @@ class RigMotion:
         root_positions_m: (N, 3) the root in the world.
         rotations: (N, J, 4) parent_from_joint; column 0 is world_from_root. They are complete
             rotations, not relative to the rest pose.
-        observed: (N, J) false where a value was missing in the file and filled in.
+        observed: (N, J) mask, false where a value was missing in the file and filled in.
     """
 
     rig: Rig

@@ -18,7 +18,7 @@ class MarkerMotion:
     Attributes:
         names: labels as in the file, without a subject's prefix.
         rate_hz: frames per second.
-        positions_m: (N, M, 3), NaN where a marker was not observed.
+        positions_m: (N, M, 3) positions, NaN where a marker was not observed.
     """
 
     names: tuple[str, ...]
@@ -46,7 +46,7 @@ class BodyMotion:
     Attributes:
         names: the names of the bodies.
         times_s: (N,) since the first sample; loggers seldom keep a constant sampling rate.
-        positions_m: (N, B, 3), NaN where a body was not observed.
+        positions_m: (N, B, 3) positions, NaN where a body was not observed.
         rotations: (N, B, 4) world_from_body, NaN where a body was not observed.
     """
 

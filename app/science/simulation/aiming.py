@@ -24,7 +24,7 @@ class Aim:
         traits: the traits of the person's movement.
         latency_s: delay that the person sees at present, which slows movements.
         tempo: factor on movement times, larger for a foot.
-        press_m: how far an end point lies beyond a surface, against the approach.
+        press_m: distance by which an end point lies beyond a surface, against the approach.
     """
 
     traits: MovementTraits

@@ -33,9 +33,9 @@ class Goal:
         target_m: world point for the finger tip, for the middle of the sole, or on the floor for
             the middle of the body; None to rest.
         near_m: half width of the object to hit: it determines pace and scatter.
-        approach_m: from the target out through the open side, as long as the way out is: +z out of
-            a hand box, +y out of a foot box. It is the way in and, at the next goal, the way out.
-            For walking only its height is used, to lift the feet over edges.
+        approach_m: vector from the target out through the open side, as long as the way out is: +z
+            out of a hand box, +y out of a foot box. It is the way in and, at the next goal, the way
+            out. For walking only its height is used, to lift the feet over edges.
     """
 
     kind: GoalKind

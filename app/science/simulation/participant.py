@@ -48,7 +48,7 @@ class SimulatedParticipant:
             `idle_movement(...)`.
         rng: source of all randomness; seed it and keep the seed.
         traits: the traits of the person's movement; drawn from rng if None.
-        home_m: (x, z) where the person stands at first and for hand tasks.
+        home_m: position (x, z) at which the person stands at first and for hand tasks.
 
     Raises:
         SimulationError: the base movement does not loop.

@@ -97,7 +97,7 @@ def loop(movement: Movement, crossfade_s: float = 0.4) -> Movement:
     """Return a loop of the movement's most repeatable stretch, cross-faded at the seam.
 
     Args:
-        movement: at least half a second longer than twice the cross-fade.
+        movement: a movement at least half a second longer than twice the cross-fade.
         crossfade_s: overlap that is blended. Longer is smoother and shortens the loop by as much.
 
     Raises:

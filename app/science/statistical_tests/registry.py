@@ -27,9 +27,9 @@ class StatisticalTest:
         directions: the directions of the measure along the factor that a study may declare.
         fewest_conditions: the smallest number of levels of the factor that it accepts.
         needs_reference: whether it compares every level with a named reference level.
-        assumptions: what must hold for its p value to be valid.
+        assumptions: the conditions under which its p value is valid.
         effect_size: the effect size reported with p.
-        source: where it was published.
+        source: the publication of the test.
         outcome: "module.function" below `app.science.statistical_tests`, imported when the test is
             run.
     """

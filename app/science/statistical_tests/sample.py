@@ -15,7 +15,7 @@ class Sample:
     """The values to test, and the options that the study declares.
 
     Attributes:
-        values: (n participants, k levels), complete; any unit.
+        values: (n participants, k levels) complete values in any unit.
         levels: names of the columns, in the order of the factor.
         direction: the direction of the measure along the factor.
         reference: the level with which the others are compared; None for the first.
@@ -40,7 +40,7 @@ class Outcome:
         p: the decisive p value, to be compared with alpha.
         sentence: statistic, p, effect size and n, as papers print them.
         columns, rows: figures of each level or comparison, as text.
-        method: how p was computed.
+        method: a description of how p was computed.
     """
 
     n: int

@@ -60,7 +60,7 @@ def bootstrap_interval(
     """Return the confidence interval of a statistic of subjects.
 
     Args:
-        data: (n, ...), one entry per subject, complete.
+        data: (n, ...) complete values, one entry per subject.
         statistic: function that computes the statistic of many draws at once: it takes (draws, n,
             ...) and returns (draws,).
         rng: seeded by the caller, so that the interval is reproducible.

@@ -34,7 +34,7 @@ class Explored:
             data.
         n: subjects with both values; n_left_out: the others.
         why_not: the reason why the association could not be computed; empty if it could.
-        label: to be shown with every number.
+        label: the label to show with every number.
     """
 
     variable: str

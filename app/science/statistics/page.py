@@ -34,10 +34,10 @@ class PageTrend:
 
     Attributes:
         statistic: the statistic L of the levels in the given order.
-        p: one-sided, that they rise; by `method`.
-        p_falling: one-sided, that they fall: the same test with the order reversed.
+        p: the one-sided p value for a rise, computed by `method`.
+        p_falling: the one-sided p value for a fall: the same test with the order reversed.
         p_given_ties: like `p`, exact for the observed ties; NaN where asymptotic.
-        p_asymptotic: like `p`, of the normal distribution.
+        p_asymptotic: like `p`, from the normal distribution.
         method: "exact" up to 7 levels and 50 subjects, else "asymptotic".
     """
 

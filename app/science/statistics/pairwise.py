@@ -48,7 +48,7 @@ class Comparison:
     Attributes:
         a, b: the levels; positive effects mean that a is larger.
         test: the signed-rank test of a - b, with n and the number left out.
-        p_holm: its p, adjusted for all comparisons made together.
+        p_holm: the p value of the test, adjusted for all comparisons made together.
         median_difference: the median of a - b over the pairs, in the unit of the measure.
     """
 

@@ -29,8 +29,8 @@ class AgainstReference:
 
     Attributes:
         reference: the level with which the others are compared.
-        comparisons: in the order of levels; `a` is the level, `b` the reference, so that a positive
-            effect means that the measure is larger than at the reference.
+        comparisons: the comparisons in the order of levels; `a` is the level, `b` the reference, so
+            that a positive effect means that the measure is larger than at the reference.
         first_that_differs: the first level, in order, whose adjusted p is at most alpha; None if
             there is none. It is not a threshold: levels in between are untested, and a later one
             may not differ.
@@ -77,7 +77,7 @@ def against_reference(
     """Compare each level with the reference by exact signed-rank tests, Holm over all of them.
 
     Args:
-        values: (n, k), NaN where missing (pairwise), columns in the order of `levels`.
+        values: (n, k) values, NaN where missing (pairwise), columns in the order of `levels`.
         reference: one of the levels; "0" and "0.0" name the same number.
 
     Raises StatisticsError for an unknown reference, TooFewData if a level has no pairs.
@@ -99,7 +99,7 @@ def directional(
     """Test whether a measure falls (or rises) along ordered levels, as predicted.
 
     Args:
-        values: (n, k), NaN where missing, columns in the order of `levels`.
+        values: (n, k) values, NaN where missing, columns in the order of `levels`.
 
     Raises StatisticsError for a direction other than rises or falls, TooFewData.
     """

@@ -118,7 +118,7 @@ class Omega:
         heywood: whether an item's loading explains more than its variance (the model does not fit,
             or there are too few subjects); its error counts as zero.
         n: subjects with all items; n_left_out: the others (listwise).
-        estimator: how loadings were estimated.
+        estimator: the method by which loadings were estimated.
     """
 
     omega: float

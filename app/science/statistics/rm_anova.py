@@ -34,8 +34,8 @@ def rm_anova(values: npt.ArrayLike, factors: Sequence[str] = ("A", "B", "C")) ->
     """Test complete values of shape (n, a) or (n, a, b): subjects first, then one axis per factor.
 
     Args:
-        values: in the unit of the measure; subjects with a missing value must be left out
-            beforehand.
+        values: the values in the unit of the measure; subjects with a missing value must be left
+            out beforehand.
         factors: names of the axes after the first; surplus names are ignored.
 
     Raises ConstantData if an effect has no error (all subjects differ equally between levels),

@@ -39,7 +39,8 @@ class ContactShares:
 
     Attributes:
         groups: names, in the given order.
-        shares: (n, groups), each row adds up to 1; NaN for subjects without any contact.
+        shares: (n, groups) shares, of which each row adds up to 1; NaN for subjects without any
+            contact.
         total_s: (n,) the summed time of all parts. Parts can touch simultaneously, so this is not
             the duration of contact, which would be the union of the intervals.
         n_without_contact: subjects without any contact.

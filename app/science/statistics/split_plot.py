@@ -41,7 +41,7 @@ def split_plot_anova(
     """Test complete values (n subjects, k levels) of subjects in groups.
 
     Args:
-        values: in the unit of the measure.
+        values: the values in the unit of the measure.
         groups: (n,) the group of each subject.
         between, within: names of the two factors.
 

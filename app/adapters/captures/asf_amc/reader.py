@@ -27,7 +27,7 @@ def read_asf_amc(data: bytes, *, name: str, reading: Reading, limits: Limits) ->
 
     Args:
         data: the content of the AMC file.
-        name: its name, such as "02_01.amc", for messages.
+        name: the name of the AMC file, such as "02_01.amc", for messages.
         reading: `companions` must contain the ASF; a unit or upward axis overrides the file's.
         limits: the largest sizes that are accepted.
 

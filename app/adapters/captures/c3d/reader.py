@@ -29,7 +29,7 @@ def read_c3d(data: bytes, *, name: str, reading: Reading, limits: Limits) -> Cap
 
     Args:
         data: the content of the file.
-        name: its name, for messages.
+        name: the name of the file, for messages.
         reading: a unit or upward axis that overrides the file's.
         limits: the largest sizes that are accepted.
 

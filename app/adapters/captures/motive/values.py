@@ -22,7 +22,7 @@ class TakeValues:
         lines: (N,) line of each row.
         frames: (N,) the file's frame numbers.
         times_s: (N,) the file's times, rounded to a millisecond or so.
-        places: (N, T, 3) in the file's unit, NaN where not visible.
+        places: (N, T, 3) positions in the file's unit, NaN where not visible.
         rotations: (N, T, 4) wxyz, NaN where not visible; T = 0 if tracks have none.
         turned_by: the convention of the rotations.
     """

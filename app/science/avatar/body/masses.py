@@ -69,7 +69,7 @@ def body_masses(body: Body, total_kg: float, *, population: Population = "averag
     """Distribute a body's mass among its parts.
 
     Args:
-        body: its lengths scale the radii of gyration.
+        body: the body, whose lengths scale the radii of gyration.
         total_kg: 1 to 500 kg.
         population: supplies the relative masses.
 

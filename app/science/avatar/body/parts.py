@@ -43,7 +43,7 @@ class Axis:
         letter: the world's axis it lies along in the T-pose; only approximately for oblique
             fingers.
         direction: unit vector in the part's frame.
-        movement: what a positive angle does.
+        movement: the movement that a positive angle causes.
     """
 
     part: str

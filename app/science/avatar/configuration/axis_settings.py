@@ -28,10 +28,10 @@ class AvatarProblem:
 
     Attributes:
         path: the path to the value, such as `axes.LeftUpperLegX.kp_nm_per_rad`.
-        message: what is wrong.
+        message: a description of the problem.
         value: the given value.
         valid: a description of the valid values.
-        remedy: what to do.
+        remedy: the correction to make.
     """
 
     path: str

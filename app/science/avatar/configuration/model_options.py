@@ -42,7 +42,7 @@ class ModelOptions:
     """Options with which a MuJoCo model is built.
 
     Attributes:
-        hips: see the module docstring.
+        hips: how the hips follow the participant; see the module docstring.
         gravity: whether gravity acts on the body.
         self_collision: whether parts collide with each other as `layers` defines.
         longest_delay_s: the longest latency that can be set while the model runs; see

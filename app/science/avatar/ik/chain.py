@@ -22,7 +22,7 @@ class Chain:
 
     Attributes:
         axis_names: every hinge, in the order of the model.
-        low_rad, high_rad: their limits, shape (axes,); infinite where there are none.
+        low_rad, high_rad: the limits of the hinges, shape (axes,); infinite where there are none.
         moving: indices of the hinges that move a tracked part.
         moves: (goals, moving) whether each of these moves each goal; the hips' row is all false.
         trunk: lengths for estimating the hips.

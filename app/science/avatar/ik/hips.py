@@ -47,10 +47,10 @@ class Trunk:
     """Lengths of one body's trunk and thighs in the T-pose.
 
     Attributes:
-        hips_to_head_m: from the hips' joint to the head's.
+        hips_to_head_m: distance from the hips' joint to the head's.
         hips_to_sockets_m: height of the hips' joint above the hip sockets.
-        half_breadth_m: from the median plane to a hip socket.
-        thigh_m: from the hip socket to the knee.
+        half_breadth_m: distance from the median plane to a hip socket.
+        thigh_m: distance from the hip socket to the knee.
     """
 
     hips_to_head_m: float

@@ -83,7 +83,7 @@ def avatar_model(
             a figure.
         figure: the model that the configuration names, in its own size; parts that it lacks are
             left out.
-        scene: what the avatar can collide with.
+        scene: the surroundings with which the avatar can collide.
         longest_delay_s: the longest latency that can be set while the model runs.
         switchable_colliders: add the figure's convex pieces next to the simple shapes even where
             the configuration does not use them, so that they can be chosen while the model runs.

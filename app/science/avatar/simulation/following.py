@@ -74,10 +74,10 @@ class Follower:
     """Feeds one participant's frames to one avatar.
 
     Args:
-        avatar: at its time zero, or at rest.
-        angles: made with the limits and parts of the avatar's model.
-        target_space: see the module docstring.
-        delay_s: added latency; `set_delay` changes it.
+        avatar: the avatar, at its time zero or at rest.
+        angles: the target angles, made with the limits and parts of the avatar's model.
+        target_space: the meaning of the targets; see the module docstring.
+        delay_s: the added latency; `set_delay` changes it.
 
     Raises:
         SimulationError, DelayError: an invalid delay.
@@ -123,7 +123,7 @@ class Follower:
             time_s: later than the last frame's, on the avatar's clock.
             position_m: (3,) the participant's hips in the world.
             rotations: (22, 4) local rotations wxyz; row 0 is world_from_hips.
-            fingers: as for `TargetAngles.follow`.
+            fingers: the same as for `TargetAngles.follow`.
 
         Raises:
             SimulationError, TargetError, DelayError: an invalid time or shape.

@@ -47,7 +47,7 @@ class AvatarState:
         time_s: steps taken times 2 ms.
         root_position_m: (3,) the hips' joint in the world.
         rotations: (22, 4) local rotations wxyz as in `skeleton`; row 0 is world_from_hips.
-        angles_rad: (91,) in the order of `AXIS_NAMES`; NaN where the model has no hinge.
+        angles_rad: (91,) angles in the order of `AXIS_NAMES`; NaN where the model has no hinge.
         command_rad: (91,) likewise, the current targets before any added latency.
     """
 
@@ -88,7 +88,7 @@ class PhysicsAvatar:
 
     Attributes:
         model, data: MuJoCo's own objects, for inspection.
-        switches: what can be changed while it runs.
+        switches: the settings that can be changed while the simulation runs.
         hips, boxes: the hips' path; the scene's boxes, which can be shown and hidden.
 
     Raises:
@@ -177,7 +177,7 @@ class PhysicsAvatar:
         """Set the target angles at the time of the next `step_to`.
 
         Args:
-            angles_rad: (91,) in the order of `AXIS_NAMES`; clamped to the limits.
+            angles_rad: (91,) angles in the order of `AXIS_NAMES`; clamped to the limits.
             speeds_rad_s: (91,) target speeds; None for the slope of the target angles.
         """
         angles = angles_rad[self._table.columns]

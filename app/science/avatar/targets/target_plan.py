@@ -32,7 +32,8 @@ class TargetPlan:
         hands: (D,) 1 for a right-handed frame, -1 for a left-handed one.
         bends: (H, 2) the bone above each elbow or knee, and the part below, as indices from 0 to D
             - 1.
-        bend_frames: (H, 3, 3) as columns: the axis of the bend, the one across, the bone's own.
+        bend_frames: (H, 3, 3) axes of each bend as columns: the axis of the bend, the one across,
+            the bone's own.
         wrists: (W, 2) columns of the wrist's and the forearm's turn about the forearm.
     """
 

@@ -146,7 +146,7 @@ class TargetAngles:
         The result is bitwise the same as that of `follow` frame by frame.
 
         Args:
-            rotations: (N, 22, 4) as for `follow`, N above zero.
+            rotations: (N, 22, 4) rotations as for `follow`, with N above zero.
             fingers: (N, 4) rotations parent_from_part of fingers, by part name.
             restarts: (N,) whether to `forget` before each frame; None for the first one only.
 

@@ -30,13 +30,13 @@ class Laboratory:
     """One body for relay experiments; several threads may use it.
 
     Attributes:
-        body: without shapes, see `without_shapes`.
+        body: the body without shapes; see `without_shapes`.
         masses: the masses of its parts.
         settings: the settings of every axis, in force.
         hinges: the hinges of every axis; their inertia determines the relay's torque.
         options: the options of the tuning.
         wall_s: a monotonic clock.
-        cancelled: returns whether the tuning was cancelled.
+        cancelled: function that returns whether the tuning was cancelled.
     """
 
     body: Body

@@ -21,7 +21,7 @@ class StepFigures:
     """Figures of one step response.
 
     Attributes:
-        step_deg: how far the target jumped.
+        step_deg: the angle by which the target jumped.
         overshoot_percent: the farthest excursion beyond the final angle, of the distance travelled.
         settling_s: time until the angle stays within 2 % of the distance; None if it does not.
         rise_s: time from 10 to 90 % of the distance; None if the axis does not get there.

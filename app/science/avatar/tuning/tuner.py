@@ -46,7 +46,7 @@ def tune(
         configuration: supplies mass, locks, limits and torque limits; axes that are locked or do
             not oscillate keep its gains.
         stature_m: the stature of the body.
-        options: see `TuningOptions`; None for the defaults.
+        options: the options of the tuning; None for the defaults.
         figure: the model that the configuration names; it has all parts of the configuration.
         wall_s: a monotonic clock in seconds, such as `time.monotonic`.
         progress: function that is called after each axis.

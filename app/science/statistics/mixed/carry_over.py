@@ -55,7 +55,7 @@ class CarryOver:
     """Diagnostics of order, sequence and carry-over of one measure.
 
     Attributes:
-        orders: how the conditions were ordered, and how balanced the orders are.
+        orders: the orders of the conditions, and their balance.
         condition: F test of the condition, adjusted for period and carry-over.
         period, carry_over: F tests.
         sequence: F test between participants; None if the orders do not allow it.
@@ -91,7 +91,7 @@ def carry_over(
 
     Args:
         values: (N,) finite; a period may have several (hand and foot).
-        participants: N names.
+        participants: the participants of the N observations, by name.
         conditions: N conditions; a participant has one in each period.
         periods: N positions in the order, from 1.
         further: other factors of the N observations on which the measure depends, such as the limb.

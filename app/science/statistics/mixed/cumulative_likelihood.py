@@ -36,7 +36,7 @@ class Answers:
     """Ordinal observations, grouped by participant.
 
     Attributes:
-        categories: (N,) from 0 to K - 1, each of them observed.
+        categories: (N,) categories from 0 to K - 1, each of them observed.
         x: (N, p) predictors without an intercept, whose role the thresholds have.
         codes: (N,) participant of each, from 0 and never decreasing, so that the observations of a
             participant are contiguous.

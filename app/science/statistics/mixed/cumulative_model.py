@@ -54,7 +54,7 @@ class CumulativeEffect:
     """A coefficient on the latent scale (log odds or standard deviations).
 
     Attributes:
-        name: for instance `latency[125]`: that level minus the reference.
+        name: the name, for instance `latency[125]`: that level minus the reference.
         estimate, se: the estimate and its standard error.
         z, p: Wald's two-sided test that it is zero.
         low, high: 95 % confidence interval.
@@ -79,7 +79,7 @@ class CumulativeModel:
             without participants.
         thresholds, effects: the estimated thresholds and effects.
         participant_sd: sigma, on the latent scale; 0 if estimated as zero or not in the model.
-        participant_sd_se: its standard error; NaN where sigma is 0.
+        participant_sd_se: the standard error of `participant_sd`; NaN where sigma is 0.
         log_likelihood: the log-likelihood at the optimum.
         parameters: number of estimated parameters.
         observations: number of observations.
@@ -87,7 +87,7 @@ class CumulativeModel:
         levels: the categories that were chosen, in order.
         unused_levels: those of the scale that nobody chose.
         converged: whether the search ended at a maximum of the likelihood.
-        messages: what a reader must know about the fit, in sentences; empty if nothing.
+        messages: sentences that a reader of the fit must know; empty if there are none.
         gradient: (parameters,) gradient of the log-likelihood where the search ended.
         design: the design of the effects; None for a model with thresholds only.
         covariance: (p, p) covariance of the effects; NaN without standard errors.
@@ -135,7 +135,8 @@ def fit_cumulative_model(
 
     Args:
         answers: N categories as whole numbers, larger is more.
-        participants: N names; None treats all answers as independent (CLM).
+        participants: the participants of the N answers, by name; None treats all answers as
+            independent (CLM).
         design: the design of the same N observations; its intercept is dropped in favour of the
             thresholds. None fits thresholds only.
         link: "logit" or "probit".

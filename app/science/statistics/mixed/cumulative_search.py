@@ -37,7 +37,8 @@ class Found:
         at: the estimated parameters.
         errors: standard errors of thresholds, effects and sd; NaN where there is none.
         covariance: the covariance of the effects (p, p); NaN where there is none.
-        log_likelihood, gradient: at the estimates; the gradient by thresholds, effects and sd.
+        log_likelihood, gradient: the log-likelihood and its gradient at the estimates; the gradient
+            by thresholds, effects and sd.
         converged, messages: whether it is an optimum, and what else to report.
     """
 

@@ -41,7 +41,7 @@ class LikelihoodRatio:
         df: parameters that the smaller model lacks.
         p: the p value from the chi-square distribution.
         converged: whether both fits have converged; otherwise the test is meaningless.
-        method: how the likelihoods were computed.
+        method: a description of how the likelihoods were computed.
     """
 
     statistic: float
@@ -94,9 +94,9 @@ def cumulative_term_tests(
     """Test terms of a design by likelihood ratio.
 
     Args:
-        answers, participants, link, nodes: as for `fit_cumulative_model`.
+        answers, participants, link, nodes: the same as for `fit_cumulative_model`.
         design: the design with all terms.
-        terms: which to test; all of them if empty.
+        terms: the terms to test; all of them if empty.
 
     Raises:
         ModelError: a term is unknown, or the answers cannot be modelled.

@@ -30,8 +30,8 @@ class Design:
     Attributes:
         matrix: (N, p) predictors; the first column is the intercept.
         names: the names of the p coefficients.
-        factors: in the order of the grid's axes, the last varying fastest.
-        covariates: each a term of its own, without interactions.
+        factors: the factors in the order of the grid's axes, the last varying fastest.
+        covariates: the covariates, each a term of its own, without interactions.
         interactions: the products of factors, by name.
     """
 

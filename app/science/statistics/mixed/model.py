@@ -51,7 +51,7 @@ class MixedModel:
         observations, participants: the numbers of observations and participants.
         converged: whether the search ended at a minimum of the criterion.
         singular: whether a variance is zero or a correlation of random effects is 1.
-        messages: what a reader must know about the fit, in sentences; empty if nothing.
+        messages: sentences that a reader of the fit must know; empty if there are none.
         design: the fixed part of the model.
         restricted: fixed effects, their covariance, and the derivatives for degrees of freedom.
     """
@@ -85,7 +85,7 @@ def fit_mixed_model(
 
     Args:
         values: (N,) the measure, finite.
-        participants: N names.
+        participants: the participants of the N observations, by name.
         design: the design of the same N observations.
         random_slope: a single column whose effect differs between participants, correlated with
             their intercepts. The design should contain it too, or its mean effect is taken as zero.

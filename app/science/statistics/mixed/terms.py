@@ -45,7 +45,7 @@ class Covariate:
 
     Attributes:
         name: its name in terms and results.
-        columns: (N, k) in the covariate's own units.
+        columns: (N, k) values in the covariate's own units.
         parts: k names; one empty name for a single column.
         held_at: (k,) values at which marginal means hold it constant.
     """
@@ -62,7 +62,7 @@ def factor(name: str, values: Sequence[Label], levels: Sequence[Label] | None = 
     Args:
         name: the name of the factor.
         values: N observed levels; none may be missing.
-        levels: all of them in order, the reference first; by default those observed, sorted.
+        levels: all levels in order, the reference first; by default those observed, sorted.
 
     Raises:
         ModelError: there are fewer than two levels, or a value is not among them.

@@ -63,7 +63,8 @@ class Evaluation:
     Attributes:
         truth_s: (N,) actual travel times.
         lengths_m: (N,) lengths of the planned paths.
-        subjects, courses: N each; walks of one course are repetitions by one or several people.
+        subjects, courses: the subject and the course of each walk; walks of one course are
+            repetitions by one or several people.
         outcomes: the outcome of each model.
     """
 
@@ -143,8 +144,8 @@ def evaluate(
         walks: the walks of people on whom the models were not fitted; the caller must ensure this.
         rng: random generator for the draws.
         draws: number of draws per walk, for models that draw.
-        course_of: returns the course of a walk, by default the walk's note; walks of the same
-            course are repetitions.
+        course_of: function that returns the course of a walk, by default the walk's note; walks of
+            the same course are repetitions.
 
     Raises:
         WalkingError: there are no walks, or a model cannot predict one of them.

@@ -104,7 +104,7 @@ def blending_space(
         grid: the grid of the maps.
         scaling: the scaling of the dependencies.
         vectors: (N, m) dependencies of the walks.
-        values: (N, K) their suitability maps.
+        values: (N, K) suitability maps of the walks.
         rng: random generator for the blends.
         entries: number of entries, blends included; there are no blends if there are more walks.
         k: number of neighbours; all entries if there are fewer.

@@ -28,12 +28,12 @@ class WalkDatabase:
         grid: combinations of steering parameters, K of them.
         metric: measure of deviation.
         names: the names of the m dependencies.
-        vectors: (N, m) their values.
+        vectors: (N, m) values of the dependencies.
         deviations: (N, K) deviations of all combinations.
         arrivals_s: (N, K) travel times, NaN where an agent did not arrive.
         durations_s: (N,) travel times of the walks themselves.
         lengths_m: (N,) lengths of the planned paths.
-        subjects, sources, kinds: N each.
+        subjects, sources, kinds: the subject, source and kind of each walk.
     """
 
     grid: ParameterGrid

@@ -32,7 +32,7 @@ class Blends:
 
     Attributes:
         parents: (B, p) indices of the walks.
-        weights: (B, p) each in [-.1, 1.1]; a row sums to 1.
+        weights: (B, p) weights of the parents, each in [-.1, 1.1]; a row sums to 1.
     """
 
     parents: IntArray

@@ -79,8 +79,10 @@ def maps_of(
         entries, maker: the database, and how its maps are computed.
         done: indices of entries whose maps exist already.
         threads: number of threads, by default one for each processor.
-        progress: called with (finished, total) after each map, including those already done.
-        stop: called before each map; if it returns True the iterator ends, and no map is started.
+        progress: function that is called with (finished, total) after each map, including those
+            already done.
+        stop: function that is called before each map; if it returns True the iterator ends, and no
+            map is started.
 
     Yields:
         (index, map) of each entry that was not done.

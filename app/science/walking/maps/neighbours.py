@@ -27,7 +27,7 @@ class Tree:
     `lasts[i]`.
 
     Attributes:
-        points: (N, m) in the order of the leaves.
+        points: (N, m) points in the order of the leaves.
         order: (N,) index of each point in the caller's order.
         axes, lows, firsts, lasts: (nodes,) integers of each node.
         splits: (nodes,) value at which each node splits.

@@ -33,7 +33,7 @@ class Prediction:
 
     Attributes:
         vectors: (S, n) steering parameters of the agents that arrived.
-        durations_s: (S,) their travel times.
+        durations_s: (S,) travel times of these agents.
         lost: number of draws whose agent did not arrive.
     """
 

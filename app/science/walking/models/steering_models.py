@@ -127,7 +127,7 @@ class ProbabilisticModel:
     Attributes:
         space: the blending space of the maps.
         sampler: mixture, or the paper's rejection.
-        interpolation: for rejection; the mixture is always multilinear.
+        interpolation: the interpolation used for rejection; the mixture is always multilinear.
     """
 
     space: BlendingSpace

@@ -135,7 +135,7 @@ class PlannedPath:
     """A polyline from start to goal, free of obstacles.
 
     Attributes:
-        points_m: (P, 2), P >= 2, consecutive points distinct.
+        points_m: (P, 2) points, with P >= 2 and consecutive points distinct.
     """
 
     points_m: FloatArray

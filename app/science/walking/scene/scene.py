@@ -77,9 +77,9 @@ class Scene:
     Attributes:
         name, title: the key, and the displayed name.
         bounds_m: edges (left, near, right, far) of the rectangle in which people walk.
-        obstacles: any number; they may overlap.
+        obstacles: any number of obstacles, which may overlap.
         places: name -> point.
-        paths: in the order in which people walk them.
+        paths: the paths in the order in which people walk them.
         clearance_m: smallest distance between the centre of mass and obstacles.
         about: the source of the geometry, and its assumptions.
     """

@@ -39,7 +39,7 @@ class Population:
         ramp_s, ramp_sd, ramp_within: time from rest to cruising, within as a share.
         reach_m: b in the formula for speed over distance.
         turn_exponent: the exponent of the slow-down in turns; 1/3 in people.
-        stature_m, stature_sd: body heights.
+        stature_m, stature_sd: mean and standard deviation of body heights.
         sway_m: half of the width of the sway from side to side.
     """
 
