@@ -73,9 +73,9 @@ def test_walkers_keep_left_and_right_and_take_turns(shared_data: Path, path: str
 def test_walkers_face_where_they_go_and_bend_their_knees_backwards(
     shared_data: Path, path: str
 ) -> None:
-    """Hips lie across the walk within 25 degrees; knees bend by 40 to 80 degrees, one way only.
+    """Walkers' hips are across the walk to 25 degrees; knees bend one way only, by 40 to 80.
 
-    Up to 12 degrees of overstretching pass, since some markers make a straight knee seem so.
+    Up to 12 degrees of overextension are accepted, since some markers make a straight knee look so.
     """
     motion = _fitted(shared_data, path).motion
     _, right = _heading(motion)

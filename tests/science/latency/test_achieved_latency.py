@@ -56,7 +56,7 @@ def test_noise_on_both_streams_leaves_the_latency(
 
 
 def test_the_interval_has_its_stated_coverage() -> None:
-    """In forty recordings the truth lies outside of the interval in about two."""
+    """Of forty recordings about two have an interval that misses the true latency."""
     missed = 0
     for seed in range(40):
         rng = np.random.default_rng(seed)

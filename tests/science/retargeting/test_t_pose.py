@@ -71,7 +71,7 @@ def test_single_precision_keeps_its_digits() -> None:
 
 @pytest.mark.parametrize("dtype", [np.float64, np.float32])
 def test_a_swing_lands_on_its_end_at_any_angle(dtype: type) -> None:
-    """A swing maps start to end within a few roundings, from 1e-20 to half a turn."""
+    """A swing maps start to end to a few roundings, for angles from 1e-20 to half a turn."""
     rng = np.random.default_rng(11)
     worst = 0.0
     for _ in range(2000):

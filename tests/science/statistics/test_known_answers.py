@@ -194,8 +194,8 @@ def test_split_plot_anova_agrees_with_pingouin(
 ) -> None:
     """The split-plot ANOVA agrees with pingouin 0.7's `mixed_anova`.
 
-    With groups of unequal sizes the mean within differs, which pingouin takes over subjects; here
-    every group counts equally.
+    For groups of unequal sizes the within-subjects means differ: pingouin averages over subjects,
+    while here every group counts equally.
     """
     table = pingouin_table(name)
     found = cells(table, "Subject", ["Time"], "Scores")

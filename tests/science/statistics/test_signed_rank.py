@@ -71,7 +71,7 @@ def test_without_ties_p_is_that_of_scipy() -> None:
 def test_the_normal_approximation_is_that_of_scipy_and_is_met() -> None:
     """The normal approximation is scipy's, within .01 of the exact p at 50 pairs.
 
-    Beyond 50 pairs it is the p that is reported.
+    Beyond 50 pairs the p of the approximation is reported.
     """
     rng = np.random.default_rng(2)
     x, y = rng.integers(1, 8, size=(2, 80)).astype(np.float64)

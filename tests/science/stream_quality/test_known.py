@@ -46,7 +46,7 @@ def test_at_a_low_frame_rate_a_gap_is_longer() -> None:
 
 
 def test_a_time_that_is_not_later_runs_backwards() -> None:
-    """A time that goes back, or repeats, counts once as backwards."""
+    """A time that goes back or repeats is counted once as running backwards."""
     bad = generated().copy()
     bad.times_s[200:] -= 5.0
     assert quality(bad).backwards == 1
@@ -100,7 +100,7 @@ def test_a_person_may_move_while_nothing_is_seen() -> None:
 
 
 def test_a_frozen_joint_is_named_and_timed() -> None:
-    """A frozen joint is reported from its last change on, to a frame."""
+    """A frozen joint is reported as frozen since its last change, exact to one frame."""
     bad = generated().copy()
     bad.rotations[900:1350, HEAD] = bad.rotations[900, HEAD]
     found = quality(bad)

@@ -1,7 +1,7 @@
 """Walk databases without one parameter, which show what each parameter contributes.
 
-Without a dependency, walks differ by the others only. Without a steering parameter, it is fixed to
-one value for everybody, as in a static model, and the others remain distributed.
+Without one dependency, walks are distinguished by the others only. A steering parameter is removed
+by fixing it to one value for everybody, as in a static model; the others remain distributed.
 """
 
 from dataclasses import replace

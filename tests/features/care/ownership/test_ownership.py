@@ -250,10 +250,10 @@ def test_a_data_folder_that_is_a_file_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_reader_works_alongside_an_owner_that_has_prepared(tmp_path: Path) -> None:
-    """A reading command works beside an owner once the owner has prepared the database.
+    """A reading command works alongside an owner that has prepared the database.
 
-    Without an owner it prepares the database itself; beside one that is still preparing it is
-    refused.
+    Without an owner it prepares the database itself; while an owner is still preparing it, the
+    command is refused.
     """
     settings, prepared = Settings(data_dir=tmp_path), []
 

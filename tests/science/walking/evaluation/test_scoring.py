@@ -73,7 +73,7 @@ def test_power_grows_from_alpha_to_one() -> None:
 
 
 def test_central_intervals_have_their_stated_coverage() -> None:
-    """Of values drawn from the prediction, half lie within its central half."""
+    """Of values drawn from the prediction, half are within its central 50 % interval."""
     rng = np.random.default_rng(4)
     draws = rng.standard_normal(4000)
     inside = [covers(draws, float(value), 0.5) for value in rng.standard_normal(4000)]

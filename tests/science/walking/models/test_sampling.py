@@ -25,7 +25,7 @@ def _largest_gap(first: FloatArray, second: FloatArray) -> float:
 
 
 def test_the_stated_power_is_the_tests() -> None:
-    """A gap of `DETECTABLE` exceeds the limit, which chance exceeds in .1 % of cases, with `POWER`.
+    """A gap of `DETECTABLE` exceeds the limit with probability `POWER`; chance does in .1 %.
 
     The deviation of a difference of two empirical functions at one point is at most sqrt(1 / 2n).
     """
