@@ -81,7 +81,7 @@ def test_mauchly_agrees_with_pingouin() -> None:
 
 
 def test_groups_of_unequal_size_count_equally() -> None:
-    """The mean within is that of the groups' means, whatever their sizes (type III)."""
+    """The within-subjects mean is the mean of the groups' means, whatever their size (type III)."""
     rng = np.random.default_rng(4)
     values = rng.normal(size=(8, 3))
     groups = ["a"] * 4 + ["b"] * 4

@@ -9,7 +9,7 @@ from tests.benchmarks.walking_real import real_walks
 
 @pytest.mark.long
 def test_others_are_as_fast_as_predicted(shared_data: Path) -> None:
-    """Peak speeds of eight other people are within one between-subject SD at ten distances."""
+    """Peak speeds of eight others at ten distances are predicted to one between-subject SD."""
     found = real_walks(shared_data)
     assert len(found.distances) == 10
     assert not set(found.fit.database.subjects) & {one.walk.subject for one in found.captured}

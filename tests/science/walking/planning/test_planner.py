@@ -142,7 +142,7 @@ def _turning(scene: Scene, start: str, goal: str) -> float:
 
 @pytest.mark.parametrize("key", ["car-and-three-racks", "car-between-two-racks"])
 def test_the_papers_workplaces_have_its_distances(key: str) -> None:
-    """The paper's workplaces have its 11 and 6 paths with its distances to the racks, to 1 %."""
+    """Both workplaces have the paper's 11 and 6 paths and, to 1 %, its distances to the racks."""
     scene = load_shipped(key)
     expected = {
         "car-and-three-racks": (11, {"rack-3": 0.7, "rack-1": 2.2, "rack-2": 2.9}),
