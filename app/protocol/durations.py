@@ -27,7 +27,10 @@ ITEM_S = {"likert": 6.0, "boolean": 4.0, "choice": 5.0, "integer": 8.0, "number"
 
 @dataclass(frozen=True)
 class TimedStep:
-    """A step with its time in seconds. `estimated`: by our rule, not specified by the study."""
+    """A step with its time in seconds.
+
+    `estimated`: whether the time comes from our rule instead of the study.
+    """
 
     step: Step
     start_s: float
@@ -67,8 +70,8 @@ def total_s(steps: Sequence[TimedStep]) -> float:
 class VisitTime:
     """The length of a visit in minutes, to a tenth.
 
-    `planned`: what the study specifies. `total`: with our estimate of forms, texts and steps by
-    hand; pauses, and putting on the equipment, are additional.
+    `planned`: the time that the study specifies. `total`: that time plus our estimate of forms,
+    texts and steps by hand; pauses, and putting on the equipment, are additional.
     """
 
     planned: float

@@ -28,7 +28,7 @@ class Step:
     "block2.hand.karas2020", "block2.fms"). `block` counts from 1 and, like `condition`, is None
     outside the blocks. `latency_ms` is also set for free movement and practice. `text` is the key
     of a text of the study. `until_completions`: a practice ends early after this many tasks.
-    `consent`: what a consent step requires in addition to its text.
+    `consent`: the requirements of a consent step in addition to its text.
     """
 
     index: int

@@ -323,8 +323,8 @@ def step_kind_texts() -> dict[str, Words]:
 def step_kinds_for_pages() -> dict[str, dict[str, Any]]:
     """Return the properties of every kind that the pages need, as plain values.
 
-    `limbs`: those used at the boxes; empty if it needs none. `isCompletedByButton`: the
-    experimenter ends it with a plain button.
+    `limbs`: the limbs used at the boxes; empty if the kind needs none. `isCompletedByButton`:
+    whether the experimenter ends it with a plain button.
     """
     return {
         kind: {

@@ -65,9 +65,9 @@ class FootBox(Strict):
 class HandTask(Strict):
     """The hand task: touch each back panel, then the target; then in the reverse order.
 
-    Touches with the writing hand count. `sides`: which walls (and "front_rim") exist and turn red
-    when touched. `direction`: the side on which the first order starts; "by_hand" means that of the
-    writing hand.
+    Touches with the writing hand count. `sides`: the walls (and "front_rim") that exist and turn
+    red when touched. `direction`: the direction of the first order; "by_hand" lets it start at the
+    side of the writing hand.
     """
 
     boxes: Annotated[tuple[HandBox, ...], Field(min_length=1, max_length=_MAX_BOXES)]

@@ -61,8 +61,8 @@ class PhaseRule(Strict):
 class LatencyRule(Strict):
     """The requirements on the avatar's achieved latency, in the phases that are listed.
 
-    `reported`: it could be measured. `tolerance_ms`: if it was measured, it differs from the set
-    latency by no more than this. A body that is moved by physics adds its own lag.
+    `reported`: the latency must have been measured. `tolerance_ms`: if it was measured, the largest
+    difference from the set latency. A body that is moved by physics adds its own lag.
     """
 
     reported: bool
@@ -75,7 +75,7 @@ class ValidWhen(Strict):
     """The requirements for a completed session to count.
 
     `phases`: the timed phases; `forms`: the instruments, of which every form must have been
-    answered; `achieved_latency`: of the phases above.
+    answered; `achieved_latency`: the rule for the latency of phases.
     """
 
     phases: Annotated[tuple[PhaseRule, ...], Field(max_length=20)] = ()

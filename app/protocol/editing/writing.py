@@ -36,7 +36,7 @@ def block(value: Plain, indent: int, style: str | None = None) -> list[str]:
     """Format the value as lines after a key or a dash.
 
     The first line belongs on the line of the key or dash; the others, below, include their
-    `indent`. `style`: that of the scalar that is replaced.
+    `indent`. `style`: the style of the scalar that is replaced.
     """
     if isinstance(value, str):
         return _text(value, indent, style)

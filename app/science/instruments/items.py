@@ -53,10 +53,10 @@ class Scale:
 class Item:
     """One question or statement of an instrument.
 
-    `minimum`, `maximum`: limits of integer and number items, in `unit`. `scale`: of a Likert item,
-    in place of the instrument's. `max_length`: characters of a text answer. `reverse_keyed`:
-    agreement speaks against what the item's scale measures (used for reliability, never by the
-    formulas). `note`: where the item comes from.
+    `minimum`, `maximum`: limits of integer and number items, in `unit`. `scale`: the scale of a
+    Likert item, in place of the instrument's. `max_length`: the maximum number of characters of a
+    text answer. `reverse_keyed`: agreement speaks against what the item's scale measures (used for
+    reliability, never by the formulas). `note`: the origin of the item.
     """
 
     __pydantic_config__: ClassVar[dict[str, object]] = STRICT

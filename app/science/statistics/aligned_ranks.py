@@ -52,7 +52,8 @@ def aligned_ranks_within(
     """Test complete values of (n, a) or (n, a, b), all factors within subjects.
 
     Each effect has its own error (its interaction with subjects), as in ARTool with `Error(subject
-    / (A * B))`; with one factor `(1 | subject)` gives the same. Raises as `rm_anova`.
+    / (A * B))`; with one factor `(1 | subject)` gives the same. Raises the same errors as
+    `rm_anova`.
     """
     cells = checked_cells(values)
     axes = range(1, cells.ndim)
@@ -74,8 +75,8 @@ def aligned_ranks_split_plot(
 ) -> AlignedRanks:
     """Test complete values (n subjects, k levels) of subjects in groups.
 
-    The alignment weights all groups equally. Returns between, within, interaction. Raises as
-    `split_plot_anova`.
+    The alignment weights all groups equally. Returns between, within, interaction. Raises the same
+    errors as `split_plot_anova`.
     """
     blocks = complete_blocks(values)
     member = group_numbers(groups, blocks.shape[0])

@@ -63,8 +63,7 @@ def within_subject_intervals(
 ) -> tuple[MeanInterval, ...]:
     """Return an interval for each column of complete blocks (n subjects, k conditions).
 
-    Raises TooFewData and StatisticsError as `mean_interval`, and StatisticsError for missing
-    values.
+    Raises the same errors as `mean_interval`, and StatisticsError for missing values.
     """
     values = complete_blocks(blocks)
     k = values.shape[1]

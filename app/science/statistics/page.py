@@ -54,7 +54,8 @@ class PageTrend:
 def page_trend(blocks: npt.ArrayLike) -> PageTrend:
     """Run Page's test on complete blocks (n subjects, k levels in the predicted order).
 
-    Raises TooFewData, StatisticsError. If all values are equal, p is 1, or 0.5 if asymptotic.
+    Raises TooFewData for too few rows or columns, StatisticsError for other unusable values. If all
+    values are equal, p is 1, or 0.5 if asymptotic.
     """
     values = complete_blocks(blocks)
     n, k = values.shape

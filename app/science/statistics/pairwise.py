@@ -81,7 +81,10 @@ def compare_pairs(
     alternative: Alternative = "two-sided",
     zeros: ZeroRule = "wilcoxon",
 ) -> tuple[Comparison, ...]:
-    """Compare the given pairs of columns, adjusting for exactly these. Raises as `pairwise`."""
+    """Compare the given pairs of columns, and adjust for exactly these comparisons.
+
+    Raises the same errors as `pairwise`.
+    """
     table = np.asarray(values, dtype=np.float64)
     if table.ndim != 2 or table.shape[1] != len(levels):
         raise StatisticsError(

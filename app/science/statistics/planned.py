@@ -101,7 +101,7 @@ def directional(
     Args:
         values: (n, k) values, NaN where missing, columns in the order of `levels`.
 
-    Raises StatisticsError for a direction other than rises or falls, TooFewData.
+    Raises StatisticsError for a direction other than rises or falls, TooFewData for too few data.
     """
     if predicted not in ("rises", "falls"):
         raise StatisticsError(f"The direction {predicted!r} is unknown; valid: rises, falls.")

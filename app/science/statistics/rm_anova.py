@@ -61,7 +61,7 @@ def rm_anova(values: npt.ArrayLike, factors: Sequence[str] = ("A", "B", "C")) ->
 def checked_cells(values: npt.ArrayLike) -> FloatArray:
     """Return (n, a, ...) values after checking that all are finite and no axis is shorter than 2.
 
-    Raises as `rm_anova`.
+    Raises the same errors as `rm_anova`.
     """
     cells = np.asarray(values, dtype=np.float64)
     if cells.ndim < 2:

@@ -64,7 +64,10 @@ def split_plot_anova(
 
 
 def group_numbers(groups: Sequence[Hashable], n: int) -> npt.NDArray[np.intp]:
-    """Number the groups 0, 1, ... as they first appear; raises as `split_plot_anova`."""
+    """Number the groups 0, 1, ... as they first appear.
+
+    Raises the same errors as `split_plot_anova`.
+    """
     if len(groups) != n:
         raise StatisticsError(f"{len(groups)} groups were given for {n} subjects; give one each.")
     numbers: dict[Hashable, int] = {}

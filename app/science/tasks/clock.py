@@ -16,8 +16,9 @@ class ClockError(ValueError):
 class ActiveClock:
     """An immutable clock that counts active time; every method returns a new value.
 
-    `active_before_s`: active time up to the last start of the clock. `running_since_s`: when it was
-    last started or resumed, None while it is stopped. `last_s`: the time of its latest change.
+    `active_before_s`: active time up to the last start of the clock. `running_since_s`: the time at
+    which it was last started or resumed, None while it is stopped. `last_s`: the time of its latest
+    change.
     """
 
     active_before_s: float = 0.0

@@ -78,10 +78,10 @@ class EventKind(StrEnum):
 class TaskEvent:
     """Something that happened in a phase, as the rules report it.
 
-    `time_s` monotonic, `active_s` on the active clock. `task`: the running task, 1 for the first (a
-    completion has the number of the task it completes). `surface`, `part`: the surface touched and
-    the part touching it; for side_red and side_white the surface is the side's unit ("hand/2/left",
-    "hand/2/front_rim") and `part` is the part that turned it red.
+    `time_s`: the time on the monotonic clock; `active_s`: the time on the active clock. `task`: the
+    running task, 1 for the first (a completion has the number of the task it completes). `surface`,
+    `part`: the surface touched and the part touching it; for side_red and side_white the surface is
+    the side's unit ("hand/2/left", "hand/2/front_rim") and `part` is the part that turned it red.
     """
 
     kind: EventKind
@@ -130,9 +130,10 @@ class TaskState:
     """The state of a phase, computed from its inputs by `rules.advance`.
 
     `order`: box numbers in the current order; the first `n_green` of them are green. `completed`:
-    tasks completed. `goal_since_s`: when the current goal became current. `contacts`: those that
-    exist now, whether or not they count. `walk_back_since_s`: None unless walking back. `arrived`:
-    counting feet that have stepped on the start square during this walk back and are still on it.
+    the number of completed tasks. `goal_since_s`: the time at which the current goal became
+    current. `contacts`: those that exist now, whether or not they count. `walk_back_since_s`: None
+    unless walking back. `arrived`: counting feet that have stepped on the start square during this
+    walk back and are still on it.
     """
 
     rules: TaskRules

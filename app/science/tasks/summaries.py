@@ -16,11 +16,12 @@ Span = tuple[float, float]
 
 @dataclass(frozen=True)
 class Completion:
-    """One completed task.
+    """One completed task of a phase.
 
-    `number`: 1 for the first. `completed_s`: monotonic clock; `completed_active_s`: active clock.
-    `duration_s`: active time since the previous completion, or since the start. `order`: panel keys
-    as they were touched. The counts are the mistakes made during this task.
+    `number`: the number of the task, 1 for the first. `completed_s`, `completed_active_s`: the time
+    of completion on the monotonic clock and on the active clock. `duration_s`: active time since
+    the previous completion, or since the start. `order`: panel keys as they were touched. The
+    counts are the mistakes made during this task.
     """
 
     number: int
@@ -37,8 +38,8 @@ class Completion:
 class PhaseSummary:
     """The results of a whole phase; the counts of mistakes include the unfinished last task.
 
-    `side_contacts`: how often a side turned red; a pause does not split a contact. Times in active
-    seconds.
+    `side_contacts`: the number of times that a side turned red; a pause does not split a contact.
+    Times are in active seconds.
     """
 
     completions: tuple[Completion, ...]

@@ -29,8 +29,8 @@ class LayoutError(ValueError):
 class BoxSpec:
     """One box: its position in the row and its cavity (the space inside the walls).
 
-    `number`: 1..n from left (-x) to right. `center_m`: centre of the cavity, world frame.
-    `inner_size_m`: (width x, height y, depth z) of the cavity.
+    `number`: the position, 1..n from left (-x) to right. `center_m`: centre of the cavity, world
+    frame. `inner_size_m`: (width x, height y, depth z) of the cavity.
     """
 
     number: int
@@ -79,7 +79,7 @@ class TaskLayout:
     """The validated surfaces of a task; the same for every participant of a study version.
 
     `reverse_after_task`: whether the order is reversed after each completion. `counting_foot`: the
-    foot that counts in a foot task, None for either. `direction`: where the first order starts.
+    foot that counts in a foot task, None for either. `direction`: the direction of the first order.
     """
 
     limb: Limb

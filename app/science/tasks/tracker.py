@@ -20,8 +20,8 @@ Bools = NDArray[np.bool_]
 class ContactInterval:
     """An interval in which a part counted as touching a surface, in seconds.
 
-    `begin_s`, `end_s`: monotonic clock. `begin_active_s`, `end_active_s`: active clock; the length
-    is the same on both. The touch that stops the clock has length zero.
+    `begin_s`, `end_s`: times on the monotonic clock. `begin_active_s`, `end_active_s`: times on the
+    active clock; the length is the same on both. The touch that stops the clock has length zero.
     """
 
     surface: str

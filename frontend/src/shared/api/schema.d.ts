@@ -6376,8 +6376,8 @@ export interface components {
          * Preregistration
          * @description The declared analysis.
          *
-         *     `planned_n`: participants in the primary test. `registration`: where it was registered, once it
-         *     has been.
+         *     `planned_n`: the number of participants in the primary test. `registration`: the place of its
+         *     registration, once there is one.
          */
         readonly Preregistration: {
             /**
@@ -6479,10 +6479,10 @@ export interface components {
          * @description The single primary test of the study.
          *
          *     `measure`: a score of an instrument that is answered after a task, contact time (s) or
-         *     completions. `limb`: of which task; "both" is the mean of a participant's tasks. `factor` is the
-         *     added latency. `direction`: of the measure as latency increases; "against_reference" compares
-         *     each condition with `reference` by exact signed-rank tests, and `correction` adjusts for all of
-         *     them.
+         *     completions. `limb`: the limb whose task is measured; "both" is the mean of a participant's
+         *     tasks. `factor` is the added latency. `direction`: the direction of the measure as latency
+         *     increases; "against_reference" compares each condition with `reference` by exact signed-rank
+         *     tests, and `correction` adjusts for all of them.
          */
         readonly PrimaryTest: {
             /**
