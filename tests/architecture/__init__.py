@@ -1,1 +1,1 @@
-"""Tests of the build: what is packaged, how it is set up, what must never be committed."""
+"""Tests of the build: package contents, set-up, and files that must never be committed."""

@@ -1,4 +1,4 @@
-"""`python -m tests.architecture [walks | repeats] [--json] [COMMIT]`: the structure of the code.
+"""Report a tree's structure: `python -m tests.architecture [walks | repeats] [--json] [COMMIT]`.
 
 Without a word it measures how the files import each other (`tests.architecture.measure`); `walks`
 follows four pieces of data through the running code (`tests.architecture.walks`), and `repeats`

@@ -1,4 +1,4 @@
-"""Run the four walks in this process and print which files of `app` they enter, as JSON.
+"""Run the four walks in this process and print, as JSON, which files of `app` they enter.
 
 A script, not a module of the tests: `python -P drive.py ROUNDS`, run in the tree to examine and
 with PYTHONPATH there, so that the same file can drive any commit. Of the product it imports only
@@ -36,10 +36,10 @@ AGAIN = 0x20 | 0x80 | 0x200
 
 
 class Recorder:
-    """Record the file of every function of `app` that is called, in every thread, while it is on.
+    """A recorder of the file of every function of `app` that is called, in every thread.
 
-    A thread that calls functions while the server gets no requests is driven by a timer: its calls
-    are left out after `leave_out_timers` has found it.
+    It records only while it is on. A thread that calls functions while the server gets no requests
+    is driven by a timer: its calls are left out after `leave_out_timers` has found it.
     """
 
     def __init__(self) -> None:
@@ -76,7 +76,7 @@ class Recorder:
         self._timers = {thread for thread, _ in self._noted}
 
     def taken(self) -> list[str]:
-        """Return the files entered since the last call, in order.
+        """Return, in order, the files entered since this method was called last.
 
         Calls within a file count once.
         """
@@ -86,7 +86,7 @@ class Recorder:
 
 
 def _goes_on(frame: FrameType) -> bool:
-    """Return whether this is a generator or coroutine that was entered before."""
+    """Return whether this call resumes a generator or coroutine that was entered before."""
     if not frame.f_code.co_flags & AGAIN:
         return False
     resume = frame.f_code.co_code[frame.f_lasti + 1] if frame.f_lasti >= 0 else 0
@@ -121,20 +121,20 @@ class Lab:
         return view
 
     def command(self, view: Json, kind: str, **fields: Any) -> Json:
-        """Send a command and return the session after it."""
+        """Send a command and return the session as it is afterwards."""
         body = {"command_id": str(uuid.uuid4()), "expected_version": view["version"], "type": kind}
         after: Json = self.post(f"/api/sessions/{view['id']}/commands", json={**body, **fields})
         return after
 
     def at_step(self, key: str) -> Json:
-        """Create a session at a step."""
+        """Create a session that is at this step."""
         view = self.command(self.join(), "start")
         while view["steps"][view["current"]["index"]]["key"] != key:
             view = self.command(view, "skip", reason="not in this walk")
         return view
 
     def stranger(self) -> Any:
-        """Return a client with cookies of its own, on the same event loop."""
+        """Return a client with its own cookies, on the same event loop."""
         from fastapi.testclient import TestClient
 
         client = TestClient(self.client.app)
@@ -151,7 +151,7 @@ class Lab:
 def frame_to_csv(lab: Lab, recorder: Recorder) -> None:
     """Follow a batch of nine frames from the socket to its acknowledgement and its CSV rows.
 
-    Of the export only the work on the file that contains the frames is recorded.
+    Only the part of the export that writes the file with the frames is recorded.
     """
     view = lab.at_step("free_roam")
     _, device = lab.paired(view, "headset")
@@ -283,7 +283,7 @@ def _recorded_member(recorder: Recorder, folder: str) -> Iterator[None]:
 
 
 def _capture(*, frames: float) -> bytes:
-    """Return a standing body, 40 frames at 30 a second; the fraction moves it a little aside."""
+    """Return a capture of a standing body, 40 frames at 30 a second, shifted by the fraction."""
     joints = {
         "Hips": (None, (0, 0, 0)),
         "Spine": ("Hips", (0, 10, 0)),

@@ -5,7 +5,8 @@ circles
     file in the import graph of `app/**/*.py` and `frontend/src/**/*.ts(x)` (tests left out). Every
     import counts; `tests.architecture.imports` defines what one is.
 upward_imports, floors
-    Of `app/features`. Its rooms are the folders and files directly below it and, if it exists,
+    These describe `app/features`. Its rooms are the folders and files directly below it and, if it
+    exists,
     `app/platform`. An arrow leads from one room to another that it imports; its weight is the
     number of pairs of files that import each other across. The rooms are ordered so that as few
     arrows as can be found run back up (of such orders, with the fewest imports): if the arrows form
@@ -143,7 +144,7 @@ def texts(root: Path, files: Iterable[str]) -> dict[str, str]:
 
 
 def small(contents: Iterable[str]) -> int:
-    """Return how many texts have at most `SMALL_LINES` physical lines."""
+    """Return the number of texts with at most `SMALL_LINES` physical lines."""
     return sum(len(text.splitlines()) <= SMALL_LINES for text in contents)
 
 
@@ -179,7 +180,7 @@ def arrows(graph: Graph, folder: str, also: Sequence[str] = ()) -> Arrows:
 
 
 def layering(between: Arrows, every: Iterable[str]) -> Layering:
-    """Assign rooms to floors.
+    """Assign each room to a floor.
 
     The best order is sought by moving one room at a time to its best place until no move helps
     (sifting), unless the order of wings and platform is given. It starts with the rooms that import
@@ -205,7 +206,7 @@ def layering(between: Arrows, every: Iterable[str]) -> Layering:
 
 
 def sifted(order: list[str], between: Arrows) -> list[str]:
-    """Return an order in which no move of one room leaves fewer arrows, or imports, running up."""
+    """Return an order in which moving one room leaves no fewer arrows, or imports, running up."""
     better = True
     while better:
         better = False
@@ -269,7 +270,7 @@ TABLE: Mapping[str, str] = {
 
 
 def table(result: Measure) -> str:
-    """Return the figures with their meaning, and their parts, as text."""
+    """Return the figures with their definitions and their parts, as text."""
     lines = [f"{getattr(result, key):>8}  {key:<15} {words}" for key, words in TABLE.items()]
     members = [f"{len(circle)} files from {circle[0]}" for circle in result.circle_members]
     inside = [

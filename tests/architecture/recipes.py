@@ -55,7 +55,7 @@ class RecipeError(Exception):
 
 
 class Count(TypedDict):
-    """How many files a recipe edits and adds, without tests and generated files."""
+    """The number of files that a recipe edits and adds, without tests and generated files."""
 
     recipe: str
     edited: int
@@ -64,7 +64,7 @@ class Count(TypedDict):
 
 @dataclass(frozen=True)
 class Edit:
-    """Replace `old` by `new`. The file must contain `old` exactly once."""
+    """The replacement of `old` by `new` in a file, which must contain `old` exactly once."""
 
     old: str
     new: str
@@ -114,7 +114,7 @@ class Recipe:
     def unnamed_files(self) -> set[str]:
         """Return the files of this recipe that its section of CONTRIBUTING.md does not name.
 
-        A file is named by its path, an added one also by that of its folder.
+        A file counts as named if its path is, and an added file also if its folder's path is.
         """
         section = section_of(self.heading)
         return {path for path in self.edited if not is_apart(path) and path not in section} | {

@@ -25,7 +25,7 @@ Line = tuple[int, str]
 
 @dataclass(frozen=True)
 class Repeat:
-    """A run of `lines` significant lines at `again` that occurred at `first` before."""
+    """A run of `lines` significant lines at `again` that also occurs earlier, at `first`."""
 
     first: str
     again: str
@@ -38,7 +38,7 @@ def repeats(root: Path) -> list[Repeat]:
 
 
 def sources(root: Path) -> Iterator[tuple[str, str]]:
-    """Yield path from `root` and text of every file that counts, in the order of the paths."""
+    """Yield the path from `root` and the text of every file that counts, sorted by path."""
     for folder in FOLDERS:
         for path in sorted((root / folder).rglob("*")):
             name = path.relative_to(root)
@@ -48,7 +48,7 @@ def sources(root: Path) -> Iterator[tuple[str, str]]:
 
 
 def significant(name: str, text: str) -> list[Line]:
-    """Return number and folded text of the lines of a file that count."""
+    """Return the number and the folded text of each line of a file that counts."""
     imported = _import_lines(name, text)
     folded = ((n, " ".join(line.split())) for n, line in enumerate(text.splitlines(), 1))
     return [
@@ -59,7 +59,7 @@ def significant(name: str, text: str) -> list[Line]:
 
 
 def found(files: Mapping[str, list[Line]]) -> list[Repeat]:
-    """Return the repeats among lines by file, longest first; each line is in at most one."""
+    """Return the repeats in lines given by file, longest first; a line is in at most one."""
     seen: dict[tuple[str, ...], tuple[str, int]] = {}
     result = []
     for name, lines in files.items():
@@ -80,7 +80,7 @@ def found(files: Mapping[str, list[Line]]) -> list[Repeat]:
 
 
 def _common(before: list[Line], start: int, lines: list[Line], at: int) -> int:
-    """Return how many lines from `start` and from `at` are equal, without overlap."""
+    """Return how many lines from `start` on equal those from `at` on, without overlap."""
     length = 0
     while (
         start + length < len(before)

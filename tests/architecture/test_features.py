@@ -30,7 +30,7 @@ def imports() -> Iterator[tuple[str, str, list[str]]]:
 
 @cache
 def offered(module: str) -> frozenset[str]:
-    """Return the names in the `__all__` of a package; none if it has none."""
+    """Return the names in the `__all__` of a package, or no names if it has none."""
     face = REPOSITORY / module.replace(".", "/") / "__init__.py"
     if not face.is_file():
         return frozenset()

@@ -17,7 +17,7 @@ PRIVATE_FOLDERS = re.compile("/(?:" + "|".join(["root", "work", r"home/\w+", r"U
 
 @pytest.fixture(scope="module")
 def committed() -> list[Path]:
-    """Provide every file that git would track, by the rules of `.gitignore`: git may be missing."""
+    """Provide every file that git would track by the rules of `.gitignore`; git is not needed."""
     rules = (REPOSITORY / ".gitignore").read_text().splitlines()
     ignored = pathspec.GitIgnoreSpec.from_lines([*rules, ".git"])
     return sorted(_not_ignored(REPOSITORY, ignored))
@@ -52,7 +52,7 @@ def test_python_lock_files_name_no_host(name: str) -> None:
 
 
 def test_node_lock_files_name_no_host(committed: list[Path]) -> None:
-    """Node lock files contain an integrity hash for each package and an address for none."""
+    """Node lock files contain an integrity hash for each package and no package addresses."""
     locks = [path for path in committed if path.name == "package-lock.json"]
     assert locks, "no package-lock.json was found: this test looks in the wrong place"
     for lock in locks:
@@ -64,7 +64,7 @@ def test_node_lock_files_name_no_host(committed: list[Path]) -> None:
 
 
 def test_there_is_no_second_lock_file(committed: list[Path]) -> None:
-    """There is no uv.lock: it names registry hosts, and two locks would disagree sometime."""
+    """No uv.lock exists, since it would name registry hosts and could contradict the other lock."""
     assert [path for path in committed if path.name == "uv.lock"] == []
 
 
@@ -76,7 +76,7 @@ def test_no_shared_data_was_copied_in(committed: list[Path], shared_data: Path) 
 
 
 def _is_content(path: Path) -> bool:
-    """Return whether a file is long enough not to be equal by chance."""
+    """Return whether a file is too long to equal another by chance."""
     return path.is_file() and path.stat().st_size > 200
 
 

@@ -43,7 +43,7 @@ def sdist(built: Path) -> set[str]:
 
 
 def files(folder: str, pattern: str) -> set[str]:
-    """Return the repository's files below `folder`, relative to it."""
+    """Return the repository's files below `folder`, by their paths relative to it."""
     top = REPOSITORY / folder
     return {path.relative_to(top).as_posix() for path in top.rglob(pattern) if path.is_file()}
 
@@ -68,7 +68,7 @@ def test_the_wheel_contains_migrations_and_study_configs(
 
 
 def test_the_sdist_contains_the_pages_and_their_sources(sdist: set[str]) -> None:
-    """The sdist contains the built pages and everything to rebuild them."""
+    """The sdist contains the built pages and everything needed to rebuild them."""
     assert {
         "frontend/package.json",
         "frontend/package-lock.json",

@@ -22,7 +22,7 @@ fs.appendFileSync("../builds", "x");
 
 @pytest.fixture
 def builder() -> ModuleType:
-    """Provide the module `build_pages`, which is not part of any package."""
+    """Provide the module `build_pages`, which does not belong to a package."""
     spec = importlib.util.spec_from_file_location("build_pages", REPOSITORY / "build_pages.py")
     assert spec
     assert spec.loader
@@ -46,7 +46,7 @@ def frontend(tmp_path: Path) -> Path:
 
 
 def build(builder: ModuleType, frontend: Path) -> tuple[str, int]:
-    """Build, and return the page and how often it has been built."""
+    """Build the pages; return the page and the number of builds so far."""
     static = frontend.parent / "app" / "static"
     builder.build_pages(frontend, static)
     page = (static / "index.html").read_text()
@@ -54,7 +54,7 @@ def build(builder: ModuleType, frontend: Path) -> tuple[str, int]:
 
 
 def test_unchanged_sources_are_not_rebuilt(builder: ModuleType, frontend: Path) -> None:
-    """Unchanged sources are not rebuilt, changed ones are."""
+    """Unchanged sources are not rebuilt, but changed ones are."""
     assert build(builder, frontend) == ("first", 1)
     assert build(builder, frontend) == ("first", 1)
     (frontend / "src" / "page.html").write_text("second")
@@ -71,7 +71,7 @@ def test_build_products_are_not_sources(builder: ModuleType, frontend: Path) -> 
 
 
 def test_names_and_contents_both_count(builder: ModuleType, frontend: Path) -> None:
-    """A renamed file, and text moved from one file into the next, change the hash."""
+    """Renaming a file, or moving text from one file to the next, changes the sources' hash."""
     hashes = {builder.sources_hash(frontend)}
     (frontend / "src" / "page.html").rename(frontend / "src" / "pagf.html")
     hashes.add(builder.sources_hash(frontend))
@@ -85,7 +85,7 @@ def test_names_and_contents_both_count(builder: ModuleType, frontend: Path) -> N
 
 
 def test_the_docs_are_sources(builder: ModuleType, frontend: Path) -> None:
-    """Changed docs change the hash, as the console shows them as help; decision records do not."""
+    """A change of the docs, which the console shows as help, changes the hash; decisions do not."""
     hashes = {builder.sources_hash(frontend)}
     (frontend.parent / "docs" / "decisions").mkdir(parents=True)
     (frontend.parent / "docs" / "decisions" / "why.md").write_text("because")
@@ -122,6 +122,6 @@ def test_the_build_installs_only_its_own_packages(
 def test_a_tree_without_a_frontend_has_nothing_to_build(
     builder: ModuleType, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A tree without a frontend is reported, not an error: the server runs without pages."""
+    """A missing frontend is reported but is no error, since the server runs without pages."""
     builder.build_pages(tmp_path / "frontend", tmp_path / "static")
     assert "no pages to build" in capsys.readouterr().err

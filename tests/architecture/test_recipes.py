@@ -207,7 +207,7 @@ def example(tmp_path_factory: pytest.TempPathFactory) -> Tree:
 
 
 def test_a_recipe_is_applied_to_a_copy_and_counted(example: Tree) -> None:
-    """A recipe's copy runs with its edits, and one edited and one added file are counted."""
+    """The copy of a recipe runs with its edits, and its edited and added files are counted."""
     assert example.evaluate("import app.clock; answer = app.clock.WORD") == "new"
     assert example.changed() == (
         {"app/clock.py", "docs/data-dictionary.md"},

@@ -1,4 +1,4 @@
-"""Tests of what a new entry of each registry enables, and how few files it touches.
+"""Tests of the effects of a new entry in each registry, and of the number of files touched.
 
 Every recipe follows its section of CONTRIBUTING.md in a copy of the tree.
 """
@@ -301,13 +301,13 @@ def _enabled(tree: Tree, script: str) -> Json:
 
 
 def _texts(tree: Tree, *lines: str) -> None:
-    """Assert that the pages' generated texts contain each of these lines."""
+    """Assert that the generated texts of the pages contain each of these lines."""
     table = tree.read(PAGE_TEXTS)
     assert [line for line in lines if f"  {line},\n" not in table] == []
 
 
 def test_a_preflight_check_takes_one_edited_file(tmp_path: Path) -> None:
-    """A new pre-flight check edits one file, and interface, session and cockpit have it."""
+    """A new pre-flight check edits one file and appears in interface, session and cockpit."""
     tree = _applied(PREFLIGHT_CHECK, tmp_path, edited=1)
     answer = _enabled(
         tree,
@@ -406,7 +406,7 @@ answer = [list(get_args(ExportFormat)), pathlib.Path("still.tsv").read_text().sp
 def test_a_capture_format_takes_at_most_two_edited_files(tmp_path: Path) -> None:
     """A new capture format edits at most two files, and its files are recognised and read.
 
-    Rejections name it, and the page lists it.
+    Messages about rejected files name the format, and the page lists it.
     """
     tree = _applied(CAPTURE_FORMAT, tmp_path, edited=2)
     answer = _enabled(

@@ -1,4 +1,4 @@
-"""Tests that the tree has few duplicate lines, and that they are counted correctly."""
+"""Tests that the tree has few duplicate lines, and that these are counted correctly."""
 
 from tests.architecture.repetition import found, repeats, significant
 from tests.architecture.trees import REPOSITORY

@@ -1,4 +1,4 @@
-"""Tests that `./run` sets up only what changed, from any folder, and reports on standard error.
+"""Tests that `./run` sets up only the changed parts, from any folder, and logs to stderr.
 
 A substitute for uv records its calls, so these tests need no network and little time.
 """
@@ -63,13 +63,13 @@ esac
 
 @dataclass(frozen=True)
 class Checkout:
-    """A folder with `run` and its inputs, and a substitute for uv."""
+    """A folder with `run` and the files it depends on, and a substitute for uv."""
 
     folder: Path
     tools: Path
 
     def run(self, *arguments: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
-        """Call `./run`."""
+        """Call `./run` in the checkout."""
         path = f"{self.tools}{os.pathsep}{os.defpath}"
         return subprocess.run(
             [self.folder / "run", *arguments],
@@ -81,7 +81,7 @@ class Checkout:
         )
 
     def calls(self) -> list[str]:
-        """Return the steps taken since the last call, sorted: two sides run in parallel."""
+        """Return the steps taken since the last call, sorted, since two sides run in parallel."""
         log = self.tools / "calls.log"
         calls = log.read_text().splitlines() if log.exists() else []
         log.unlink(missing_ok=True)
@@ -144,12 +144,12 @@ def test_arguments_and_paths_pass_through_unchanged(checkout: Checkout, tmp_path
 
 @pytest.mark.parametrize("arguments", [[], ["serve"]])
 def test_serving_is_the_default(checkout: Checkout, arguments: list[str]) -> None:
-    """`./run` alone is `./run serve`."""
+    """`./run` without arguments is the same as `./run serve`."""
     assert checkout.run(*arguments).stdout == f"reembody|{checkout.folder}|serve|"
 
 
 def test_options_alone_belong_to_serving(checkout: Checkout) -> None:
-    """`./run --port 9000` is `./run serve --port 9000`; `--help` and `--version` are not."""
+    """`./run --port 9000` means `./run serve --port 9000`; `--help` and `--version` do not."""
     assert checkout.run("--port", "9000").stdout.endswith("|serve|--port|9000|")
     helped = checkout.run("--help").stdout
     assert "|--help|" in helped
@@ -187,7 +187,7 @@ def test_a_changed_input_repeats_its_own_step(checkout: Checkout, changed: str, 
 
 
 def test_a_failed_build_ends_the_installation(checkout: Checkout) -> None:
-    """If the pages cannot be built, the installation of packages is ended; both are repeated."""
+    """If building the pages fails, the installation of packages is stopped; both are repeated."""
     (checkout.tools / "unhappy").touch()
     (checkout.tools / "endless").touch()
     failed = checkout.run("score")
@@ -217,7 +217,7 @@ def test_an_interrupted_step_is_repeated(checkout: Checkout) -> None:
 
 
 def test_a_moved_folder_is_installed_again(checkout: Checkout, tmp_path: Path) -> None:
-    """After the folder was moved, the project is installed again, by its new path."""
+    """After its folder was moved, the project is installed again from the new path."""
     checkout.run("score")
     checkout.calls()
     moved = Checkout(checkout.folder.rename(tmp_path / "elsewhere"), checkout.tools)

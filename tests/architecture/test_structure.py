@@ -85,7 +85,7 @@ def test_loading_a_module_by_name_is_an_import(build: Build) -> None:
 
 
 def test_a_module_is_not_its_package(build: Build) -> None:
-    """Importing a module is no import of the `__init__` above it, nor is a name in a text."""
+    """Importing a module is not an import of the `__init__` above it, nor is a name in a text."""
     root = build(
         {
             "app/room/__init__.py": "from app.room.inner import X",

@@ -19,7 +19,7 @@ def test_repeated_steps_of_a_walk_count_once() -> None:
 
 
 def test_functions_are_recorded_when_called() -> None:
-    """A call of an `app` function is recorded once, also if a generator is resumed."""
+    """A call of an `app` function is recorded once, even if its generator is resumed."""
     recorder = Recorder()
     spaces = [_module("one", OURS / "one.py"), _module("two", OURS / "two.py")]
     spaces.append(_module("three", OURS.parent / "three.py"))

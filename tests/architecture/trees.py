@@ -1,4 +1,4 @@
-"""Provide the tree to examine: the working tree, or that of a commit in a temporary folder."""
+"""Provide the tree to examine: the working tree, or a commit's tree in a temporary folder."""
 
 import io
 import subprocess
@@ -13,7 +13,7 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 
 @contextmanager
 def tree_of(commit: str | None) -> Iterator[Path]:
-    """Yield the root of a commit's files, or of the working tree if None."""
+    """Yield the root folder of a commit's files, or of the working tree if the commit is None."""
     if commit is None:
         yield REPOSITORY
         return

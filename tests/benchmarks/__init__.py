@@ -1,1 +1,1 @@
-"""Benchmarks: `./run bench NAME [--json]`; figures come with the machine, a ratio and a peer."""
+"""Benchmarks for `./run bench NAME [--json]`: figures with the machine, and a limit or a peer."""

@@ -95,7 +95,7 @@ def _cpu_share(process: psutil.Process, work: Callable[[], object]) -> float:
 
 
 def _bare_disk(path: Path) -> list[float]:
-    """Return the latencies of a writer that appends, fsyncs and acknowledges per interval.
+    """Return the latencies of a bare writer that appends, syncs and acknowledges each interval.
 
     This is the lower limit. A message that arrives at a random moment waits for the end of its
     interval, then for the disk.

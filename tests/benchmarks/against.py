@@ -49,7 +49,7 @@ NOT_WORK = {"__main__.py", "against.py", "report.py"}
 
 @dataclass(frozen=True)
 class Side:
-    """A source tree that is measured."""
+    """One of the two source trees that are compared."""
 
     name: str
     folder: Path
@@ -57,7 +57,7 @@ class Side:
     scratch: Path
 
     def run(self, arguments: Sequence[str]) -> "Run":
-        """Run its benchmark once; raise `CannotMeasure` with its error output if it fails."""
+        """Run the tree's benchmark once; raise `CannotMeasure` with its error output on failure."""
         self.scratch.mkdir(exist_ok=True)
         with tempfile.TemporaryFile() as output, tempfile.TemporaryFile() as errors:
             ended = run_warded(
@@ -85,7 +85,7 @@ class Side:
 
 @dataclass(frozen=True)
 class Run:
-    """The processor time and the figures of one run."""
+    """The processor time and the figures of one run of a benchmark."""
 
     processor_s: float
     figures: list[dict[str, Any]]
@@ -93,7 +93,7 @@ class Run:
 
 @dataclass(frozen=True)
 class Interval:
-    """The median of pairwise ratios, and two of them that enclose the true one."""
+    """The median of pairwise ratios, and the two ratios that enclose the true median."""
 
     median: float
     low: float
@@ -102,7 +102,7 @@ class Interval:
 
 
 def compare(asked: argparse.Namespace) -> Report:
-    """Run pairs; the figures are medians of this tree, with those of COMMIT as their peer."""
+    """Run both trees in pairs; return this tree's medians, with those of COMMIT as their peer."""
     if asked.pairs < 1:
         raise CannotMeasure(f"{asked.pairs} pairs; at least 1 is needed")
     if asked.write:
@@ -123,7 +123,7 @@ def compare(asked: argparse.Namespace) -> Report:
 
 
 def _chosen(asked: argparse.Namespace) -> list[str]:
-    """Return the arguments for both sides."""
+    """Return the benchmark's arguments, which are the same for both trees."""
     seconds = asked.seconds or (60.0 * asked.minutes if asked.minutes else None)
     chosen = [word for part in asked.only or () for word in ("--only", part)]
     chosen += [] if seconds is None else ["--seconds", f"{seconds:g}"]
@@ -208,7 +208,7 @@ def _medians(runs: Sequence[Run]) -> dict[tuple[str, str], float]:
 
 @contextmanager
 def _sides(commit: str, scratch: Path) -> Iterator[tuple[Side, Side]]:
-    """Yield this tree and COMMIT's, which is removed with `scratch`."""
+    """Yield this tree and COMMIT's tree, which is removed with `scratch`."""
     folder = scratch / "tree"
     name = check_out(REPOSITORY, commit, folder)
     python = Path(sys.executable)

@@ -1,4 +1,4 @@
-"""Measure how a hundred anonymous callers affect the sessions of eight streaming headsets.
+"""Measure how a hundred anonymous callers affect eight headsets that stream.
 
 Half of the callers try to sign in, half send bodies of 2 MB, all as fast as they get responses. The
 peer is the same server with the same headsets while the same callers call a bare listener that
@@ -32,10 +32,11 @@ MOST_RATIO, MOST_GROWTH_MIB = 1.5, 100.0
 
 @dataclass(frozen=True)
 class Run:
-    """The figures of one run.
+    """The figures of one run with callers.
 
-    `ack_p99_s` of messages sent while the callers were active; growth of the server's memory, its
-    processor time per second, and the responses to the callers.
+    `ack_p99_s` covers messages sent while the callers were active. The other figures are the growth
+    of the server's memory, its processor time per second, and the number of responses to the
+    callers.
     """
 
     ack_p50_s: float
@@ -151,7 +152,7 @@ def _memory_and_time(process: psutil.Process) -> tuple[int, float, float]:
 
 @contextmanager
 def _door(server: LiveServer, folder: Path, *, at_server: bool) -> Iterator[int]:
-    """Yield the port that the callers connect to."""
+    """Yield the port to which the callers connect."""
     if at_server:
         yield server.port
         return

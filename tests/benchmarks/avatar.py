@@ -5,15 +5,15 @@ study, frame by frame at 90 Hz, with fingers and without, and measures the secon
 second, compared with bare `mj_step` of the same model on the same inputs in the same run. The
 difference is our own code: converting poses to angles, setting targets at every step, moving the
 hips, watching contacts, reading the body back; at least 0.8 of the bare rate must remain. Time is
-processor time, and the two alternate, so that other programs on the machine count as little as
-possible. `control` is one frame of it without any simulation: a pose converted to angles, and the
-body converted to joints. Rates are those of the fastest round.
+processor time, and the two alternate, so that other programs on the machine affect the result as
+little as possible. `control` is one such frame without any simulation: a pose converted to angles,
+and the body converted to joints. Rates are those of the fastest round.
 
 `bullet` is PyBullet with the same body, boxes and inputs (`peers.bullet_body` describes the
 differences): with its defaults, 50 solver iterations and targets at every step as ours, and with 10
 and targets once per frame; the figures also contain the distance of both bodies from their targets.
-`humanoid` is each engine's own, limp: MuJoCo's if the shared data are available. PyBullet is
-installed on first use, and left out if that fails.
+`humanoid` is each engine's own humanoid model, limp: MuJoCo's if the shared data are available.
+PyBullet is installed on first use, and left out if that fails.
 """
 
 import time
@@ -42,7 +42,7 @@ SWING_RAD, SWING_HZ = 0.35, 1.0
 
 
 def measure(parts: frozenset[str], duration_s: float | None = None) -> Report:
-    """Measure the named parts; their duration cannot be chosen."""
+    """Measure the named parts; `duration_s` has no effect."""
     report = Report("avatar")
     if "speed" in parts:
         for fingers in (False, True):
@@ -74,7 +74,7 @@ def _followed_s(*, fingers: bool) -> float:
 
 
 def _bare_s(*, fingers: bool) -> float:
-    """Return the time of bare `mj_step` on the same steps, model and targets."""
+    """Return the processor time of bare `mj_step` on the same steps, model and targets."""
     built = model(EIGHT_BOXES, fingers=fingers)
     inputs = _inputs(built, fingers=fingers)
     body = _started(built)[0]
@@ -88,7 +88,7 @@ def _bare_s(*, fingers: bool) -> float:
 
 @cache
 def _recorded(*, fingers: bool) -> FloatArray:
-    """Return (FRAMES + 1, n) commands: at the beginning and at each frame's end."""
+    """Return (FRAMES + 1, n) commands: the one at the beginning, and one at each frame's end."""
     built = model(EIGHT_BOXES, fingers=fingers)
     body, follower = _started(built)
     poses = _poses()
@@ -151,7 +151,7 @@ def _beside_bullet(*, fingers: bool) -> Iterator[Figure]:
 
 
 def _mean_error_deg(body: PhysicsAvatar, controls: FloatArray) -> float:
-    """Return the mean distance of all axes from their targets, without the first sixth."""
+    """Return the mean error of all axes from their targets, leaving out the first sixth."""
     data, errors = body.data, []
     data.qpos[:] = controls[0, 0::2]
     for row in controls:

@@ -1,4 +1,4 @@
-"""Measure the avatar's inverse kinematics: time per frame, and distance from its goals.
+"""Measure the avatar's inverse kinematics: time per frame, and error of its end effectors.
 
 `python` and `javascript` time the same frames, those of `tests/vectors/avatar/ik.json` forwards and
 backwards: a quickly moving body with a hand out of reach for some frames, with and without a waist

@@ -1,11 +1,11 @@
-"""Test what the avatar endures, and whether the browser computes the same.
+"""Test that the avatar withstands extreme input, and that the browser computes the same.
 
 `wall` drives a hand at 2 m/s into a wall of 2 cm and continues to press: it may penetrate by 5 mm,
 and never comes out on the other side. `thrown` commands 10,000 random poses and teleports the hips
-1,000 times by up to 10 m, next to walls: no reset may occur, and the clock is exact. `browser`
+1,000 times by up to 10 m, next to walls: no reset may occur, and the clock must be exact. `browser`
 gives the model and the inputs of `tests/vectors/avatar` to MuJoCo in Python and, as WebAssembly,
 under Node: the greatest difference of any angle over 10 s with contacts, and of the inverse
-kinematics, both 1e-9 at most. Both sides are computed afresh and compared unrounded.
+kinematics, both 1e-9 at most. Both sides are recomputed in each run and compared unrounded.
 """
 
 import json

@@ -1,10 +1,11 @@
 """Search every output of a blinded study for a condition that the reader must not know.
 
-There is a study for each status of a session (`tests/faults/blinded_world.py`), whose conditions
+For each status of a session there is a study (`tests/faults/blinded_world.py`) whose conditions
 have names and latencies that occur nowhere else. Every GET of the OpenAPI document is requested by
-every role for every study; archives are unpacked; files are ordered, watched and fetched; errors
-are provoked; the pose socket and the live stream are read. A find where the condition must not be
-known is a leak. Where it may be known it must be found, or the search would prove nothing.
+every role for every study; archives are unpacked; export files are requested, tracked and fetched;
+errors are provoked; the pose socket and the live stream are read. Finding the condition where it
+must not be known is a leak. Where it may be known it must be found, or the search would prove
+nothing.
 
 Out of scope: computing a delay from frames. The avatar's frames themselves count as a leak.
 """

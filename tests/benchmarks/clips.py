@@ -16,7 +16,7 @@ LONG_WALK = LONG
 
 
 def movement(name: str, *, travels: bool = False) -> Movement | None:
-    """Return a capture of the shared data on the product's body at 90 Hz; None if missing."""
+    """Return a capture of the shared data on the product's body at 90 Hz, or None if missing."""
     path = shared_file("motion", name)
     return None if path is None else movement_of(path, travels=travels)
 
@@ -31,7 +31,7 @@ def shared_file(kind: str, name: str) -> Path | None:
 
 
 def movements() -> Iterator[tuple[str, Movement]]:
-    """Return those of `CLIPS` that are available."""
+    """Return the captures of `CLIPS` that are available."""
     for told, (name, travels) in CLIPS.items():
         found = movement(name, travels=travels)
         if found is not None:

@@ -1,6 +1,6 @@
 """Chunk encodings that need only numpy and zstd, including ours.
 
-Numbers in the names are zstd's levels. All reproduce any bits exactly.
+Numbers in the names are zstd's levels. All of them reproduce their input bit by bit.
 """
 
 from collections.abc import Callable
@@ -24,7 +24,7 @@ _STEPS = np.uint32(8)
 
 @dataclass(frozen=True)
 class Codec:
-    """A pair of functions: `decode(encode(columns), n, w)` returns the columns."""
+    """An encoding of chunks: `decode(encode(columns), n, w)` returns the columns."""
 
     name: str
     encode: Callable[[Columns], bytes]
@@ -32,7 +32,7 @@ class Codec:
 
 
 def own_codecs() -> list[Codec]:
-    """Return the codecs from the simplest to the one in use, that at several levels."""
+    """Return the codecs from the simplest to the one in use; the latter at several levels."""
     return [
         Codec("frames as they are, zstd 3", _encode_plain, _decode_plain),
         Codec(f"{f32_columns.NAME} (before)", encode_columns, f32_columns.decode),
@@ -45,7 +45,7 @@ def own_codecs() -> list[Codec]:
 
 
 def encode_columns(columns: Columns) -> bytes:
-    """Write the previous encoding, which the application can only read."""
+    """Encode in the previous format, which the application can read but no longer writes."""
     raw = (
         np.ascontiguousarray(columns.times_s, "<f8").tobytes(),
         columns.flags.tobytes(),
@@ -65,12 +65,12 @@ def values_of(rows: Bits) -> NDArray[np.float32]:
 
 
 def ordered(bits: Bits) -> Bits:
-    """Return bits whose order as integers is that of the floats; `unordered` reverses it."""
+    """Convert floats' bits to integers in the order of the floats; `unordered` reverses it."""
     return np.where(bits & SIGN, ~bits, bits | SIGN)
 
 
 def unordered(bits: Bits) -> Bits:
-    """Reverse `ordered`."""
+    """Convert the result of `ordered` back to the bits of the floats."""
     return np.where(bits & SIGN, bits ^ SIGN, ~bits)
 
 
@@ -92,9 +92,9 @@ def _planes(
     forward: Callable[[Bits], tuple[bytes, Bits]],
     backward: Callable[[NDArray[np.uint8], Bits], Bits],
 ) -> Codec:
-    """Apply `forward` to rows (w, n), then byte planes and zstd; store times as differences.
+    """Apply `forward` to rows (w, n), then byte planes and zstd; times are stored as differences.
 
-    `forward` returns as many rows, and the side information that `backward` needs.
+    `forward` returns the same number of rows, and the side information that `backward` needs.
     """
 
     def encode(columns: Columns) -> bytes:
@@ -126,7 +126,7 @@ def _unxored(_beside: NDArray[np.uint8], rows: Bits) -> Bits:
 
 
 def _differenced(rows: Bits, *, times: int) -> tuple[bytes, Bits]:
-    """Return differences in the floats' order, with small magnitudes as small numbers."""
+    """Return differences in the floats' order, with small magnitudes mapped to small numbers."""
     current = ordered(rows).view(np.int32)
     for _ in range(times):
         current = np.diff(current, axis=1, prepend=np.int32(0))
@@ -142,7 +142,7 @@ def _summed(_beside: NDArray[np.uint8], rows: Bits, *, times: int) -> Bits:
 
 
 def _three(rows: Bits) -> tuple[bytes, Bits]:
-    """Predict one component of each quaternion from the other three, stored as 2nd differences."""
+    """Predict one component of each quaternion from the others, stored as second differences."""
     left_out = choose(rows)
     kept = rows[left_out.kept_rows]
     # A few steps in either direction become a small number.

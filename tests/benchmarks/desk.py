@@ -63,7 +63,7 @@ def _login(client: httpx2.Client) -> Iterator[Figure]:
 def _calls(
     client: httpx2.Client, session_ids: list[str]
 ) -> Iterator[tuple[str, Callable[[], None]]]:
-    """Return every reading call, on another session each time, and those of the editor."""
+    """Return every call that reads, each on another session every time, and the editor's calls."""
     turn = iter(range(10**9))
 
     def get(template: str) -> Callable[[], None]:

@@ -1,4 +1,4 @@
-"""Measure an export file: memory while it is made and fetched, effect on others, duration.
+"""Measure an export file: memory while it is created and fetched, effect on others, duration.
 
 Twelve simulated sessions as long as real ones (9.4 min at 90 Hz), about a gigabyte of CSV. Memory
 is the resident size reported by the system; growth is the end minus a quarter of the way, so a
@@ -39,7 +39,7 @@ WRITE_LIMIT_MS = 100.0
 
 @dataclass
 class Looks:
-    """Samples taken while a file was made: the completed share and the resident bytes."""
+    """Samples taken while a file was created: its completed share and the resident bytes."""
 
     share: list[float] = field(default_factory=list)
     server: list[int] = field(default_factory=list)
@@ -48,7 +48,7 @@ class Looks:
 
 
 def measure(parts: frozenset[str], duration_s: float | None = None) -> Report:
-    """Measure on a real server."""
+    """Measure the creation and the download of an export file on a real server."""
     report = Report("downloads")
     with tempfile.TemporaryDirectory(prefix="reembody-bench-") as scratch:
         server = LiveServer(Path(scratch))
@@ -84,7 +84,7 @@ def _fill(server: LiveServer) -> None:
 
 
 def _copy(database: Database, source: str, code: str) -> None:
-    """Create a session with the movement of another, copied inside the database."""
+    """Create a session with a copy of another's movement, copied within the database."""
     with database.writing() as db:
         session = build_session(db, SessionSpec(code, kind="simulated"))
         for name in ("telemetry_streams", "telemetry_chunks"):
@@ -121,7 +121,7 @@ def _cancelling(server: LiveServer, client: httpx2.Client) -> Iterator[Figure]:
 
 
 def _made(server: LiveServer, client: httpx2.Client) -> tuple[Looks, dict[str, Any]]:
-    """Have the file made while sampling memory and sometimes storing something."""
+    """Have the export file created while sampling memory and occasionally storing something."""
     looks, process = Looks(), psutil.Process(server.pid)
     ordered = view = _order(client, "simulated")
     while view["state"] in ("queued", "making"):

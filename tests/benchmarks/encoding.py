@@ -1,11 +1,11 @@
 """Measure the size and cost of a minute of a session for every chunk encoding.
 
 A session-minute is two streams, target and actual, of 90 frames a second; a chunk is a second of
-one of them. Movement: the captures next to the repository (a mean over them), each with an actual
-stream that follows its target through a critically damped filter of 4 Hz, 125 ms late, with a noise
-of 0.01 degrees and 0.1 mm of its own; and a synthetic one, all joints swinging, tracked with a
-noise of 0.05 degrees and 0.5 mm and followed likewise. Times are CPU times of one thread, medians
-over the chunks. Every decoded chunk is compared with its input, bit by bit.
+one of them. The movement comes from the captures next to the repository (a mean over them), each
+with an actual stream that follows its target through a critically damped filter of 4 Hz, 125 ms
+late, with its own noise of 0.01 degrees and 0.1 mm; and from a synthetic movement, with all joints
+swinging, tracked with a noise of 0.05 degrees and 0.5 mm and followed likewise. Times are CPU times
+of one thread, medians over the chunks. Every decoded chunk is compared with its input, bit by bit.
 """
 
 import sys
@@ -67,7 +67,7 @@ def measure(parts: frozenset[str]) -> Report:
 
 
 def _captured() -> dict[str, Streams]:
-    """Return every available capture by its name."""
+    """Return every available capture, keyed by its name."""
     files = sorted(CAPTURES.glob("*.bvh"))
     rng = np.random.default_rng(0)
     return {file.stem: followed(captured_movement(file), rng) for file in files}
@@ -155,7 +155,7 @@ def _by_length(ours: Codec, movements: Movements) -> Iterator[Figure]:
 
 
 def _together_mb(ours: Codec, streams: Streams) -> float:
-    """Return the size of a session-minute if chunks contain both streams with shared times."""
+    """Return the size of a session-minute with both streams in one chunk, with shared times."""
     sizes = []
     for target, actual in streams.chunks():
         both = np.concatenate((target.values, actual.values[:, 3:]), axis=1)

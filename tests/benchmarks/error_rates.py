@@ -1,10 +1,10 @@
-"""Measure how often each test rejects without an effect, and how often intervals hold.
+"""Measure how often each test rejects without an effect, and the coverage of intervals.
 
 On simulated data sets of the study's design (`tests.benchmarks.null_data`): 12, 18 and 24
 participants in equal parts; participants differ in level, or also in how they react to latency.
 2,004 sets of the first kind and 504 of the second, three times as many for tests that are quick to
-compute. Every set has its own seed, so the figures are the same with any number of processes. Two
-processes, about four minutes on two free cores.
+compute. Every set has its own seed, so the figures are the same with any number of processes. It
+runs two processes and takes about four minutes on two free cores.
 
 Each rate has a limit: at most 5 % plus three standard errors for exact tests, at most 6.5 % for the
 others, at least 93.5 % for intervals. With `--write` the table shipped with the product and the
@@ -107,14 +107,14 @@ def measure(
 
 
 def stored(table: ErrorRates) -> str:
-    """Return the table for machines, one row per line."""
+    """Return the table as JSON for the product, one row per line."""
     rows = ",\n".join(json.dumps(asdict(row)) for row in table.rows)
     head = f'"seed": {table.seed},\n"design": {json.dumps(table.design)}'
     return f'{{\n{head},\n"rows": [\n{rows}\n]\n}}\n'
 
 
 def page(table: ErrorRates) -> str:
-    """Return the table for people, as Markdown."""
+    """Return the table for readers, as Markdown."""
     sizes = [str(size) for size in SIZES]
     lines = [HEAD.format(sizes=", ".join(sizes), seed=table.seed)]
     for scenario in SETS:
@@ -154,7 +154,7 @@ def _tasks(parts: tuple[str, ...]) -> Iterator[Task]:
 
 
 def _work(task: Task) -> Counter[tuple[str, str, int, str]]:
-    """Return how often each test could be computed, could not, and rejected (or held the truth)."""
+    """Count how often each test was computed, failed, and rejected (or contained the truth)."""
     design = replace(NullDesign(task.participants), reaction=REACTION[task.scenario])
     counts: Counter[tuple[str, str, int, str]] = Counter()
     for number in range(task.first, task.first + task.sets):

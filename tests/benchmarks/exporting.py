@@ -50,7 +50,7 @@ def figures(folder: Path) -> list[Figure]:
 
 
 def _long_movement() -> NDArray[np.float32]:
-    """Return smooth movement as long as a session, (FRAMES, 91)."""
+    """Return smooth movement of a session's length, (FRAMES, 91)."""
     pieces = [movement(seed)[:-FRAMES_PER_BATCH] for seed in range(-(-FRAMES // 900))]
     return np.concatenate(pieces)[:FRAMES]
 

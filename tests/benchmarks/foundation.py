@@ -1,4 +1,4 @@
-"""Measure the first minute, the durable acknowledgement and the export."""
+"""Measure the time to the first page, the durable acknowledgement and the export."""
 
 import tempfile
 from pathlib import Path

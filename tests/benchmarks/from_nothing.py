@@ -1,14 +1,14 @@
-"""Measure from an empty folder to the first page: `./run`, and oTree by pip, alternately.
+"""Measure the time from an empty folder to the first page for `./run` and for oTree by pip.
 
-Each run begins with the tracked files (ours) or an empty folder (oTree's), with empty caches and an
-empty home, and ends when the first page has arrived with every script and style sheet that it
-names. Both download from the indexes configured for pip, uv and npm, so the network counts for
-both.
+The runs alternate. Each begins with the tracked files (ours) or an empty folder (oTree's), with
+empty caches and an empty home, and ends when the first page has arrived with every script and style
+sheet that it names. Both download from the indexes configured for pip, uv and npm, so the network
+counts for both.
 
-- reembody: `./run --port N`, including its whole set-up. It also downloads uv, if this machine has
+- reembody: `./run --port N`, including its whole set-up; it also downloads uv, if this machine has
   none.
 
-- otree: an environment of its own, `pip install`, one app with one page, `otree devserver`.
+- otree: a new environment, `pip install`, one app with one page, `otree devserver`.
 """
 
 import os
@@ -48,14 +48,14 @@ exec otree devserver "$3"
 
 @dataclass(frozen=True)
 class Run:
-    """Seconds until the first page, and processor seconds until everything had ended."""
+    """The seconds until the first page, and the processor seconds until all processes had ended."""
 
     duration_s: float
     processor_s: float
 
 
 def measure(parts: frozenset[str], runs: int = RUNS) -> Report:
-    """Run both alternately, `runs` times each."""
+    """Measure both systems alternately, `runs` times each."""
     report = Report("from_nothing")
     begin: dict[str, Callable[[Path], Run]] = {"reembody": our_run, "otree": otree_run}
     seen: dict[str, list[Run]] = {part: [] for part in PARTS if part in parts}
@@ -92,14 +92,14 @@ def figures(seen: Mapping[str, list[Run]]) -> list[Figure]:
 
 
 def our_run(scratch: Path) -> Run:
-    """Run `./run` in a copy of the tracked files."""
+    """Measure `./run` in a copy of the tracked files."""
     copy, port = scratch / "reembody", free_port()
     copy_repository(copy)
     return timed(["./run", "--port", str(port)], copy, port, scratch)
 
 
 def otree_run(scratch: Path) -> Run:
-    """Run the commands that oTree's own documentation gives."""
+    """Measure the commands that oTree's own documentation gives."""
     port = free_port()
     write_project(scratch / "project", ["I felt as if the body was mine."], rounds=1)
     python = getattr(sys, "_base_executable", sys.executable)

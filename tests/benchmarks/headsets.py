@@ -25,7 +25,7 @@ FRAMES_PER_BATCH = 6
 
 @dataclass
 class TimedJournal(Journal):
-    """A journal that measures how long each message waits in it."""
+    """A journal that measures the time from each message to its acknowledgement."""
 
     added_s: dict[int, float] = field(default_factory=dict)
     latencies_s: list[tuple[float, float]] = field(default_factory=list)

@@ -92,5 +92,5 @@ def _count(found: list[dict[str, Any]], what: str) -> int:
 
 
 def _trace(one: dict[str, Any]) -> bool:
-    """Return whether a program error was reported instead of a message."""
+    """Return whether the run reported a program error's traceback instead of a message."""
     return bool(one["outcome"]["trace"]) or "Traceback" in one["outcome"]["said"]

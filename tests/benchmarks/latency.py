@@ -1,4 +1,4 @@
-"""Measure how well known latencies are recovered from flawed data, also by the usual method."""
+"""Measure how well our method and the usual one recover known latencies from flawed data."""
 
 import time
 from collections.abc import Callable
@@ -37,7 +37,7 @@ Make = Callable[[float, int], StreamPair]
 
 @dataclass(frozen=True)
 class Trial:
-    """One recording: the latency put in, the one found (s), and the usual method's."""
+    """One recording: its true latency, our estimate (s), and the usual method's estimate."""
 
     latency_s: float
     found_s: float
@@ -94,7 +94,7 @@ def _trial(run: StreamPair, latency_s: float) -> Trial:
 
 
 def rival(run: StreamPair) -> float:
-    """Return the latency (s) by velocity correlation with a parabolic peak, the usual method."""
+    """Return the latency (s) by the usual method, velocity correlation with a parabolic peak."""
     begin_s, end_s = float(run.actual_times_s.min()), float(run.actual_times_s.max())
     grid_s = np.arange(begin_s, end_s, 1.0 / RATE_HZ)
     target = _velocities(run.target_times_s, run.target_rotations, grid_s)

@@ -1,16 +1,16 @@
-"""Generate data sets of the study without any effect, for measuring tests' error rates.
+"""Generate data sets of the study without any effect, to measure the error rates of tests.
 
 A test at 5 % should reject in 5 of 100 such data sets, and an interval of 95 % contain the truth in
 95 of them. Exact tests guarantee this, most others only for many participants; and the study has a
-dozen or two. So each is tried on data like the study's own:
+dozen or two. So each test is tried on data like the study's own:
 
     n participants (whole blocks of the six orders of three latencies), two limbs per period;
     a continuous measure, participant's level + error, both normal;
     one item of a questionnaire from 1 to 7: participant's level + logistic error cut at thresholds
-    with which most agree, as people do with agency, so that many answers are equal;
+    at which most people agree, as they do with agency, so that many answers are equal;
     a scale of several such items from one administration, for its consistency.
 
-*Reactions* are effects of a latency on one person and not on another. With them a participant's
+*Reactions* are effects of a latency that differ between people. With reactions, a participant's
 level turns towards another, independent one as the latency grows,
 
     level(latency) = level cos(a) + other sin(a),    a = arcsin(reaction) latency / 350 ms,
@@ -37,7 +37,7 @@ _TRUTH_PEOPLE = 400_000
 
 @dataclass(frozen=True)
 class NullDesign:
-    """A study without effects.
+    """The design of a study without effects.
 
     Attributes:
         participants: a multiple of six.
@@ -99,7 +99,7 @@ def null_data(design: NullDesign, rng: np.random.Generator) -> NullData:
 
 
 def answers(design: NullDesign, hidden: FloatArray) -> IntArray:
-    """Cut latent values, of any shape, into answers from 1 on."""
+    """Convert latent values, of any shape, into answers from 1 on by their thresholds."""
     return np.searchsorted(design.thresholds, hidden).astype(np.int64) + 1
 
 

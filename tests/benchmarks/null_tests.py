@@ -1,7 +1,7 @@
 """Compute every test and interval that the product offers on one data set without effects.
 
-A test's outcome is whether it rejects at 5 %, an interval's whether it contains the truth. One that
-could not be computed (no variance, a model that did not converge) is None.
+A test's outcome is whether it rejects at 5 %, an interval's whether it contains the truth. The
+outcome is None if it could not be computed (no variance, a model that did not converge).
 """
 
 from collections.abc import Callable, Iterator
@@ -44,7 +44,7 @@ BOTH = "latency:limb"
 
 @dataclass(frozen=True)
 class About:
-    """A test's data, what is counted, whether it is exact, and its printed name."""
+    """The description of a test: its data, its printed name, its kind, and whether it is exact."""
 
     measure: str
     title: str
@@ -115,7 +115,7 @@ def means(data: NullData, alpha: float, rng: np.random.Generator) -> Outcomes:
 
 
 def models(data: NullData, alpha: float, rng: np.random.Generator) -> Outcomes:
-    """Fit the linear mixed model latency x limb with period, and diagnostics of order."""
+    """Fit the linear mixed model latency x limb with period, and the diagnostics of order."""
     n = len(data.measure)
     cells = list(product(range(n), range(len(NAMES)), range(len(LIMBS))))
     people = [who for who, _, _ in cells]
@@ -141,7 +141,7 @@ def models(data: NullData, alpha: float, rng: np.random.Generator) -> Outcomes:
 
 
 def ordinal(data: NullData, alpha: float, rng: np.random.Generator) -> Outcomes:
-    """Fit the cumulative link mixed model of the item, latency and limb, by Laplace."""
+    """Fit the cumulative link mixed model of the item on latency and limb, by Laplace's method."""
     cells = list(product(range(len(data.item)), LATENCIES_MS, LIMBS))
     design = build_design(
         [
@@ -155,7 +155,7 @@ def ordinal(data: NullData, alpha: float, rng: np.random.Generator) -> Outcomes:
 
 
 def intervals(data: NullData, alpha: float, rng: np.random.Generator) -> Outcomes:
-    """Return whether 95 % intervals contain the population's alpha, and a difference of zero."""
+    """Return whether each 95 % interval contains the true value: alpha, or a difference of zero."""
     found = cronbach_alpha(data.scale)
     yield "alpha_interval", found.low <= alpha <= found.high
     differences = data.measure[:, -1, 0] - data.measure[:, 0, 0]

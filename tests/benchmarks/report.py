@@ -1,4 +1,4 @@
-"""Figures with their units, their peers or limits, and the machine that they were measured on."""
+"""Figures with units, peers or limits, and the machine on which they were measured."""
 
 import os
 import platform
@@ -17,7 +17,7 @@ class CannotMeasure(ValueError):
 
 @dataclass(frozen=True)
 class Figure:
-    """One measured value. `peer` describes the limit or rival measured in the same run."""
+    """One measured value; `peer` describes the limit, or the rival measured in the same run."""
 
     part: str
     name: str
@@ -28,7 +28,7 @@ class Figure:
 
     @property
     def ratio(self) -> float | None:
-        """Return our value divided by the peer's."""
+        """Return the value divided by the peer's."""
         return self.value / self.peer_value if self.peer_value else None
 
     @property
@@ -45,7 +45,7 @@ class Figure:
         return bool(self.value <= self.limit if self.peer in AT_MOST else self.value >= self.limit)
 
     def as_json(self) -> dict[str, Any]:
-        """Return it as values for JSON."""
+        """Return the figure as values for JSON."""
         told = {"ratio": self.ratio, "limit": self.limit, "met": self.met}
         return {**asdict(self), **told}
 
@@ -60,7 +60,7 @@ class Report:
     beside: dict[str, Any] = field(default_factory=dict)
 
     def add(self, *figures: Figure) -> None:
-        """Add figures and print each immediately: a run takes minutes."""
+        """Add figures and print each one immediately, since a run takes minutes."""
         for figure in figures:
             print(
                 f"  {figure.part}: {figure.name} {figure.value:.4g} {figure.unit}", file=sys.stderr
@@ -68,14 +68,14 @@ class Report:
         self.figures += figures
 
     def as_json(self) -> dict[str, Any]:
-        """Return it as values for JSON."""
+        """Return the report as values for JSON."""
         rows = [figure.as_json() for figure in self.figures]
         head = {"benchmark": self.benchmark, "machine": self.machine}
         return {**head, **self.beside, "figures": rows}
 
 
 def machine() -> dict[str, Any]:
-    """Return cores, processor, Python and the load of the machine at the start."""
+    """Return the machine's cores, processor, Python and load at the start."""
     return {
         "cores": os.cpu_count(),
         "cpu": _cpu_name(),
@@ -86,7 +86,7 @@ def machine() -> dict[str, Any]:
 
 
 def as_table(report: Report) -> str:
-    """Format the figures for people, one per line."""
+    """Format the figures as a table, one per line."""
     rows = [["part", "figure", "value", "unit", "beside", "value", "ratio"]]
     rows += [_cells(figure) for figure in report.figures]
     widths = [max(len(row[at]) for row in rows) for at in range(len(rows[0]))]

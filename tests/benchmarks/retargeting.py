@@ -2,11 +2,11 @@
 
 `frame` is a live frame of 22 joints, timed call by call; the budget of a 360 Hz capture is 2.8 ms,
 the limit here 50 microseconds at the 99.9th percentile. Calls during which the system gave the
-processor to another program are in one row and left out of the other. `batch` is a movement of 22
-joints on one core, at least a million frames a second. `peers` is a walk of 31 joints (CMU 02_01 if
-the shared data are available, else a synthetic one), compared with SciPy's Rotation and PyMotion
-doing the same work. Rates are medians of several rounds, so that other programs on the machine
-affect few of them.
+processor to another program are included in one row of the table and left out of the other. `batch`
+is a movement of 22 joints on one core, at least a million frames a second. `peers` is a walk of 31
+joints (CMU 02_01 if the shared data are available, else a synthetic one), compared with SciPy's
+Rotation and PyMotion doing the same work. Rates are medians of several rounds, so that other
+programs on the machine affect few of them.
 """
 
 import resource
@@ -141,7 +141,7 @@ def _walk() -> tuple[str, RigMotion]:
 
 
 def _made_up() -> RigMotion:
-    """Return a movement of the product's body with nine finger joints: 31 joints, 344 frames."""
+    """Return a synthetic movement of a body with nine finger joints: 31 joints, 344 frames."""
     body = own_body(1.7)
     hands = [body.index("LeftHand"), body.index("RightHand")]
     names = tuple(f"Finger{number}" for number in range(9))

@@ -1,7 +1,7 @@
-"""Do the same transfer with other libraries' rotations: SciPy and PyMotion.
+"""Do the same retargeting with other libraries' rotations: SciPy and PyMotion.
 
-Each does the work that a retargeter does and no other: rotations of the source in the world, the
-constant factor of each joint, back to local. Results are compared before anything is timed.
+Each computes only what a retargeter computes: rotations of the source in the world, the constant
+factor of each joint, back to local. Results are compared before anything is timed.
 """
 
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from app.science.rotations import FloatArray
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """The transfer to compute for every frame.
+    """The retargeting to compute for every frame.
 
     Attributes:
         source_parents, avatar_parents: the trees of joints, as parent indices.
@@ -33,7 +33,7 @@ class Task:
 
 
 def by_scipy(task: Task, rotations: FloatArray) -> FloatArray:
-    """Use a Rotation object per joint: for one frame, (S, 4), or for all, (N, S, 4)."""
+    """Retarget with SciPy, a Rotation object per joint: one frame, (S, 4), or all, (N, S, 4)."""
     locals_ = [
         Rotation.from_quat(rotations[..., joint, :], scalar_first=True)
         for joint in range(len(task.source_parents))
@@ -53,12 +53,12 @@ def by_scipy(task: Task, rotations: FloatArray) -> FloatArray:
 
 
 def by_scipy_frame_by_frame(task: Task, rotations: FloatArray) -> FloatArray:
-    """Transfer one frame at a time, as it would be done live."""
+    """Retarget one frame at a time with SciPy, as would be done live."""
     return np.stack([by_scipy(task, frame) for frame in rotations])
 
 
 def by_pymotion(task: Task, rotations: FloatArray) -> FloatArray:
-    """Use PyMotion's forward kinematics, products and inverse kinematics of all frames at once."""
+    """Retarget all frames together with PyMotion's forward kinematics, products and inverse."""
     roots = np.zeros((*rotations.shape[:-2], 3))
     parents = np.array(task.source_parents)
     _, source = pymotion_skeleton.fk_quat(rotations, roots, task.source_offsets_m, parents)

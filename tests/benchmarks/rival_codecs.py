@@ -1,4 +1,4 @@
-"""Chunk encodings that need other libraries: those that are installed are measured.
+"""Chunk encodings that need other libraries; only those that are installed are measured.
 
 To install them: `uv pip install pcodec pyarrow blosc2` into the environment; none of them is needed
 otherwise.
@@ -53,7 +53,7 @@ def _unframed(data: bytes) -> list[bytes]:
 
 
 class _Pcodec:
-    """Use pcodec's own file format, for numbers of any shape."""
+    """An encoding in pcodec's own file format, for numbers of any shape."""
 
     def __init__(self) -> None:
         library = importlib.import_module("pcodec")
@@ -64,11 +64,11 @@ class _Pcodec:
         )
 
     def squeeze(self, numbers: NDArray[Any], config: Any) -> bytes:
-        """Compress numbers to a file."""
+        """Compress numbers to the contents of a file."""
         return bytes(self._files.simple_compress(np.ascontiguousarray(numbers).ravel(), config))
 
     def expand(self, data: bytes, number: type[Any]) -> NDArray[Any]:
-        """Return the flat numbers of a file."""
+        """Return the numbers of a compressed file as a flat array."""
         numbers = self._files.simple_decompress(data)
         return np.asarray([] if numbers is None else numbers, number)
 

@@ -1,4 +1,4 @@
-"""Measure from a fresh copy of the repository to the first page, and a second start."""
+"""Measure the time from a fresh copy of the repository to the first page, and a second start."""
 
 import os
 import shutil
@@ -74,7 +74,7 @@ def start_once(repository: Path, caches: Path) -> Start:
 
 
 def environment_with(caches: Path) -> dict[str, str]:
-    """Return this machine's settings (including its registries) with empty caches."""
+    """Return this machine's environment variables (including registries) with empty caches."""
     kept = {name: value for name, value in os.environ.items() if name not in LEFT_OUT}
     return {
         **kept,

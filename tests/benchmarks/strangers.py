@@ -1,4 +1,4 @@
-"""Anonymous callers, and a bare listener: `python -m tests.benchmarks.strangers`.
+"""Simulate anonymous callers, and a bare listener: `python -m tests.benchmarks.strangers`.
 
 Reads the plan as JSON from one line of standard input and prints `ready`. A plan with `callers`
 runs that many for a given time, each as fast as it gets responses: one half tries to sign in, the
@@ -47,7 +47,7 @@ class ListenerPlan:
 
 
 async def call(port: int, callers: int, duration_s: float) -> Counter[str]:
-    """Run all callers in parallel; return their responses by status, `none` for no response."""
+    """Run all callers in parallel; count their responses by status, `none` for no response."""
     answers: Counter[str] = Counter()
     until_s = time.monotonic() + duration_s
     await asyncio.gather(*(_caller(port, number, until_s, answers) for number in range(callers)))
@@ -95,7 +95,7 @@ async def _asked(port: int, body: bytes) -> str:
 
 
 async def listen(port: int) -> None:
-    """Answer 413 to every head."""
+    """Answer 413 to every request head and close the connection."""
 
     async def refuse(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         with contextlib.suppress(ConnectionError, asyncio.IncompleteReadError):
@@ -109,7 +109,7 @@ async def listen(port: int) -> None:
 
 
 def main(plan: dict[str, Any]) -> None:
-    """Run the plan from standard input."""
+    """Read the plan from standard input and run it."""
     if "callers" in plan:
         print("ready", flush=True)
         print(json.dumps(asyncio.run(call(**plan))), flush=True)

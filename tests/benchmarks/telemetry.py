@@ -1,4 +1,4 @@
-"""Measure fifty headsets in parallel: time until data are durable and shown, and the cost.
+"""Measure fifty headsets in parallel: time until data are durable and shown, and server load.
 
 Parts: `load` on SQLite, `load-postgresql` on a durable PostgreSQL, `knee` (how many sessions are
 too many), `backlog` (one reconnects with ten minutes in its journal), `peers` (other systems with
@@ -23,7 +23,7 @@ Part = Callable[[Path, float], Iterable[Figure]]
 
 
 def measure(parts: frozenset[str], duration_s: float = DURATION_S) -> Report:
-    """Measure the named parts, in a scratch folder. Shorter parts take at most `duration_s`."""
+    """Measure the named parts in a scratch folder; short parts take at most `duration_s`."""
     report = Report("telemetry")
     with tempfile.TemporaryDirectory(prefix="reembody-bench-") as scratch:
         for name, part in _PARTS.items():

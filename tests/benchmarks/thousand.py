@@ -1,4 +1,4 @@
-"""Build a study with a thousand participants: a few are built, the others are copied.
+"""Build a study of a thousand participants: a few sessions are built, the others are copied.
 
 Copies have ids of their own. Every row of a completed session exists a thousand times, except for
 movement, which no page reads.
@@ -63,7 +63,7 @@ def shipped_database(data_dir: Path) -> Database:
 
 
 def fill_thousand(database: Database, participants: int = 1000) -> list[str]:
-    """Store a thousand completed sessions of people and return their ids."""
+    """Store a thousand completed sessions, not marked simulated, and return their ids."""
     with database.writing() as db:
         built = [build_session(db, SessionSpec(f"P-{at:04d}")) for at in range(ORDERS)]
         for session in built:
@@ -77,7 +77,7 @@ def fill_thousand(database: Database, participants: int = 1000) -> list[str]:
 
 
 def _summarised(db: Session, session: StudySession) -> list[PhaseQuality]:
-    """Store the summaries of a phase; a server computes all that are missing."""
+    """Store the summaries of a phase, since a server computes all missing ones at its start."""
     phases = db.scalars(select(Phase).where(Phase.session_id == session.id)).all()
     return [
         PhaseQuality(
@@ -96,7 +96,7 @@ def _summarised(db: Session, session: StudySession) -> list[PhaseQuality]:
 
 
 def _copy(db: Session, built: Sequence[StudySession], at: int) -> str:
-    """Copy the rows of the built session with the same order to one more session."""
+    """Copy the rows of the built session with the same order of conditions to one more session."""
     version = newest_version(db, study_by_key(db, STUDY))
     slot = take_slot(db, version, protocol_of(version), "people", NOW)
     model = built[at % len(built)]

@@ -7,9 +7,9 @@ ours, without an integral part, which an avatar does not have, and without a sec
 the rule does not include.
 
 `steps` lets each axis jump by 30 degrees on the whole body: overshoot (median at most 3 %, worst at
-most 10 %), settling to 2 %, total duration (at most 30 s), and the state of the axes. A value is
-that of our tuning; its peers are, in turn, the limit and the two others. `tracking` lets the three
-bodies follow real people if the shared data are available.
+most 10 %), settling to 2 %, total duration (at most 30 s), and the state of the axes. Each value is
+that of our tuning; its peers are, in turn, the limit and the two other methods. `tracking` lets the
+three bodies follow real people if the shared data are available.
 """
 
 import time
@@ -41,7 +41,7 @@ class Contender:
     wall_s: float
 
     def figures(self) -> Iterator[tuple[str, float, str]]:
-        """Return name, value and unit of each figure."""
+        """Return the name, value and unit of each figure."""
         steps = [one.step for one in self.axes if one.step is not None]
         overshoots = [step.overshoot_percent for step in steps]
         settled = [step.settling_s for step in steps if step.settling_s is not None]

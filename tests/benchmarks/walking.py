@@ -1,4 +1,4 @@
-"""Measure the walking model: planner and maps (`walking_maps`), draws (`walking_sampling`)."""
+"""Measure the walking model: planner and maps (`walking_maps`), and draws (`walking_sampling`)."""
 
 from tests.benchmarks import walking_maps, walking_sampling
 from tests.benchmarks.report import Report

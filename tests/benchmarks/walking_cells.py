@@ -1,15 +1,15 @@
-"""Evaluate all three models on all populations: the cells that the walking model is judged by.
+"""Evaluate all three models on all populations; the results judge the walking model.
 
-For each population there is a database of 24 people over the laboratory's sixteen scenes. A cell is
-a population in one of three situations, and no person is in both training and test data:
+Each population has a database of 24 people in the laboratory's sixteen scenes. A cell is a
+population in one of three situations, and no person is in both training and test data:
 
     laboratory    people left out of the database, a quarter at a time
 
     workplace 1   ten other people in the paper's first scene, which is not in the database
 
-    workplace 2   the same in its second
+    workplace 2   the same people in its second scene
 
-Readings are chosen on the people whom a model is fitted on.
+Readings are chosen on the people on whom a model is fitted.
 """
 
 import sys
@@ -66,13 +66,13 @@ class Studied:
 
 
 def made(entries: Sequence[PlannedWalk], maker: MapMaker, names: tuple[str, ...]) -> WalkDatabase:
-    """Return a database of walks with the maps of all its entries."""
+    """Return a database of walks, with maps of all its entries."""
     return database_of(entries, [one for _, one in maps_of(entries, maker)], names)
 
 
 @cache
 def studied() -> tuple[Studied, ...]:
-    """Compute everything, once per process; takes some minutes."""
+    """Compute the results for all populations, once per process; this takes some minutes."""
     return tuple(_study(population, seed) for seed, population in enumerate(POPULATIONS, start=1))
 
 

@@ -50,13 +50,13 @@ def repeated() -> Replication:
 
 @cache
 def real() -> RealWalks | None:
-    """Evaluate real walks; None if the shared data are not available."""
+    """Evaluate real walks, or return None if the shared data are not available."""
     folder = shared_folder()
     return None if folder is None else real_walks(folder)
 
 
 def population_figures() -> Iterator[Figure]:
-    """Return shares of cells, and the median of interquartile ratios."""
+    """Return the shares of cells within the limits, and the median of interquartile ratios."""
     part, found = "populations", [cell.evaluation for cell in cells()]
     by_adapt = np.array([one.crps_ratio("prob", "adapt") for one in found])
     by_stat = np.array([one.crps_ratio("prob", "stat") for one in found])
@@ -76,7 +76,7 @@ def population_figures() -> Iterator[Figure]:
 
 
 def replication_figures() -> Iterator[Figure]:
-    """Return the figures of leaving out, by neighbours and by radial bases."""
+    """Return the leave-out errors of the prediction by neighbours and by radial bases."""
     one, part = repeated(), "replication"
     for name, left, limits in (
         ("neighbours left out", one.neighbours, NEIGHBOURS_LIMITS),
@@ -89,7 +89,7 @@ def replication_figures() -> Iterator[Figure]:
 
 
 def real_figures() -> Iterator[Figure]:
-    """Return the share of the table's distances within one deviation."""
+    """Return the share of distances whose error is within one standard deviation."""
     found = real()
     if found is None:
         return

@@ -1,8 +1,8 @@
-"""Measure planner and suitability maps of the walking model: parts of `./run bench walking`.
+"""Measure the planner and suitability maps of the walking model, for `./run bench walking`.
 
 `planner`: Lazy Theta* on a lattice of one centimetre, over the walks of the laboratory's sixteen
 scenes, and compared with the shortest paths (full visibility graph) on 1,000 random scenes: at most
-1 % longer. `maps`: all 1848 maps of 1000 combinations, on all processors, at most 60 s; the
+1 % longer. `maps`: all 1848 maps of 1000 combinations, on all processors, in at most 60 s; the
 compiled version is compared with NumPy on some of them, to 1e-9. Compiling is not timed. If other
 programs run, the processor time shows what the machine alone would take.
 """
@@ -30,7 +30,7 @@ PLAN_MS, MAPS_S, EXCESS, AGREEMENT = 14.0, 60.0, 0.01, 1e-9
 
 
 def planner_figures() -> Iterator[Figure]:
-    """Measure how long a path takes, and how much longer than the shortest it is."""
+    """Measure how long planning a path takes, and how much the path exceeds the shortest one."""
     walks = list(population(320, SUBJECTS))
     planned_walk(walks[-1][1], walks[-1][0])
     took = []
@@ -49,7 +49,7 @@ def planner_figures() -> Iterator[Figure]:
 
 
 def _random_scenes() -> tuple[FloatArray, int]:
-    """Return each scene's excess over the shortest path, and how many only one planner crosses."""
+    """Return each scene's excess length, and how many scenes only one planner crosses."""
     excess, unlike = [], 0
     for seed in range(SCENES):
         scene, start, goal = random_scene(np.random.default_rng(seed))

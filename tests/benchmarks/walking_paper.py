@@ -1,4 +1,4 @@
-"""Figures as printed in the paper; empty if it shows them only in pictures."""
+"""Figures printed in the paper; an entry is empty if the paper shows it only in a picture."""
 
 PAPER_PERCENTILES = (
     {

@@ -2,15 +2,15 @@
 
 It is fitted on the foot paths of the short-walk experiment's first two people and part of the
 captured walks of the CMU database; tested on the table of the experiment's other eight people, and
-on the CMU walks left out. Nobody's stature is known. The table's durations use its authors' own
+on the CMU walks left out. No person's stature is known. The table's durations use its authors' own
 definition of beginning and end, which differs from the one here, so only speed is judged and the
 error of the duration is reported without a limit.
 
-A foot's path is integrated from a sensor, and drifts: the second person's walk of 1.1 m comes to
-.43 m. So paths are scaled to the distance that was walked, and one that misses it by more than half
-is left out. CMU 05_06 turns by 326 degrees on the way: this is not a walk from a start to a goal,
-and is left out. Both rules were made after looking at the files and at a first comparison with the
-table.
+A foot's path is integrated from a sensor, and drifts: the second person's walk of 1.1 m is
+integrated to .43 m. So paths are scaled to the distance that was walked, and one that misses it by
+more than half is left out. CMU 05_06 turns by 326 degrees on the way: this is not a walk from a
+start to a goal, and is left out. Both rules were made after looking at the files and at a first
+comparison with the table.
 """
 
 from collections.abc import Iterator
@@ -47,7 +47,7 @@ DRAWS, LEAST_SHARE = 300, 0.5
 
 @dataclass(frozen=True)
 class Distance:
-    """One distance of the table: means of the eight people, and the prediction for them.
+    """One distance of the table: the mean of the eight people, and the prediction for them.
 
     Attributes:
         sd_m_s: SD between the means of all ten people.
@@ -88,7 +88,7 @@ def shared_folder() -> Path | None:
 
 
 def real_walks(folder: Path) -> RealWalks:
-    """Fit on a few people and test on others."""
+    """Fit the model on a few people's walks and test it on others."""
     fit, raw = (_fitted(folder, scaled=scaled) for scaled in (True, False))
     others = tuple(_planned(walk) for walk in _captured(folder, LEFT_OUT))
     result = evaluate(fit.models, FOLLOWER, others, np.random.default_rng(1), draws=DRAWS)

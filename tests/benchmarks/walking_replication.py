@@ -40,7 +40,7 @@ DISTANCES_M, LONG_PEOPLE, LONG_TIMES = (10.0, 25.0, 50.0), 16, 4
 
 @dataclass(frozen=True)
 class Neighbourhood:
-    """The results for one k.
+    """The results for one number k of neighbours.
 
     Median |dt| of single draws, CRPS, and the duration of one draw by the paper's method.
     """
@@ -137,7 +137,7 @@ def _submodels(studied: Studied, rng: np.random.Generator) -> Iterator[Submodel]
 
 
 def _long_walks(rng: np.random.Generator) -> Iterator[LongWalk]:
-    """Compare velocity and acceleration by stature and distance, fitted on half of the people."""
+    """Compare velocity and acceleration by stature and distance, fitted on half the people."""
     values = (*PAPER_GRID.values[:2], (2.0,))
     maker = MapMaker(grid=ParameterGrid(PAPER_PARAMETERS, values))
     scenes = [straight_scene(distance) for distance in DISTANCES_M]

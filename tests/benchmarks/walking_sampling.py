@@ -1,10 +1,10 @@
-"""Measure draws of steering parameters: a part of `./run bench walking`.
+"""Measure draws of steering parameters, as a part of `./run bench walking`.
 
-A space of 5000 entries over the paper's grid, k = 100, each query new. `fresh` is one draw with its
-search for neighbours: the default mixture (of the multilinear map) and the paper's method, blended
-radial basis functions and rejection. `cached` is one of many draws for a query that was prepared.
-The peer, in the same run, is the paper's own pipeline as it describes it: KDTree of scikit-learn, a
-weighted sum of maps, scipy's Rbf, rejection one proposal at a time.
+The space has 5000 entries over the paper's grid, k = 100, and each query is new. `fresh` is one
+draw with its search for neighbours: the default mixture (of the multilinear map) and the paper's
+method, blended radial basis functions and rejection. `cached` is one of many draws for a prepared
+query. The peer, in the same run, is the paper's own pipeline as it describes it: KDTree of
+scikit-learn, a weighted sum of maps, scipy's Rbf, rejection one proposal at a time.
 """
 
 import time
@@ -26,7 +26,7 @@ NAMES = ("length_m", "turning_per_m", "stature_m")
 
 
 def sampling_figures() -> Iterator[Figure]:
-    """Measure how long draws take."""
+    """Measure the time of draws."""
     rng = np.random.default_rng(1)
     began = time.perf_counter()
     space, vectors = made_up_space(rng)
@@ -66,7 +66,7 @@ def _median_us(draw: Callable[[FloatArray], object], questions: FloatArray) -> f
 
 
 class Literal:
-    """The paper's pipeline, each stage with the function that it names."""
+    """The paper's pipeline, each stage with the function that the paper names."""
 
     def __init__(self, space: BlendingSpace) -> None:
         self.space, self.tree = space, KDTree(space.z)

@@ -1,6 +1,7 @@
 """Find every command line in the docs, in blocks of code and in sentences.
 
-`python -m tests.docs.commands` lists them with what tests/docs/test_commands.py does with each.
+`python -m tests.docs.commands` lists them with the treatment of each in
+tests/docs/test_commands.py.
 """
 
 import re
@@ -22,7 +23,7 @@ SPAN = re.compile(r"`([^`]+)`")
 
 
 class Fate(StrEnum):
-    """What a test does with a command of a block."""
+    """How a test treats a command of a block."""
 
     RUN = "runs"
     SCRIPT = "runs in tests/docs/test_scripting_page.py"
@@ -44,7 +45,7 @@ class Command:
 
     @property
     def fate(self) -> Fate:
-        """Return what a test does with it."""
+        """Return how a test treats the command."""
         if self.script:
             return Fate.SCRIPT
         if any(re.search(pattern, self.text) for pattern in NOT_RUN):
@@ -53,7 +54,7 @@ class Command:
 
     @property
     def settings(self) -> dict[str, str]:
-        """Return the variables that it sets."""
+        """Return the environment variables that the command line sets."""
         return dict(word.split("=", 1) for word in self._words[: self._program])
 
     @property

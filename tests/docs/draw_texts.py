@@ -2,8 +2,8 @@
 
 `python -m tests.docs.draw_texts [COMMIT]` prints a hundred texts of the pages (with their German
 versions) and a hundred docstrings of `app` and `tests`. The commit's hash is the seed, so that a
-sample can be reproduced and nobody can choose it; without a commit it is HEAD's, drawn from the
-working tree.
+sample can be reproduced and nobody can choose it; without a commit the seed is HEAD's hash, and the
+texts are drawn from the working tree.
 """
 
 # ruff: noqa: T201  # what it prints is what it is for
@@ -67,7 +67,7 @@ def docstrings(root: Path) -> list[Text]:
 
 
 def drawn(texts: list[Text], seed: str) -> list[Text]:
-    """Return `SAMPLE` of the texts, the same ones for the same seed."""
+    """Return `SAMPLE` of the texts; the same seed gives the same ones."""
     chosen = random.Random(seed).sample(range(len(texts)), min(SAMPLE, len(texts)))  # noqa: S311
     return [texts[at] for at in chosen]
 

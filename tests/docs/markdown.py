@@ -22,7 +22,7 @@ CODE_SPAN = re.compile(r"`[^`]*`")
 
 @dataclass(frozen=True)
 class Code:
-    """A block of code: its language ("" without one), its text, and the line it begins at."""
+    """A block of code: its language ("" if it has none), its text, and its first line number."""
 
     language: str
     text: str
@@ -37,7 +37,7 @@ class Page:
 
     @property
     def name(self) -> str:
-        """Return its path in the repository."""
+        """Return the page's path in the repository."""
         return self.path.relative_to(REPOSITORY).as_posix()
 
     @cached_property
@@ -46,12 +46,12 @@ class Page:
 
     @property
     def lines(self) -> tuple[str, ...]:
-        """Return its lines outside code, with empty ones in place of code."""
+        """Return the page's lines, with code replaced by empty lines."""
         return self._parts[0]
 
     @property
     def code(self) -> tuple[Code, ...]:
-        """Return its blocks of code, fenced and indented."""
+        """Return the page's blocks of code, fenced and indented."""
         return self._parts[1]
 
     @cached_property
@@ -70,7 +70,7 @@ class Page:
 
     @cached_property
     def links(self) -> tuple[tuple[int, str], ...]:
-        """Return line number and target of every link and picture."""
+        """Return the line number and target of every link and picture."""
         return tuple(
             (number, link["target"])
             for number, line in enumerate(self.lines, 1)
@@ -86,7 +86,7 @@ class Page:
 
 
 def anchor(heading: str) -> str:
-    """Return GitHub's anchor: lower case, punctuation dropped, spaces as hyphens."""
+    """Return GitHub's anchor of a heading: lower case, no punctuation, spaces as hyphens."""
     text = LINK.sub(lambda link: link["text"], heading)
     return re.sub(r"[^\w\- ]", "", text.lower()).replace(" ", "-")
 

@@ -51,7 +51,7 @@ FAST_WALKING = ("--entries", "300", "--k", "30", "--reading", "time-aware")
 
 
 class Lab:
-    """A working folder with an installation of its own, and the files that a page names.
+    """A working folder with its own installation, and the files that a page names.
 
     `server`: a server whose data the commands use; without one they use the data alone.
     """
@@ -130,7 +130,7 @@ def test_the_commands_of_a_page_run_in_their_order(
     request: pytest.FixtureRequest,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Each command of a page succeeds, and later ones find what earlier ones have made."""
+    """Each command of a page succeeds, and later ones find the results of earlier ones."""
     with_server = page in {"README.md", "docs/commands.md", "docs/captures.md"}
     lab = Lab(
         tmp_path,
@@ -179,7 +179,7 @@ def _run(command: Command, lab: Lab, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def _rehearsed_at(lab: Lab, command: Command) -> list[str]:
-    """Return options for a running server and a brief study; else a rehearsal starts a server."""
+    """Return options for a running server and a brief study, else a rehearsal starts a server."""
     if not re.match(r"\./run rehearse", command.text):
         return []
     assert lab.server is not None
@@ -199,7 +199,7 @@ def _put_in_place(word: str, lab: Lab) -> str:
 
 
 def _spread(words: list[str], folder: Path) -> list[str]:
-    """Expand `*` as a shell does."""
+    """Expand `*` in arguments as a shell does."""
     return [
         name
         for word in words
@@ -208,7 +208,7 @@ def _spread(words: list[str], folder: Path) -> list[str]:
 
 
 def _serve(arguments: list[str], settings: Mapping[str, str], lab: Lab) -> None:
-    """Start what the line starts, on free ports of the loopback, and request its page."""
+    """Start the server of a command line on free ports of the loopback, and request its page."""
     given = [word for word in arguments if word != "serve"]
     if "--port" in given:
         del given[(at := given.index("--port")) : at + 2]
@@ -240,7 +240,7 @@ def _opens(server: LiveServer) -> None:
 
 
 def _split(tls: Path, folder: Path) -> None:
-    """Write the pair of files that `--certificate` and `--key` take."""
+    """Write the two files that `--certificate` and `--key` expect."""
     text = "".join(path.read_text() for path in sorted(tls.glob("server*.pem")))
     blocks = re.findall(r"-----BEGIN [^-]+-----.*?-----END [^-]+-----\n", text, re.DOTALL)
     (folder / "key.pem").write_text("".join(block for block in blocks if "KEY" in block))
@@ -354,7 +354,7 @@ def _problem_of_bench(arguments: list[str]) -> str | None:
 
 
 def _problem_of_reembody(arguments: list[str]) -> str | None:
-    """Follow the words through the commands; placeholders in capitals match anything."""
+    """Return the problem of words that are not a command; placeholders match anything."""
     if arguments[0] == "COMMAND" or arguments == ["--help"]:
         return None
     found = CLI
@@ -384,7 +384,7 @@ def _database(lab: Lab) -> str:
 
 
 def _add_an_arm(lab: RunningLab) -> None:
-    """Store an avatar of which only one arm moves: most experiments are left out."""
+    """Store an avatar of which only one arm moves, so that most experiments are left out."""
     held = ("trunk_head", "left_leg", "right_leg", "right_arm", "left_fingers", "right_fingers")
     arm = file_of(replace(default_configuration(), locked_groups=held))
     wish = NewAvatar(key="arm", title="Arm", origin="by_hand", configuration=arm)

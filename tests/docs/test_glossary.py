@@ -15,7 +15,7 @@ SOURCES = {"app": ("*.py",), "frontend/src": ("*.ts", "*.tsx")}
 
 
 def entries() -> list[list[str]]:
-    """Return the cells of every row of the tables of words."""
+    """Return the cells of every row in the glossary's tables."""
     rows: list[list[str]] = []
     inside = False
     for line in GLOSSARY.read_text(encoding="utf-8").splitlines():
@@ -27,7 +27,7 @@ def entries() -> list[list[str]]:
 
 @cache
 def code() -> str:
-    """Return the sources of the server and the pages."""
+    """Return the source code of the server and the pages."""
     return "\n".join(
         path.read_text(encoding="utf-8")
         for folder, patterns in SOURCES.items()
@@ -38,7 +38,7 @@ def code() -> str:
 
 
 def test_every_word_has_one_entry_in_both_languages() -> None:
-    """Every word of the glossary has one complete entry with its German."""
+    """Every word of the glossary has one complete entry with its German translation."""
     words = [row[0] for row in entries()]
     assert len(words) > 60
     assert [row for row in entries() if len(row) != 5 or not all(row[:4])] == []
@@ -71,7 +71,7 @@ def test_every_table_of_the_export_is_a_word_of_the_glossary() -> None:
 
 
 def test_older_words_are_still_used() -> None:
-    """Every older word in the glossary's list is still used in the code."""
+    """Every word in the glossary's list of older words is still used in the code."""
     text = GLOSSARY.read_text(encoding="utf-8").partition("## Older words that stay")[2]
     rows = [line.strip("|").split(" |")[0] for line in text.splitlines() if line.startswith("| `")]
     words = [word for row in rows for word in SPAN.findall(row)]

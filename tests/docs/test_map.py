@@ -15,7 +15,7 @@ def test_the_map_has_its_five_parts() -> None:
 
 
 def test_every_page_is_on_the_map_with_a_sentence() -> None:
-    """Each page of docs/ is on the map once with a sentence; decisions have their own list."""
+    """Each page of docs/ is on the map once with a sentence; decisions have a separate list."""
     entries = [line for line in Page(MAP).lines if line.startswith("- ")]
     targets = [re.match(r"- \[[^\]]+\]\(([^)]+)\): \S.{15,}\.$", entry) for entry in entries]
     assert [entry for entry, found in zip(entries, targets, strict=True) if not found] == []

@@ -25,7 +25,7 @@ def examples(language: str) -> str:
 
 @pytest.fixture(scope="module")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveServer]:
-    """Provide a server, with a `./run` that uses its data."""
+    """Provide a server, and a `./run` that uses the server's data."""
     with LiveServer(tmp_path_factory.mktemp("scripting")) as running:
         folder = running.data_dir.parent
         there = f'REEMBODY_DATA_DIR="{running.data_dir}"'
@@ -57,7 +57,8 @@ def run(server: LiveServer, *command: str, token: str = "") -> str:
 def test_the_python_examples_go_from_a_token_to_an_erasure(server: LiveServer) -> None:
     """The Python examples run as one script from a token to an erasure.
 
-    The server's audit trail contains each step. The token of a login works like one of the command.
+    The server's audit trail contains each step. The token of a login works like one that the
+    command creates.
     """
     with server.client() as client:
         credentials = {"username": "admin", "password": ADMIN_PASSWORD}
@@ -84,7 +85,7 @@ def test_the_python_examples_go_from_a_token_to_an_erasure(server: LiveServer) -
 
 @pytest.mark.skipif(shutil.which("curl") is None, reason="curl is not installed")
 def test_the_shell_examples_go_from_a_token_to_an_export(server: LiveServer) -> None:
-    """The shell examples run from a token of the command to an export of a planned session."""
+    """The shell examples run from a token, made by a command, to a planned session's export."""
     with server.client() as admin:
         assert admin.get("/api/openapi.json").json()["info"]["title"]
         credentials = {"username": "admin", "password": ADMIN_PASSWORD}

@@ -31,7 +31,7 @@ HERE = Path(__file__).resolve().parent
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark the tests before `-m` selects."""
+    """Mark the tests of this folder as `browser` before `-m` selects tests."""
     for item in items:
         if item.path.is_relative_to(HERE):
             item.add_marker(pytest.mark.browser)
@@ -46,13 +46,13 @@ def browser() -> Iterator[Browser]:
 
 @pytest.fixture
 def page_watch() -> PageWatch:
-    """Provide the collected errors of the test's pages; `allow()` expected ones."""
+    """Provide the collected errors of the test's pages; expected errors are passed to `allow()`."""
     return PageWatch()
 
 
 @pytest.fixture
 def new_context(browser: Browser, page_watch: PageWatch) -> Iterator[ContextFactory]:
-    """Provide a factory of browser contexts.
+    """Provide a factory of watched browser contexts.
 
     `new_context(size=(1280, 800), color_scheme="light", locale="en-US", motion="reduce")`.
     """
@@ -80,7 +80,7 @@ def page_factory(new_context: ContextFactory) -> Callable[..., Page]:
 def screenshot() -> Callable[[Page, str], object]:
     """Provide `screenshot(page, name)`, which saves to $REEMBODY_SCREENSHOTS, if it is set.
 
-    No test examines its pictures, and drawing whole pages costs more than most of what is tested.
+    No test examines the pictures, and drawing whole pages takes longer than most tests.
     """
     chosen = os.environ.get(SCREENSHOTS_VARIABLE)
     if not chosen:
@@ -134,7 +134,7 @@ def wear(
     new_context: ContextFactory,
     page_watch: PageWatch,
 ) -> Wear:
-    """Provide a function that puts a paired headset on a page, by default in a new context."""
+    """Provide a function that opens a page as a paired headset, by default in a new context."""
     # The browser reports this error when a server is unavailable.
     page_watch.allow(r"WebSocket connection to .* failed")
 

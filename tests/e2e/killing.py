@@ -1,4 +1,4 @@
-"""End pages and browsers without warning."""
+"""Crash pages and kill browsers without warning."""
 
 import os
 import signal
@@ -21,7 +21,7 @@ def crash(page: Page) -> None:
 
 @contextmanager
 def kept_profile(browser: Browser, profile: Path) -> Iterator[BrowserContext]:
-    """Run a separate browser whose storage is kept in a folder."""
+    """Run a separate browser whose storage persists in a folder."""
     chromium = find_chromium()
     context = browser.browser_type.launch_persistent_context(
         profile,

@@ -38,7 +38,7 @@ class BlindedLab:
 
 @contextmanager
 def blinded_lab(server: LiveServer) -> Iterator[BlindedLab]:
-    """Blind the shipped study with a new version."""
+    """Return a lab whose shipped study is blinded by a new version."""
     with server.client() as admin:
         ok(admin.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
         yaml = ok(admin.get(f"/api/studies/{STUDY}"))["yaml"]
@@ -59,7 +59,7 @@ def make_account(page: Page, link: str, name: str) -> None:
 
 
 def invite_in(page: Page, role: str, note: str) -> str:
-    """Invite someone on the console's page People and return the link."""
+    """Invite someone on the console's People page and return the link."""
     page.get_by_role("button", name="Invite someone").click()
     page.get_by_role("radio", name=role).click()
     page.get_by_label("Who is it for?").fill(note)

@@ -47,7 +47,7 @@ class Experimenter:
         return code
 
     def press(self, name: str) -> None:
-        """Press the button of that name as soon as it is enabled."""
+        """Press the button with this name as soon as it is enabled."""
         button = self.page.get_by_role("button", name=name).first
         expect(button).to_be_enabled(timeout=PATIENCE_MS)
         button.click()
@@ -55,7 +55,7 @@ class Experimenter:
     def start(self) -> None:
         """Start the session, with a reason if the pre-flight asks for one.
 
-        Missing devices may arrive while the reason is entered; the same button then starts.
+        Missing devices may connect while the reason is entered; the same button then starts.
         """
         self.press("Start session")
         asked = self.page.get_by_role("dialog")
@@ -67,7 +67,7 @@ class Experimenter:
             expect(begun).to_be_visible(timeout=PATIENCE_MS)
 
     def match_height(self, stated_cm: str, matched_cm: str) -> None:
-        """Check the height that was stated on the tablet, and enter the matched one."""
+        """Check the height that was entered on the tablet, and enter the matched height."""
         stated = self.page.get_by_label("Stated height")
         expect(stated).to_have_value(f"{stated_cm} cm", timeout=PATIENCE_MS)
         self.page.get_by_label("Matched height").fill(matched_cm)
@@ -111,7 +111,7 @@ class Participant:
             self.page.get_by_role("button", name="Next").click()
 
     def waits(self) -> None:
-        """Wait until the answers are stored and the form has closed."""
+        """Wait until the answers are stored and the form is closed."""
         send = self.page.get_by_role("button", name="Send answers")
         expect(send).to_have_count(0, timeout=PATIENCE_MS)
 

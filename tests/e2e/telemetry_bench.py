@@ -1,4 +1,4 @@
-"""Run the browser's telemetry client on a page of its own, and verify what it sent.
+"""Run the browser's telemetry client on a test page, and verify the data that it sent.
 
 The page's data are a function of stream, epoch and seq
 (`frontend/src/vr/telemetry/testing/bench.ts`), so the test knows every bit of them without asking
@@ -33,7 +33,7 @@ Mode = Literal["page", "worker"]
 
 
 def table() -> NDArray[np.float32]:
-    """Return movement that contains every unusual float, so that any changed bit is detected."""
+    """Return movement that contains every unusual float, so that any changed bit is noticed."""
     rows = movement(seed=11)
     odd = every_odd_float()
     rows[100 : 100 + len(odd)] = odd
@@ -42,7 +42,7 @@ def table() -> NDArray[np.float32]:
 
 @dataclass
 class Headset:
-    """A page with the client, in one browser context; calling `open` again restarts the client."""
+    """A page with the telemetry client; calling `open` again restarts the client."""
 
     context: BrowserContext
     bundle: Bundle
@@ -76,11 +76,11 @@ class Headset:
         self.page.evaluate("(args) => bench.produce(...args)", [batches, speed])
 
     def begin(self, batches: int, speed: float | None) -> None:
-        """Start to produce batches of both streams without waiting."""
+        """Start producing batches of both streams without waiting."""
         self.page.evaluate("(args) => bench.begin(...args)", [batches, speed])
 
     def drained(self) -> float:
-        """Wait until everything is stored; return the seconds since the connection opened."""
+        """Wait until everything is stored; return the seconds since the connection was opened."""
         return float(self.page.evaluate("() => bench.drained()"))
 
     def flush(self) -> None:
@@ -88,16 +88,16 @@ class Headset:
         self.page.evaluate("() => bench.client.flush()")
 
     def wait_for(self, condition: str) -> None:
-        """Wait until an expression of the page is true."""
+        """Wait until a JavaScript expression in the page is true."""
         self.page.wait_for_function(f"() => {condition}", timeout=60_000)
 
     def tell(self, expression: str) -> Any:
-        """Return the value of an expression of the page."""
+        """Return the value of a JavaScript expression in the page."""
         return self.page.evaluate(f"() => {expression}")
 
     @property
     def status(self) -> dict[str, Any]:
-        """Return the status of the sending."""
+        """Return the client's sending status."""
         status: dict[str, Any] = self.tell("bench.client.status")
         return status
 
@@ -118,13 +118,13 @@ Wear = Callable[..., Headset]
 
 @dataclass(frozen=True)
 class Meter:
-    """Memory and processor time of a page's main thread, as Chromium reports them."""
+    """The memory and processor time of a page's main thread, as Chromium reports them."""
 
     session: CDPSession
 
     @classmethod
     def of(cls, page: Page) -> "Meter":
-        """Start to measure a page."""
+        """Start measuring a page."""
         session = page.context.new_cdp_session(page)
         session.send("Performance.enable")
         return cls(session)
@@ -154,7 +154,7 @@ class Made:
 
 
 def sent_by(runs: dict[int, Made]) -> LedgerJournal:
-    """Return what must be stored (as if acknowledged) and what may be, by epoch."""
+    """Return, by epoch, the data that must be stored (as if acknowledged) and those that may be."""
     ledger, rows = LedgerJournal(), table()
     for epoch, made in runs.items():
         seqs = np.arange(made.frames + made.perhaps)

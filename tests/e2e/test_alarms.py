@@ -21,8 +21,8 @@ def test_an_alarm_is_raised_and_cleared(
 ) -> None:
     """An alarm appears, can be acknowledged, clears, and stays in the list.
 
-    It is raised by a headset that stops sending in a phase. Nothing else on the page moves
-    meanwhile.
+    The alarm is raised by a headset that stops sending in a phase. The other parts of the page do
+    not move when it appears.
     """
     experimenter = Experimenter(page_factory((1280, 800)), headset_site.server.url)
     page, session_id = experimenter.page, materialised(headset_site)

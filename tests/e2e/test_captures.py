@@ -90,7 +90,7 @@ def open_capture(page: Page, server: LiveServer, capture: dict[str, Any], tab: s
 
 
 def stage(page: Page) -> Locator:
-    """Return the 3-D picture, once something has been drawn."""
+    """Return the 3-D view, once it has drawn something."""
     canvas = page.locator("canvas[data-frame]")
     expect(page.locator("[data-way=space]")).to_be_visible(timeout=PATIENCE_MS)
     return canvas
@@ -152,7 +152,7 @@ def test_choosing_another_unit_rereads_the_file(
 
 
 def size_m(panel: Locator) -> float:
-    """Return the height that the panel shows."""
+    """Return the height shown in the panel, in metres."""
     told = panel.get_by_text("m high")
     expect(told).to_be_visible(timeout=PATIENCE_MS)
     return float(told.inner_text().rpartition(", ")[2].removesuffix(" m high"))
@@ -165,7 +165,7 @@ def test_a_joint_map_is_changed_undone_and_saved(
     walk: dict[str, Any],
     page_watch: PageWatch,
 ) -> None:
-    """A joint mapped to two parts is rejected, and undo and a conflict on saving work."""
+    """A joint map rejects a joint with two parts, supports undo and reports saving conflicts."""
     page_watch.allow(r"status of 409")
     open_capture(console, server, walk, "joints")
     hand = console.get_by_role("combobox", name="Left hand")
@@ -199,7 +199,7 @@ def test_a_joint_map_is_changed_undone_and_saved(
 def test_a_walk_is_verified_on_three_avatars(
     server: LiveServer, console: Page, walk: dict[str, Any], tmp_path: Path
 ) -> None:
-    """Foot lifts agree on avatars of 130, 165 and 190 cm; another can be added and downloaded."""
+    """A walk's foot lifts agree on avatars of 130, 165 and 190 cm; an added one is downloaded."""
     open_capture(console, server, walk, "verification")
     expect(console.get_by_text("Every avatar lifts each foot as often")).to_be_visible(
         timeout=PATIENCE_MS
@@ -223,7 +223,7 @@ def test_a_walk_is_verified_on_three_avatars(
 def test_an_unreadable_file_shows_line_and_reason(
     server: LiveServer, console: Page, tmp_path: Path, page_watch: PageWatch
 ) -> None:
-    """An unreadable file shows the line, reason and remedy; an AMC asks for its ASF."""
+    """An unreadable file shows its line, reason and remedy; an AMC file requires an ASF."""
     page_watch.allow(r"status of 422")
     broken = tmp_path / "broken.bvh"
     broken.write_bytes(walk_bvh(2).replace(b"CHANNELS 3", b"CHANNELS 9", 1))

@@ -64,7 +64,7 @@ def test_a_start_needs_a_reason_and_the_movement_is_drawn(
 
 
 def _press_until_it_opens(page: Page, dialog: Locator) -> None:
-    """Press Enter until the dialog opens: the key is ignored after a change and while loading."""
+    """Press Enter until the dialog opens, as the key is ignored after a change or while loading."""
     for _ in range(int(PATIENCE_MS / PRESSED_EVERY_MS)):
         page.keyboard.press("Enter")
         page.wait_for_timeout(PRESSED_EVERY_MS)

@@ -1,4 +1,4 @@
-"""Browser tests of consent: drawn, typed, printed and on paper."""
+"""Browser tests of consent that is drawn, typed, printed or given on paper."""
 
 from collections.abc import Callable
 
@@ -66,7 +66,7 @@ def test_a_drawn_signature_is_recorded(
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
 ) -> None:
-    """A signed consent needs every required line, survives a reload and is shown in full.
+    """A signed consent needs every required line, survives a reload and is displayed in full.
 
     The consent record contains all of it.
     """
@@ -133,7 +133,7 @@ def test_consent_can_be_signed_by_keyboard(
 def test_a_sheet_of_paper_is_recorded_by_the_experimenter(
     pages: tuple[Experimenter, Participant],
 ) -> None:
-    """A paper consent is recorded with its place and reason, and the tablet continues."""
+    """A consent on paper is recorded with its place and reason, and the tablet continues."""
     experimenter, participant = pages
     console = experimenter.page
     experimenter.press("Signed on paper")

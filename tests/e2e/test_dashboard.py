@@ -1,4 +1,4 @@
-"""Browser tests of figures and statistical tests, filtered by the URL and saved as files."""
+"""Browser tests of figures and statistical tests, which a URL filters and files save."""
 
 from collections.abc import Callable
 
@@ -25,7 +25,7 @@ def test_figures_are_filtered_by_the_url_and_saved(
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
 ) -> None:
-    """A filter in the URL selects the figures, which are saved as pictures and rows.
+    """A filter in the URL selects the figures, which can be saved as pictures and as rows.
 
     Statistics and the preregistration are shown too.
     """

@@ -1,4 +1,4 @@
-"""Browser tests of simultaneous or repeated actions at the desk, with figures."""
+"""Browser tests of simultaneous or repeated actions of operators and participants."""
 
 import re
 import time
@@ -63,14 +63,14 @@ def test_a_form_sent_fifty_times_in_parallel_is_stored_once(
 
 
 def as_set(receipts: list[list[Any]]) -> set[tuple[int, str]]:
-    """Return the distinct responses."""
+    """Return the distinct responses, each with its status and receipt."""
     return {(status, receipt) for status, receipt in receipts}
 
 
 def test_of_two_tablets_with_one_code_one_is_paired(
     headset_site: Site, page_factory: Callable[..., Page], page_watch: PageWatch
 ) -> None:
-    """Of two tablets with one code only one is paired, and a new code moves the session.
+    """Of two tablets with the same code only one is paired; a new code moves the session.
 
     The second tablet shows what to do, and the first one says that it was replaced.
     """

@@ -16,7 +16,7 @@ STUDY = "reembodiment-latency"
 
 
 class Writer(Experimenter):
-    """An author of studies, at the console."""
+    """An author of studies who works at the console."""
 
     @property
     def text(self) -> str:
@@ -28,7 +28,7 @@ class Writer(Experimenter):
         self.page.get_by_role("tab", name=name, exact=False).first.click()
 
     def replace_all(self, text: str) -> None:
-        """Replace the whole file."""
+        """Replace the whole text of the file."""
         self.page.locator(".cm-content").click()
         self.page.keyboard.press("Control+A")
         self.page.keyboard.insert_text(text)
@@ -51,9 +51,9 @@ def writer(live_server: LiveServer, page_factory: Callable[..., Page]) -> Writer
 def test_a_study_from_template_to_second_version(
     writer: Writer, axe: Callable[[Page], list[str]], screenshot: Callable[[Page, str], object]
 ) -> None:
-    """A study is created from a template, corrected, dry-run, saved, changed and compared.
+    """A study is created from a template, corrected, tested in a dry run, saved and changed.
 
-    A problem leads to its line, and a change can be undone.
+    A problem links to its line, a change can be undone, and versions can be compared.
     """
     page = writer.page
     page.get_by_role("link", name="New study").click()
@@ -107,7 +107,7 @@ def test_a_study_from_template_to_second_version(
 
 
 def test_unsaved_changes_are_not_lost(writer: Writer) -> None:
-    """Leaving with unsaved changes asks first, and returning offers to keep or discard them."""
+    """Leaving unsaved changes needs confirmation; on return they can be kept or discarded."""
     page = writer.page
     writer.open_tab(STUDY, "edit")
     writer.sees_no_problem()
@@ -124,7 +124,7 @@ def test_unsaved_changes_are_not_lost(writer: Writer) -> None:
 
 
 def test_an_archived_study_comes_back(writer: Writer) -> None:
-    """An archived study leaves the list after a confirmation, and restoring brings it back."""
+    """An archived study disappears from the list after confirmation and can be restored."""
     page = writer.page
     writer.open_tab(STUDY, "versions")
     page.get_by_role("button", name="Archive").click()
@@ -171,7 +171,7 @@ def test_editor_and_library_are_accessible(
     screenshot: Callable[[Page, str], object],
     scheme: ColorScheme,
 ) -> None:
-    """No section of the form or tab of an instrument has a serious violation, also in German."""
+    """No section of the form or tab of an instrument has a serious violation in either language."""
     writer = Writer(page_factory((1180, 820), scheme), running_server.url)
     writer.log_in()
     page = writer.page

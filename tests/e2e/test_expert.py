@@ -1,4 +1,4 @@
-"""Browser tests of an expert's session, the equipment's latency and differing heights."""
+"""Browser tests of an expert's session, the equipment's latency and inconsistent heights."""
 
 from collections.abc import Callable
 
@@ -29,7 +29,7 @@ def test_an_experts_suggestion_reaches_the_study(
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
 ) -> None:
-    """An expert's suggestion is saved with its step, listed by version and decided once."""
+    """An expert's suggestion is saved with its step, listed by version and decided only once."""
     page = experimenter.page
     experimenter.open_tab(KEY)
     page.get_by_role("button", name="New session").first.click()
@@ -59,7 +59,7 @@ def test_a_measurement_of_the_equipment_is_recorded_and_retired(
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
 ) -> None:
-    """The newest equipment measurement is marked, and a retired one stays with its reason."""
+    """The newest equipment measurement is marked; a retired one stays listed with its reason."""
     page = experimenter.page
     page.get_by_role("link", name="Equipment").click()
     for delay in ("41.3", "44.8"):
@@ -85,7 +85,7 @@ def test_a_measurement_of_the_equipment_is_recorded_and_retired(
 def test_differing_heights_are_questioned(
     experimenter: Experimenter, running_server: LiveServer
 ) -> None:
-    """Heights that differ by more than 10 cm are questioned once, then saved as entered."""
+    """Heights that differ by more than 10 cm must be confirmed once, then are saved as entered."""
     with running_server.client() as api:
         ok(api.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
         session = session_at(api, "height")["id"]

@@ -1,4 +1,4 @@
-"""Browser tests of a first encounter: no network, wrong URLs, odd codes, other files."""
+"""Browser tests of a first visit: no network, wrong URLs, unusual codes, unknown files."""
 
 from collections.abc import Callable
 
@@ -34,7 +34,7 @@ def test_no_device_is_sent_to_its_own_localhost(
     size: tuple[int, int],
     scheme: ColorScheme,
 ) -> None:
-    """Without a network the pairing dialog shows a code, no QR code or URL, and a remedy."""
+    """Without a network, the pairing dialog shows a code and a remedy, but no QR code or URL."""
     experimenter = Experimenter(page_factory(size, scheme), running_server.url)
     experimenter.log_in()
     page = experimenter.page
@@ -68,7 +68,7 @@ def test_an_unpaired_tablet_logs_no_error(
 def test_an_unknown_url_shows_page_not_found(
     experimenter: Experimenter, screenshot: Screenshot, address: str
 ) -> None:
-    """A URL of no page says so and links to the studies."""
+    """An unknown URL shows that the page does not exist, with a link to the studies."""
     page = experimenter.page
     page.goto(f"{page.url.partition('#')[0]}#/{address}")
     expect(page.get_by_text("Page not found")).to_be_visible()

@@ -68,7 +68,7 @@ def test_a_whole_session_from_login_to_csv(
     task_s: float,
     watched: bool,  # noqa: FBT001 - by parameter
 ) -> None:
-    """After a whole session run through the pages, dashboard and CSV contain its score."""
+    """After a whole session run through the pages, the dashboard and the CSV contain its score."""
     experimenter, participant = pages
     if not watched:
         experimenter.page.add_init_script(PICTURE_HIDDEN)

@@ -15,7 +15,7 @@ def test_help_is_opened_and_searched_by_keyboard(
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
 ) -> None:
-    """The key `?` opens the help page of the current page, and the search leads to a heading.
+    """The key `?` opens the help for the current page, and a search result leads to a heading.
 
     Pictures, tables and links of the Markdown are shown, and all text is accessible.
     """

@@ -24,7 +24,7 @@ def test_a_file_is_mapped_checked_and_imported(
     screenshot: Callable[[Page, str], object],
     tmp_path: Path,
 ) -> None:
-    """A file with a word instead of a number is imported only after the number is given."""
+    """A file with a word in place of a number is imported only after the number is entered."""
     file = tmp_path / "answers.csv"
     file.write_text(FILE, encoding="utf-8")
     page = page_factory()

@@ -61,7 +61,7 @@ def short_study() -> str:
 class Keyboard:
     """The operator's keyboard. `steps`: the purpose of each key press.
 
-    `typed`: characters of texts.
+    `typed`: the number of characters typed into fields.
     """
 
     page: Page
@@ -103,7 +103,7 @@ class Keyboard:
         expect(button).not_to_be_visible(timeout=PATIENCE_MS)
 
     def is_held(self) -> bool:
-        """Return whether the focus is on a control that handles Enter itself."""
+        """Return whether the focused control handles Enter itself."""
         return bool(
             self.page.evaluate("() => document.activeElement?.closest('button, a') != null")
         )
@@ -114,7 +114,7 @@ class Keyboard:
 
 @contextmanager
 def paired(keyboard: Keyboard, url: str) -> Iterator[tuple[ScriptedTablet, Wearer]]:
-    """Show both codes; the devices pair with them, which closes the dialogs."""
+    """Show both pairing codes; the devices use them, which closes the dialogs."""
     with (
         ScriptedTablet(url, code_for(keyboard, "tablet")) as tablet,
         _gone(keyboard),
@@ -176,7 +176,7 @@ def start(keyboard: Keyboard) -> None:
 def console(
     running_server: LiveServer, page_factory: Callable[..., Page], page_watch: PageWatch
 ) -> Page:
-    """Provide an empty browser, with the short study on the server."""
+    """Provide a browser without any state, with the short study on the server."""
     page_watch.allow(r"status of 401")
     with running_server.client() as api:
         ok(api.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
@@ -191,7 +191,7 @@ def test_a_whole_session_without_a_mouse(
     running_server: LiveServer,
     watched: bool,  # noqa: FBT001 - by parameter
 ) -> None:
-    """A whole session without a mouse takes one key per phase and few others."""
+    """A whole session without a mouse takes one key press per phase and few others."""
     if not watched:
         console.add_init_script(PICTURE_HIDDEN)
     keyboard = Keyboard(console)
@@ -218,5 +218,5 @@ def test_a_whole_session_without_a_mouse(
 
 
 def tally(keyboard: Keyboard) -> dict[str, int]:
-    """Return how many keys each purpose took, in the order of the session."""
+    """Return the number of keys pressed for each purpose, in the order of the session."""
     return {why: keyboard.steps.count(why) for why in dict.fromkeys(keyboard.steps)}

@@ -60,7 +60,7 @@ def trusting_browser(
 
 @pytest.fixture
 def trusting(trusting_browser: Browser, page_watch: PageWatch) -> Iterator[ContextFactory]:
-    """Provide contexts of the browser that trusts the lab."""
+    """Provide contexts of the browser that trusts the lab's certificate."""
     with watched_contexts(trusting_browser, page_watch) as factory:
         yield factory
 
@@ -136,7 +136,7 @@ def test_the_console_shows_how_to_reach_the_lab(
     screenshot: Callable[[Page, str], object],
     size: tuple[int, int],
 ) -> None:
-    """The console's page Network shows addresses, fingerprint, QR code and the cable."""
+    """The console's Network page shows addresses, fingerprint, QR code and the cable connection."""
     operator = Experimenter(page_factory(size), lan.url)
     operator.log_in()
     page = operator.page
@@ -159,7 +159,7 @@ def test_pairing_offers_the_certificate_first(
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
 ) -> None:
-    """The pairing dialog shows the network address, and the certificate's page is a click away."""
+    """The pairing dialog shows the network address and links to the certificate's page."""
     operator = Experimenter(page_factory(), lan.url)
     operator.log_in()
     operator.open_tab(STUDY)

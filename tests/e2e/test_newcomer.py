@@ -1,4 +1,4 @@
-"""Browser test of a newcomer: a scripted participant, the tour, a download and the storage."""
+"""Browser test of a new user: a scripted participant, the tour, a download and the storage."""
 
 import re
 import zipfile
@@ -29,7 +29,7 @@ def test_a_newcomer_watches_a_session_and_downloads_its_data(
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
 ) -> None:
-    """A newcomer starts a scripted participant, takes the tour, and downloads the data."""
+    """A new user starts a scripted participant, takes the tour, and downloads the data."""
     page = page_factory()
     experimenter = Experimenter(page, fresh_server.url)
     experimenter.log_in()
@@ -60,7 +60,7 @@ def test_a_newcomer_watches_a_session_and_downloads_its_data(
 def _tour(
     page: Page, axe: Callable[[Page], list[str]], screenshot: Callable[[Page, str], object]
 ) -> None:
-    """Go through every page of the tour by arrow keys; after Escape it does not reopen."""
+    """Visit every page of the tour with the arrow keys; after Escape the tour does not reopen."""
     callout = page.get_by_role("dialog")
     for number in range(1, STEPS + 1):
         expect(callout.get_by_text(f"{number} of {STEPS}")).to_be_visible()
@@ -80,7 +80,7 @@ def _download(
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
 ) -> None:
-    """Check that a file is downloaded when ready, under its name, and marked in the list."""
+    """Check that a file is downloaded when it is ready, under its name, and marked in the list."""
     experimenter.open_tab(STUDY, "export")
     page.get_by_role("main").get_by_text("Simulated", exact=True).click()
     with page.expect_download(timeout=PATIENCE_MS) as download:

@@ -1,4 +1,4 @@
-"""Browser tests of every page of the console and the tablet, in both sizes and themes."""
+"""Browser tests of every page of the console and the tablet, in all sizes and themes."""
 
 from collections.abc import Callable, Iterator
 
@@ -21,7 +21,7 @@ REPLAYED_S = 3.0
 
 @pytest.fixture(scope="module")
 def played_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveServer]:
-    """Provide a server with a simulated participant's session and the movement of one phase."""
+    """Provide a server with a simulated participant's session that has one phase of movement."""
     with LiveServer(tmp_path_factory.mktemp("played")) as server:
         database = open_database(f"sqlite:///{server.data_dir / 'reembody.sqlite'}")
         with database.writing() as db:

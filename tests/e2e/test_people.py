@@ -43,7 +43,7 @@ def admin(lab: BlindedLab, page_factory: Pages) -> Page:
 def test_an_invited_operator_never_sees_the_condition(
     lab: BlindedLab, admin: Page, page_factory: Pages
 ) -> None:
-    """An invited operator gets an account that runs sessions and never shows the condition."""
+    """An invited operator's new account can run sessions and never shows the condition."""
     admin.goto(f"{lab.server.url}/#/people")
     link = invite_in(admin, "Operator", "Weekend sessions")
     operator = page_factory()
@@ -105,7 +105,7 @@ def test_showing_a_condition_needs_a_reason_and_is_logged(lab: BlindedLab, admin
 def test_an_invalid_invitation_link_says_why(
     lab: BlindedLab, admin: Page, page_factory: Pages, page_watch: PageWatch
 ) -> None:
-    """Used, revoked and unknown invitation links say so, also to somebody who is signed in."""
+    """A used, revoked or unknown invitation link explains why it fails, also if signed in."""
     page_watch.allow(r"status of (404|410|422)")
     link = lab.invitation("analyst")
     guest = page_factory()
@@ -142,7 +142,7 @@ def test_the_only_admin_cannot_be_closed(
 
 
 def test_a_page_that_a_role_may_not_open_says_so(lab: BlindedLab, page_factory: Pages) -> None:
-    """A page that a role may not open says so, and an analyst's cockpit has no controls."""
+    """A page that a role may not open shows a message, and an analyst's cockpit has no controls."""
     analyst = page_factory()
     make_account(analyst, lab.invitation("analyst"), "reader")
     for address in ("people", "network", "new", f"studies/{STUDY}/edit", "instruments/new"):

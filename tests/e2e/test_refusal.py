@@ -56,9 +56,9 @@ def room(
 def test_a_refusal_holds_the_session_until_it_is_ended(
     room: Room, axe: Callable[[Page], list[str]], screenshot: Callable[[Page, str], object]
 ) -> None:
-    """A refusal raises an alarm and hides the agreement, also after a reload.
+    """A refusal raises an alarm and hides the agreement button, also after a reload.
 
-    The session is held until it is ended with a reason.
+    The session cannot proceed until it is ended with a reason.
     """
     console, tablet = room.console, room.tablet
     room.refuses()
@@ -86,7 +86,7 @@ def test_a_refusal_holds_the_session_until_it_is_ended(
 def test_a_changed_mind_leads_back_to_the_consent(room: Room) -> None:
     """A participant who changes their mind sees the consent again and may agree.
 
-    They do so on the tablet, or the experimenter shows it again.
+    They return to it on the tablet, or the experimenter shows it again.
     """
     console, tablet = room.console, room.tablet
     room.refuses()
@@ -108,7 +108,7 @@ def test_a_changed_mind_leads_back_to_the_consent(room: Room) -> None:
 def test_a_refusal_without_a_network_is_sent_later(
     room: Room, screenshot: Callable[[Page, str], object], page_watch: PageWatch
 ) -> None:
-    """A refusal without a network is sent once when the network is back.
+    """A refusal made without a network is sent once, when the network is back.
 
     Meanwhile the tablet asks the participant to tell the experimenter.
     """

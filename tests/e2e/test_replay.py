@@ -1,4 +1,4 @@
-"""Browser test of replaying a phase: by keyboard, by a link, and two side by side."""
+"""Browser test of replaying a phase: by keyboard, by a link, and two phases side by side."""
 
 import re
 from collections.abc import Callable
@@ -42,7 +42,7 @@ def test_a_replay_is_synchronised_with_its_events(
     page_factory: Callable[..., Page],
     axe: Callable[[Page], list[str]],
 ) -> None:
-    """A replay is synchronised with its events, and a link reopens the moment or two phases."""
+    """A replay is synchronised with its events, and a link reopens a moment or a pair of phases."""
     first, second = phases
     url = headset_site.server.url
     page = page_factory()

@@ -58,7 +58,7 @@ def test_the_session_is_held_until_the_experimenter_decides(
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
 ) -> None:
-    """A met stop rule holds the session with an alarm until the experimenter gives a reason.
+    """A met stop rule raises an alarm and blocks the session until the experimenter gives a reason.
 
     The tablet only asks the participant to wait.
     """
@@ -85,7 +85,7 @@ def test_the_session_is_held_until_the_experimenter_decides(
 def test_a_held_session_can_be_ended(
     pages: tuple[Experimenter, Participant, str],
 ) -> None:
-    """A held session can be ended for the stop rule, and the tablet says thank you."""
+    """A session blocked by the stop rule can be ended for it; the tablet thanks the participant."""
     experimenter, participant, _ = pages
     console = experimenter.page
     participant.fill_in({"sickness": "20"})
@@ -100,7 +100,7 @@ def test_a_held_session_can_be_ended(
 def test_a_warning_stops_nothing(
     pages: tuple[Experimenter, Participant, str],
 ) -> None:
-    """A score between the limits warns the operator and stops nothing."""
+    """A score between the two limits warns the operator and does not block the session."""
     experimenter, participant, _ = pages
     participant.fill_in({"sickness": "12"})
     console = experimenter.page

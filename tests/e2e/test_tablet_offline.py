@@ -41,7 +41,7 @@ EXPERT = {f"q{number}": str(1 + number % 7) for number in range(1, 15)}
 
 
 class Visit:
-    """One run of the tablet's browser."""
+    """One run of the tablet's browser, from opening to closing."""
 
     def __init__(self, context: BrowserContext, url: str) -> None:
         self.page: Page = context.new_page()
@@ -49,7 +49,7 @@ class Visit:
         self._context, self._url = context, url
 
     def open(self, *, network: bool, query: str = "") -> None:
-        """Open the page by its URL, as somebody who picks up the tablet."""
+        """Open the page by its URL, as a participant who picks up the tablet does."""
         self._context.set_offline(not network)
         self.page.goto(f"{self._url}/tablet{query}")
 
@@ -62,27 +62,27 @@ class Visit:
         self._context.set_offline(False)
 
     def choose(self, items: int | None = None) -> None:
-        """Answer the first items of the page, or all."""
+        """Answer the first items of the page, or all of them."""
         for question in self.page.locator("[data-name]").all()[:items]:
             value = EXPERT.get(question.get_attribute("data-name") or "")
             if value is not None:
                 question.locator(f'input[value="{value}"]').first.check(force=True)
 
     def press(self, name: str) -> None:
-        """Press the button of that name."""
+        """Press the button with this name."""
         self.page.get_by_role("button", name=name).click()
 
     def sees_form(self) -> None:
-        """Wait for a question."""
+        """Wait until a question is shown."""
         expect(self.page.locator('[data-name^="q"]').first).to_be_visible(timeout=PATIENCE_MS)
 
     def sees(self, heading: str) -> None:
-        """Wait for the screen with this heading."""
+        """Wait for the screen that has this heading."""
         title = self.page.get_by_role("heading", name=heading)
         expect(title).to_be_visible(timeout=PATIENCE_MS)
 
     def kept(self) -> Any:
-        """Return the contents of IndexedDB: the forms, and the last screen."""
+        """Return the forms and the last screen that are stored in IndexedDB."""
         return self.page.evaluate(KEPT)
 
 
@@ -174,6 +174,6 @@ def test_ten_minutes_offline_and_a_killed_browser_lose_nothing(
 
 
 def stored(site: Site, session_id: str) -> list[Json]:
-    """Return every stored form."""
+    """Return every form that is stored on the server."""
     forms: list[Json] = ok(site.operator.get(f"/api/sessions/{session_id}/answers"))
     return forms

@@ -50,7 +50,7 @@ def test_streamed_data_arrive_bit_by_bit(
 
 
 def test_a_killed_server_gets_everything_once(wear: Wear, headset_site: Site) -> None:
-    """After two SIGKILLs of the server in mid-stream, nothing is lost or stored twice."""
+    """After two SIGKILLs of the server in mid-stream, every message is stored exactly once."""
     headset = wear()
     epoch = headset.open()
     headset.begin(6 * BATCHES_PER_S, speed=1.0)
@@ -69,7 +69,7 @@ def test_a_killed_server_gets_everything_once(wear: Wear, headset_site: Site) ->
 
 @pytest.mark.long
 def test_ten_minutes_offline_are_sent_later(wear: Wear, headset_site: Site) -> None:
-    """54,000 frames of each stream wait on disk, not in the browser's memory, and all arrive."""
+    """After ten minutes offline, 54,000 frames of each stream are sent from the disk's journal."""
     headset = wear(mode="page")
     epoch = headset.open()
     meter = Meter.of(headset.page)
@@ -98,7 +98,7 @@ def test_ten_minutes_offline_are_sent_later(wear: Wear, headset_site: Site) -> N
 
 
 def test_a_full_journal_blocks_the_producer(wear: Wear, headset_site: Site) -> None:
-    """At the journal's limit the producer waits, the status says so, and nothing is lost."""
+    """At the journal's limit the producer waits, the status reports it, and no data are lost."""
     headset = wear(journalBytes=MEBIBYTE)
     epoch = headset.open()
     headset_site.server.stop()

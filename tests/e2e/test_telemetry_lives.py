@@ -1,4 +1,4 @@
-"""Browser tests of pages that are left, crash or are killed: their journal is sent later."""
+"""Browser tests of pages that are left, crash or are killed: the journal is sent later."""
 
 import time
 from collections.abc import Callable
@@ -34,7 +34,7 @@ def test_a_page_that_is_left_writes_its_journal_to_disk(
     mode: Mode,
     flush_every_s: float,
 ) -> None:
-    """A page that is left has written its journal to disk.
+    """A page that the user leaves has written its journal to disk.
 
     A client in the page writes it immediately; one in a worker at its regular interval.
     """
@@ -78,7 +78,7 @@ def test_a_killed_browser_sends_its_journal_under_its_old_epoch(
 
 
 def make_and_be_killed(headset: Headset, site: Site, kill: Callable[[], None]) -> Made:
-    """Stream, stop the server, continue, and kill the client; return what was surely journaled."""
+    """Stream, stop the server, continue, and kill the client; return the data surely journaled."""
     headset.produce(2 * BATCHES_PER_S, speed=4.0)
     site.server.kill()
     headset.produce(2 * BATCHES_PER_S, speed=4.0)
@@ -92,7 +92,7 @@ def make_and_be_killed(headset: Headset, site: Site, kill: Callable[[], None]) -
 
 
 def next_life(headset: Headset, context: BrowserContext) -> Headset:
-    """Return the same headset after a restart."""
+    """Restart the headset and return it."""
     return replace(headset, context=context).load()
 
 

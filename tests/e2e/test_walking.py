@@ -25,9 +25,9 @@ def test_a_drawn_path_gets_a_distribution_of_durations(
     screenshot: Callable[[Page, str], object],
     page_watch: PageWatch,
 ) -> None:
-    """A path drawn by mouse and moved by keys gets a distribution of durations.
+    """A path drawn with the mouse and edited by keyboard gets a distribution of durations.
 
-    Changes can be undone, and an obstacle in the way is named.
+    Changes can be undone, and an obstacle in the way is reported.
     """
     page_watch.allow(r"status of 422")
     context = new_context((1180, 820), "light")

@@ -20,9 +20,9 @@ def test_a_session_of_skipped_tasks_does_not_count(
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
 ) -> None:
-    """A session of skipped tasks is not valid: the cockpit says why, and its slot is free.
+    """A session with only skipped tasks is invalid: the cockpit says why, and its slot is free.
 
-    Dashboard and export agree.
+    Dashboard and export treat it in the same way.
     """
     with live_server.client() as api:
         ok(api.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
@@ -65,7 +65,7 @@ def test_a_session_of_skipped_tasks_does_not_count(
 
 
 def _skipped(api: httpx2.Client) -> str:
-    """Create a session of people in which every step was skipped, and return its id."""
+    """Create a session, not marked simulated, with every step skipped, and return its id."""
     view: Json = ok(api.post(f"/api/studies/{STUDY}/sessions", json={}))
     for kind in ("start", *["skip"] * len(view["steps"])):
         body = {

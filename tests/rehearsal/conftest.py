@@ -33,10 +33,10 @@ PERFORMED = [
 
 @pytest.fixture(scope="module", params=PERFORMED)
 def performed(request: pytest.FixtureRequest) -> Performed:
-    """Provide a finished rehearsal at high speed, on each database, with short phases.
+    """Provide a finished rehearsal at high speed with short phases, on each database.
 
-    Each has another seed: the tests must pass whatever the participant does. On PostgreSQL phases
-    are too brief for a task with the foot, except in the long form.
+    Each database has a different seed: the tests must pass whatever the participant does. On
+    PostgreSQL phases are too brief for a task with the foot, except in the long form.
     """
     long = request.config.getoption("--long")
     brief, short = (LONGER, LONGER) if long else (BRIEF, SHORT)
@@ -53,7 +53,7 @@ def performed(request: pytest.FixtureRequest) -> Performed:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Extend the timeout: the first test waits for the whole rehearsal, perhaps for minutes."""
+    """Extend the timeout, since the first test waits minutes for the whole rehearsal."""
     for item in items:
         if "performed" in getattr(item, "fixturenames", ()):
             item.add_marker(pytest.mark.timeout(900))
@@ -71,7 +71,7 @@ def db(performed: Performed) -> Iterator[Session]:
 
 
 def _kept_postgres() -> str:
-    """Return a database that lasts as long as the run: every process reads the same record."""
+    """Return a database that exists for the whole run, so that every process reads one record."""
     cluster = postgres.migrated_cluster()
     with once("rehearsal-database") as mark:
         if mark:

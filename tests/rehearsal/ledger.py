@@ -1,6 +1,6 @@
 """Compare what the headset's side sent with what the database returns.
 
-The ledger is a journal that keeps everything: the digest of every frame by (stream, epoch, seq),
+The ledger is a journal that removes nothing: the digest of every frame by (stream, epoch, seq),
 every report, and how far the server acknowledged each stream. All acknowledged data must be stored,
 nothing may be duplicated or altered, and a stream may not have holes.
 """
@@ -28,14 +28,14 @@ Key = tuple[str, int]
 
 @dataclass
 class LedgerJournal(Journal):
-    """A journal that keeps everything. `sent[key][seq]` is the digest of a frame, or a report."""
+    """A journal that removes nothing; `sent[key][seq]` is the digest of a frame, or a report."""
 
     sent: dict[Key, list[str]] = field(default_factory=dict)
     acked: dict[Key, int] = field(default_factory=dict)
     active_s: dict[Key, list[tuple[int, int, float]]] = field(default_factory=dict)
 
     def add(self, entry: Entry) -> None:
-        """Add a message; its seqs must follow the previous ones."""
+        """Add a message, whose sequence numbers must follow the previous ones."""
         key = (entry.stream, entry.epoch)
         told = self.sent.setdefault(key, [])
         if isinstance(entry.message, bytes):
@@ -86,13 +86,13 @@ class LedgerJournal(Journal):
         )
 
     def save(self, path: Path) -> None:
-        """Write what was sent and acknowledged, for another process."""
+        """Save the sent and acknowledged messages for another process."""
         rows = [[*key, told, self.acked.get(key, 0)] for key, told in self.sent.items()]
         path.write_text(json.dumps(rows))
 
 
 def load_ledger(path: Path) -> LedgerJournal:
-    """Load what another process's ledger saved as sent and acknowledged."""
+    """Load the sent and acknowledged messages that another process saved."""
     ledger = LedgerJournal()
     for stream, epoch, told, acked in json.loads(path.read_text()):
         ledger.sent[stream, epoch] = told
@@ -106,7 +106,7 @@ def digests(
     values: NDArray[np.float32],
     phase_id: int,
 ) -> list[str]:
-    """Return one digest per frame over all its bits, and the phase it belongs to."""
+    """Return one digest per frame over all its bits, and the phase that the frame belongs to."""
     return [
         hashlib.blake2b(
             times_s[at].tobytes() + flags[at].tobytes() + values[at].tobytes(),
@@ -135,7 +135,7 @@ class Reconciliation:
 
     @property
     def sound(self) -> bool:
-        """Return whether nothing is lost, altered, duplicated or missing."""
+        """Return whether no data are lost, altered, duplicated or missing."""
         return not (self.lost or self.altered or self.duplicated or self.holes)
 
 
@@ -179,7 +179,7 @@ def _stored_reports(db: Session, session_id: str, epoch: int) -> tuple[dict[int,
 def _stored_frames(
     db: Session, session_id: str, stream: str, epoch: int
 ) -> tuple[dict[int, str], int]:
-    """Return digests by seq as readers see them, and the number of frames in the tables."""
+    """Return digests by sequence number as readers see them, and the number of stored frames."""
     stored: dict[int, str] = {}
     for phase_id, frames in iter_frames(db, session_id, stream, epoch):
         told = digests(frames.times_s, frames.flags, frames.values, phase_id)

@@ -1,4 +1,4 @@
-"""Simulate a headset's server without a network: manual phase orders and a minimal server."""
+"""Simulate a headset's server without a network: phase orders by hand and a minimal server."""
 
 from dataclasses import dataclass, field
 from typing import Any
@@ -33,7 +33,7 @@ def order(**changes: Any) -> PhaseOrder:
 
 @dataclass
 class Timeline:
-    """A run drawn frame by frame at 90 Hz; `told` contains every report in order."""
+    """A run drawn frame by frame at 90 Hz; `told` contains the reports in order."""
 
     run: FreeRun
     t_s: float = 0.0
@@ -84,7 +84,7 @@ class InstantServer:
         )
 
     async def send_batch(self, stream: StreamName, _seq_end: int, message: bytes) -> None:
-        """Store the digests of the frames."""
+        """Store the digests of a batch's frames."""
 
         batch = decode_batch(message)
         told = digests(batch.times_s, batch.flags, batch.values, batch.header.phase_id)
@@ -102,7 +102,7 @@ class InstantServer:
             self.status = "completed"
 
     async def at_most_waiting(self, _messages: int) -> None:
-        """Return immediately: nothing ever waits."""
+        """Return immediately, since no message ever waits."""
 
     async def drained(self) -> None:
-        """Return immediately: nothing ever waits."""
+        """Return immediately, since no message ever waits."""

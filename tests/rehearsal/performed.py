@@ -68,7 +68,7 @@ BRIEF = Lengths(6.0, 10.0, 1.0)
 
 @dataclass(frozen=True)
 class Performed:
-    """The results of a rehearsal: the stored record, and what its own side sent and reported."""
+    """The results of a rehearsal: the stored record, and the ledger and report of its own side."""
 
     lengths: Lengths
     database_url: str
@@ -90,7 +90,7 @@ def performed_once(
     environment: Mapping[str, str],
     lengths: Lengths = SHIPPED,
 ) -> Performed:
-    """Perform `plan` in the first process that needs it; `database_url` None is SQLite.
+    """Perform `plan` in the first process that needs it; SQLite if `database_url` is None.
 
     The study of the plan is the shipped one, with phases of these `lengths`.
     """

@@ -36,7 +36,7 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveServer]:
 
 
 def rehearse(server: LiveServer, *more: object) -> Result:
-    """Run a rehearsal as an operator does, with the login's token."""
+    """Run a rehearsal from the command line with an operator's token."""
     with server.client() as client:
         credentials = {"username": "admin", "password": ADMIN_PASSWORD}
         client.post("/api/login", json=credentials).raise_for_status()
@@ -95,7 +95,7 @@ def test_an_aborted_rehearsal_exits_with_1(server: LiveServer) -> None:
 
 
 def abort_what_runs(server: LiveServer) -> None:
-    """Abort from a console, as soon as a session of the study is active."""
+    """Abort a session from a console as soon as one of the study is active."""
     give_up_s = time.monotonic() + WITHIN_S
     with server.client() as client:
         credentials = {"username": "admin", "password": ADMIN_PASSWORD}

@@ -18,7 +18,7 @@ RIGHT = Laterality.RIGHT
 
 
 def started(limb: str) -> TaskState:
-    """Return a task of the shipped study whose clock runs."""
+    """Return a task of the shipped study with its clock running."""
     tasks = study().tasks
     layout = tasks.layout(limb)
     state, _ = advance(TaskRules(layout, RIGHT).initial(), Command(CommandKind.START, 0.0))
@@ -26,7 +26,7 @@ def started(limb: str) -> TaskState:
 
 
 def touched(state: TaskState, surface: str, part: str) -> TaskState:
-    """Return the state after a short touch."""
+    """Return the task's state after a short touch."""
     contact = Contact(surface, part)
     state, _ = advance(state, ContactChange(state.last_s + 0.1, begins=(contact,)))
     state, _ = advance(state, ContactChange(state.last_s + 0.1, ends=(contact,)))

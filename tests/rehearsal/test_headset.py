@@ -17,7 +17,7 @@ AS_FAST_AS_IT_GOES = 1e9
 
 
 def play(seed: int, phase: PhaseOrder) -> InstantServer:
-    """Run a whole phase with one seed."""
+    """Run a whole phase with the given seed."""
     server = InstantServer(phase)
     person = make_person(np.random.default_rng(seed), None)
     client = cast("TelemetryClient", server)
@@ -31,7 +31,7 @@ def shipped_tasks() -> Tasks:
 
 
 def test_the_same_seed_gives_the_same_movement_and_the_same_touches() -> None:
-    """The same seed gives equal frames and reports bit by bit; another seed gives others."""
+    """The same seed gives bit-identical frames and reports; another seed gives different ones."""
     phase = order(limb="hand", kind="task", duration_s=8.0, latency_ms=125.0)
     first, again, other = play(3, phase), play(3, phase), play(4, phase)
     assert first.digests == again.digests
@@ -50,7 +50,7 @@ def test_a_foot_phase_walks_back_after_each_task() -> None:
 
 
 def test_contacts_come_before_the_completion_they_lead_to() -> None:
-    """Contacts are reported before their completion, and numbers continue those of the order."""
+    """Contacts are reported before the completion they lead to, numbered on from the order."""
     phase = order(limb="hand", kind="task", duration_s=20.0, completions=4, active_s=0.0)
     reports = play(5, phase).reports
     numbers = [report.number for report in reports if isinstance(report, CompletionReport)]

@@ -28,7 +28,7 @@ def _courses(performed: Performed, db: Session) -> list[tuple[Phase, JointErrorC
 
 
 def test_every_bin_of_a_task_has_its_five_seconds(performed: Performed, db: Session) -> None:
-    """Every bin of a task contains five seconds of active time, to a few frames.
+    """Every bin of a task contains five seconds of active time, give or take a few frames.
 
     Walks back are left out, and there is no extra bin.
     """
@@ -44,7 +44,7 @@ def test_every_bin_of_a_task_has_its_five_seconds(performed: Performed, db: Sess
 
 
 def test_the_mean_of_the_bins_is_that_of_the_phase(performed: Performed, db: Session) -> None:
-    """The mean of the bins equals that of the phase to 1e-12 rad, for both references."""
+    """The mean of the bins equals the mean of the phase to 1e-12 rad, for both references."""
     for phase, course in _courses(performed, db):
         means = db.scalars(
             select(JointErrorRow.mean_rad).where(

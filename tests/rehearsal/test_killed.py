@@ -54,7 +54,7 @@ def test_a_killed_test_run_leaves_no_server(tmp_path: Path) -> None:
 
 
 def runs(process: psutil.Process) -> bool:
-    """Return whether a process has not ended; one that was not collected has."""
+    """Return whether a process has not ended; a process that was not reaped has ended."""
     try:
         return process.is_running() and process.status() != psutil.STATUS_ZOMBIE
     except psutil.NoSuchProcess:
@@ -74,7 +74,7 @@ def group_of(leader: int) -> list[psutil.Process]:
 
 
 def eventually(happened: Callable[[], bool]) -> None:
-    """Wait for it; fail after a time that only a hung process takes."""
+    """Wait for a condition; fail after a time that only a hung process takes."""
     give_up_s = time.monotonic() + GENEROUS_S
     while not happened():
         assert time.monotonic() < give_up_s, "a process is still there"

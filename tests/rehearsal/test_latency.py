@@ -34,7 +34,7 @@ def test_every_phase_achieved_its_set_latency(performed: Performed, db: Session)
 
 
 def test_measuring_again_gives_the_same(performed: Performed, db: Session) -> None:
-    """Measuring again gives the stored result, which depends only on the stored frames."""
+    """Measuring the latency again gives the stored result, since it depends only on the frames."""
     row = _rows(performed, db)[-1]
     again = phase_latency(db, performed.session_id, row.phase_id)
     assert (again.latency_s, again.low_s, again.high_s) == (row.achieved_s, row.low_s, row.high_s)

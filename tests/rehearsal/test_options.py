@@ -22,7 +22,7 @@ def short() -> str:
 
 
 def test_a_study_with_every_option_is_rehearsed(tmp_path: Path) -> None:
-    """In a study with every option, two completions end the practice and consent is signed.
+    """With every option in a study, two completions end the practice and consent is signed.
 
     The operator continues after the stop rule.
     """

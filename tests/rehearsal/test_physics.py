@@ -43,7 +43,7 @@ def short() -> str:
 
 
 class BuiltHere:
-    """Build the avatar in this process, with the boxes of the shipped study."""
+    """A connection that builds the avatar in this process, with the shipped study's boxes."""
 
     async def request_avatar(self, stature_m: float) -> PhysicsBody:
         """Return the avatar as the server would build it."""
@@ -55,7 +55,7 @@ class BuiltHere:
 
 
 def play(limb: str, duration_s: float, latency_ms: float = 0.0) -> tuple[InstantServer, Headset]:
-    """Run a whole phase."""
+    """Run a whole phase with a physics avatar."""
     server = InstantServer(
         order(limb=limb, kind="task", duration_s=duration_s, latency_ms=latency_ms)
     )
@@ -122,7 +122,7 @@ def test_a_whole_session_is_rehearsed_in_a_physics_avatar(tmp_path: Path) -> Non
 
 
 def again(server: LiveServer, study_key: str) -> str:
-    """Return the study that another rehearsal would use."""
+    """Return the study as another rehearsal would use it."""
 
     async def ask() -> str:
         async with AsyncClient(base_url=server.url) as http:
@@ -134,7 +134,7 @@ def again(server: LiveServer, study_key: str) -> str:
 
 
 def summarised(url: str, report: RehearsalReport) -> dict[str, list[float]]:
-    """Return the mean angles of every joint and phase by reference, when they are computed."""
+    """Wait for the summaries; return the mean angles of each joint and phase by reference."""
     database, give_up_s = open_database(url), time.monotonic() + SUMMARIES_WITHIN_S
     query = select(JointErrorRow.phase_id, JointErrorRow.reference, JointErrorRow.mean_rad).where(
         JointErrorRow.session_id == report.session_id, JointErrorRow.axis == "angle"

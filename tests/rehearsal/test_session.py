@@ -37,7 +37,7 @@ FRAME_S = 1 / 90
 
 
 def test_every_task_phase_lasts_its_whole_active_time(performed: Performed) -> None:
-    """Each of three hand and three foot phases is done and has its set active time to one frame."""
+    """Each of three hand and three foot phases is done and lasts its active time to one frame."""
     phases = [phase for phase in performed.view["phases"] if phase["kind"] == "task"]
     assert [phase["limb"] for phase in phases] == ["hand", "foot"] * 3
     assert {phase["status"] for phase in phases} == {"done"}

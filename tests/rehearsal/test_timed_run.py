@@ -8,7 +8,7 @@ from tests.rehearsal.orders import FRAME_S, Timeline, order
 
 
 def test_a_phase_prepares_runs_its_time_freezes_and_ends() -> None:
-    """A phase reports its start, time up and end, after preparation, duration and freeze."""
+    """A phase reports start, time up and end, after preparation, duration and freeze."""
     line = Timeline(FreeRun(order(), 0.0))
     line.draw(2.0)
     assert line.words == ["started", "time_up", "ended"]
@@ -108,7 +108,7 @@ def test_a_client_that_takes_over_in_the_freeze_only_ends_the_phase() -> None:
 
 
 def test_a_client_that_takes_over_gets_the_used_active_time() -> None:
-    """A client that takes over gets the other run's active time, also if updated later."""
+    """A client that takes over gets the other run's active time, even if it is updated later."""
     line = Timeline(FreeRun(order(status="running", active_s=0.25), 0.0))
     line.draw(0.1)
     line.follow(order(status="running", active_s=0.5))

@@ -41,7 +41,7 @@ WAITS_S = 60.0
 
 
 def git(folder: Path, *arguments: str) -> str:
-    """Return git's output, in a repository unaffected by the machine's settings."""
+    """Return git's output for a repository, unaffected by the machine's settings."""
     who = ["-c", "user.name=Lab", "-c", "user.email=lab@example.org", "-c", "commit.gpgsign=false"]
     return subprocess.run(
         ["git", *who, *arguments], cwd=folder, check=True, capture_output=True, text=True
@@ -65,7 +65,7 @@ def repository(tmp_path: Path) -> Path:
 
 
 def write_benchmark(folder: Path, value: float, *, waits: bool = False) -> None:
-    """Write a benchmark with one figure, or one that waits to be ended."""
+    """Write a benchmark that gives one figure, or one that runs until it is ended."""
     text = BENCHMARK.format(value=value, waits=waits, mark=str(folder.parent / "mark"))
     (folder / "tests" / "benchmarks" / "__main__.py").write_text(text)
 
@@ -80,7 +80,7 @@ def scratch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def asked(*arguments: str) -> argparse.Namespace:
-    """Parse arguments as the command does."""
+    """Parse benchmark arguments as the command does."""
     return parser().parse_args(arguments)
 
 
@@ -105,7 +105,7 @@ def test_short_forms_name_existing_parts() -> None:
     [(1, 0, 0.0), (5, 0, 0.9375), (6, 0, 0.96875), (9, 1, 0.9609375), (20, 5, 0.9586105346)],
 )
 def test_the_interval_is_of_order_statistics(count: int, low: int, confidence: float) -> None:
-    """The interval consists of order statistics as in tables of the sign test."""
+    """The interval's ends are the order statistics listed in tables of the sign test."""
     found = interval([float(number) for number in range(count)][::-1])
     assert (found.low, found.high) == (low, count - 1 - low)
     assert found.median == (count - 1) / 2
@@ -113,14 +113,14 @@ def test_the_interval_is_of_order_statistics(count: int, low: int, confidence: f
 
 
 def test_a_limit_is_an_upper_or_a_lower_one() -> None:
-    """A peer "at most" or "at least" is a limit that a value meets or not; others are rivals."""
+    """A peer named "at most" or "at least" is a limit that a value may meet; others are rivals."""
     peers = ("at most", "at least", "bare mj_step")
     rows = [Figure("p", "n", 2.0, "s", peer, 3.0).as_json() for peer in peers]
     assert [(row["limit"], row["met"]) for row in rows] == [(3.0, True), (3.0, False), (None, None)]
 
 
 def test_a_benchmarks_own_keys_are_added_to_the_report() -> None:
-    """Keys of a benchmark's own are added to the report at the top level."""
+    """Keys specific to a benchmark are added to its report at the top level."""
     told = Report("desk", beside={"pairs": 6}).as_json()
     assert set(told) == {"benchmark", "machine", "figures", "pairs"}
 
@@ -187,7 +187,7 @@ def test_an_interrupted_comparison_leaves_nothing(repository: Path, number: int)
 
 
 def test_a_different_workload_is_reported(tmp_path: Path) -> None:
-    """A changed number is reported as another workload, a moved import is not."""
+    """A changed number is reported as a different workload, but a moved import is not."""
     texts = {
         "moved.py": ("'''Old.'''\nfrom app.a import b\nN = 1\n", "from app.c.a import b\nN = 1\n"),
         "changed.py": ("N = 1\n", "N = 2\n"),

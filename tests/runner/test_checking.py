@@ -1,4 +1,4 @@
-"""Tests of `./run check`: it checks what a change may break, and starts no server for it."""
+"""Tests that `./run check` checks everything a change may break, and starts no server."""
 
 import os
 import subprocess
@@ -64,7 +64,7 @@ def tree(tmp_path: Path) -> Path:
     ],
 )
 def test_tests_are_found_by_their_place(tree: Path, path: str, tests: str) -> None:
-    """The tests of a path are its mirror below tests, or that of its nearest parent."""
+    """The tests of a path are its mirror below `tests`, or the mirror of its nearest parent."""
     assert mirror(Path(path), tree) == Path(tests)
 
 
@@ -107,7 +107,7 @@ def test_a_features_check_leaves_out_the_pages() -> None:
 
 
 def test_the_pages_check_leaves_out_python() -> None:
-    """A folder of the pages is linted and tested, with all types and without Python."""
+    """Checking a folder of the pages lints and tests it, checks all types and skips Python."""
     planned = {stage.name: stage for stage in plan(Chosen.of(["frontend/src/shared"]))}
     assert set(planned) == {"frontend lint", "frontend types", "frontend tests"}
     assert str(REPOSITORY / "frontend/src/shared") in planned["frontend tests"].command
@@ -130,7 +130,7 @@ def test_tests_that_need_a_server_are_skipped(tmp_path: Path) -> None:
 
 
 def test_every_starter_is_a_fixture() -> None:
-    """Every fixture that starts something exists under the name in STARTERS."""
+    """Every fixture that STARTERS names, as starting a server or the like, exists."""
     conftests = (REPOSITORY / folder / "conftest.py" for folder in ("tests", "tests/e2e"))
     defined = "".join(file.read_text() for file in conftests)
     assert [name for name in STARTERS if f"def {name}(" not in defined] == []

@@ -73,7 +73,7 @@ def test_every_page_is_served_with_its_scripts(dev_server: str, path: str) -> No
     ("origin", "status"), [("own", 200), ("http://elsewhere.example", 403), ("null", 403)]
 )
 def test_only_its_own_pages_may_change_something(dev_server: str, origin: str, status: int) -> None:
-    """Through the dev server, only its own pages may change something."""
+    """Through the dev server, only its own pages may send requests that change data."""
     answer = httpx2.post(
         f"{dev_server}/api/login",
         json={"username": "admin", "password": ADMIN_PASSWORD},

@@ -1,4 +1,4 @@
-"""Tests that stages share two cores and that their costs are reported in one format."""
+"""Tests that stages share two cores and that their results are reported in one format."""
 
 import json
 import sys
@@ -54,7 +54,7 @@ while not pathlib.Path({other!r}).exists(): time.sleep(0.01)
 def test_a_stage_that_is_alone_waits_and_prints_as_it_goes(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """A stage that is alone waits for the earlier ones and prints under its own heading."""
+    """A stage that must run alone waits for earlier ones and prints under its own heading."""
     done = tmp_path / "done"
     late = f"import pathlib, time; time.sleep(0.2); pathlib.Path({str(done)!r}).touch()"
     look = f"import pathlib; print('it was', pathlib.Path({str(done)!r}).exists())"
@@ -71,7 +71,7 @@ def test_in_brief_mode_a_passed_stage_gets_one_line(capfd: pytest.CaptureFixture
 
 
 def test_a_stage_with_a_failed_preparation_fails() -> None:
-    """A stage whose preparation fails has failed."""
+    """A stage fails if its preparation fails."""
 
     def prepare() -> None:
         raise RuntimeError("no packages")
@@ -132,7 +132,7 @@ def test_help_describes_the_json(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_architecture_and_browser_tests_have_stages_of_their_own() -> None:
-    """Every folder that the stage of all tests ignores has a stage of its own."""
+    """Every folder that the stage of all tests ignores is run by a separate stage."""
     commands = {stage.name: stage.command for stage in stages.stages(long=False)}
     ignored = [word.partition("=")[2] for word in commands["tests"] if word.startswith("--ignore=")]
     others = {folder for folder in ignored for name in commands if folder in commands[name]}

@@ -43,7 +43,7 @@ def python(code: str) -> list[str]:
 
 
 def eventually(fact: Callable[[], bool]) -> None:
-    """Wait until the fact is true."""
+    """Wait until the condition is true."""
     deadline_s = time.monotonic() + WAITS_S
     while not fact():
         assert time.monotonic() < deadline_s, "it did not come true"
@@ -51,7 +51,7 @@ def eventually(fact: Callable[[], bool]) -> None:
 
 
 def lives(pid: int) -> bool:
-    """Return whether the process exists; one that has ended but was not collected does not."""
+    """Return whether the process exists; one that has ended but was not reaped does not."""
     try:
         state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
     except FileNotFoundError:
@@ -61,12 +61,12 @@ def lives(pid: int) -> bool:
 
 @pytest.mark.parametrize("code", [0, 3, 127])
 def test_the_exit_code_is_that_of_the_command(tmp_path: Path, code: int) -> None:
-    """The exit code is that of the command."""
+    """The exit code of a warded run is the exit code of its command."""
     assert run_warded(python(f"raise SystemExit({code})"), folder=tmp_path).code == code
 
 
 def test_a_signal_is_reported(tmp_path: Path) -> None:
-    """A signal is reported as a negative code, and as a shell does."""
+    """The end of a command by a signal is reported as a negative code, and as a shell's code."""
     ended = run_warded(["sh", "-c", "kill -9 $$"], folder=tmp_path)
     assert (ended.code, ended.exit_code) == (-signal.SIGKILL, 128 + signal.SIGKILL)
 
@@ -80,7 +80,7 @@ def test_a_missing_command_is_named(tmp_path: Path) -> None:
 
 @linux
 def test_the_time_of_an_orphan_counts(tmp_path: Path) -> None:
-    """A process that outlives its parent, in a session of its own, is awaited and timed."""
+    """A process that outlives its parent, in its own session, is awaited and timed."""
     ended = run_warded(python(LEAVE.format(code=BURN)), folder=tmp_path)
     assert ended.code == 0
     assert ended.processor_s >= BURN_S
@@ -89,7 +89,7 @@ def test_the_time_of_an_orphan_counts(tmp_path: Path) -> None:
 @linux
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL])
 def test_killing_the_caller_ends_its_servers(tmp_path: Path, number: int) -> None:
-    """Killing the caller also ends a server that runs in a session of its own."""
+    """Killing the caller also ends a server that runs in its own session."""
     mark = tmp_path / "pid"
     command = python(
         LEAVE.format(code=SERVE.format(file=str(mark))) + "\nimport time\ntime.sleep(600)"

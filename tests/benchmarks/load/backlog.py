@@ -1,4 +1,4 @@
-"""One headset reconnects with ten minutes in its journal while all others stream."""
+"""Measure a headset that reconnects with ten minutes in its journal while all others stream."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -39,7 +39,7 @@ DRAIN_LIMIT_S = 60.0
 
 @dataclass(frozen=True)
 class Backlog:
-    """A load in which one headset reconnected; `told` is its own result."""
+    """The results of a load in which one headset reconnected; `told` is its own report."""
 
     outcome: Outcome
     told: dict[str, Any]
@@ -114,14 +114,14 @@ def _plan(
 
 
 def _meanwhile(found: Backlog) -> Outcome:
-    """Return the others' messages while the journal drained."""
+    """Return the run with only the others' messages that were sent while the journal drained."""
     handed_s = found.outcome.messages[:, 2]
     inside = (handed_s >= found.told["back_s"]) & (handed_s <= found.told["drained_s"])
     return replace(found.outcome, messages=found.outcome.messages[inside])
 
 
 def _consoles(part: str, found: Backlog) -> Iterator[Figure]:
-    """Return the open consoles' requests while the journal drained."""
+    """Yield the figures of the consoles that were open while the journal drained."""
     back_s, drained_s = found.told["back_s"], found.told["drained_s"]
     news, views = found.outcome.news, found.outcome.views
     ages_ms = live_age_ms(found.outcome)[(news[:, 2] >= back_s) & (news[:, 2] <= drained_s)]

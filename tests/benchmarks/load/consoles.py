@@ -1,7 +1,7 @@
-"""Consoles in a process of their own: `python -m tests.benchmarks.load.consoles`.
+"""Run consoles in a separate process: `python -m tests.benchmarks.load.consoles`.
 
 Each follows the live stream of a session and requests its view every two seconds. It uses the
-generator's protocol with the parent; the plan ends after its duration.
+generator's protocol with the parent; it ends after the plan's duration.
 """
 
 import asyncio
@@ -22,7 +22,7 @@ VIEW_EVERY_S = 2.0
 
 @dataclass(frozen=True)
 class ConsolePlan:
-    """The sessions that have an open console: numbers and ids. `token`: an operator's."""
+    """The sessions that have an open console, by number and id; `token` is an operator's."""
 
     url: str
     cookies: dict[str, str]
@@ -45,7 +45,11 @@ class ConsolePlan:
 
 @dataclass
 class Seen:
-    """Events (session number, headset's clock s, arrival s); views (request s, wait s); flat."""
+    """The times of live events and views, as flat arrays.
+
+    Of each event: session number, headset's clock (s), arrival (s). Of each view: request (s), wait
+    (s).
+    """
 
     live: "array[float]"
     views: "array[float]"

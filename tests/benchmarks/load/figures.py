@@ -56,7 +56,7 @@ def ack_ms(outcome: Outcome, chosen: NDArray[np.bool_] | None = None) -> NDArray
 
 
 def consoles(part: str, outcome: Outcome) -> list[Figure]:
-    """Return the age of live figures on arrival, and how long a page waits."""
+    """Return the age of live figures on arrival, and how long a page waits for its session."""
     if not outcome.load.consoles:
         return []
     ages_ms = live_age_ms(outcome)
@@ -153,7 +153,7 @@ def server(part: str, outcome: Outcome) -> list[Figure]:
 
 
 def samples_per_s(outcome: Outcome) -> float:
-    """Return how many rotations of one joint in one stream were stored per second of the load."""
+    """Return the number of rotations of one joint in one stream stored per second of load."""
     rows = outcome.messages[outcome.messages[:, 1] <= ACTUAL]
     in_time = rows[:, 2] + rows[:, 3] <= outcome.begin_s + outcome.load.duration_s
     frames = int(in_time.sum()) * FRAMES_PER_BATCH

@@ -1,4 +1,4 @@
-"""Headsets in a process of their own: `python -m tests.benchmarks.load.generator`.
+"""Run headsets in a separate process: `python -m tests.benchmarks.load.generator`.
 
 Standard input: a line with the plan (JSON). The process prints `connected`, then, when every
 session's phase runs, `ready`; then it reads a line with the start time (s, monotonic clock of the
@@ -38,7 +38,7 @@ class Seat:
 
 @dataclass(frozen=True)
 class GeneratorPlan:
-    """The work of a generator. `client`: `lean`, or `real` for the product's own client.
+    """The work of one generator process; `client` is `lean`, or `real` for the product's client.
 
     Every frame is digested in sessions whose number is a multiple of `digest_every`.
     """
@@ -63,7 +63,7 @@ class GeneratorPlan:
 
 
 async def run(plan: GeneratorPlan) -> dict[str, Any]:
-    """Connect all, wait for the start time, stream, and wait for the last acknowledgements."""
+    """Connect all headsets, wait for the start time, stream, and wait for the last acks."""
     movements = [make_movement(np.random.default_rng(seed)) for seed in range(MOVEMENTS)]
     gate = asyncio.Semaphore(CONNECT_AT_ONCE)
     streams = await asyncio.gather(*(_seated(plan, seat, movements, gate) for seat in plan.seats))
@@ -115,7 +115,7 @@ def _out_of_step_s(seat: Seat) -> float:
 
 
 async def _settled(streams: list[Streaming]) -> None:
-    """Wait for the last acknowledgements; a missing one has no latency."""
+    """Wait for the last acknowledgements; a message without one gets no latency."""
     give_up_s = time.monotonic() + DRAINS_WITHIN_S
     while time.monotonic() < give_up_s:
         if all(stream.record.is_settled or stream.record.failure for stream in streams):

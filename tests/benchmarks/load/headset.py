@@ -25,7 +25,7 @@ class Headset(Protocol):
         """Return the newest state of the session."""
 
     async def hand(self, stream: StreamName, seq_end: int, message: bytes) -> None:
-        """Send a batch."""
+        """Send a batch of frames."""
 
     async def report(self, body: ReportBody) -> None:
         """Send a report."""

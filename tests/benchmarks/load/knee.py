@@ -23,7 +23,8 @@ GENERATOR_LAG_MS = 100.0
 class Step:
     """The measurements for one number of sessions.
 
-    Acknowledgements and generator (ms), throughput, and the server's cores.
+    They are the latency of acknowledgements and the generator's delay (both in ms), the throughput,
+    and the number of cores that the server used.
     """
 
     sessions: int

@@ -21,7 +21,7 @@ PROCEDURE = """procedure:
 
 @dataclass(frozen=True)
 class Lab:
-    """Sessions that are ready for their headsets' frames."""
+    """A set of sessions that are ready for their headsets' frames."""
 
     seats: tuple[Seat, ...]
     cookies: dict[str, str]
@@ -48,7 +48,7 @@ def call_phases(server: LiveServer, lab: Lab) -> None:
 
 
 def study_text() -> str:
-    """Return the shipped study with another start; lost headsets continue from the journal."""
+    """Return the shipped study with another start; lost headsets resume from the journal."""
     text = FILE
     start, end = text.index("procedure:\n"), text.index("  block:\n")
     text = text[:start] + PROCEDURE + text[end:]

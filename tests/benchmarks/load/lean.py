@@ -1,8 +1,8 @@
-"""A headset that costs little: the protocol of `app.client`, without journal and retries.
+"""A headset that needs little processor time: the protocol without a journal or retries.
 
-The load shares two cores with the server it measures. So this client parses an acknowledgement as
-plain JSON, and unacknowledged messages are only in the socket's buffer. It cannot reconnect: a
-broken connection is a failure of the run.
+Unlike `app.client`, it has neither. The load shares two cores with the server it measures. So this
+client parses an acknowledgement as plain JSON, and unacknowledged messages are only in the socket's
+buffer. It cannot reconnect: a broken connection is a failure of the run.
 """
 
 import asyncio
@@ -70,7 +70,7 @@ class LeanHeadset(asyncio.Protocol):
         return self.record.epoch
 
     async def hand(self, stream: StreamName, seq_end: int, message: bytes) -> None:
-        """Send a batch."""
+        """Send a batch of frames."""
         self.record.hand(stream.value, seq_end)
         self.protocol.send_binary(message)
         self._flush()
@@ -93,7 +93,7 @@ class LeanHeadset(asyncio.Protocol):
             self._transport.close()
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """Request the WebSocket."""
+        """Request the upgrade to a WebSocket."""
         self._transport = cast("asyncio.Transport", transport)
         self.protocol.send_request(self.protocol.connect())
         self._flush()
@@ -110,7 +110,7 @@ class LeanHeadset(asyncio.Protocol):
         self._flush()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """End the run after a broken connection: its figures would mean nothing."""
+        """End the run after a broken connection, since its figures would be meaningless."""
         if not self.welcomed.done():
             self.welcomed.set_exception(ConnectionError(f"no welcome: {exc}"))
         elif not self._closing and self.record.failure is None:

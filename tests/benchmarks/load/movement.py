@@ -1,9 +1,9 @@
-"""Movement for the load: synthetic, looped without a seam, as hard to compress as captures.
+"""Generate movement for the load: synthetic, looped without a seam, as compressible as captures.
 
 Every joint turns by a random rotation vector whose spectrum falls off as in people's movement, plus
-the noise of a tracker. The avatar follows: the same, delayed and through a second-order low-pass.
-Captured movement (CMU, retargeted, 90 Hz) takes 261 to 274 bytes a frame in the stored chunks; this
-takes a little more (run this module to see).
+the noise of a tracker. The avatar's movement is the same, delayed and passed through a second-order
+low-pass. Captured movement (CMU, retargeted, 90 Hz) takes 261 to 274 bytes a frame in the stored
+chunks; this movement takes a little more (run this module to see).
 """
 
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ JITTER_S = 2e-4
 
 @dataclass(frozen=True)
 class Movement:
-    """A loop of n frames: `target`, `actual` (2 n, 91) as sent, stored twice; `jitter_s` (n,)."""
+    """A loop of n frames: `target` and `actual` (2 n, 91), stored twice, and `jitter_s` (n,)."""
 
     target: NDArray[np.float32]
     actual: NDArray[np.float32]
@@ -33,7 +33,7 @@ class Movement:
 
 
 def make_movement(rng: np.random.Generator, frames: int = LOOP_FRAMES) -> Movement:
-    """Draw a loop; a piece that reaches past its end continues at its beginning."""
+    """Draw a random loop whose end continues at its beginning."""
     hz: NDArray[np.float64] = np.fft.rfftfreq(frames, 1.0 / RATE_HZ).astype(np.float64)
     follows = np.exp(-2j * np.pi * hz * DELAY_S) / (1.0 + 1j * hz / FOLLOWER_HZ) ** 2
     turns = _spectra(rng, hz, 3 * BODY_JOINTS, AMPLITUDE_RAD, NOISE_RAD)

@@ -14,7 +14,7 @@ from tests.support.server import LiveServer
 
 @dataclass(frozen=True)
 class Load:
-    """The size of a load: `real` sessions use the product's own client, `consoles` are watched."""
+    """The size of a load; `real` sessions use the product's client, `consoles` have a console."""
 
     sessions: int = 50
     duration_s: float = 600.0
@@ -26,7 +26,7 @@ class Load:
 
 @dataclass
 class Companions:
-    """The processes of a run: generators by the client they use, and the consoles."""
+    """The processes of a run: the generators, by the client they use, and the consoles."""
 
     generators: dict[str, Companion]
     consoles: Companion | None
@@ -88,7 +88,7 @@ def _generator_plan(
 
 
 def _console_plan(folder: Path, server: LiveServer, lab: Lab, load: Load) -> ConsolePlan:
-    """Plan consoles on evenly spread sessions, so that both kinds of clients are watched."""
+    """Plan consoles on evenly spread sessions, so that both kinds of clients have some."""
     step = max(1, len(lab.seats) // load.consoles)
     watched = lab.seats[step - 1 :: step][: load.consoles]
     return ConsolePlan(

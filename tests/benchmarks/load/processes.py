@@ -1,4 +1,4 @@
-"""The processes of a load, and the protocol with them."""
+"""The processes of a load, and the protocol for communicating with them."""
 
 import json
 import subprocess
@@ -20,14 +20,14 @@ class Plan(Protocol):
 
 @dataclass
 class Companion:
-    """A benchmark module that runs in a process of its own."""
+    """A benchmark module that runs in a separate process."""
 
     process: "subprocess.Popen[str]"
     errors: Path
 
     @classmethod
     def start(cls, module: str, plan: Plan, errors: Path) -> Self:
-        """Start `tests.benchmarks.MODULE` and pass it its plan."""
+        """Start `tests.benchmarks.MODULE` and pass the plan to it."""
         with errors.open("w") as told:
             process = subprocess.Popen(
                 [sys.executable, "-m", f"tests.benchmarks.{module}"],
@@ -42,13 +42,13 @@ class Companion:
         return made
 
     def wait_for(self, word: str) -> None:
-        """Wait for a line; raise RuntimeError with the process's output if it is another one."""
+        """Wait for this line; raise RuntimeError with the output if another line arrives."""
         heard = self._hear()
         if heard != word:
             raise RuntimeError(f"expected {word!r}, heard {heard!r}; {self._last_words()}")
 
     def begin(self, begin_s: float) -> None:
-        """Send the start time."""
+        """Send the start time to the process."""
         self._say(repr(begin_s))
 
     def result(self) -> dict[str, Any]:
@@ -62,7 +62,7 @@ class Companion:
 
     @property
     def pid(self) -> int:
-        """Return its process id."""
+        """Return the process id."""
         return self.process.pid
 
     def __enter__(self) -> Self:
@@ -72,7 +72,7 @@ class Companion:
         self.end()
 
     def end(self) -> None:
-        """Kill it if it still runs."""
+        """Kill the process if it is still running."""
         if self.process.poll() is None:
             self.process.kill()
         self.process.wait()

@@ -19,7 +19,7 @@ STREAMS = (StreamName.TARGET.value, StreamName.ACTUAL.value, REPORT_STREAM)
 
 @dataclass
 class StreamRecord:
-    """One stream: when each message was sent (monotonic s), and the time until its ack (s)."""
+    """The messages of one stream: when each was sent (monotonic s), and its latency (s)."""
 
     ends: "array[int]" = field(default_factory=lambda: array("q"))
     handed_s: "array[float]" = field(default_factory=lambda: array("d"))
@@ -56,7 +56,7 @@ class Digest:
     def take(
         self, times_s: NDArray[np.float64], flags: NDArray[np.uint8], values: NDArray[np.float32]
     ) -> None:
-        """Add frames: `times_s` (n,), `flags` (n,), `values` (n, 91)."""
+        """Add frames to the digest: `times_s` (n,), `flags` (n,), `values` (n, 91)."""
         self.times.update(np.ascontiguousarray(times_s, "<f8"))
         self.flags.update(np.ascontiguousarray(flags, "u1"))
         self.values.update(np.ascontiguousarray(values, "<f4"))
@@ -84,7 +84,7 @@ class Record:
         self.streams[stream].hand(seq_end)
 
     def acknowledge(self, positions: Iterable[tuple[str, int, int]]) -> None:
-        """Record acknowledgements, each (stream, epoch, next_seq)."""
+        """Record acknowledgements, each given as (stream, epoch, next_seq)."""
         now_s = time.monotonic()
         for stream, epoch, next_seq in positions:
             if epoch == self.epoch:

@@ -1,4 +1,4 @@
-"""A headset that was cut off and reconnects: `python -m tests.benchmarks.load.returning`.
+"""Simulate a headset that was cut off: `python -m tests.benchmarks.load.returning`.
 
 It connects once, begins its phase and disconnects; then it fills its journal on the disk with the
 data it would have produced meanwhile. At the start time it waits, opens the journal again as a
@@ -31,7 +31,7 @@ from tests.benchmarks.load.streaming import FRAMES_PER_BATCH, Streaming
 
 @dataclass
 class LeftJournal(FileJournal):
-    """The client's own journal. `left` messages were in it when it was opened."""
+    """The client's own journal; `left` is the number of messages in it when it was opened."""
 
     left: int = 0
     is_drained: asyncio.Event = field(default_factory=asyncio.Event)
@@ -49,7 +49,7 @@ class LeftJournal(FileJournal):
 
 @dataclass(frozen=True)
 class ReturnPlan:
-    """`frames` of each stream are journaled; it reconnects after a given time.
+    """The plan of a headset that journals `frames` of each stream and reconnects later.
 
     It gives up `gives_up_s` after it reconnected.
     """
@@ -73,7 +73,7 @@ class ReturnPlan:
 
 
 async def run(plan: ReturnPlan) -> dict[str, Any]:
-    """Begin a phase, disconnect and reconnect; return when it did and when the journal was empty.
+    """Begin a phase, disconnect and reconnect; return when this happened and the journal was empty.
 
     Times are in monotonic seconds.
     """
@@ -132,7 +132,7 @@ async def _before(plan: ReturnPlan) -> Streaming:
 
 
 def _touches(plan: ReturnPlan) -> range:
-    """Return the seqs of its contacts: one per second."""
+    """Return the sequence numbers of the contacts to report, one per second."""
     return range(int(RATE_HZ), plan.frames, int(RATE_HZ))
 
 

@@ -1,4 +1,4 @@
-"""Run a load once: the real server, the headsets, the consoles, and the evaluation."""
+"""Run a load once, with the real server, headsets and consoles, and evaluate it."""
 
 import time
 from collections.abc import Mapping, Sequence
@@ -23,7 +23,7 @@ BEGINS_IN_S = 1.0
 
 @dataclass(frozen=True)
 class Store:
-    """Where the server keeps its data: `url` of a database, None for SQLite in its own folder.
+    """Where the server keeps its data: `url` of a database, or None for SQLite in its own folder.
 
     `processes` are the names of the database's processes, which are watched too.
     """
@@ -34,7 +34,7 @@ class Store:
 
 @dataclass(frozen=True)
 class Course:
-    """A completed load: when it started (monotonic s), its period, and the results."""
+    """A completed load: when it started (monotonic s), its duration, and its results."""
 
     begin_s: float
     lasted: tuple[datetime, datetime]
@@ -46,7 +46,7 @@ class Course:
 
 @dataclass(frozen=True)
 class Outcome:
-    """The results of a run.
+    """The results of a run of the load.
 
     `messages` (n, 4): session number, stream, sent (monotonic s), latency (s, NaN if never
     acknowledged). `news` (m, 3): session number, the headset's clock (s), arrival at the console.
@@ -77,7 +77,7 @@ def run_load(folder: Path, load: Load, store: Store | None = None) -> Outcome:
 
 
 def live_server(folder: Path, store: Store) -> LiveServer:
-    """Return the product's server, not started."""
+    """Return the product's server, which has not been started."""
     folder.mkdir(parents=True, exist_ok=True)
     environment = {} if store.url is None else {"REEMBODY_DATABASE_URL": store.url}
     return LiveServer(folder, environment=environment)
@@ -96,7 +96,7 @@ def run_course(
     store: Store,
     guests: Sequence[Companion] = (),
 ) -> Course:
-    """Start all processes at the same moment, including the caller's own in `guests`."""
+    """Start all processes at the same moment, including the caller's own ones in `guests`."""
     file = None if store.url else server.data_dir / "reembody.sqlite"
     with companions(folder, server, lab, load) as these:
         begin_s = time.monotonic() + BEGINS_IN_S
@@ -142,6 +142,6 @@ def outcome_of(
 
 
 def _loaded(path: Path, columns: int) -> NDArray[np.float64]:
-    """Return the rows of a console's file; none if there was no console."""
+    """Return the rows of a console's file, or no rows if there was no console."""
     rows: NDArray[np.float64] = np.load(path) if path.exists() else np.empty((0, columns))
     return rows

@@ -1,4 +1,4 @@
-"""One headset in a running phase: 90 frames a second of both streams, six per message."""
+"""Stream one headset in a running phase: 90 frames a second of both streams, six per message."""
 
 import asyncio
 import time
@@ -22,7 +22,7 @@ STARTS_WITHIN_S = 30.0
 
 @dataclass
 class Streaming:
-    """Streams `movement` from frame `offset` on. `lag_s`: how late each message was made (s).
+    """A headset that streams `movement` from frame `offset` on; `lag_s`: each message's delay (s).
 
     `active_from_s`: the elapsed active time of the phase, in a run that continues one.
     """
@@ -96,7 +96,7 @@ class Streaming:
                 self.record.digests[name.value].take(times_s, flags, loop[here])
 
     async def touch(self, active_s: float) -> None:
-        """Report a contact of a hand with a side."""
+        """Report a contact of a hand with one side of a box."""
         await self.headset.report(
             ContactReport(
                 phase_id=self.phase_id,

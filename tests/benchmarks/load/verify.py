@@ -25,11 +25,11 @@ Row = TypeVar("Row", TelemetryChunk, TelemetryBatch)
 
 @dataclass
 class Verdict:
-    """Frames and reports: sent, acknowledged, stored; and the problems found.
+    """The numbers of frames and reports sent, acknowledged and stored, and the problems found.
 
     `lost` were acknowledged and are not stored, `duplicated` are stored more than once, `surplus`
-    were never sent. `digested`, `differing`: streams that were compared bit by bit. `alarms`: those
-    that the server raised while the load lasted.
+    were never sent. `digested`, `differing`: streams that were compared bit by bit. `alarms`: the
+    alarms that the server raised during the load.
     """
 
     handed: int = 0

@@ -18,7 +18,7 @@ HOUR_S = 3600.0
 
 @dataclass(frozen=True)
 class Look:
-    """One sample: time (monotonic s), the server's resident memory and CPU time, file bytes."""
+    """One sample: time (monotonic s), the server's resident memory, CPU time and file bytes."""
 
     at_s: float
     rss_bytes: int
@@ -28,7 +28,7 @@ class Look:
 
 @dataclass
 class Watch:
-    """Sample a process with its children while a `with` block runs."""
+    """A context manager that samples a process and its children while its block runs."""
 
     pid: int
     database: Path | None

@@ -1,1 +1,1 @@
-"""Measure other systems with the same frames, in the same run as ours."""
+"""Measure other systems with the same frames and in the same run as the product."""

@@ -24,7 +24,7 @@ CHUNKS_PER_MINUTE = 2 * 60
 
 
 def append_figures(part: str, folder: Path, ours: Ours, duration_s: float) -> Iterator[Figure]:
-    """Measure latency at the rate of 50 sessions, and how many one-second chunks the disk takes."""
+    """Measure latency at the rate of 50 sessions, and the one-second chunks written per second."""
     folder.mkdir(parents=True)
     waits_ms = 1000 * _latencies(folder / "messages", duration_s)
     peer = "append + fsync every 50 ms"
@@ -46,10 +46,10 @@ def append_figures(part: str, folder: Path, ours: Ours, duration_s: float) -> It
 
 
 def _latencies(path: Path, duration_s: float) -> "np.typing.NDArray[np.float64]":
-    """Return the time from when each message is due until it is synced.
+    """Return, for each message, the time from when it is due until it is synced.
 
-    It waits for its interval and the disk. Messages come evenly; the interval after one in which
-    the disk was slow begins late.
+    A message waits for the end of its interval, then for the disk. Messages are evenly spaced; the
+    interval after one in which the disk was slow begins late.
     """
     payload = np.random.default_rng(1).bytes(MESSAGE_BYTES)
     due_s = np.arange(int(duration_s * MESSAGES_PER_S)) / MESSAGES_PER_S
@@ -90,7 +90,7 @@ def _into_file(path: Path) -> Callable[[list[bytes]], None]:
 
 
 def _into_rows(path: Path) -> Callable[[list[bytes]], None]:
-    """Measure the same with a table like the product's and the same settings."""
+    """Measure the same data inserted into a table like the product's, with the same settings."""
     database = sqlite3.connect(path, isolation_level=None)
     database.execute("PRAGMA journal_mode = WAL")
     database.execute("PRAGMA synchronous = FULL")

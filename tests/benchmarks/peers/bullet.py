@@ -1,8 +1,8 @@
 """Measure PyBullet, a common engine for simulating bodies, as a peer.
 
-It gets the body of `bullet_body`, the same inputs and the same boxes, in steps of the same length.
-The numbers of driven axes and the masses are checked to be equal, and the distances of both bodies
-from their targets are reported.
+PyBullet gets the body of `bullet_body`, the same inputs and the same boxes, in steps of the same
+length. The numbers of driven axes and the masses are checked to be equal, and the distances of both
+bodies from their targets are reported.
 """
 
 import json
@@ -35,10 +35,10 @@ _WORKER = Path(__file__).with_name("bullet_worker.py")
 
 @dataclass(frozen=True)
 class BulletRun:
-    """One way to run PyBullet.
+    """One configuration in which PyBullet is run.
 
     Attributes:
-        name: the name of the way.
+        name: the name of the configuration.
         fastest_s: processor time of the fastest round.
         mean_error_deg: mean error of all axes and steps from their targets.
     """

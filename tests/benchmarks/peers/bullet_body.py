@@ -31,7 +31,7 @@ _CAPSULE = mujoco.mjtGeom.mjGEOM_CAPSULE
 
 
 def urdf_of(model: mujoco.MjModel) -> str:
-    """Return the URDF of the body whose root is carried; joints are named after the axes."""
+    """Return the URDF of a body whose root is carried; its joints are named after the axes."""
     robot = Element("robot", name="avatar")
     bodies = range(1, model.nbody)
     for body in bodies:
@@ -64,7 +64,7 @@ def colliding_pairs(model: mujoco.MjModel) -> Iterator[tuple[str, str]]:
 
 
 def scene_boxes(model: mujoco.MjModel) -> Iterator[dict[str, list[float]]]:
-    """Return the immovable boxes: centre and half size."""
+    """Return the immovable boxes of the scene, each with its centre and half size."""
     for geom in range(model.ngeom):
         if model.geom_bodyid[geom] == 0 and model.geom_type[geom] == _BOX:
             yield {
@@ -79,7 +79,7 @@ def has_floor(model: mujoco.MjModel) -> bool:
 
 
 def motor_gains(model: mujoco.MjModel) -> tuple[FloatArray, FloatArray]:
-    """Return the gains of Bullet's motors, of position and of speed, per step.
+    """Return the position and speed gains of Bullet's motors, per step.
 
     A motor of ours changes the speed of a limb of inertia I in a step h by
 

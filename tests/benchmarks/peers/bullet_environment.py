@@ -1,4 +1,4 @@
-"""Install PyBullet in an environment of its own: no part of the product needs it.
+"""Install PyBullet in a separate environment, since no part of the product needs it.
 
 It is installed on first use into `.cache/` of the checkout, with the interpreter that runs the
 benchmarks and from the index configured for uv. There are wheels for CPython 3.11 and older; for a

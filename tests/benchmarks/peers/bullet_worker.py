@@ -1,7 +1,7 @@
-"""Run PyBullet in an interpreter that has it: read a plan on standard input, print figures.
+"""Run PyBullet in an interpreter that has it: read a plan from standard input, print figures.
 
 Only the standard library and PyBullet are used here. `avatar` simulates the body of `bullet_body`;
-`humanoid` the one of PyBullet, limp. Times are seconds of processor time.
+`humanoid` simulates PyBullet's own humanoid, limp. Times are seconds of processor time.
 """
 
 import importlib
@@ -65,7 +65,7 @@ class Avatar:
                 step_on()
 
     def errors_rad(self) -> list[float]:
-        """Simulate all targets; return the mean distance of all axes from them after each step."""
+        """Simulate all targets; return the mean error of all axes after each step."""
         found = []
         for step, targets in enumerate(self._plan["targets_rad"]):
             self.aim(step)
@@ -101,7 +101,7 @@ class Avatar:
 
 
 def avatar(bullet: Any, plan: Plan) -> Plan:
-    """Run rounds of each variant; return the body's properties and how closely it followed."""
+    """Run rounds of each variant; return the body's properties and its tracking error."""
     found: Plan = {"ways": []}
     for way in plan["ways"]:
         made = Avatar(bullet, {**plan, **way})
@@ -164,7 +164,7 @@ def _timed_s(work: Callable[[], None]) -> float:
 
 
 def main() -> None:
-    """Run the plan from standard input."""
+    """Read the plan from standard input and run it."""
     bullet = importlib.import_module("pybullet")
     plan: Plan = json.load(sys.stdin)
     bullet.connect(bullet.DIRECT)

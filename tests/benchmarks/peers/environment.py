@@ -1,4 +1,4 @@
-"""Install peers on first use, each into a folder of its own below `.cache/peers`.
+"""Install peers on first use, each into a separate folder below `.cache/peers`.
 
 No part of the product needs them. They come from the indexes configured for uv and npm.
 """
@@ -25,7 +25,7 @@ class NoPeer(RuntimeError):
 
 
 def python_peer(name: str, *requirements: str) -> Path:
-    """Return the folder of the programs of an environment that has `requirements`.
+    """Return the folder of programs of an environment in which `requirements` are installed.
 
     Raises:
         NoPeer: there is no uv, or the installation failed.
@@ -41,7 +41,7 @@ def python_peer(name: str, *requirements: str) -> Path:
 
 
 def npm_peer(name: str, *packages: str) -> Path:
-    """Return the `node_modules` with `packages` (`name@version`), without running their scripts.
+    """Return a `node_modules` with `packages` (`name@version`), installed without their scripts.
 
     Raises:
         NoPeer: the installation failed.

@@ -1,4 +1,4 @@
-"""Compare ours with the peers: the same frames and machine, one after the other."""
+"""Compare the product with its peers: same frames, same machine, one after the other."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -16,7 +16,7 @@ MEASURES_S, KILLED_AFTER_S = 20.0, 10.0
 
 
 def peer_figures(part: str, folder: Path, duration_s: float) -> Iterator[Figure]:
-    """Return figures in which the value is ours and the peer value is the other system's."""
+    """Return figures in which the value is the product's and the peer value the other system's."""
     each_s = min(MEASURES_S, duration_s)
     load = Load(sessions=SESSIONS, duration_s=each_s, real=0, consoles=0)
     ours: Ours = ours_of(run_load(folder / "ours", load))

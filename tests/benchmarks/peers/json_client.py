@@ -1,7 +1,7 @@
-"""A headset that sends one JSON record per joint: `python -m tests.benchmarks.peers.json_client`.
+"""Send one JSON record per joint: `python -m tests.benchmarks.peers.json_client`.
 
-It works like XRXP's recorder: a queue in memory, one message per record, removed as soon as it is
-sent; after a broken connection it reconnects and continues with the record that failed.
+This client works like XRXP's recorder: a queue in memory, one message per record, removed as soon
+as it is sent; after a broken connection it reconnects and continues with the record that failed.
 """
 
 import asyncio
@@ -26,7 +26,7 @@ DRAINS_WITHIN_S = 5.0
 
 @dataclass(frozen=True)
 class JsonClientPlan:
-    """`records_per_s` are made for the duration; None: as many as the socket accepts."""
+    """The plan of a client: `records_per_s` for a duration; None: as many as the socket accepts."""
 
     url: str
     joints: int
@@ -40,7 +40,7 @@ class JsonClientPlan:
 
 @dataclass
 class Sender:
-    """Sends records in order; `sent` were written to a socket that accepted them."""
+    """A sender of records in order; `sent` counts those written to a socket that accepted them."""
 
     plan: JsonClientPlan
     sent: int = 0
@@ -81,7 +81,7 @@ class Sender:
 
 
 def records(joints: int) -> Iterator[str]:
-    """Yield a session's records, for each frame all joints of both streams.
+    """Yield the records of a session: for each frame, all joints of both streams.
 
     `t_s`: creation time.
     """
@@ -110,7 +110,7 @@ def records(joints: int) -> Iterator[str]:
 
 
 async def run(plan: JsonClientPlan) -> dict[str, Any]:
-    """Send, and count the sent records."""
+    """Run the sender and return the number of sent records."""
     sender = Sender(plan)
     with contextlib.suppress(asyncio.CancelledError):
         await sender.run()

@@ -1,4 +1,4 @@
-"""Measure one JSON record per joint sample, each in a row and commit of its own, as in XRXP."""
+"""Measure one JSON record per joint sample, each in its own row and commit, as in XRXP."""
 
 import sqlite3
 import time
@@ -26,7 +26,7 @@ PEER = "JSON rows"
 
 @dataclass(frozen=True)
 class Bench:
-    """A folder and a port for one run of the peer."""
+    """The folder and the port of one run of the peer."""
 
     folder: Path
     port: int
@@ -37,21 +37,21 @@ class Bench:
         return self.folder / "records.sqlite"
 
     def server(self) -> Companion:
-        """Start the server and wait until it listens."""
+        """Start the peer's server and wait until it listens."""
         plan = JsonServerPlan(self.port, str(self.database))
         made = Companion.start("peers.json_server", plan, self.folder / "server")
         made.wait_for("ready")
         return made
 
     def client(self, records_per_s: float | None, duration_s: float) -> Companion:
-        """Start the client."""
+        """Start the peer's client."""
         url = f"ws://127.0.0.1:{self.port}"
         plan = JsonClientPlan(url, BODY_JOINTS, records_per_s, duration_s)
         return Companion.start("peers.json_client", plan, self.folder / "client")
 
 
 def json_figures(part: str, folder: Path, ours: Ours, duration_s: float) -> Iterator[Figure]:
-    """Measure at saturation, at half of that rate, and with a killed server."""
+    """Measure the peer at saturation, at half of that rate, and with a killed server."""
     full = _run(_bench(folder / "full"), None, duration_s)
     rate, cores = full["stored"] / full["wall_s"], full["cpu_s"] / full["wall_s"]
     yield Figure(part, "joint samples", ours.samples_per_s, "1/s", f"{PEER}, saturated", rate)
@@ -80,7 +80,7 @@ def _bench(folder: Path) -> Bench:
 
 
 def _run(bench: Bench, records_per_s: float | None, duration_s: float) -> dict[str, Any]:
-    """Send for a given time; return the server's counters and the size of its file."""
+    """Send records for a given time; return the server's counters and the size of its file."""
     with bench.server() as server, bench.client(records_per_s, duration_s) as client:
         client.result()
         _settle(bench.database)
@@ -90,7 +90,7 @@ def _run(bench: Bench, records_per_s: float | None, duration_s: float) -> dict[s
 
 
 def _killed(bench: Bench, duration_s: float) -> tuple[int, int]:
-    """Kill the server in mid-run and restart it; return the counts of sent and stored records."""
+    """Kill the server in mid-run and restart it; return the numbers of sent and stored records."""
     with bench.server() as server, bench.client(SAMPLES_PER_SESSION_S, duration_s) as client:
         time.sleep(duration_s / 2)
         server.end()

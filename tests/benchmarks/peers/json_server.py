@@ -1,9 +1,9 @@
 """Store one JSON record per joint sample: `python -m tests.benchmarks.peers.json_server`.
 
-It stores data as XRXP's recorder sends them: a WebSocket text message contains one record of one
-object's pose; nothing is acknowledged. Every message is committed individually, to SQLite with
-synchronous FULL. Prints `ready`, serves until a line arrives on standard input, then prints its
-counters.
+The server stores data as XRXP's recorder sends them: a WebSocket text message contains one record
+of one object's pose; nothing is acknowledged. Every message is committed individually, to SQLite
+with synchronous FULL. Prints `ready`, serves until a line arrives on standard input, then prints
+its counters.
 """
 
 import asyncio
@@ -37,7 +37,7 @@ class JsonServerPlan:
 
 @dataclass
 class Recorder:
-    """The single writer. `latency_s`: from creating a record until it is committed."""
+    """The only writer; `latency_s` is the time from creating a record until it is committed."""
 
     database: sqlite3.Connection
     latency_s: "array[float]" = field(default_factory=lambda: array("d"))
@@ -53,7 +53,7 @@ class Recorder:
             return
 
     def store(self, text: str) -> None:
-        """Store one record in one row with one commit."""
+        """Store one record in its own row and commit."""
         if self.began is None:
             self.began = time.process_time(), time.monotonic()
         record = json.loads(text)
@@ -78,7 +78,7 @@ class Recorder:
 
 
 def open_records(path: str) -> sqlite3.Connection:
-    """Open the table, creating it if missing; every statement commits."""
+    """Open the table, creating it if it is missing; every statement is committed."""
     database = sqlite3.connect(path, isolation_level=None)
     database.execute("PRAGMA journal_mode = WAL")
     database.execute("PRAGMA synchronous = FULL")
@@ -90,7 +90,7 @@ def open_records(path: str) -> sqlite3.Connection:
 
 
 async def run(plan: JsonServerPlan) -> dict[str, Any]:
-    """Serve until requested to end."""
+    """Serve until a line on standard input requests the end."""
     recorder = Recorder(open_records(plan.database))
     async with serve(recorder.take, "127.0.0.1", plan.port, compression=None):
         print("ready", flush=True)

@@ -1,4 +1,4 @@
-"""Use jsPsych as a peer: its survey of rated statements on a page of its own."""
+"""Use jsPsych as a peer: a page with its survey of rated statements."""
 
 import functools
 import html
@@ -27,7 +27,7 @@ jsPsych.run([{{ type: jsPsychSurveyLikert, questions: {questions} }}]);
 
 @contextmanager
 def served_survey(folder: Path, statements: Sequence[str], steps: Sequence[str]) -> Iterator[str]:
-    """Yield the URL of a page that shows all statements with these steps.
+    """Yield the URL of a page that shows all statements, each with these answer steps.
 
     Raises:
         NoPeer: jsPsych could not be installed.

@@ -37,7 +37,7 @@ SessionID = {session}
 
 @dataclass(frozen=True)
 class Recordings:
-    """A recorder killed in mid-stream and its successor. CPU and wall time of the first (s)."""
+    """The recordings of a killed recorder and its successor; CPU and wall time (s) of the first."""
 
     before: Path
     after: Path
@@ -46,7 +46,7 @@ class Recordings:
 
 
 def lsl_figures(part: str, folder: Path, ours: Ours, duration_s: float) -> Iterator[Figure]:
-    """Record, kill the recorder, record again; skip if the library is not installed."""
+    """Record, kill the recorder and record again; skip this if the library is not installed."""
     if importlib.util.find_spec("pylsl") is None:
         print(f"  {part}: {PEER} is left out: pylsl is not installed", file=sys.stderr)
         return
@@ -119,7 +119,7 @@ def _gaps_s(
     after: NDArray[np.int64],
     after_s: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    """Return each stream's gap between its last sample in one file and its first in the next."""
+    """Return each stream's gap between its last sample in one file and the first in the next."""
     return np.array(
         [
             after_s[after == number].min() - before_s[before == number].max() - 1.0 / RATE_HZ

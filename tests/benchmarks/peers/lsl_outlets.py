@@ -1,7 +1,8 @@
-"""The headsets of a lab on the Lab Streaming Layer: `python -m tests.benchmarks.peers.lsl_outlets`.
+"""Simulate a lab's headsets on LSL: `python -m tests.benchmarks.peers.lsl_outlets`.
 
-One outlet per stream, 91 float32 channels at 90 Hz, pushed six samples at a time as ours are sent.
-Prints `ready` when all outlets are open, then streams until it is killed.
+The Lab Streaming Layer (LSL) gets one outlet per stream, 91 float32 channels at 90 Hz, pushed six
+samples at a time as ours are sent. Prints `ready` when all outlets are open, then streams until it
+is killed.
 """
 
 import importlib
@@ -24,7 +25,7 @@ KIND = "reembody-benchmark"
 
 @dataclass(frozen=True)
 class OutletsPlan:
-    """The number of streams; `config` of the library isolates them from others on the network."""
+    """The number of streams, and the library's `config` that isolates them from other streams."""
 
     streams: int
     config: str

@@ -1,4 +1,4 @@
-"""A minimal recorder: `python -m tests.benchmarks.peers.lsl_recorder`.
+"""A minimal LSL recorder: `python -m tests.benchmarks.peers.lsl_recorder`.
 
 It finds the streams and writes pulled samples to a file as LabRecorder does: every stream is pulled
 at an interval (there 0.5 s), written through a buffered file, never synced; there is no journal. A
@@ -46,9 +46,9 @@ class RecorderPlan:
 
 @dataclass(frozen=True)
 class Recorded:
-    """The contents of a file, one row per sample: stream, timestamp (s), written at (s).
+    """The contents of a file and its size.
 
-    Its size.
+    One row per sample: stream, timestamp (s), time of writing (s).
     """
 
     streams: NDArray[np.int64]
@@ -72,7 +72,7 @@ def run(plan: RecorderPlan) -> None:
 
 
 def read(path: Path) -> Recorded:
-    """Read the complete records of a file; the last may be torn."""
+    """Read the complete records of a file, whose last record may be torn."""
     data = path.read_bytes()
     streams, times_s, written_s = [], [], []
     at = 0

@@ -33,7 +33,7 @@ KILLED_SESSIONS = 20
 
 @dataclass(frozen=True)
 class Ours:
-    """The figures that the peers are compared with. `mib_per_minute`: of one session, folded."""
+    """The product's figures to compare with; `mib_per_minute` is of one session, folded."""
 
     ack_p50_ms: float
     ack_p99_ms: float
@@ -56,7 +56,7 @@ def ours_of(outcome: Outcome) -> Ours:
 
 
 def killed_figures(part: str, folder: Path, duration_s: float) -> Iterator[Figure]:
-    """Kill -9 the server in mid-load, restart it a second later, and count losses."""
+    """Kill the server with SIGKILL in mid-load, restart it a second later, and count losses."""
     load = Load(
         sessions=KILLED_SESSIONS,
         duration_s=duration_s,

@@ -40,7 +40,7 @@ requestAnimationFrame(look);
 
 @dataclass(frozen=True)
 class FirstPage:
-    """A page, with the content that must be drawn on it. `cookies`: the request's Cookie header."""
+    """A page with the content that must be drawn on it; `cookies` is the Cookie header."""
 
     name: str
     path: str
@@ -50,7 +50,7 @@ class FirstPage:
 
 @dataclass
 class Wire:
-    """The received bytes and their files."""
+    """The bytes and files that a browser received."""
 
     total: int = 0
     by_file: dict[str, int] = field(default_factory=dict)
@@ -74,7 +74,7 @@ class Wire:
 
 
 def figures(folder: Path) -> Iterator[Figure]:
-    """Measure console and tablet, before and after signing in or pairing."""
+    """Measure the console and the tablet, before and after signing in or pairing."""
     with LiveServer(folder) as server, signed_in(server) as desk, launched_browser() as browser:
         for page in _pages(desk):
             found = [_load(browser, server.url, page) for _ in range(REPEATS)]

@@ -41,7 +41,7 @@ requestAnimationFrame(look);
 
 
 def figures(folder: Path) -> Iterator[Figure]:
-    """Measure each with an empty browser, then again with the browser's cache."""
+    """Measure each system with an empty browser cache, then with a filled one."""
     folder.mkdir()
     with ExitStack() as stack:
         browser = stack.enter_context(launched_browser())
@@ -71,7 +71,7 @@ def figures(folder: Path) -> Iterator[Figure]:
 def _twice(
     browser: Browser, url: str, expected: int, origin: str = "", cookie: str = ""
 ) -> tuple[float, float]:
-    """Return the milliseconds with an empty browser, and again in the same one."""
+    """Return the milliseconds with an empty browser cache, then with a filled one."""
     context = browser.new_context(viewport=SIZE, locale="en-US")
     try:
         context.add_init_script(WHEN_READY.replace("EXPECTED", str(expected)))

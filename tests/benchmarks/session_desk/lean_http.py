@@ -1,6 +1,6 @@
 """A minimal HTTP/1.1 client: the load shares two cores with the servers it measures.
 
-One connection, kept alive, one request at a time; cookies are left to the caller.
+It has one connection, kept alive, and sends one request at a time; the caller handles cookies.
 """
 
 import asyncio
@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True)
 class Answer:
-    """A response; the names of headers are in lower case."""
+    """An HTTP response; the names of its headers are in lower case."""
 
     status: int
     headers: Mapping[str, str]
@@ -19,7 +19,7 @@ class Answer:
 
 @dataclass
 class LeanHttp:
-    """One connection to the loopback. `headers` are sent with every request."""
+    """One HTTP connection to the loopback; `headers` are sent with every request."""
 
     port: int
     headers: dict[str, str] = field(default_factory=dict)

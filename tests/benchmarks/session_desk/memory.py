@@ -1,7 +1,8 @@
 """Measure whether the memory of the server and the cockpit's page grows during streaming.
 
-The server's is the resident size reported by the system, its helpers included; the page's is what
-remains after a forced collection. A slope is the median over all pairs of samples after a warm-up.
+The server's memory is the resident size reported by the system, including its helper processes; the
+page's is the size that remains after a forced collection. A slope is the median over all pairs of
+samples after a warm-up.
 """
 
 import time

@@ -2,9 +2,9 @@
 
 The headset records when it writes a message to its socket. The page acknowledges over its own
 socket that it has drawn the preceding poses; a script that runs before the page's own records which
-they are, and takes as the time of display the next animation frame, when the drawn one has been
-sent to the screen. Both clocks are read on the same machine: the page is asked for its time many
-times, the shortest exchange counts, and half its duration is the reported bound.
+they are, and uses the time of the next animation frame as the time of display, because the drawn
+frame has then been sent to the screen. Both clocks are read on the same machine: the page is asked
+for its time many times, the shortest exchange counts, and half its duration is the reported bound.
 """
 
 import time
@@ -60,7 +60,7 @@ class PageClock:
 
     @classmethod
     def of(cls, page: Page) -> "PageClock":
-        """Measure the offset many times; the shortest exchange counts."""
+        """Measure the offset many times and use the exchange with the shortest round trip."""
         best = cls(0.0, float("inf"))
         for _ in range(ASKED):
             before_s = time.monotonic()
@@ -97,7 +97,7 @@ def figures(folder: Path, duration_s: float) -> Iterator[Figure]:
 def ages_ms(
     record: Record, rows: NDArray[np.float64], clock: PageClock
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return ages at arrival and when shown.
+    """Return the ages of the frames on arrival and when they were shown.
 
     `rows`: stream's code, seq, arrived and shown (page's ms).
     """

@@ -1,4 +1,4 @@
-"""Tablets that fill in form after form: `python -m tests.benchmarks.session_desk.submitting`.
+"""Simulate tablets: `python -m tests.benchmarks.session_desk.submitting`.
 
 Reads the plan as JSON from standard input and prints how long every submission took, and the total.
 A tablet sends a form, fetches the next one, and so on, without a pause: a room full of people does
@@ -22,7 +22,7 @@ OK, MOVED = 200, (302, 303, 307)
 
 @dataclass(frozen=True)
 class Plan:
-    """The work of the tablets.
+    """The plan of a run: the tablets and the forms that they submit.
 
     `who`: a tablet's cookie header (ours), or a participant's first path (oTree).
     """
@@ -40,7 +40,7 @@ class Plan:
 
 @dataclass(frozen=True)
 class Submitted:
-    """Seconds: of each submission (sent to answered), in total, and of the server's processor."""
+    """The seconds of each submission (sent to answered), in total, and of server processor time."""
 
     submits_s: tuple[float, ...]
     total_s: float
@@ -48,11 +48,11 @@ class Submitted:
 
 
 class Refused(RuntimeError):
-    """Raised if a submission was rejected."""
+    """Raised if the server rejected a submission."""
 
 
 async def our_tablet(plan: Plan, cookie: str) -> list[float]:
-    """Fill in forms as our page does: request the state, then send the answers."""
+    """Submit forms as the product's page does: request the state, then send the answers."""
     http, took_s = LeanHttp(plan.port, {"cookie": cookie}), []
     for _ in range(plan.forms):
         state = json.loads(_good(await http.ask("GET", "/api/tablet/state"), OK).body)
@@ -66,7 +66,7 @@ async def our_tablet(plan: Plan, cookie: str) -> list[float]:
 
 
 async def otree_browser(plan: Plan, path: str) -> list[float]:
-    """Fill in forms as a browser does: fetch the page, read its fields, and send them."""
+    """Submit oTree's forms as a browser does: fetch the page, read its fields, and send them."""
     http, took_s = LeanHttp(plan.port), []
     path = _good(await http.ask("GET", path), *MOVED).headers["location"]
     fields = "&".join(f"q{number}={1 + number % 7}" for number in range(1, plan.items + 1))

@@ -1,4 +1,4 @@
-"""Measure sixteen tablets that send a form of fourteen statements at full speed; also oTree."""
+"""Measure sixteen tablets that submit fourteen statements at full speed, here and in oTree."""
 
 import json
 import subprocess
@@ -22,7 +22,7 @@ RUN_WITHIN_S = 300.0
 
 
 def figures(folder: Path) -> Iterator[Figure]:
-    """Measure one after the other, on the same machine with the same clients."""
+    """Measure both systems one after the other, on the same machine with the same clients."""
     with LiveServer(folder / "ours") as server, signed_in(server) as desk:
         ours = _ours(desk)
     with running_otree(folder / "otree", statements(), TABLETS, FORMS) as otree:
@@ -38,7 +38,7 @@ def _ours(desk: Desk) -> Submitted:
 
 
 def compare(ours: Submitted, theirs: Submitted) -> Iterator[Figure]:
-    """Compare ours, on disk when acknowledged, with theirs in memory."""
+    """Compare the product, with data on disk when acknowledged, with oTree, with data in memory."""
     peer = f"oTree {VERSION}"
     rate, their_rate = (len(one.submits_s) / one.total_s for one in (ours, theirs))
     what = f"{TABLETS} tablets, {len(ours.submits_s)} forms of {ITEMS} statements"
@@ -72,7 +72,7 @@ def _run(plan: Plan, server_pid: int) -> Submitted:
 
 
 def _cpu_s(pid: int) -> float:
-    """Return the processor time so far of a server with its helpers."""
+    """Return the processor time used so far by a server and its helper processes."""
     server = psutil.Process(pid)
     times = [one.cpu_times() for one in (server, *server.children(recursive=True))]
     return float(sum(one.user + one.system for one in times))

@@ -1,4 +1,4 @@
-"""A session that streams at real speed while it is watched.
+"""Run a session that streams at real speed while four consoles watch it.
 
 The headset is the load's own (90 frames a second of both streams, six per message, a contact per
 second). One console is a page in a real browser that draws the body in 3-D; three more only
@@ -34,7 +34,7 @@ DRAWS_WITHIN_MS = 60_000
 
 @dataclass
 class Sender:
-    """The headset and the subscribers of poses, on a thread; `record` contains the send times."""
+    """The headset and the pose subscribers, on a thread; `record` contains the send times."""
 
     server: LiveServer
     lab: Lab
@@ -56,7 +56,7 @@ class Sender:
         self._wait_for(self._entered)
 
     def begin(self) -> None:
-        """Send the first frame now."""
+        """Send the first frame."""
         self._begin.set()
 
     def join(self) -> None:
@@ -117,7 +117,7 @@ class Sender:
 
 @dataclass(frozen=True)
 class Watched:
-    """The running session: the page already draws, and the first frame was sent."""
+    """A running session whose page already draws, and whose first frame was sent."""
 
     server: LiveServer
     page: Page
@@ -130,7 +130,7 @@ def watched_session(
 ) -> Iterator[Watched]:
     """Run a streaming session that four consoles watch.
 
-    `script` runs in the page before its own.
+    `script` runs in the page before the page's own scripts.
     """
     with ExitStack() as stack:
         server = stack.enter_context(LiveServer(folder))
