@@ -39,13 +39,18 @@ MESSAGES_AHEAD = 100
 WITHDRAWN = "withdrawn"
 """The status of a session, and the error code with which the server refuses its data."""
 
+LATE_S = 0.2
+"""How late a frame may be, in the headset's time, and still be caught up on."""
+
 
 @dataclass
 class FrameClock:
     """A clock that runs at `speed` seconds per second, but never beyond the last drawn frame.
 
     So if a machine is too slow for the speed, its clock is slower, unlike that of a headset, which
-    drops frames: this can only happen in a rehearsal faster than real time.
+    drops frames: this can only happen in a rehearsal faster than real time. The clock does not
+    catch up on the time it has lost: it would run faster than `speed` meanwhile, and the server
+    would find more active time reported than has passed.
     """
 
     speed: float
@@ -65,10 +70,15 @@ class FrameClock:
         """Return the current time, which may be between two frames."""
         return min(self.t_s, (time.monotonic() - self._started_s) * self.speed)
 
-    @property
-    def due_in_s(self) -> float:
-        """The real seconds until the next frame is due; not positive if it is late."""
-        return self._started_s + self.t_s / self.speed - time.monotonic()
+    def wait_s(self) -> float:
+        """Return the real seconds until the next frame is due; 0 if it is late.
+
+        Faster than real time, a delay of more than `LATE_S` is lost.
+        """
+        due_in_s = self._started_s + self.t_s / self.speed - time.monotonic()
+        if self.speed > 1.0 and -due_in_s * self.speed > LATE_S:
+            self._started_s -= due_in_s
+        return max(0.0, due_in_s)
 
 
 @dataclass
@@ -167,7 +177,7 @@ class Headset:
         arrive late in the headset's time. A headset in real time cannot wait, and relies on its
         journal.
         """
-        await asyncio.sleep(max(0.0, self._clock.due_in_s))
+        await asyncio.sleep(self._clock.wait_s())
         if self._clock.speed > 1.0:
             await self.client.at_most_waiting(MESSAGES_AHEAD)
 

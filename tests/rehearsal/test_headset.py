@@ -1,9 +1,11 @@
 """Tests of the scripted headset without a network."""
 
 import asyncio
+import time
 from typing import cast
 
 import numpy as np
+import pytest
 
 from app.client.telemetry import TelemetryClient
 from app.protocol import Tasks
@@ -28,6 +30,35 @@ def play(seed: int, phase: PhaseOrder) -> InstantServer:
 def shipped_tasks() -> Tasks:
     """Return the boxes of the shipped study."""
     return study().tasks
+
+
+def test_a_clock_that_fell_behind_does_not_catch_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    """After a stall, a clock faster than real time passes no more than its speed times the time."""
+    now_s = 100.0
+    monkeypatch.setattr(time, "monotonic", lambda: now_s)
+    clock = FrameClock(4.0)
+    clock.start()
+    now_s += 10.0
+    assert clock.wait_s() == 0.0
+    stalled_s, began_s = clock.t_s, now_s
+    for _ in range(720):
+        clock.frame += 1
+        now_s += clock.wait_s()
+    assert clock.t_s - stalled_s == 8.0
+    assert now_s - began_s == pytest.approx(2.0)
+
+
+def test_a_headset_in_real_time_keeps_its_own_clock(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In real time a late frame is drawn immediately, and the clock does not lose the time."""
+    now_s = 100.0
+    monkeypatch.setattr(time, "monotonic", lambda: now_s)
+    clock = FrameClock(1.0)
+    clock.start()
+    now_s += 10.0
+    clock.frame += 90
+    assert (clock.wait_s(), clock.now_s()) == (0.0, 1.0)
+    clock.frame += 900
+    assert clock.wait_s() == pytest.approx(1.0)
 
 
 def test_the_same_seed_gives_the_same_movement_and_the_same_touches() -> None:
