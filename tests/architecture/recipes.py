@@ -166,7 +166,7 @@ class Tree:
         target.write_text(text, encoding="utf-8")
 
     def evaluate(self, script: str) -> Json:
-        """Return what `script` assigns to `answer`, run in a Python process that imports the copy.
+        """Return the value that `script` assigns to `answer`, in a process that imports the copy.
 
         Raises RecipeError with the process's output if it fails.
         """

@@ -1,4 +1,4 @@
-"""Evaluate all three models on all populations; the results judge the walking model.
+"""Evaluate all three models on all populations, to judge the walking model.
 
 Each population has a database of 24 people in the laboratory's sixteen scenes. A cell is a
 population in one of three situations, and no person is in both training and test data:

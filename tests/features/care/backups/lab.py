@@ -24,7 +24,7 @@ def make(database: Database, to: Path, **options: Any) -> BackedUp:
 
 
 def put_back(database: Database, path: Path, *, replace: bool = False, **options: Any) -> Restored:
-    """Restore a backup; what it replaces is backed up to the folder `kept` next to it."""
+    """Restore a backup; the replaced data are backed up to the folder `kept` next to it."""
     keep_in = path.parent / "kept"
     with checked_backup(path, keep_in) as backup:
         return restore(database, backup, keep_in=keep_in, clock=CLOCK, replace=replace, **options)

@@ -132,7 +132,7 @@ def test_an_intact_record_is_restored(lab: Lab, database_url: str, tmp_path: Pat
 
 
 def test_a_failed_restore_deletes_its_safety_backup(lab: Lab, tmp_path: Path) -> None:
-    """A restore that fails deletes the backup that it made first, since nothing was replaced."""
+    """A restore that fails deletes its own safety backup, since no data were replaced."""
     make(lab.database, tmp_path / "all.reembody")
     forged(tmp_path / "all.reembody", "UPDATE accounts SET role = 'superadmin'")
     with pytest.raises(InvalidInput):

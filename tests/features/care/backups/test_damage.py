@@ -60,7 +60,7 @@ def test_an_overwritten_page_is_detected(backup: Path) -> None:
 
 @pytest.mark.long
 def test_every_overwritten_page_is_detected(backup: Path) -> None:
-    """Overwriting any single page of a backup makes it refused or leaves its rows unaffected."""
+    """A backup with any single page overwritten is refused, unless its rows are unaffected."""
     overwrite(backup, EVERY_PAGE)
 
 
@@ -90,7 +90,7 @@ def test_a_flipped_bit_never_changes_restored_rows(backup: Path) -> None:
 
 @pytest.mark.long
 def test_many_flipped_bits_never_change_restored_rows(backup: Path) -> None:
-    """Each of thousands of flipped bits makes a backup refused or leaves its rows unaffected."""
+    """A backup with any of thousands of bits flipped is refused, unless its rows are unaffected."""
     flip_bits(backup, MANY_FLIPS)
 
 

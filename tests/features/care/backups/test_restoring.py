@@ -1,4 +1,4 @@
-"""Tests of restoring: a restore gives back exactly what was backed up, or changes nothing."""
+"""Tests that a restore brings back exactly the backed-up data, or changes nothing."""
 
 import hashlib
 from pathlib import Path

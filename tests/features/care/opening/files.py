@@ -1,4 +1,4 @@
-"""SQLite databases as a process leaves them when it closes normally or is killed."""
+"""SQLite databases in the state in which a process leaves them on closing or when killed."""
 
 import os
 import signal

@@ -1,4 +1,4 @@
-"""Tests that a healthy database that cannot be opened now stays in place and unchanged.
+"""Tests that a healthy database that cannot be opened at present is left unchanged.
 
 Errors of the disk itself are simulated in tests/faults/test_io_faults.py.
 """
@@ -72,7 +72,7 @@ def test_a_locked_database_is_left_in_place(file: Path, tmp_path: Path) -> None:
 def test_an_unreadable_file_is_not_treated_as_damaged(
     file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int
 ) -> None:
-    """A database file that the system does not let us read is left in place, not quarantined."""
+    """A database file without read permission is left in place, not quarantined."""
     original = Path.open
 
     def refusing(self: Path, *arguments: object, **more: object) -> object:
@@ -182,7 +182,7 @@ def test_an_empty_postgresql_database_is_reported_where_one_was_used(tmp_path: P
 
 
 def test_a_leftover_log_is_quarantined_before_a_new_database(tmp_path: Path) -> None:
-    """A leftover write-ahead log is quarantined, lest SQLite replay it into a new database."""
+    """A leftover write-ahead log is quarantined, so no new database replays it."""
     file = killed(filled(tmp_path / "reembody.sqlite"))
     log = Path(f"{file}-wal")
     content = log.read_bytes()

@@ -1,4 +1,4 @@
-"""Tests that damage of a database file is detected without changing the file."""
+"""Tests that damage to a database file is detected without changing the file."""
 
 import sqlite3
 import subprocess
@@ -40,7 +40,7 @@ def overwritten(file: Path, step: int, *, noise: bool) -> Iterator[tuple[int, st
 
 
 def ends_of_blobs(file: Path) -> set[int]:
-    """Return the pages that hold the end of a long value: their next-page number is zero."""
+    """Return the pages that contain the end of a long value: their next-page number is zero."""
     data = file.read_bytes()
     pages = range(len(data) // PAGE)
     return {page for page in pages if data[page * PAGE : page * PAGE + 4] == bytes(4)}
@@ -110,7 +110,7 @@ def test_a_wrong_file_signature_is_detected(file: Path, start: bytes) -> None:
 
 
 def test_a_damaged_log_is_detected(file: Path) -> None:
-    """A damaged write-ahead log is detected, even if SQLite would accept what is left of it."""
+    """A damaged write-ahead log is detected, even if SQLite would accept the rest of it."""
     killed(file)
     assert damage_of(file) is None
     flip(log(file), 5 * PAGE)
@@ -130,7 +130,7 @@ def test_a_log_torn_by_a_power_failure_passes(file: Path) -> None:
 
 @pytest.mark.parametrize("length", [0, 20, 32, 9 * PAGE, -5000, -1])
 def test_a_log_without_its_committed_end_is_detected(file: Path, length: int) -> None:
-    """A log shorter than its index says is detected; SQLite would silently ignore the loss."""
+    """A log shorter than its index states is detected; SQLite would silently ignore the loss."""
     killed(file)
     log(file).write_bytes(log(file).read_bytes()[:length])
     assert "cannot be read" in (damage_of(file) or "")
@@ -205,6 +205,6 @@ def test_a_database_open_in_another_process_is_detected(file: Path) -> None:
 
 
 def count(found: dict[int, str | None]) -> str:
-    """Return in how many of the cases damage was detected, as "n of m"."""
+    """Return the share of cases in which damage was detected, as "n of m"."""
     noticed = sum(damage is not None for damage in found.values())
     return f"{noticed} of {len(found)}"

@@ -1,4 +1,4 @@
-"""Tests of data ownership: one process at a time, its lock, and what is reported of the owner."""
+"""Tests of data ownership: one process at a time, the lock, and the reported owner."""
 
 import os
 import shutil
@@ -105,7 +105,7 @@ def test_a_second_owner_is_refused_with_details_of_the_first(settings: Settings)
 def test_a_killed_owners_lock_is_free_although_its_worker_lives(
     settings: Settings, more: str
 ) -> None:
-    """A killed owner's lock is free although a forked or spawned worker of it still runs."""
+    """A killed owner's lock is free even if a forked or spawned worker of it still runs."""
     with holder(settings, more) as (pid, workers):
         with pytest.raises(Owned, match=f"process id {pid} on port 4711"):
             own_data(settings)
@@ -126,7 +126,7 @@ def test_an_owner_keeps_its_lock_when_a_worker_ends(settings: Settings, more: st
 
 
 def test_every_path_to_the_data_leads_to_one_lock(tmp_path: Path, settings: Settings) -> None:
-    """A data folder has one lock, through whatever link or path it or its database is opened."""
+    """A data folder has only one lock, by whatever link or path it or its database is opened."""
     settings.data_dir.mkdir()
     (tmp_path / "link").symlink_to(settings.data_dir)
     (settings.data_dir / "reembody.sqlite").touch()
@@ -220,7 +220,7 @@ def test_a_removed_lock_file_is_recreated(settings: Settings) -> None:
 
 
 def test_an_owner_that_lost_its_data_shuts_down(settings: Settings) -> None:
-    """A server whose data another process has taken reports it in its health and shuts down."""
+    """A server whose data another process took over reports this in its health and shuts down."""
     background, ended = Background(Clock()), []
     with own_data(settings) as own:
         watch = OwnerWatch(own, background, lambda: ended.append(True))
@@ -232,7 +232,7 @@ def test_an_owner_that_lost_its_data_shuts_down(settings: Settings) -> None:
 
 
 def test_a_lock_without_its_text_still_counts(settings: Settings) -> None:
-    """A lock file without text, as a full disk leaves it, still refuses a second owner."""
+    """A second owner is refused even if the lock file has no text, as after a full disk."""
     settings.data_dir.mkdir()
     owner = Owner.myself("serve", 1)
     folder_lock = FolderLock(settings.data_dir, owner)
@@ -252,8 +252,8 @@ def test_a_data_folder_that_is_a_file_is_refused(tmp_path: Path) -> None:
 def test_a_reader_works_alongside_an_owner_that_has_prepared(tmp_path: Path) -> None:
     """A reading command works alongside an owner that has prepared the database.
 
-    Without an owner it prepares the database itself; while an owner is still preparing it, the
-    command is refused.
+    Without an owner, the command prepares the database itself; while an owner is still preparing
+    it, the command is refused.
     """
     settings, prepared = Settings(data_dir=tmp_path), []
 
@@ -274,7 +274,7 @@ def test_a_reader_works_alongside_an_owner_that_has_prepared(tmp_path: Path) -> 
 def test_a_postgres_database_has_one_owner_whatever_the_folder(
     tmp_path: Path, postgres_url: str
 ) -> None:
-    """A PostgreSQL database has one owner, in whatever data folders, until the owner is killed."""
+    """A PostgreSQL database has one owner until that is killed, whatever the data folders."""
     first = Settings(data_dir=tmp_path / "a", database_url=postgres_url)
     second = Settings(data_dir=tmp_path / "b", database_url=postgres_url)
     with holder(first) as (pid, _):
@@ -288,7 +288,7 @@ def test_a_postgres_database_has_one_owner_whatever_the_folder(
 
 
 def test_a_lost_postgres_lock_is_retaken_or_given_up(tmp_path: Path, postgres_url: str) -> None:
-    """A server that lost its PostgreSQL lock retakes it, or shuts down if another server has it."""
+    """A server that lost its PostgreSQL lock reacquires it, or shuts down if another has it."""
     background, ended = Background(Clock()), []
     own = own_data(Settings(data_dir=tmp_path / "a", database_url=postgres_url))
     other = Settings(data_dir=tmp_path / "b", database_url=postgres_url)

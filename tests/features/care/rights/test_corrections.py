@@ -1,4 +1,4 @@
-"""Tests of corrections: the first answer is kept, and the newest counts everywhere."""
+"""Tests of corrections: the first answer is stored, and the newest is used everywhere."""
 
 import csv
 import io

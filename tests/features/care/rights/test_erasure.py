@@ -1,4 +1,4 @@
-"""Tests of erasure: what is removed, what remains, and when it is refused."""
+"""Tests of erasure: the data it removes, the data that remain, and when it is refused."""
 
 import hashlib
 import json
@@ -38,7 +38,7 @@ from tests.features.record.headset.site import Site
 
 
 def mine(code: str) -> str:
-    """Return a participant code that contains the canary."""
+    """Return a participant code that contains the canary text."""
     return f"{CANARY}-{code}"
 
 
@@ -135,7 +135,7 @@ def _event_of(site: Site, visit: Visit, submission_id: str) -> Json:
 
 
 def _guesses(answers: Json) -> Iterator[Json]:
-    """Yield every possible form with the first answer varied and all others known."""
+    """Yield every possible form, with the first answer varied and all others as submitted."""
     first = next(item for item, value in answers.items() if isinstance(value, float))
     whole = {
         item: int(value) if isinstance(value, float) else value for item, value in answers.items()
@@ -167,7 +167,7 @@ def test_an_erasure_is_refused_while_a_session_runs(site: Site) -> None:
 
 
 def test_no_data_can_be_added_after_an_erasure(site: Site) -> None:
-    """An erased participant's notes, corrections, headset data and new sessions are refused."""
+    """After an erasure, notes, corrections, headset data and new sessions are refused."""
     visit = withdrawn(site, "after")
     forms = ok(site.operator.get(f"/api/sessions/{visit.session_id}/answers"))
     erase(site, visit)

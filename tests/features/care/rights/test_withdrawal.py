@@ -66,7 +66,7 @@ def test_a_headset_reconnecting_after_a_withdrawal_is_refused(site: Site) -> Non
 
 @pytest.mark.one_engine
 def test_an_aborted_session_accepts_its_headsets_backlog(site: Site) -> None:
-    """A session that the lab aborted still stores the movement that its headset had kept."""
+    """A session that the lab aborted still stores the movement in its headset's journal."""
     visit = make_visit(site, "aborted-1")
     site.command(visit.session_id, "abort", reason="the headset failed")
     with site.headset(visit.headset_token) as headset:

@@ -1,4 +1,4 @@
-"""A visit that leaves a canary text wherever a participant leaves data, and searches for it."""
+"""A visit with a canary text in all data that a participant leaves, and a search for it."""
 
 import hashlib
 import io
@@ -46,7 +46,7 @@ class Visit:
 
     @property
     def needles(self) -> tuple[bytes, bytes]:
-        """The byte strings to search for: the code, and twice its `height_m` as a float32."""
+        """Return what to search for: the code, and its `height_m` twice in single precision."""
         return self.code.encode(), np.float32(height_m(self.code)).tobytes() * 2
 
 
@@ -56,7 +56,7 @@ def height_m(code: str) -> float:
 
 
 def make_visit(site: Site, code: str = CANARY) -> Visit:
-    """Run part of a session whose notes, answers, device names and movement contain the code."""
+    """Run part of a session whose notes, answers, devices, contacts and movement carry a code."""
     session_id = site.join(kind="people", participant_code=code)
     _pair_tablet(site, session_id, name=code)
     site.command(session_id, "start")
@@ -179,7 +179,7 @@ def in_bytes(visit: Visit, data: bytes) -> int:
 
 
 def in_tables(visit: Visit, engine: Engine) -> dict[str, int]:
-    """Return in how many rows a visit's data occur, by table and text, JSON or byte column."""
+    """Count the rows in which a visit's data occur, by table and text, JSON or byte column."""
     found: dict[str, int] = {}
     with engine.connect() as connection:
         for table in _tables(engine):

@@ -1,4 +1,4 @@
-"""Tests of disk usage on both engines: totals, shares of studies and sessions, and the forecast."""
+"""Tests of disk usage on both engines: total, shares of studies and sessions, forecast."""
 
 import pytest
 from sqlalchemy import text
@@ -83,7 +83,7 @@ def test_the_forecast_is_free_space_over_mean_session_size(lab: Lab, usage: Json
 
 
 def test_a_full_disk_is_reported_with_no_sessions_left(lab: Lab, usage: Json) -> None:
-    """Below the threshold, low space is reported, with room for no further session."""
+    """Below the threshold, low disk space is reported, with room for no further session."""
     storage = lab.context.storage
     before, storage.free_bytes = storage.free_bytes, lambda _: 1000
     try:

@@ -25,7 +25,7 @@ def database(database_url: str) -> Iterator[Database]:
 def lasting_database(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[Database]:
-    """Yield a database for a whole module: one fixture fills it, and the tests only read."""
+    """Yield a database for a whole module, which one fixture fills and the tests only read."""
     with ExitStack() as stack:
         if request.param == "sqlite":
             url = fresh_sqlite(tmp_path_factory.mktemp("lasting") / "reembody.sqlite")
@@ -40,7 +40,7 @@ def lasting_database(
 
 @pytest.fixture(scope="module")
 def three_kinds(lasting_database: Database) -> Database:
-    """Return a database with a session of a person, a simulated one and a test."""
+    """Return a database with three sessions: a person's, a simulated one and a test."""
     with lasting_database.writing() as db:
         build_session(db, SessionSpec("P-0001"))
         build_session(db, SessionSpec("SIM-0001", kind="simulated"))

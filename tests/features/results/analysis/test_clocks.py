@@ -131,8 +131,8 @@ def test_utc_is_consistent_across_runs_of_the_client(
 ) -> None:
     """UTC is consistent across two runs of the client with different clocks.
 
-    It is taken from the wall clock afresh if the server's monotonic clock went back, or is so
-    little ahead that the server must have restarted after the first run.
+    UTC is taken from the wall clock again if the server's monotonic clock went back, or advanced so
+    little that the server must have restarted after the first run.
     """
     session_id = _session(database)
     probes = _stored(database, session_id, WIFI).probes
@@ -164,7 +164,7 @@ def test_a_run_after_a_restart_within_a_run_keeps_utc(database: Database) -> Non
 
 
 def test_a_clock_that_was_set_back_is_read_in_the_order_of_storing(database: Database) -> None:
-    """Times of a client clock that was set back are read in stored order, with a wide bound."""
+    """Times of a client clock that was set back are read in stored order, with a large bound."""
     session_id = _session(database)
     simulated = _stored(database, session_id, replace(WIFI, client_step_s=-30.0))
     with database.reading() as db:
@@ -213,7 +213,7 @@ def test_without_probes_there_is_no_utc(database: Database) -> None:
 
 @pytest.mark.one_engine
 def test_an_accelerated_clock_is_mapped_by_its_time_scale(database: Database) -> None:
-    """At a time scale of ten a minute of the client's clock is six seconds of UTC."""
+    """At a time scale of ten, a minute of the client's clock is six seconds of UTC."""
     session_id = _session(database, "simulated")
     probes = simulate(replace(WIFI, drift_ppm=0.0), np.random.default_rng(1)).probes
     with database.writing() as db:
@@ -233,7 +233,7 @@ def test_an_accelerated_clock_is_mapped_by_its_time_scale(database: Database) ->
 
 
 def test_the_clock_tables_have_probes_and_segments(database: Database) -> None:
-    """The clock tables have every probe, answered or not, and the segments of the mapping."""
+    """The clock tables contain every probe, answered or not, and the segments of the mapping."""
     with database.writing() as db:
         session_id = build_session(db, SessionSpec("P-0001")).id
     with database.reading() as db:

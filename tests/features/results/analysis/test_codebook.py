@@ -42,7 +42,7 @@ def test_every_table_of_data_says_whether_it_was_simulated() -> None:
 
 
 def test_both_streams_have_columns_for_root_and_quaternions() -> None:
-    """Each stream has 3 + 4 x 22 columns in the table of samples."""
+    """The table of samples has 3 + 4 x 22 columns for each stream."""
     names = [column.name for column in CODEBOOK if column.table == "samples"]
     for stream in ("target", "actual"):
         assert f"{stream}_root_x_m" in names

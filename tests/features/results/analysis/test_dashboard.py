@@ -94,7 +94,7 @@ def test_every_figure_is_valid_plain_json(two_people: DashboardFigures) -> None:
 
 @pytest.mark.one_engine
 def test_every_figure_says_what_it_shows(two_people: DashboardFigures) -> None:
-    """Every figure has a title, a caption with n, units on its axes and hover texts."""
+    """Every figure has a title, a caption with n, units on its axes, and hover texts."""
     for entry in two_people.figures:
         if entry.figure is None:
             assert entry.key in NEEDS_MOVEMENT
@@ -132,7 +132,7 @@ def test_simulated_data_are_marked_and_separate(database: Database) -> None:
 
 @pytest.mark.one_engine
 def test_figures_without_data_have_a_sentence(database: Database) -> None:
-    """Without participants every figure is replaced by a sentence about what is missing."""
+    """Without participants every figure is replaced by a sentence that says what is missing."""
     _build(database)
     for entry in _dashboard(database).figures:
         assert entry.figure is None
@@ -227,7 +227,7 @@ def test_invalid_rows_are_drawn_only_on_request(database: Database) -> None:
 
 @pytest.mark.one_engine
 def test_the_rows_of_a_figure_are_those_drawn(database: Database) -> None:
-    """A figure's rows as CSV have the means and intervals that are drawn."""
+    """A figure's rows as CSV contain the means and intervals that are drawn."""
     _build(database, *(SessionSpec(f"SIM-{at}", kind="simulated") for at in range(3)))
     with database.reading() as db:
         material = read_material(db, STUDY, "simulated")

@@ -22,7 +22,7 @@ def _build(database: Database, *specs: SessionSpec) -> None:
 def test_a_group_has_its_figures_and_reads_only_its_tables(
     database: Database,
 ) -> None:
-    """A group has the same figures as the whole dashboard and reads only the tables it needs."""
+    """A group has the same figures as on the whole dashboard and reads only the tables it needs."""
     _build(database, SessionSpec("P-0001"), SessionSpec("P-0002"))
     with database.reading() as db:
         material = MaterialStore().get(db, STUDY, "people", "first")

@@ -17,7 +17,7 @@ LATE_S = 0.2
 
 
 class LateCallbacks(Future[bytes]):
-    """A future whose callbacks run long after its waiters continue."""
+    """A future whose callbacks run long after its waiters have continued."""
 
     def add_done_callback(self, fn: Callable[[Future[bytes]], object]) -> None:
         """Register a callback that is called late."""
@@ -33,7 +33,7 @@ class ThreadedWorker(Worker):
     """A worker that draws in a thread."""
 
     def submit(self, *_task: Any, **_options: Any) -> Any:
-        """Return a future that is done after 10 ms."""
+        """Start the work in a thread and return a future that is done after 10 ms."""
         drawing = LateCallbacks()
         threading.Timer(0.01, drawing.set_result, [b"{}"]).start()
         return drawing

@@ -84,7 +84,7 @@ def test_one_value_has_a_mean_and_no_interval() -> None:
 
 
 def test_means_are_over_participants() -> None:
-    """Means are over participants: one with many phases counts as much as one with few."""
+    """Means are over participants: one with many phases has the same weight as one with few."""
     twice = _phases({"P-1": {0.0: 4}, "P-2": {0.0: 1}})
     frame = pd.concat([twice, _phases({"P-1": {0.0: 4}})])
     (mean,) = _traces(completions_drawing(frame), "mean, hand")
@@ -110,7 +110,7 @@ def test_limbs_differ_in_panel_symbol_and_dash() -> None:
 
 
 def test_scores_that_are_missing_do_not_count() -> None:
-    """A participant with a missing score is left out of that score's figure."""
+    """A participant without a score is left out of the figure of that score."""
     scores = pd.DataFrame(
         {
             "participant_code": ["P-1", "P-2", "P-3"],
@@ -200,7 +200,7 @@ def test_a_phase_without_a_contact_counts_as_zero() -> None:
 
 
 def test_no_contacts_at_all_give_a_sentence() -> None:
-    """Without any contact the figure is replaced by a sentence."""
+    """Without any contact, the figure is replaced by a sentence."""
     phases = _phases({"P-1": {0.0: 1}, "P-2": {0.0: 1}})
     none = pd.DataFrame([_contact("P-1", 0.0, "LeftHand", 1.0, 4.0)]).iloc[:0]
     drawing = contacts_drawing(phases, none)
@@ -209,7 +209,7 @@ def test_no_contacts_at_all_give_a_sentence() -> None:
 
 
 def test_progress_shows_every_order() -> None:
-    """Progress shows the sessions of every order by status, also an order without sessions."""
+    """Progress shows the sessions of every order by status, including orders without sessions."""
     sessions = pd.DataFrame(
         {
             "participant_code": ["P-1", "P-2", "P-3", "P-4"],
@@ -230,7 +230,7 @@ def test_progress_shows_every_order() -> None:
 
 
 def test_a_confounding_of_limb_and_time_is_stated() -> None:
-    """A note on the confounding of limb and time appears only if one limb always came first."""
+    """A note states that limb and time are confounded, but only if one limb always came first."""
     counts = {"P-1": {0.0: 1}}
     hand, foot = _phases(counts), _phases(counts, limb="foot").assign(position=2)
     assert "hand phase always came first" in limb_note(pd.concat([hand, foot]))

@@ -22,7 +22,7 @@ MEANS = ("0 ms", "125 ms")
 
 
 def _courses(growth_deg: float, code: str, latency: float, **changes: Any) -> list[dict[str, Any]]:
-    """Return rows of a phase whose error grows by this amount per bin."""
+    """Return rows of a phase whose error grows by a fixed amount per bin."""
     row = {
         "participant_code": code,
         "phase_kind": "task",
@@ -78,7 +78,7 @@ def test_a_band_is_interrupted_where_no_interval_is_known() -> None:
 
 
 def test_latencies_and_limbs_differ_without_colour() -> None:
-    """Latencies differ in dash and symbol, limbs in panel; the axes have units."""
+    """Latencies differ in dash and symbol, and limbs in panel; the axes have units."""
     rows = [
         row
         for code in ("P-1", "P-2")
@@ -143,7 +143,7 @@ def _drawing(database: Database, chosen: FigureFilter = NO_FILTER) -> tuple[Draw
 def test_the_figure_of_a_study_is_filtered_and_its_rows_are_those_drawn(
     database: Database,
 ) -> None:
-    """The figure can be filtered, and its rows as CSV are those that are drawn."""
+    """The figure can be filtered, and its CSV contains the rows that are drawn."""
     with database.writing() as db:
         for at in range(3):
             build_session(db, SessionSpec(f"SIM-{at}", kind="simulated"))

@@ -14,7 +14,7 @@ from tests.features.latency_builders import measured
 
 @pytest.fixture
 def table(database: Database) -> pd.DataFrame:
-    """Return phases whose latencies are unmeasured, without movement, off and within tolerance."""
+    """Return phases whose latency is unmeasured, off or within tolerance, or without movement."""
     with database.writing() as db:
         session = build_session(db, SessionSpec("P-0001"))
         tasks = db.scalars(

@@ -42,7 +42,7 @@ def build(database: Database, *specs: SessionSpec, backwards: int = 0) -> None:
 
 
 def add_quality(db: Session, session: StudySession, backwards: int) -> None:
-    """Add quality rows of both streams for every phase; the actual head was frozen."""
+    """Add quality rows of both streams for every phase, with a frozen head in the actual one."""
     for phase in db.scalars(select(Phase).where(Phase.session_id == session.id)):
         for stream, joints in (("actual", ["Head", "LeftHand"]), ("target", [])):
             db.add(
@@ -111,7 +111,7 @@ def test_every_phase_has_a_row_for_each_stream(database: Database) -> None:
 
 @pytest.mark.one_engine
 def test_a_repeated_phases_first_attempt_is_not_valid(database: Database) -> None:
-    """The quality rows of a repeated phase's first attempt are kept and not valid."""
+    """The quality rows of a repeated phase's first attempt are kept but marked as not valid."""
     build(database, SessionSpec("P-0001", redone=("block2.hand",)))
     rows = table(database, "quality")
     assert rows[~rows["valid"]]["attempt"].tolist() == [1, 1]
@@ -129,7 +129,7 @@ def test_a_doubted_phase_is_not_valid(database: Database) -> None:
 
 
 def test_an_alarm_is_two_rows(database: Database) -> None:
-    """A cleared alarm has two rows: raised and cleared."""
+    """A cleared alarm has two rows: one when it was raised, one when it was cleared."""
     build(database, SessionSpec("P-0001"))
     rows = table(database, "alarms")
     assert rows["state"].tolist() == ["raised", "cleared"]

@@ -101,7 +101,7 @@ def test_a_constant_measure_has_no_direction(database: Database) -> None:
 
 @pytest.mark.one_engine
 def test_results_state_alpha_and_never_say_significant(database: Database) -> None:
-    """Results state alpha, never say "significant", and say if tests were not declared."""
+    """Results state alpha, avoid the word "significant", and say if tests were not declared."""
     found = _found(database, 3)
     text = found.model_dump_json()
     assert "significant" not in text

@@ -1,4 +1,4 @@
-"""Tests of the record as tables."""
+"""Tests of the tables that represent the record."""
 
 import math
 from collections.abc import Callable
@@ -60,7 +60,7 @@ def test_a_table_has_the_columns_of_the_codebook(three_kinds: Database, table: s
 
 @pytest.mark.parametrize("table", TABLES)
 def test_kinds_never_mix(three_kinds: Database, table: str) -> None:
-    """A table of one kind of session has rows of that kind only; `all` has all of them."""
+    """A table of one kind of session has rows of that kind only; the kind `all` has all rows."""
     kinds: tuple[Kind, ...] = ("people", "simulated", "test")
     sizes = []
     for kind in kinds:
@@ -86,7 +86,7 @@ def test_a_repeated_phases_first_attempt_is_not_valid(database: Database, table:
 
 @pytest.mark.one_engine
 def test_only_the_last_attempt_of_a_repeated_form_is_valid(database: Database) -> None:
-    """Answers and scores of a repeated form's first attempt are kept and not valid."""
+    """Answers and scores of a repeated form's first attempt are kept but marked as not valid."""
     _build(database, SessionSpec("P-0001", redone=("block2.foot.karas2020",)))
     for table in ("answers", "scores"):
         rows = _read(database, table)
@@ -108,7 +108,7 @@ def test_a_form_about_a_skipped_phase_is_not_valid(database: Database) -> None:
 def test_no_row_of_an_aborted_or_withdrawn_session_is_valid(
     database: Database, status: str
 ) -> None:
-    """All rows of an aborted or withdrawn session are kept and not valid."""
+    """All rows of an aborted or withdrawn session are kept but marked as not valid."""
     _build(database, SessionSpec("P-0001", status=status))
     for table in TABLES:
         rows = _read(database, table)
@@ -168,7 +168,7 @@ def test_a_course_has_a_row_for_every_bin_in_order_of_time(database: Database) -
 
 @pytest.mark.one_engine
 def test_joint_errors_have_their_clipped_share(database: Database) -> None:
-    """Joint errors have their stored clipped share, and an empty cell without one."""
+    """Joint errors have their stored clipped share, or an empty cell if none is stored."""
     _build(database, SessionSpec("P-0001"))
     assert _read(database, "joint_errors")["clipped_share"].isna().all()
     head = (JointErrorRow.joint == "Head") & (JointErrorRow.axis == "x")
@@ -181,7 +181,7 @@ def test_joint_errors_have_their_clipped_share(database: Database) -> None:
 
 
 def test_answers_are_as_given_and_scores_follow_from_them(database: Database) -> None:
-    """The raw answers of Karas 2020, table 7.2 (hand, 0 ms), score 8, 7, 4 and 1.04."""
+    """The raw answers of Karas 2020, table 7.2 (hand, 0 ms), give the scores 8, 7, 4 and 1.04."""
     raw = [2, 1, 1, 5, 1, 7, 7, 2, 1, 6, 1, 3, 4, 4]
     existing = {f"q{number}": answer for number, answer in enumerate(raw, start=1)}
     _build(database, SessionSpec("P-0001", likert=lambda _, item: existing.get(item, 3)))
@@ -206,7 +206,7 @@ def test_heights_are_those_stated_and_matched(database: Database) -> None:
 
 @pytest.mark.one_engine
 def test_an_unknown_study_and_an_unknown_kind_are_refused(database: Database) -> None:
-    """An unknown study and an unknown kind are refused with the valid ones."""
+    """An unknown study or kind is refused with an error that lists the valid ones."""
     with database.reading() as db:
         with pytest.raises(NotFound) as unknown:
             tables.phases_table(db, "nothing", "people")

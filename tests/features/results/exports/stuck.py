@@ -1,4 +1,4 @@
-"""A stand-in for a long export, without imports that would slow its process down."""
+"""A substitute for a long export, without imports that would delay its process."""
 
 import os
 import time

@@ -51,7 +51,7 @@ def test_text_that_looks_like_a_formula_is_escaped(text: str) -> None:
 
 
 def test_no_cell_can_be_run_as_a_formula() -> None:
-    """No combination of a formula sign and characters that spreadsheets skip stays executable."""
+    """No combination of a formula sign with characters that spreadsheets skip can be executed."""
     signs = ("=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20")
     skipped = (
         "",
@@ -80,7 +80,7 @@ def test_no_cell_can_be_run_as_a_formula() -> None:
 
 @pytest.mark.parametrize("text", ["", "yes", "it's -5", "a=b", "5-4", "x@y", "'quoted'", "#1"])
 def test_ordinary_text_is_unchanged(text: str) -> None:
-    """Text with a formula sign elsewhere than at its start is unchanged."""
+    """Text is unchanged if it has a formula sign anywhere except at its start."""
     assert safe_text(text) == text
 
 

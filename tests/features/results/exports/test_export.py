@@ -18,7 +18,7 @@ from tests.features.results.exports.whole import FILES, TABLES, export, rows_of,
 
 @dataclass(frozen=True)
 class Made:
-    """An export that was made once for several tests, with the progress that it reported."""
+    """An export that was made once for several tests, and the progress that was reported."""
 
     done: Exported
     progress: list[str]
@@ -105,7 +105,7 @@ def test_two_exports_of_the_same_data_are_the_same(
 
 
 def test_a_formula_in_the_open_prompt_is_inert(people: Made) -> None:
-    """No cell of an export but a negative number begins with a formula sign."""
+    """No cell of an export, except negative numbers, begins with a formula sign."""
     cells = [
         cell
         for name in FILES - {"README.txt"}
@@ -128,7 +128,7 @@ def test_an_earlier_export_is_replaced(filled: Database, tmp_path: Path) -> None
 
 @pytest.mark.one_engine
 def test_progress_reports_each_file(people: Made) -> None:
-    """Progress reports each file once, the README last."""
+    """Progress is reported once for each file, with the README last."""
     assert set(people.progress) == set(people.tree)
     assert people.progress[-1] == "README.txt"
 
@@ -141,7 +141,7 @@ def _kind_of(db: Session, *specs: SessionSpec) -> str:
 
 @pytest.mark.one_engine
 def test_the_default_kind_is_people_if_there_are_any(database: Database) -> None:
-    """The default kind is people if the study has any, else simulated, else test."""
+    """The default kind is people if the study has any, else simulated, and otherwise test."""
     with database.writing() as db:
         assert usual_kind(db, STUDY) == "people"
         assert _kind_of(db, SessionSpec("T", kind="test")) == "test"

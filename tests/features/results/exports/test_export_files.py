@@ -79,7 +79,7 @@ def _copies(lab: Lab) -> list[CopyMade]:
 
 
 def test_an_export_file_is_downloaded_whole_or_in_parts(site: Lab) -> None:
-    """An export file has the members of the streamed archive and can be downloaded in parts."""
+    """An export file contains the same members as the stream, and can be downloaded in parts."""
     client = site.operator
     ordered = _order(client)
     done = _until(client, ordered["id"], "ready", "failed")
@@ -110,7 +110,7 @@ def test_an_export_file_is_downloaded_whole_or_in_parts(site: Lab) -> None:
 
 
 def test_an_export_of_one_session_is_visible_to_its_owner_only(small_site: Lab) -> None:
-    """An export of one session has no other participant and is visible only to its owner."""
+    """An export of one session contains no other session and is visible only to its owner."""
     client = small_site.operator
     sessions = ok(client.get(f"/api/studies/{STUDY}/sessions"))
     one = next(row for row in sessions if row["participant_code"] == "P-0002")

@@ -38,7 +38,7 @@ def test_the_export_is_a_zip_of_csv(client: TestClient) -> None:
 
 @pytest.mark.one_engine
 def test_a_kind_can_be_requested(client: TestClient) -> None:
-    """An export of simulated sessions has no others."""
+    """An export of simulated sessions contains no other sessions."""
     answer = client.get(f"/api/studies/{STUDY}/export", params={"kind": "simulated"})
     with zipfile.ZipFile(io.BytesIO(answer.content)) as archive:
         assert b"P-0001" not in archive.read("sessions.csv")
@@ -71,7 +71,7 @@ def test_export_and_codebook_need_a_login(lab: Lab, what: str) -> None:
 
 @pytest.mark.one_engine
 def test_the_codebook_describes_every_column(client: TestClient) -> None:
-    """The codebook over HTTP has every column; that of an unknown study is not found."""
+    """The codebook over HTTP has every column; the codebook of an unknown study is not found."""
     answer = client.get(f"/api/studies/{STUDY}/codebook")
     assert [(row["table"], row["column"]) for row in answer.json()] == [
         (column.table, column.name) for column in CODEBOOK

@@ -33,7 +33,7 @@ def _values(rows: list[dict[str, str]], stream: str) -> np.ndarray:
 
 @pytest.fixture
 def session(database: Database) -> StudySession:
-    """Return a session without movement."""
+    """Return a session without any movement."""
     with database.writing() as db:
         return build_session(db, SessionSpec("P-0001"))
 
@@ -91,7 +91,7 @@ def test_frames_are_joined_on_epoch_and_seq(database: Database, session: StudySe
 def test_batches_that_are_not_folded_are_exported(
     database: Database, session: StudySession
 ) -> None:
-    """Batches that are not folded yet are exported together with chunks."""
+    """Batches that have not been folded into chunks are exported together with the chunks."""
     values = moving_values(100, 1)
     with database.writing() as db:
         store_chunks(db, session.id, TARGET, range(90), values[:90])

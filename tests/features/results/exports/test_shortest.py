@@ -37,6 +37,6 @@ def test_known_numbers_have_their_shortest_text() -> None:
 
 
 def test_nan_and_infinities_are_unchanged() -> None:
-    """NaN and the infinities are unchanged."""
+    """NaN and infinities are written as `nan`, `inf` and `-inf`."""
     values = np.array([np.nan, np.inf, -np.inf], np.float32)
     assert [repr(double) for double in shortest_doubles(values).tolist()] == ["nan", "inf", "-inf"]

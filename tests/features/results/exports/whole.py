@@ -1,4 +1,4 @@
-"""Helpers that make a whole export and read its files and their rows."""
+"""Read a whole export in tests: its files by name, and their rows."""
 
 import csv
 import io

@@ -17,13 +17,13 @@ URL = f"/api/studies/{STUDY}/imports"
 
 
 def look(lab: Lab, text: str, **fields: Any) -> Json:
-    """Return what the server recognises in a file."""
+    """Return the properties that the server recognises in a file."""
     view: Json = ok(lab.operator.post(f"{URL}/look", json={"text": text, **fields}))
     return view
 
 
 def check(lab: Lab, text: str, mapping: Json) -> Json:
-    """Return what an import would do, without storing anything."""
+    """Return the effects that an import would have, without storing anything."""
     body = {"text": text, "mapping": mapping}
     view: Json = ok(lab.operator.post(f"{URL}/check", json=body))
     return view
@@ -48,7 +48,7 @@ def stored_forms(lab: Lab, import_id: str) -> int:
 
 
 def test_published_scores_are_reproduced(lab: Lab, shared_data: Path) -> None:
-    """An imported table of TLX answers gives the published means and Friedman's test."""
+    """An imported table of TLX answers reproduces the published means and Friedman's test."""
     text = (shared_data / "questionnaires" / "tlxscores.csv").read_text(encoding="utf-8")
     text += f"{uuid.uuid4().hex[:6]},Office,1,,,,,,,\n"  # abandoned row; makes the file unique
     seen = look(lab, text)
@@ -145,7 +145,7 @@ def test_the_same_file_is_refused_until_it_is_undone(lab: Lab) -> None:
 
 @pytest.mark.one_engine
 def test_imported_answers_are_never_sessions(lab: Lab) -> None:
-    """Imported answers make no session and take no slot; their own table marks them as imported."""
+    """Imported answers create no session and use no slot; they are in a separate, marked table."""
     with lab.database.reading() as db:
         before = [
             db.scalar(select(func.count()).select_from(one)) for one in (StudySession, SlotAttempt)

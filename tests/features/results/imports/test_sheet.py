@@ -1,4 +1,4 @@
-"""Tests that a file which is not a valid table is refused with a plain description."""
+"""Tests that a file which is not a valid table is rejected with a clear description."""
 
 import pytest
 
@@ -17,7 +17,7 @@ from app.features.results.imports.sheet import read_sheet
     ],
 )
 def test_another_kind_of_file_is_refused_by_its_kind(text: str, named: str) -> None:
-    """A picture, PDF, workbook or binary file is refused by its kind, with a hint to use CSV."""
+    """A picture, PDF, workbook or binary file is refused with its kind and a hint to use CSV."""
     with pytest.raises(InvalidInput) as refused:
         read_sheet(text)
     assert named in refused.value.message
@@ -25,7 +25,7 @@ def test_another_kind_of_file_is_refused_by_its_kind(text: str, named: str) -> N
 
 
 def test_a_misplaced_quote_is_reported_with_its_line() -> None:
-    """A misplaced quote is reported with its line."""
+    """A misplaced quote is reported with its line number."""
     with pytest.raises(InvalidInput) as refused:
         read_sheet('code,q1\nP-1,"4"x\n')
     assert refused.value.message.startswith("line 2 cannot be read: a quote is")

@@ -1,4 +1,4 @@
-"""Tests of the preregistration page: what was declared, what was done, and all deviations."""
+"""Tests of the preregistration page: declared tests, actual tests and all deviations."""
 
 from collections.abc import Iterator
 from datetime import timedelta

@@ -1,4 +1,4 @@
-"""Tests of the time axis of a phase, whatever paused or interrupted it."""
+"""Tests of the time axis of a phase with pauses and interruptions."""
 
 from datetime import UTC, datetime, timedelta
 
@@ -64,7 +64,7 @@ def test_utc_is_converted_with_the_time_scale() -> None:
 
 
 def test_no_event_is_placed_after_the_server_heard_of_it() -> None:
-    """No event is placed after the server received it; its uncertainty grows by the shift."""
+    """No event is placed after the server received it; a shift is added to its uncertainty."""
     heard = NOON - timedelta(milliseconds=220)
     assert Wall(NOON, 2.0).no_later_than(heard) == Wall(heard, 222.0)
     within = Wall(NOON, 2.0)

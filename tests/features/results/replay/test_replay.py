@@ -73,7 +73,7 @@ def phase(lab: Lab, request: pytest.FixtureRequest) -> Phase:
 
 
 def path(phase: Phase, what: str = "replay") -> str:
-    """Return the address of a phase's replay or movement."""
+    """Return the URL path of a phase's replay or movement."""
     return f"/api/sessions/{phase.session_id}/phases/{phase.phase_id}/{what}"
 
 
