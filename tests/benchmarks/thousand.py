@@ -63,7 +63,7 @@ def shipped_database(data_dir: Path) -> Database:
 
 
 def fill_thousand(database: Database, participants: int = 1000) -> list[str]:
-    """Store a thousand completed sessions, not marked simulated, and return their ids."""
+    """Store a thousand completed sessions of kind people and return their ids."""
     with database.writing() as db:
         built = [build_session(db, SessionSpec(f"P-{at:04d}")) for at in range(ORDERS)]
         for session in built:
@@ -77,7 +77,7 @@ def fill_thousand(database: Database, participants: int = 1000) -> list[str]:
 
 
 def _summarised(db: Session, session: StudySession) -> list[PhaseQuality]:
-    """Store the summaries of a phase, since a server computes all missing ones at its start."""
+    """Store the summaries of a phase, since a server would compute any that are missing."""
     phases = db.scalars(select(Phase).where(Phase.session_id == session.id)).all()
     return [
         PhaseQuality(

@@ -65,7 +65,7 @@ def test_a_session_of_skipped_tasks_does_not_count(
 
 
 def _skipped(api: httpx2.Client) -> str:
-    """Create a session, not marked simulated, with every step skipped, and return its id."""
+    """Create a session of kind people with every step skipped, and return its id."""
     view: Json = ok(api.post(f"/api/studies/{STUDY}/sessions", json={}))
     for kind in ("start", *["skip"] * len(view["steps"])):
         body = {

@@ -81,7 +81,7 @@ def test_a_foot_phase_walks_back_after_each_task() -> None:
 
 
 def test_contacts_come_before_the_completion_they_lead_to() -> None:
-    """Contacts are reported before the completion they lead to, numbered on from the order."""
+    """Contacts are reported before their completion, with numbers that continue the order's."""
     phase = order(limb="hand", kind="task", duration_s=20.0, completions=4, active_s=0.0)
     reports = play(5, phase).reports
     numbers = [report.number for report in reports if isinstance(report, CompletionReport)]

@@ -130,7 +130,7 @@ def test_tests_that_need_a_server_are_skipped(tmp_path: Path) -> None:
 
 
 def test_every_starter_is_a_fixture() -> None:
-    """Every fixture that STARTERS names, as starting a server or the like, exists."""
+    """Every name in STARTERS, the fixtures that start a server or the like, is a fixture."""
     conftests = (REPOSITORY / folder / "conftest.py" for folder in ("tests", "tests/e2e"))
     defined = "".join(file.read_text() for file in conftests)
     assert [name for name in STARTERS if f"def {name}(" not in defined] == []
