@@ -243,7 +243,7 @@ def _where(settings: Settings) -> str:
 
 def _print_password(password: str) -> None:
     sys.stdout.write(
-        f"\nFirst start: log in as  admin  with the password  {password}\n"
+        f"\nFirst start: sign in as  admin  with the password  {password}\n"
         "It is shown only once. Keep it.\n\n"
     )
     sys.stdout.flush()

@@ -16,6 +16,12 @@ export function Tablet(): JSX.Element {
   const pairing = usePairing(() => void state.query.refetch());
   useCodeOfAddress(pairing.mutate);
   const { data, error, isPending } = state.query;
+  // The sixth character sends the code, and so does Enter: the second request of a code that has
+  // just been used would be refused.
+  const pair = (code: string) => {
+    const isSent = pairing.isPending || (pairing.isSuccess && pairing.variables === code);
+    if (!isSent) pairing.mutate(code);
+  };
 
   if (isUnauthorised(error) || pairing.isPending || pairing.isError) {
     return (
@@ -23,7 +29,7 @@ export function Tablet(): JSX.Element {
         ended={pairedBefore()}
         pending={pairing.isPending}
         error={pairing.error}
-        onCode={pairing.mutate}
+        onCode={pair}
       />
     );
   }

@@ -23,7 +23,7 @@ from app.features.results.analysis.schemas import (
 )
 
 TITLE_PREFIX = {"people": "", "simulated": "Simulated: ", "test": "Test: "}
-NONE_COUNTS = "There are data, but none are valid: choose all rows to see them."
+NONE_COUNTS = "There are data, but none are valid: choose Rows: All to see them."
 BLINDED_NOTE = "The study is blinded: measures of open sessions are left out."
 
 

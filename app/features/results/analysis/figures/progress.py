@@ -85,7 +85,7 @@ def progress_time_drawing(sessions: pd.DataFrame, planned: int) -> Drawing:
     n = participants(done)
     if done.empty:
         return Drawing(
-            TIME_KEY, TIME_TITLE, "", 0, empty="No session has been completed and is valid yet."
+            TIME_KEY, TIME_TITLE, "", 0, empty="No valid session has been completed yet."
         )
     days = done["ended_at_utc"].dt.date.value_counts().sort_index()
     rows = days.rename_axis("day_utc").rename("completed").reset_index()

@@ -87,7 +87,7 @@ def alarms_drawing(alarms: pd.DataFrame, sessions: int) -> Drawing:
     """Draw how often each alarm was raised, from the table of alarms of `sessions` sessions."""
     raised = alarms[alarms["state"] == "raised"]
     n = participants(raised)
-    what = f"{ALARMS_WHAT} {sessions} sessions."
+    what = f"{ALARMS_WHAT} {sessions} session{'s' if sessions != 1 else ''}."
     if raised.empty:
         empty = "No alarm was raised." if sessions else "No session has been created yet."
         return Drawing(ALARMS_KEY, ALARMS_TITLE, what, n, empty=empty, group="quality")

@@ -129,7 +129,7 @@ function ActiveAlarm({ alarm, session, others }: ActiveAlarmProps): JSX.Element 
           <span role={alarm.severity === "critical" ? "alert" : "status"}>
             {t(titleKey(alarm))}
             {joints !== null && `: ${joints}`}
-            <span className="visually-hidden">. {remedy}</span>
+            <span className="visually-hidden">{`: ${remedy}`}</span>
           </span>
           {/* A value that grows every second is not announced every second by screen readers. */}
           {amountText !== null && (

@@ -9,7 +9,7 @@ export const alarmsEn = {
   "signal.clock": "Clock",
   "signal.behind": "Not stored",
   "signal.flagged": "Flagged",
-  "signal.hint.rate": "Frames per second, by the headset's clock; usually {{usual}}",
+  "signal.hint.rate": "Frames per second, by the headset's clock; usual: {{usual}}",
   "signal.hint.gaps": "Gaps without frames in this phase, and their total length",
   "signal.hint.clock": "How precisely the headset's clock is matched to the server's",
   "signal.hint.behind": "Movement that the server has not stored yet and the headset still keeps",
@@ -51,7 +51,7 @@ export const alarmsDe: Readonly<Record<keyof typeof alarmsEn, string>> = {
   "signal.clock": "Uhr",
   "signal.behind": "Ungespeichert",
   "signal.flagged": "Markiert",
-  "signal.hint.rate": "Bilder pro Sekunde nach der Uhr des Headsets; üblich sind {{usual}}",
+  "signal.hint.rate": "Bilder pro Sekunde nach der Uhr des Headsets; üblich: {{usual}}",
   "signal.hint.gaps": "Lücken ohne Bilder in dieser Phase und ihre gesamte Länge",
   "signal.hint.clock": "Wie genau die Uhr des Headsets mit der des Servers abgeglichen ist",
   "signal.hint.behind":

@@ -151,7 +151,7 @@ export const auditDe: Readonly<Record<keyof typeof auditEn, string>> = {
   "act.study.restored": "hat die Studie {{subject}} wiederhergestellt",
   "act.study.exported": "hat die Daten der Studie {{subject}} exportiert",
   "act.session.overridden":
-    "hat Sitzung {{subject}} fortgesetzt, obwohl die Prüfung „{{check}}“ nicht bestanden war",
+    "hat Sitzung {{subject}} freigegeben, obwohl die Prüfung „{{check}}“ nicht bestanden war",
   "act.device.paired": "ein Gerät ({{device}}) wurde mit der Sitzung {{subject}} gekoppelt",
   "act.device.unpaired": "hat ein Gerät der Sitzung {{subject}} entkoppelt",
   "act.capture.added": "hat die Aufnahme {{content}} ({{format}}) hochgeladen",

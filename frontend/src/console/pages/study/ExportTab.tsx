@@ -29,6 +29,7 @@ const FILES = [
   "events",
   "quality",
   "alarms",
+  "doubts",
   "clocks",
   "samples",
   "receipts",

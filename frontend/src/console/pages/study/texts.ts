@@ -38,6 +38,9 @@ const exportsEn = {
   "export.file.quality": "quality.csv",
   "export.about.quality":
     "One row per phase and stream: frame rate, gaps, jumps, frozen joints, invalid values.",
+  "export.file.doubts": "doubts.csv",
+  "export.about.doubts":
+    "Everything in the record that cannot be true, such as more active time than has passed.",
   "export.file.alarms": "alarms.csv",
   "export.about.alarms": "Every alarm of a session, when it was raised and when it was cleared.",
   "export.file.clocks": "clock_probes.csv, clock_mapping.csv",
@@ -97,6 +100,9 @@ const exportsDe: Readonly<Record<keyof typeof exportsEn, string>> = {
   "export.file.quality": "quality.csv",
   "export.about.quality":
     "Eine Zeile je Phase und Datenstrom: Bildrate, Lücken, Sprünge, eingefrorene Gelenke, ungültige Werte.",
+  "export.file.doubts": "doubts.csv",
+  "export.about.doubts":
+    "Alles in den Daten, was nicht stimmen kann, etwa mehr aktive Zeit, als vergangen ist.",
   "export.file.alarms": "alarms.csv",
   "export.about.alarms": "Jeder Alarm einer Sitzung: wann er begann und wann er endete.",
   "export.file.clocks": "clock_probes.csv, clock_mapping.csv",
@@ -163,7 +169,7 @@ export const studyEn = {
   "procedure.freeze": "Freeze",
   "procedure.legend": "Each task: preparation, active time (filled), freeze.",
   "procedure.total":
-    "A session takes about {{minutes}} min, including our estimate for forms and texts; {{planned}} min of that are set by the protocol. Breaks are not included.",
+    "A session takes about {{minutes}} min, including an estimate for forms and texts; {{planned}} min of that are set by the protocol. Breaks are not included.",
   "slot.free": "Free",
   "slot.open": "Running",
   "slot.completed": "Completed",
