@@ -1191,7 +1191,7 @@ export interface paths {
         };
         /**
          * Get Replay
-         * @description Return what happened in a phase that is over, in the phase's time.
+         * @description Return the replay of a phase that is over, in the phase's time, without its movement.
          */
         readonly get: operations["get_replay_api_sessions__session_id__phases__phase_id__replay_get"];
         readonly put?: never;
@@ -1482,7 +1482,7 @@ export interface paths {
         };
         /**
          * Get Dashboard
-         * @description Return the latest figures of a study's sessions of one kind; repeat while not current.
+         * @description Return the latest figures of sessions of one kind; repeat the request until they are current.
          *
          *     The filter selects sessions and rows before anything is drawn. One group of the figures is ready
          *     sooner than all of them.
@@ -1695,7 +1695,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Check
-         * @description Report what an import would do, with every invalid cell; nothing is stored.
+         * @description Report the result that an import would have, with every invalid cell; nothing is stored.
          */
         readonly post: operations["post_check_api_studies__key__imports_check_post"];
         readonly delete?: never;
@@ -1817,7 +1817,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Erasure
-         * @description Erase everything about a participant, except that there were sessions.
+         * @description Erase everything about a participant; only the fact that there were sessions remains.
          */
         readonly post: operations["post_erasure_api_studies__key__participants__participant_id__erasure_post"];
         readonly delete?: never;
@@ -1835,7 +1835,7 @@ export interface paths {
         };
         /**
          * Get Preregistration
-         * @description Return what the study declared, what was done, and every deviation.
+         * @description Return a study's declaration, the result of the declared test, and every deviation.
          */
         readonly get: operations["get_preregistration_api_studies__key__preregistration_get"];
         readonly put?: never;
@@ -2227,7 +2227,7 @@ export interface paths {
         };
         /**
          * Get Paired
-         * @description Return what the tablet should show; null (and not an error) if the tablet is not paired.
+         * @description Return the tablet's screen; null (and not an error) if the tablet is not paired.
          */
         readonly get: operations["get_paired_api_tablet_paired_get"];
         readonly put?: never;
@@ -2248,7 +2248,7 @@ export interface paths {
         readonly get?: never;
         /**
          * Put Question
-         * @description Tell the experimenter of a question about the text on the screen, or cancel it.
+         * @description Notify the experimenter of a question about the text on the screen, or cancel it.
          */
         readonly put: operations["put_question_api_tablet_question_put"];
         readonly post?: never;
@@ -2290,7 +2290,7 @@ export interface paths {
         };
         /**
          * Get State
-         * @description Return what the tablet should show now.
+         * @description Return the screen that the tablet should show now.
          */
         readonly get: operations["get_state_api_tablet_state_get"];
         readonly put?: never;
@@ -2400,7 +2400,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Model
-         * @description Start fitting a model; the response is immediate, and the model shows the progress.
+         * @description Start fitting a model; the response is immediate, and the model's view shows the progress.
          */
         readonly post: operations["post_model_api_walking_models_post"];
         readonly delete?: never;
@@ -3159,12 +3159,12 @@ export interface components {
          * AvatarWalkerView
          * @description The walk of an avatar, compared with the source.
          *
-         *     `leg_ratio` is its leg length over the source's, `length_ratio` and `height_ratio` the same of
-         *     mean steps (null without steps). `lifts_agree`: it lifts each foot as often as the source.
-         *     Slides are speeds of its feet while the *source's* are down: `slide_m_s` as shown here,
-         *     `slide_before_m_s` before the feet were locked, null if they are not. With locked feet,
-         *     `lowered_m` is how far the hips came down at most, and `out_of_reach` counts frames in which
-         *     a foot could not be held in place.
+         *     `leg_ratio` is its leg length over the source's, `length_ratio` and `height_ratio` the same
+         *     ratios of mean step lengths and heights (null without steps). `lifts_agree`: it lifts each foot
+         *     as often as the source. Slides are speeds of its feet while the *source's* are down: `slide_m_s`
+         *     as shown here, `slide_before_m_s` before the feet were locked, null if they are not. With locked
+         *     feet, `lowered_m` is how far the hips came down at most, and `out_of_reach` counts frames in
+         *     which a foot could not be kept in place.
          */
         readonly AvatarWalkerView: {
             /** Foot Slide M S */
@@ -3253,7 +3253,7 @@ export interface components {
         };
         /**
          * CableView
-         * @description How to connect a headset by USB: run `command` here, then open `url` in the headset.
+         * @description The connection of a headset by USB: run `command` here, then open `url` in the headset.
          */
         readonly CableView: {
             /** Command */
@@ -3637,7 +3637,7 @@ export interface components {
         };
         /**
          * CheckView
-         * @description What an import would do; nothing was stored, and with problems it would be rejected.
+         * @description A preview of an import's result; nothing was stored. An import with problems is rejected.
          *
          *     `reversed_items`: those that the instrument's formulas reverse. `notes`: points to check.
          */
@@ -3742,7 +3742,7 @@ export interface components {
         };
         /**
          * CompletionReceipt
-         * @description How many completions of a task phase are stored, and how many follow from its contacts.
+         * @description The number of completions stored for a task phase, and the number derived from contacts.
          *
          *     `agree`: the same numbers at the same times, with the same durations; otherwise `reason` says
          *     what differs.
@@ -3791,7 +3791,7 @@ export interface components {
         };
         /**
          * ConsentForm
-         * @description What a consent requires besides its text: statements to tick and a kind of signature.
+         * @description The requirements of a consent besides its text: statements to tick, a kind of signature.
          */
         readonly ConsentForm: {
             /**
@@ -3821,7 +3821,7 @@ export interface components {
         };
         /**
          * ConsentRecord
-         * @description Who agreed to what, and when: everything that a printed record shows.
+         * @description The printable record of a consent: who agreed to what, and when.
          *
          *     `text` and `statements` are taken from the study version that was shown; `text_matches` says
          *     whether the text still has the hash stored with the consent. For an erased consent, only
@@ -4132,7 +4132,7 @@ export interface components {
         };
         /**
          * DifferenceView
-         * @description One difference between two study files; `before` or `after` is null if it has no value.
+         * @description One difference between two study files; `before` or `after` is null if there is no value.
          */
         readonly DifferenceView: {
             /** After */
@@ -4379,10 +4379,8 @@ export interface components {
          *
          *     `rows` of `rows_total` rows of movement are written; the other tables are small in comparison.
          *     `bytes` are on the disk; `bytes_expected` is estimated from the bytes per row so far,
-         *     `remaining_s`
-         *     from the time, both None until there are enough rows. `sha256` is that of the file.
-         *     `expires_at`:
-         *     when the server removes it.
+         *     `remaining_s` from the time, both None until there are enough rows. `sha256` is that of the
+         *     file. `expires_at`: when the server removes it.
          */
         readonly ExportView: {
             /**
@@ -4436,7 +4434,7 @@ export interface components {
         };
         /**
          * ExportWish
-         * @description What to export: a study's sessions of one kind, or only one session of that kind.
+         * @description The data to export: a study's sessions of one kind, or only one session of that kind.
          */
         readonly ExportWish: {
             /**
@@ -4480,13 +4478,12 @@ export interface components {
         };
         /**
          * FigureFilter
-         * @description Which sessions and rows are drawn; by default, all valid rows of all sessions.
+         * @description The selection of sessions and rows to draw; by default, all valid rows of all sessions.
          *
          *     `rows`: "valid" leaves out what does not count (sessions that were broken off or are not valid
          *     by the study's rules, superseded and skipped steps), "all" draws it too. `since` and `until`:
          *     the first and last day, in UTC, on which a session was created. `order`: added latencies in ms
-         *     in
-         *     the order of the blocks, as in "0 125 350".
+         *     in the order of the blocks, as in "0 125 350".
          */
         readonly FigureFilter: {
             /** Limb */
@@ -4791,7 +4788,9 @@ export interface components {
         };
         /**
          * HelpWish
-         * @description Whether the participant is calling the experimenter, for any reason or with a question.
+         * @description A request to call the experimenter, or to cancel the call.
+         *
+         *     The call is for any reason or with a question.
          */
         readonly HelpWish: {
             /** Asked */
@@ -5110,7 +5109,7 @@ export interface components {
         };
         /**
          * InvitationLook
-         * @description What an invitation grants, as shown before it is accepted.
+         * @description The content of an invitation, as shown before it is accepted.
          */
         readonly InvitationLook: {
             /**
@@ -5228,7 +5227,7 @@ export interface components {
         };
         /**
          * ItemTrace
-         * @description How one item was answered.
+         * @description The timing of the answer to one item, and the number of its changes.
          *
          *     `response_s`: seconds from when the item was the next to be answered (its page was shown, or
          *     another item of the page was answered) to its first answer, if one was given; for typed answers,
@@ -5243,7 +5242,7 @@ export interface components {
         };
         /**
          * JointMapView
-         * @description Which joint of a skeleton is which joint of the body, for every capture with this skeleton.
+         * @description A skeleton's joint map: its joint for each body joint, in every capture with this skeleton.
          *
          *     `version` counts the saved maps, from 0; `chosen` is false while the map is the proposal.
          *     `sources` says for each mapped body joint whether its name, its place in the hierarchy, or a
@@ -5443,14 +5442,13 @@ export interface components {
         };
         /**
          * Mapping
-         * @description What the columns and words of a file mean.
+         * @description The meaning of the columns and words of a file.
          *
          *     A tidy file has one set of columns and a column of conditions; a wide one has a set of columns
          *     for each condition. `conditions`: word of the file -> key of a condition of the study. `words`:
          *     answer in words -> number. Numbers x become multiply * x + add, for scales that start at another
          *     number. `turned`: items that the file has already reverse-scored; they are reversed back,
-         *     because
-         *     the instrument's formulas reverse them.
+         *     because the instrument's formulas reverse them.
          */
         readonly Mapping: {
             /**
@@ -5658,7 +5656,7 @@ export interface components {
         };
         /**
          * NetworkView
-         * @description How devices currently reach the server.
+         * @description The ways in which devices currently reach the server.
          *
          *     `mode` is `loopback` (this machine only), `lan` (with HTTPS) or `without_tls` (unencrypted).
          */
@@ -6404,7 +6402,7 @@ export interface components {
         };
         /**
          * PreregistrationView
-         * @description What a study declared, what was done, and deviations, with a result or `why_no_result`.
+         * @description The declaration of a study and the deviations from it, with a result or `why_no_result`.
          */
         readonly PreregistrationView: {
             /**
@@ -6699,7 +6697,7 @@ export interface components {
         };
         /**
          * RefusalWish
-         * @description Whether the participant refuses the consent of a step, or takes the refusal back.
+         * @description A request to refuse the consent of a step, or to take the refusal back.
          *
          *     `wish_id` is generated when the button is pressed, so the request can be resent any number of
          *     times, even late.
@@ -7101,7 +7099,7 @@ export interface components {
         };
         /**
          * SessionReceipt
-         * @description What a session's record contains and what it lacks.
+         * @description The data that a session's record contains, and those that it lacks.
          *
          *     `complete` is true if `problems` is empty: nothing that was made is missing or damaged, the
          *     event log's hash chain is intact, the stored completions follow from the stored contacts, and
@@ -7630,7 +7628,7 @@ export interface components {
         };
         /**
          * StreamReceipt
-         * @description What is stored and what is missing of one stream in one epoch.
+         * @description The stored and the missing frames (or reports) of one stream in one epoch.
          *
          *     `sent`: how many frames (or reports) the client made, as far as it could report it. `gaps`: the
          *     seqs that are missing, as (first, end). `damaged`: stored frames that can no longer be decoded;
@@ -7665,7 +7663,7 @@ export interface components {
         };
         /**
          * StreamView
-         * @description How much of one stream is on disk, for one epoch of the headset.
+         * @description The amount of one stream that is on disk, for one epoch of the headset.
          */
         readonly StreamView: {
             /** Epoch */
@@ -7916,14 +7914,14 @@ export interface components {
         };
         /**
          * TabletPaired
-         * @description What the requesting tablet should show; null if it is not paired.
+         * @description The screen of the requesting tablet; null if the tablet is not paired.
          */
         readonly TabletPaired: {
             readonly state: components["schemas"]["TabletState"] | null;
         };
         /**
          * TabletState
-         * @description What the tablet shows now; `next` is the title of the next step in the chosen language.
+         * @description The tablet's current screen; `next` is the title of the next step in the chosen language.
          *
          *     `held`: the participant waits for the experimenter, and the tablet cannot continue. `refused`:
          *     the participant refuses to take part and the experimenter knows; `is_refused` is also true if
@@ -8127,7 +8125,7 @@ export interface components {
         };
         /**
          * TryoutTrouble
-         * @description Why a scripted participant ended early, and what to do about it.
+         * @description The reason why a scripted participant ended early, and the remedy.
          */
         readonly TryoutTrouble: {
             /** Message */
