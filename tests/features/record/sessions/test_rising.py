@@ -42,8 +42,8 @@ def test_only_the_rise_counts(lab: Lab, start: int, later: int, codes: list[str]
     ok(answer_fms(lab, view["id"], later))
     view = lab.view(view["id"])
     assert [one["code"] for one in view["alarms"]] == codes
-    contained = view["contained"]
-    assert (contained is not None and contained["is_rise"]) == ("stop_rule_met" in codes)
+    hold = view["held"]
+    assert (hold is not None and hold["is_rise"]) == ("stop_rule_met" in codes)
 
 
 def test_a_missing_first_score_raises_a_warning(lab: Lab) -> None:
