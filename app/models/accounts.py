@@ -42,7 +42,7 @@ class StudyMember(Base):
 class Invitation(Base):
     """A single-use link that creates one account.
 
-    It consists of the hash of its token, and the account's rights.
+    The hash of its token is stored, and the rights of the future account.
     """
 
     __tablename__ = "invitations"

@@ -71,7 +71,7 @@ class DelayedCopy:
         return self._pose
 
     def touches(self) -> tuple[Bools, Bools]:
-        """Return touches by the distances of the body's capsules from the boxes."""
+        """Return touches, determined by the distances between the body's capsules and the boxes."""
         if self._surfaces is None or self._pose is None:
             return no_touches()
         world = forward_kinematics(self._skeleton, self._pose.root_position_m, self._pose.rotations)
@@ -154,5 +154,5 @@ class PhysicsBody:
         return Pose(followed.state.root_position_m, followed.state.rotations)
 
     def touches(self) -> tuple[Bools, Bools]:
-        """Return touches by the contacts of the simulation."""
+        """Return touches, determined from the contacts of the simulation."""
         return no_touches() if self._touches is None else self._touches.read()

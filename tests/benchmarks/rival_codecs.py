@@ -156,7 +156,7 @@ def _arrow() -> list[Codec]:
 
 
 def _arrow_with(compression: str, *, by_column: bool) -> Codec:
-    """Encode a record batch in Arrow's stream format, one column per value or a list per frame."""
+    """Return a codec for Arrow's stream format, with one column per value or one list per frame."""
     arrow: Any = importlib.import_module("pyarrow")
     ipc: Any = importlib.import_module("pyarrow.ipc")
     options = ipc.IpcWriteOptions(compression=compression, use_threads=False)

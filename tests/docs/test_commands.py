@@ -53,7 +53,8 @@ FAST_WALKING = ("--entries", "300", "--k", "30", "--reading", "time-aware")
 class Lab:
     """A working folder with its own installation, and the files that a page names.
 
-    `server`: a server whose data the commands use; without one they use the data alone.
+    `server`: a server on whose data the commands work; if None, they work on a data folder without
+    a running server.
     """
 
     def __init__(self, folder: Path, shared_data: Path, server: LiveServer | None = None) -> None:

@@ -58,7 +58,7 @@ def test_a_refusal_holds_the_session_until_it_is_ended(
 ) -> None:
     """A refusal raises an alarm and hides the agreement button, also after a reload.
 
-    The session cannot proceed until it is ended with a reason.
+    The session stays on hold until the experimenter ends it with a reason.
     """
     console, tablet = room.console, room.tablet
     room.refuses()

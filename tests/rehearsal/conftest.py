@@ -71,7 +71,7 @@ def db(performed: Performed) -> Iterator[Session]:
 
 
 def _kept_postgres() -> str:
-    """Return a database that exists for the whole run, so that every process reads one record."""
+    """Return the URL of a database that all test processes share for the whole run."""
     cluster = postgres.migrated_cluster()
     with once("rehearsal-database") as mark:
         if mark:

@@ -190,7 +190,7 @@ def from_euler(order: str, angles_rad: FloatArray) -> FloatArray:
     listed as Zrotation Yrotation Xrotation have the same meaning.
 
     Raises:
-        RotationError: an unknown order, or a last axis that does not fit it.
+        RotationError: an unknown order, or a last array dimension that is not len(order).
     """
     _check_order(order)
     if angles_rad.shape[-1] != len(order):

@@ -45,12 +45,12 @@ def plan_to_step_on(
 ) -> list[Step]:
     """Plan steps of which the last one puts `foot` on the target.
 
-    The other foot comes only as near as it must. It side-steps before it advances, so that it stays
-    in front of an edge if it can; if it must advance, or is in one of the free `spots`, it prefers
-    these.
+    The other foot moves only as far as it must: sideways if that suffices, so that it stays in
+    front of an edge. If it must step forward, or already stands on one of the free `spots`, it
+    takes the nearest free spot within reach, if there is one.
 
     Raises:
-        SimulationError: the way would take more than 60 steps.
+        SimulationError: more than 60 steps would be needed.
     """
     now, other, steps = list(feet), 1 - foot, list[Step]()
     while distance_on_floor(now[other], target) > stride_m:

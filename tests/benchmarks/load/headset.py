@@ -14,7 +14,7 @@ from tests.benchmarks.load.record import Record
 
 
 class Headset(Protocol):
-    """A connected headset; its record notes every message that is passed to it."""
+    """A connected headset that records every message handed to it for sending."""
 
     @property
     def epoch(self) -> int:

@@ -130,7 +130,7 @@ def test_rank_correlation_knows_its_limits() -> None:
 def test_demographics_are_explored_and_say_so() -> None:
     """Demographics are labelled exploratory and adjusted together.
 
-    Numbers use Spearman's correlation, categories Kruskal and Wallis's test.
+    Numbers use Spearman's correlation, categories the Kruskal-Wallis test.
     """
     scores = np.array([1.0, 3.0, 2.0, 5.0, 4.0, 6.0, 6.0, math.nan])
     age = [20.0, 25.0, 22.0, 31.0, 29.0, 40.0, math.nan, 30.0]

@@ -81,7 +81,7 @@ class SurfaceTouches:
             near[surface, self._joint_of[geom]] |= distance_m <= self._margin_m
 
     def _solid(self) -> Bools:
-        """Return whether each geom collides; another shape of the same part may be switched off."""
+        """Return which geoms can collide; of a part's alternative shapes some are switched off."""
         return np.asarray(self._model.geom_contype > 0)
 
     def _distance_m(self, surface: int, geoms: npt.NDArray[np.intp]) -> float:

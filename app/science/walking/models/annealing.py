@@ -30,10 +30,10 @@ class StaticFit:
     """The result of fitting the static model.
 
     Attributes:
-        vector: (n,) the vector found by annealing.
-        deviation: the mean deviation of the vector.
-        node: (n,) the grid's best node.
-        node_deviation: the mean deviation of the node.
+        vector: (n,) the best parameters found, by annealing or on the grid.
+        deviation: their mean deviation over all walks.
+        node: (n,) the best node of the grid.
+        node_deviation: its mean deviation over all walks.
     """
 
     vector: FloatArray

@@ -94,7 +94,7 @@ export const capturesDe: Readonly<Record<keyof typeof capturesEn, string>> = {
   "captures.empty": "Noch keine Aufnahmen",
   "captures.empty.body":
     "Eine Aufnahme ist die aufgezeichnete Bewegung einer Person. Legen Sie oben eine Datei ab. Diese Formate lassen sich lesen:",
-  "captures.empty.reader": "Hier laden diejenigen Aufnahmen hoch, die Studien entwerfen.",
+  "captures.empty.reader": "Wer Studien entwirft, lädt hier Aufnahmen hoch.",
   "captures.formats": "Formate und ihre Herkunft",
   "captures.column.title": "Aufnahme",
   "captures.column.format": "Format",

@@ -92,7 +92,7 @@ export const captureViewEn = {
   "conventions.skeleton": "Skeleton",
   "conventions.skeleton.file": "{{count}} joints, from the file",
   "conventions.skeleton.fitted":
-    "{{count}} joints, fitted; {{millimetres}} mm away from the recorded points",
+    "{{count}} joints, fitted; RMS distance from the recorded points {{millimetres}} mm",
   "conventions.skeleton.unfitted": "Not covered by the markers: {{names}}",
 } as const;
 
@@ -189,6 +189,6 @@ export const captureViewDe: Readonly<Record<keyof typeof captureViewEn, string>>
   "conventions.skeleton": "Skelett",
   "conventions.skeleton.file": "{{count}} Gelenke, aus der Datei",
   "conventions.skeleton.fitted":
-    "{{count}} Gelenke, angepasst; {{millimetres}} mm Abstand von den aufgezeichneten Punkten",
+    "{{count}} Gelenke, angepasst; mittlerer Abstand (RMS) von den aufgezeichneten Punkten {{millimetres}} mm",
   "conventions.skeleton.unfitted": "Von den Markern nicht erfasst: {{names}}",
 };

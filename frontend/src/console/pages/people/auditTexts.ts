@@ -117,7 +117,7 @@ export const auditDe: Readonly<Record<keyof typeof auditEn, string>> = {
   "audit.more": "Mehr zeigen",
   "audit.end": "Ende der Liste.",
   "audit.empty.title": "Keine passenden Einträge",
-  "audit.empty.body": "Wählen Sie eine andere Person oder eine andere Art.",
+  "audit.empty.body": "Wählen Sie eine andere Person oder eine andere Art der Handlung.",
   "audit.check": "Kette prüfen",
   "audit.check.ok_one": "Unversehrt: Der Eintrag ist unverändert.",
   "audit.check.ok_other": "Unversehrt: Alle {{count}} Einträge sind unverändert.",
