@@ -69,7 +69,7 @@ class Surface:
 
 
 def side_unit(key: str) -> str | None:
-    """Return the side to which a surface belongs, counting rim bars as one; None if none."""
+    """Return the side of a surface, shared by its rim bars; None for a surface without a side."""
     words = key.split("/")
     return "/".join(words[:3]) if len(words) > 2 and words[2] != "panel" else None
 

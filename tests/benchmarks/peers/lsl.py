@@ -46,7 +46,7 @@ class Recordings:
 
 
 def lsl_figures(part: str, folder: Path, ours: Ours, duration_s: float) -> Iterator[Figure]:
-    """Record, kill the recorder and record again; skip this if the library is not installed."""
+    """Yield LSL's figures, recording again after a kill of the recorder; none without pylsl."""
     if importlib.util.find_spec("pylsl") is None:
         print(f"  {part}: {PEER} is left out: pylsl is not installed", file=sys.stderr)
         return

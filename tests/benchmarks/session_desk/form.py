@@ -71,7 +71,7 @@ def figures(folder: Path) -> Iterator[Figure]:
 def _twice(
     browser: Browser, url: str, expected: int, origin: str = "", cookie: str = ""
 ) -> tuple[float, float]:
-    """Return the milliseconds with an empty browser cache, then with a filled one."""
+    """Return the time in ms until the page is ready, without and with a filled browser cache."""
     context = browser.new_context(viewport=SIZE, locale="en-US")
     try:
         context.add_init_script(WHEN_READY.replace("EXPECTED", str(expected)))

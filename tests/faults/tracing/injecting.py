@@ -63,8 +63,8 @@ _DRAWN = re.compile(r"[0-9a-f]{6,}|\d{2,}|(?<=-)[a-z0-9_]{8}(?=/|$)|(?<=\.)[a-z0
 class Site:
     """A call to a file: the kind of call, the file, and how many such calls came before.
 
-    `path` is relative to the folder, with `*` for random or dated parts. `writes`: whether an
-    opening is for writing.
+    `path` is relative to the folder, with `*` for random or dated parts. `writes`: whether an open
+    call is for writing.
     """
 
     kind: str

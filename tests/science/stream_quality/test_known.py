@@ -39,7 +39,7 @@ def test_a_gap_is_longer_than_two_late_frames(missing: int, gaps: int) -> None:
 
 
 def test_at_a_low_frame_rate_a_gap_is_longer() -> None:
-    """At 30 Hz 67 ms (one late frame) are no gap, 100 ms are one."""
+    """At 30 Hz, 67 ms (one missing frame) is not a gap; 100 ms is."""
     slow = generated().part(slice(None, None, 3))
     assert quality(slow.without(np.array([50]))).gaps == 0
     assert quality(slow.without(np.array([50, 51]))).gaps == 1

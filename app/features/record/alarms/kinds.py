@@ -266,7 +266,9 @@ ALARMS: tuple[AlarmKind, ...] = (
     AlarmKind(
         key="impossible",
         severity="warning",
-        title=Words(en="Headset data cannot be true", de="Daten des Headsets können nicht stimmen"),
+        title=Words(
+            en="Impossible data from the headset", de="Daten des Headsets können nicht stimmen"
+        ),
         remedy=Words(
             en="The session does not count. Check the headset's software before the next "
             "participant.",
@@ -279,7 +281,7 @@ ALARMS: tuple[AlarmKind, ...] = (
         severity="warning",
         title=Words(en="The phase does not count", de="Die Phase zählt nicht"),
         remedy=Words(
-            en="Its data cannot be true; the list of alarms says why. Repeat the phase, or check "
+            en="Its data cannot be right; the list of alarms says why. Repeat the phase, or check "
             "the headset's software.",
             de="Ihre Daten können nicht stimmen; die Liste der Alarme nennt den Grund. "
             "Wiederholen Sie die Phase oder prüfen Sie die Software des Headsets.",

@@ -36,7 +36,7 @@ def disc_corners(centre_m: Point, radius_m: float) -> FloatArray:
 
 
 def wall_corners(start_m: Point, end_m: Point, thickness_m: float) -> FloatArray:
-    """Make a wall between two points, with half its thickness on each side."""
+    """Return the corners of a wall between two points, with half its thickness on each side."""
     (x0, y0), (x1, y1) = start_m, end_m
     centre = ((x0 + x1) / 2.0, (y0 + y1) / 2.0)
     turned_deg = math.degrees(math.atan2(y1 - y0, x1 - x0))

@@ -77,7 +77,7 @@ export const editorEn = {
 export const editorDe: Readonly<Record<keyof typeof editorEn, string>> = {
   "new.title": "Neue Studie",
   "new.lead":
-    "Beginnen Sie mit etwas, das funktioniert, und ändern Sie es. Gespeichert wird erst, wenn Sie die Studie hinzufügen, und jedes Problem wird an seiner Zeile gezeigt.",
+    "Beginnen Sie mit etwas, das funktioniert, und ändern Sie es. Gespeichert wird erst mit „Studie speichern“; jedes Problem wird an seiner Zeile gezeigt.",
   "new.templates": "Aus einer Vorlage",
   "new.copy": "Aus einer vorhandenen Studie",
   "new.copy.lead": "Eine Kopie mit eigenem Plan und eigenen Sitzungen.",

@@ -4335,12 +4335,16 @@ export interface components {
         };
         /**
          * ExclusionRule
-         * @description A rule that excludes a session from the primary test if any of its task phases violates it.
+         * @description A rule that excludes a session from the primary test.
          *
-         *     complete_session: the session was not completed. minimum_frame_rate_hz, minimum_share_of_frames:
-         *     of the avatar's recorded frames; the share is active time outside gaps.
-         *     maximum_latency_error_ms: achieved minus set latency. minimum_active_time_s: of a task phase.
-         *     maximum_straight_lined_forms: forms of a session with identical ratings for all items.
+         *     A rule on task phases excludes the session if any of them violates it.
+         *
+         *     `complete_session`: the session must have been completed. `minimum_frame_rate_hz` and
+         *     `minimum_share_of_frames`: the lowest frame rate of the avatar's frames, and the lowest share of
+         *     active time outside gaps. `maximum_latency_error_ms`: the largest absolute difference between
+         *     achieved and set latency. `minimum_active_time_s`: the shortest active time of a task phase.
+         *     `maximum_straight_lined_forms`: the most forms of a session with identical ratings for all
+         *     items.
          */
         readonly ExclusionRule: {
             /** Limit */

@@ -44,7 +44,7 @@ def test_a_calibration_is_stored_in_seconds(fresh_lab: Lab) -> None:
 
 
 def test_the_latest_measurement_of_each_equipment_is_current(fresh_lab: Lab) -> None:
-    """The current calibration of each equipment is the one that was measured last."""
+    """The current calibration of each piece of equipment is the one that was measured last."""
     newest = add(fresh_lab, measured_on="2026-04-01")
     older = add(fresh_lab, measured_on="2026-01-01")
     other = add(fresh_lab, equipment="Another headset")

@@ -37,7 +37,7 @@ def test_crps_is_its_definition() -> None:
 
 
 def test_a_draw_from_the_truth_errs_by_sqrt_2_of_its_median() -> None:
-    """A single draw from the truth errs by sqrt(2) of the median's error; CRPS avoids that."""
+    """A draw from the truth errs by sqrt(2) times as much as its median; CRPS avoids that."""
     rng = np.random.default_rng(2)
     truth, draws = rng.standard_normal(40_000), rng.standard_normal(40_000)
     ratio = np.median(np.abs(draws - truth)) / np.median(np.abs(truth))

@@ -31,12 +31,12 @@ class LeftOut:
 
     @property
     def rows(self) -> NDArray[np.int64]:
-        """Return the indices of the columns that are left out."""
+        """Return the row indices of the left-out components, one per joint."""
         return ROOT_VALUES + 4 * np.arange(len(self.component)) + self.component
 
     @property
     def kept_rows(self) -> NDArray[np.int64]:
-        """Return the indices of the columns that remain, in order."""
+        """Return the row indices of the remaining components, in order."""
         width = ROOT_VALUES + 4 * len(self.component)
         return np.delete(np.arange(width), self.rows)
 

@@ -56,7 +56,7 @@ export const peopleEn = {
   "people.close": "Close account",
   "people.close.title": "Close the account of {{name}}?",
   "people.close.body":
-    "{{name}} is signed out immediately and can no longer sign in. The record keeps the name. You can reopen the account later.",
+    "{{name}} is signed out immediately and can no longer sign in. The audit trail keeps the name. You can reopen the account later.",
   "people.reopen": "Reopen",
   "people.reopen.body": "{{name}} can sign in again with their previous password.",
   "invite.open": "Invite someone",
@@ -172,7 +172,7 @@ export const peopleDe: Readonly<Record<keyof typeof peopleEn, string>> = {
   "people.close": "Konto schließen",
   "people.close.title": "Konto von {{name}} schließen?",
   "people.close.body":
-    "{{name}} wird sofort abgemeldet und kann sich nicht mehr anmelden. Die Protokolle behalten den Namen. Sie können das Konto später wieder öffnen.",
+    "{{name}} wird sofort abgemeldet und kann sich nicht mehr anmelden. Im Prüfpfad bleibt der Name erhalten. Sie können das Konto später wieder öffnen.",
   "people.reopen": "Wieder öffnen",
   "people.reopen.body": "{{name}} kann sich mit dem bisherigen Passwort wieder anmelden.",
   "invite.open": "Person einladen",
