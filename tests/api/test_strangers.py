@@ -268,7 +268,7 @@ class TestBudget:
         assert spend_all(fresh_lab).status_code == 429
 
     def test_invalid_tokens_count_as_anonymous(self, fresh_lab: Lab) -> None:
-        """Requests with ever new invalid tokens use up the anonymous budget."""
+        """Requests that each carry a different invalid token use up the anonymous budget."""
         few_requests(fresh_lab)
         stranger = fresh_lab.stranger()
         for at in range(2000):

@@ -26,7 +26,7 @@ _FASTEST_MEAN_SPEED_M_S = 1.6
 
 @dataclass(frozen=True)
 class MovementTraits:
-    """One person's way of moving; times are in seconds, the rest are factors and probabilities."""
+    """One person's way of moving: times in seconds, SDs of log times, factors and probabilities."""
 
     reaction_s: float = 0.27
     reaction_spread: float = 0.15

@@ -73,7 +73,7 @@ def _add_times(frame: pd.DataFrame) -> None:
 def _apply_corrections(
     frame: pd.DataFrame, corrected: Mapping[tuple[str, str], AnswerCorrection]
 ) -> None:
-    """Replace answers as first given by their latest corrections."""
+    """Replace each corrected answer with its latest correction, and mark it in `corrected`."""
     rows = [corrected.get(key) for key in zip(frame["submission_id"], frame["item"], strict=True)]
     frame["corrected"] = [row is not None for row in rows]
     for name in ("value_number", "value_text"):
