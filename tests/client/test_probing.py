@@ -26,7 +26,7 @@ class Wire:
 async def _run_probes(wire: Wire, prober: Prober, requested: int) -> None:
     """Run the prober until this many probes were sent."""
     running = asyncio.create_task(prober.run())
-    while sum(isinstance(one, Probe) for one in wire.sent) < requested:  # noqa: ASYNC110 - a look
+    while sum(isinstance(one, Probe) for one in wire.sent) < requested:  # noqa: ASYNC110 - it has no event
         await asyncio.sleep(0.001)
     running.cancel()
     await asyncio.gather(running, return_exceptions=True)

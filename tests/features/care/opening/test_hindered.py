@@ -78,7 +78,7 @@ def test_an_unreadable_file_is_not_treated_as_damaged(
     def refusing(self: Path, *arguments: object, **more: object) -> object:
         if self.name == "reembody.sqlite":
             raise OSError(number, "refused", str(self))
-        return original(self, *arguments, **more)  # type: ignore[call-overload]  # passed on as it came
+        return original(self, *arguments, **more)  # type: ignore[call-overload]  # unchanged
 
     with monkeypatch.context() as patch:
         patch.setattr(Path, "open", refusing)
