@@ -19,12 +19,11 @@ from tests.faults.simulated_headset import (
     ROAM_S,
     Edit,
     Frames,
-    Json,
     Message,
     SimulatedHeadset,
-    Site,
     Weather,
 )
+from tests.faults.simulated_site import Json, Site
 
 Lie = Callable[[SimulatedHeadset, np.random.Generator], None]
 

@@ -20,7 +20,8 @@ from app.wire import MAX_EPOCH, Hello
 from tests.faults.figures import note
 from tests.faults.lying_streams import CORRECTED, HAND, LIES, Outcome, play
 from tests.faults.short_study import KEY, short_study
-from tests.faults.simulated_headset import DURATION_S, FREEZE_S, ROAM_S, Site
+from tests.faults.simulated_headset import DURATION_S, FREEZE_S, ROAM_S
+from tests.faults.simulated_site import Site
 from tests.support.sqlite import fresh_sqlite
 
 HONEST, LYING = 12, len(LIES) - len(CORRECTED)

@@ -59,8 +59,7 @@ export const auditEn = {
   "act.study.archived": "archived the study {{subject}}",
   "act.study.restored": "restored the study {{subject}}",
   "act.study.exported": "exported the data of the study {{subject}}",
-  "act.session.overridden":
-    "overrode the failed check “{{check}}” in session {{subject}}",
+  "act.session.overridden": "overrode the failed check “{{check}}” in session {{subject}}",
   "act.device.paired": "a {{device}} was paired with session {{subject}}",
   "act.device.unpaired": "unpaired a device of session {{subject}}",
   "act.capture.added": "uploaded the capture {{content}} ({{format}})",

@@ -62,7 +62,8 @@ export const peopleEn = {
   "invite.open": "Invite someone",
   "invite.title": "Invite someone",
   "invite.note": "Who is it for?",
-  "invite.note.hint": "A note for you and the audit trail. The invited person chooses their own name and password.",
+  "invite.note.hint":
+    "A note for you and the audit trail. The invited person chooses their own name and password.",
   "invite.hours": "Valid for",
   "invite.hours.24": "1 day",
   "invite.hours.72": "3 days",
@@ -178,7 +179,8 @@ export const peopleDe: Readonly<Record<keyof typeof peopleEn, string>> = {
   "invite.open": "Person einladen",
   "invite.title": "Person einladen",
   "invite.note": "Für wen ist die Einladung?",
-  "invite.note.hint": "Eine Notiz für Sie und den Prüfpfad. Name und Passwort wählt die eingeladene Person selbst.",
+  "invite.note.hint":
+    "Eine Notiz für Sie und den Prüfpfad. Name und Passwort wählt die eingeladene Person selbst.",
   "invite.hours": "Gültig für",
   "invite.hours.24": "1 Tag",
   "invite.hours.72": "3 Tage",
