@@ -23,7 +23,7 @@ def test_a_run_that_occurs_twice_is_found_once() -> None:
 
 
 def test_a_file_can_repeat_itself() -> None:
-    """A repetition within one file counts, and equal lines in a row do not overlap themselves."""
+    """A repetition within one file counts, but a run of equal lines does not repeat itself."""
     (one,) = found({"a.py": significant("a.py", RUN + "between()\n" + RUN)})
     assert (one.first, one.again, one.lines) == ("a.py:1", "a.py:10", 8)
     assert found({"a.py": significant("a.py", "same()\n" * 7)}) == []

@@ -74,7 +74,7 @@ def _made(flaws: Flaws) -> Make:
 
 
 def _captures() -> Make | None:
-    """Pass captured people through the avatar's delay buffer; None without the published data."""
+    """Return a function that delays motion captures as the avatar does; None without the data."""
     folder = shared_data_folder() / "motion" / "cmu_bvh"
     if not folder.is_dir():
         return None

@@ -40,7 +40,7 @@ def test_a_start_needs_a_reason_and_the_movement_is_drawn(
         expect(page.locator('[data-check="tablet"]')).to_contain_text("Failed")
         assert axe(page) == []
         screenshot(page, "preflight")
-        dialog = page.get_by_role("dialog", name="Start although checks have failed")
+        dialog = page.get_by_role("dialog", name="Start despite failed checks")
         _press_until_it_opens(page, dialog)
         expect(dialog.get_by_label("Reason")).to_be_focused()
         page.keyboard.type("Answers are asked aloud")

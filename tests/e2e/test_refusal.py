@@ -95,10 +95,10 @@ def test_a_changed_mind_leads_back_to_the_consent(room: Room) -> None:
     expect(console.get_by_text("Refusal taken back").first).to_be_visible(timeout=PATIENCE_MS)
     expect(console.get_by_role("heading", name=REFUSED)).to_have_count(0)
     room.refuses()
-    room.experimenter.press("Show the consent again")
+    room.experimenter.press("Show the consent form again")
     dialog = console.get_by_role("dialog")
     dialog.get_by_text("The participant changed their mind").click()
-    dialog.get_by_role("button", name="Show the consent again").click()
+    dialog.get_by_role("button", name="Show the consent form again").click()
     tablet.get_by_role("button", name=AGREE).click()
     expect(tablet.locator("[data-name]").first).to_be_visible(timeout=PATIENCE_MS)
     said = ["consent_refused", "refusal_retracted"]

@@ -30,7 +30,7 @@ class _Name:
         return self.changes[-1][1] if self.changes else self.certain
 
     def sync(self, began: int) -> None:
-        """Make changes certain that were complete when a sync of the folder began at `began`."""
+        """Mark all changes that were complete before a sync began at `began` as certain."""
         while self.changes and self.changes[0][0] < began:
             self.certain = self.changes.pop(0)[1]
 

@@ -33,7 +33,7 @@ class Workload(NamedTuple):
     sessions: list[int]
 
     def fit(self, *interactions: tuple[str, ...]) -> MixedModel:
-        """Fit method, session and further terms with random participants."""
+        """Fit method, session and the given interactions, with participants as a random effect."""
         factors = [
             factor("method", self.methods, METHODS),
             factor("session", self.sessions),

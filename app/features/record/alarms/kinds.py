@@ -71,7 +71,7 @@ ALARMS: tuple[AlarmKind, ...] = (
     AlarmKind(
         key="backlog",
         severity="warning",
-        title=Words(en="Movement not stored", de="Bewegung nicht gespeichert"),
+        title=Words(en="Movement not stored yet", de="Bewegung noch nicht gespeichert"),
         remedy=Words(
             en="The headset keeps it. Check the network and leave the headset on.",
             de="Das Headset behält sie. Prüfen Sie das Netz und lassen Sie das Headset "

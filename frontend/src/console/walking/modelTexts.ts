@@ -66,7 +66,7 @@ export const walkingModelEn = {
   "walking.leftOut.nodes": "nodes, predicted by radial basis functions",
   "walking.leftOut.people": "whole people, predicted from the others",
   "walking.leftOut.crps":
-    "Mean error of predicted durations for people who were left out (CRPS): {{value}} s; the best of {{tried}} readings.",
+    "Mean error of predicted durations for people who were left out (CRPS): {{value}} s; the best of the {{tried}} ways of reading the maps that were compared.",
   "walking.census": "How long the paths are",
   "walking.census.told":
     "Half of the paths are {{from}} to {{to}} m long (median {{median}} m), 95 % up to {{cutoff}} m.",
@@ -139,7 +139,7 @@ export const walkingModelDe: Readonly<Record<keyof typeof walkingModelEn, string
   "walking.leftOut.nodes": "Knoten, vorhergesagt mit radialen Basisfunktionen",
   "walking.leftOut.people": "ganze Personen, vorhergesagt aus den anderen",
   "walking.leftOut.crps":
-    "Mittlerer Fehler der vorhergesagten Dauer bei ausgelassenen Personen (CRPS): {{value}} s; die beste von {{tried}} Lesarten.",
+    "Mittlerer Fehler der vorhergesagten Dauer bei ausgelassenen Personen (CRPS): {{value}} s; die beste von {{tried}} verglichenen Lesarten der Karten.",
   "walking.census": "Wie lang die Wege sind",
   "walking.census.told":
     "Die Hälfte der Wege ist {{from}} bis {{to}} m lang (Median {{median}} m), 95 % bis zu {{cutoff}} m.",

@@ -71,16 +71,16 @@ LATENCY = StateCheck(
             "unmeasured",
             "wait",
             Words(
-                en="Not measured yet; measured in the first phase",
-                de="Noch nicht gemessen; wird in der ersten Phase gemessen",
+                en="Not measured yet; it will be measured in the first phase",
+                de="Noch nicht gemessen; sie wird in der ersten Phase gemessen",
             ),
         ),
         Finding(
             "calibrated",
             "wait",
             Words(
-                en="Equipment calibrated; measured in the first phase",
-                de="Geräte kalibriert; wird in der ersten Phase gemessen",
+                en="Equipment calibrated; the latency will be measured in the first phase",
+                de="Geräte kalibriert; die Latenz wird in der ersten Phase gemessen",
             ),
         ),
         Finding(
@@ -91,9 +91,10 @@ LATENCY = StateCheck(
                 de="{{value}} von {{limit}} Phasen der letzten Sitzung innerhalb der Toleranz",
             ),
             remedy=Words(
-                en="Check the latencies of the last session and measure the equipment again.",
-                de="Sehen Sie sich die Latenzen der letzten Sitzung an und vermessen Sie die "
-                "Geräte neu.",
+                en="Check the latencies of the last session, and measure the latency of the "
+                "equipment again.",
+                de="Sehen Sie sich die Latenzen der letzten Sitzung an und messen Sie die Latenz "
+                "der Geräte neu.",
             ),
         ),
         Finding(

@@ -22,7 +22,7 @@ export const preflightEn = {
   "preflight.said": "{{by}}, {{time}}: {{reason}}",
   "preflight.override": "Continue anyway",
   "preflight.override.title": "Continue although this check failed",
-  "preflight.start.title": "Start although checks have failed",
+  "preflight.start.title": "Start despite failed checks",
   "preflight.start.body":
     "Your reason and the results of the checks become part of the session's record.",
   "preflight.start.do": "Start anyway",
@@ -56,7 +56,7 @@ export const preflightDe: Readonly<Record<keyof typeof preflightEn, string>> = {
   "preflight.said": "{{by}}, {{time}}: {{reason}}",
   "preflight.override": "Trotzdem fortfahren",
   "preflight.override.title": "Fortfahren, obwohl diese Prüfung nicht bestanden ist",
-  "preflight.start.title": "Starten, obwohl Prüfungen nicht bestanden sind",
+  "preflight.start.title": "Trotz nicht bestandener Prüfungen starten",
   "preflight.start.body":
     "Ihre Begründung und die Ergebnisse der Prüfungen werden Teil des Protokolls der Sitzung.",
   "preflight.start.do": "Trotzdem starten",

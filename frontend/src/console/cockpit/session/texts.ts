@@ -17,7 +17,7 @@ export const commandsEn = {
   "do.start": "Start session",
   "do.resume": "Resume",
   "do.pause": "Pause",
-  "do.materialise": "Enter the body",
+  "do.materialise": "Show the body",
   "do.complete.height": "Save heights",
   "do.enterAnswers": "Enter answers here",
   "do.redo": "Repeat",

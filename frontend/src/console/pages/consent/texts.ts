@@ -47,11 +47,11 @@ export const consentEn = {
   "refused.title": "The participant does not want to take part",
   "refused.at": "Reported on the tablet at {{time}}, at step {{number}}.",
   "refused.body":
-    "The session is on hold, and the tablet tells the participant that you know. A refusal needs no reason: thank the participant and end the session; its slot becomes free again. Show the consent again only if the participant wants to read it once more.",
+    "The session is on hold, and the tablet tells the participant that you know. A refusal needs no reason: thank the participant and end the session; its slot becomes free again. Show the consent form again only if the participant wants to read it once more.",
   "refused.end": "End the session",
-  "do.reopen_consent": "Show the consent again",
-  "command.reopen_consent": "show the consent again",
-  "ask.reopen_consent": "Show the consent again?",
+  "do.reopen_consent": "Show the consent form again",
+  "command.reopen_consent": "show the consent form again",
+  "ask.reopen_consent": "Show the consent form again?",
   "ask.reopen_consent.body":
     "Only if the participant has changed their mind. They still have to agree on the tablet. The reason becomes part of the record.",
   "ask.skip.consent":
@@ -114,9 +114,9 @@ export const consentDe: Readonly<Record<keyof typeof consentEn, string>> = {
   "refused.body":
     "Die Sitzung ist angehalten, und das Tablet teilt der Person mit, dass Sie Bescheid wissen. Eine Ablehnung braucht keine Begründung: Danken Sie der Person und beenden Sie die Sitzung; der Platz wird wieder frei. Zeigen Sie die Einwilligung nur dann erneut, wenn die Person sie noch einmal lesen möchte.",
   "refused.end": "Sitzung beenden",
-  "do.reopen_consent": "Einwilligung erneut zeigen",
-  "command.reopen_consent": "Einwilligung erneut zeigen",
-  "ask.reopen_consent": "Einwilligung erneut zeigen?",
+  "do.reopen_consent": "Einwilligungserklärung erneut zeigen",
+  "command.reopen_consent": "Einwilligungserklärung erneut zeigen",
+  "ask.reopen_consent": "Einwilligungserklärung erneut zeigen?",
   "ask.reopen_consent.body":
     "Nur wenn die Person es sich anders überlegt hat. Sie muss am Tablet noch einwilligen. Die Begründung wird Teil des Protokolls.",
   "ask.skip.consent":
