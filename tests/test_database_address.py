@@ -19,6 +19,8 @@ from tests.cli.invoked import Invoked
 from tests.faults.commands import CommandResult, command
 from tests.support.postgres import Cluster, running_cluster
 
+pytestmark = pytest.mark.thorough
+
 SECRET = "tiger-in-the-tank"
 
 

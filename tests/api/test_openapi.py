@@ -28,6 +28,8 @@ from tests.support.humanoid_files import humanoid_file
 from tests.support.repetitions import usually
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 
+pytestmark = pytest.mark.thorough
+
 CHECKS = (
     not_a_server_error,
     status_code_conformance,

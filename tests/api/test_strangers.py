@@ -18,6 +18,8 @@ from app.wire.messages import SUBPROTOCOL
 from tests.api.test_access import routes
 from tests.features.lab import PASSWORD, Json, Lab, error, ok
 
+pytestmark = pytest.mark.thorough
+
 JSON = {"content-type": "application/json"}
 SECRET = "s3cret-that-nobody-may-repeat"
 MOST_ANSWER_BYTES = 128 * 1024

@@ -23,6 +23,8 @@ from tests.features.care.opening.files import UNDECODABLE, edited
 from tests.features.lab import STUDY, Lab, ok, running_lab
 from tests.support.sqlite import fresh_sqlite
 
+pytestmark = pytest.mark.thorough
+
 RESTORE = Invoked("restore")
 
 

@@ -98,6 +98,16 @@ def test_without_paths_everything_is_checked() -> None:
     assert {"mypy", "imports", "ruff check", "frontend tests"} <= {one.name for one in planned}
 
 
+def test_only_a_given_path_has_its_thorough_tests_run() -> None:
+    """A check of everything leaves out thorough tests and rehearsals; a given path runs its own."""
+    everything = plan(Chosen.of([]))[-1].command
+    assert "not thorough" in everything
+    assert "--ignore=tests/rehearsal" in everything
+    given = next(one for one in plan(Chosen.of(["app/rehearsal"])) if one.name == "unit tests")
+    assert "not thorough" not in given.command
+    assert "tests/rehearsal" in given.command
+
+
 def test_a_features_check_leaves_out_the_pages() -> None:
     """A feature's check runs its own tests in one process and leaves out the pages."""
     planned = {stage.name: stage for stage in plan(Chosen.of(["app/api"]))}

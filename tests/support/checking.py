@@ -4,7 +4,8 @@ With paths, it checks the format and lint of these, the types and import contrac
 and runs the tests that mirror them; `tests/` has the folders of `app/`, and a folder without a
 mirror has its parent's tests. Without paths, it checks everything. In both cases no server, no
 PostgreSQL and no browser is started: tests that need one run only in `./run test`
-(`tests.support.unit_tests`), and so do the tests of faults, unless their path is given.
+(`tests.support.unit_tests`). So do the tests of faults, whole rehearsals and the tests marked as
+thorough, unless their path is given.
 """
 
 import argparse
@@ -33,8 +34,8 @@ USAGE_ERROR = 2
 TESTS = Path("tests")
 BIOME = FRONTEND / "node_modules" / "@biomejs" / "biome" / "bin" / "biome"
 SOURCES = FRONTEND / "src"
-FAULT_TESTS = TESTS / "faults"
-"""Killed processes, failing disks and damaged files take minutes: only `./run test` tests them."""
+LONG_FOLDERS = (TESTS / "faults", TESTS / "rehearsal")
+"""Killed processes, failing disks and whole sessions take minutes: `./run test` tests them."""
 
 
 class NoSuchPath(ValueError):
@@ -138,9 +139,10 @@ def _units(tests: Sequence[Path]) -> Stage:
     if TESTS not in tests:
         return pytest_stage("unit tests", *options, *map(str, tests))
     spread = ["-n", str(CORES), "--dist", "worksteal"]
-    ignored = [f"--ignore={folder}" for folder in (ARCHITECTURE_TESTS, BROWSER_TESTS, FAULT_TESTS)]
+    folders = (ARCHITECTURE_TESTS, BROWSER_TESTS, *LONG_FOLDERS)
+    left_out = [*(f"--ignore={folder}" for folder in folders), "-m", "not thorough"]
     return pytest_stage(
-        "unit tests", *options, *spread, *ignored, str(TESTS), alone=True, aloud=True
+        "unit tests", *options, *spread, *left_out, str(TESTS), alone=True, aloud=True
     )
 
 

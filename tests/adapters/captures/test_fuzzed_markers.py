@@ -5,6 +5,8 @@ import pytest
 from tests.adapters.captures.fuzzing import assert_family_survives
 from tests.adapters.captures.marker_seeds import marker_seeds
 
+pytestmark = pytest.mark.thorough
+
 _SHORT = 225
 _SEEDS = marker_seeds()
 

@@ -12,6 +12,8 @@ from tests.adapters.captures.fuzzing import assert_survives, read_or_reject
 from tests.adapters.captures.moving_rigs import motive_body, random_motion, random_rig
 from tests.adapters.captures.seeds import table_seeds
 
+pytestmark = pytest.mark.thorough
+
 # Together with the marker formats: 2,500.
 _SHORT = {
     "bvh": 500,

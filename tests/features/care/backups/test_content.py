@@ -23,6 +23,8 @@ from tests.features.lab import PASSWORD, Lab, ok, running_lab
 from tests.support.filled import contents
 from tests.support.sqlite import fresh_sqlite
 
+pytestmark = pytest.mark.thorough
+
 
 def forged(path: Path, *statements: str) -> Path:
     """Change a backup with SQL statements and recompute all its checksums, so that they match."""

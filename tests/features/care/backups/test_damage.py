@@ -15,6 +15,8 @@ from tests.features.care.backups.lab import make, put_back
 from tests.support.filled import contents, fill
 from tests.support.sqlite import fresh_sqlite
 
+pytestmark = pytest.mark.thorough
+
 PAGE = 4096
 FLIPS, MANY_FLIPS = 30, 3000
 EVERY_PAGE, SOME_PAGES = 1, 12

@@ -18,6 +18,8 @@ from tests.features.care.opening.older import EACH_OLDER, older_database
 from tests.features.lab import Lab
 from tests.support.filled import contents
 
+pytestmark = pytest.mark.thorough
+
 
 def test_restoring_across_engines_and_back_keeps_every_row(
     sqlite: Database, postgres_url: str, tmp_path: Path

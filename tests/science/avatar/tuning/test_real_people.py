@@ -32,6 +32,8 @@ from tests.science.avatar.captured import (
 )
 from tests.science.avatar.simulated import follow
 
+pytestmark = pytest.mark.thorough
+
 FRAME_S = 1.0 / RATE_HZ
 
 
