@@ -2,6 +2,10 @@
 
 from app.wire.batch import (
     ACTIVE,
+    BODY_STREAMS,
+    CODE_OF_STREAM,
+    FINGER_STREAMS,
+    FINGER_VALUES_PER_FRAME,
     HEADER_BYTES,
     MAX_TIME_S,
     VALUES_PER_FRAME,
@@ -44,11 +48,15 @@ from app.wire.messages import (
     StreamPosition,
     Welcome,
 )
-from app.wire.quality import FrameFlags, flag_batches, flag_frames
+from app.wire.quality import FrameFlags, flag_batches, flag_frames, untracked_hands
 
 __all__ = [
     "ACTIVE",
+    "BODY_STREAMS",
     "CLIENT_MESSAGE",
+    "CODE_OF_STREAM",
+    "FINGER_STREAMS",
+    "FINGER_VALUES_PER_FRAME",
     "HEADER_BYTES",
     "MAX_EPOCH",
     "MAX_TIME_S",
@@ -90,4 +98,5 @@ __all__ = [
     "encode_batch",
     "flag_batches",
     "flag_frames",
+    "untracked_hands",
 ]

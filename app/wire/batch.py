@@ -3,22 +3,25 @@
     offset  type     field
     0       4 bytes  magic "RMB1"
     4       u16      header length, 64
-    6       u8       stream: 1 target, 2 actual
+    6       u8       stream: 1 target, 2 actual, 3 target_fingers, 4 actual_fingers
     7       u8       reserved, 0
     8       u32      epoch: one run of the client; a restart takes a new one
     12      u32      phase_id the frames belong to, 0 outside phases
     16      u64      seq of the first frame; seqs are consecutive within an epoch
     24      u16      frame count n, 1..1024
-    26      u16      values per frame w, 91
+    26      u16      values per frame w: 91 of a body, 120 of fingers
     28      u32      CRC-32 of everything after the header
     32      f64      active time of the phase at the last frame, s
     40      f64      client monotonic time when the batch was closed, s
     48      16 bytes reserved, 0
     64      f64[n]   client monotonic time of each frame, s
     ...     u8[n]    frame flags (bit 0: the phase's clock ran), zero-padded to a multiple of 8
-    ...     f32[n,w] root position x, y, z (m, world) then 22 joints' local rotations w, x, y, z
+    ...     f32[n,w] body: root position x, y, z (m, world), then the local rotations w, x, y, z of
+                     22 joints
+                     fingers: 30 parts' local rotations w, x, y, z (`app.science.skeleton.fingers`)
 
-The frames of the target and the actual stream that show the same moment have the same seq.
+The frames of all streams that show the same moment have the same seq. The two streams of fingers
+are optional. A hand that is not tracked has NaN in all of its 60 values.
 """
 
 import struct
@@ -35,6 +38,8 @@ HEADER = struct.Struct("<4sHBBIIQHHIdd16x")
 HEADER_BYTES = HEADER.size
 BODY_JOINTS = 22
 VALUES_PER_FRAME = 3 + 4 * BODY_JOINTS
+FINGER_PARTS = 30
+FINGER_VALUES_PER_FRAME = 4 * FINGER_PARTS
 MAX_FRAMES = 1024
 MAX_TIME_S = 1e9
 ACTIVE = 1
@@ -44,15 +49,30 @@ ACTIVE = 1
 class StreamName(StrEnum):
     """The stream of a batch.
 
-    `target` is the tracked pose, `actual` the pose of the remote avatar.
+    `target` is the tracked pose, `actual` the pose of the remote avatar; those of their fingers are
+    streams of their own, which many sessions do not have.
     """
 
     TARGET = "target"
     ACTUAL = "actual"
+    TARGET_FINGERS = "target_fingers"
+    ACTUAL_FINGERS = "actual_fingers"
+
+    @property
+    def values_per_frame(self) -> int:
+        """Return the number of values of a frame."""
+        return FINGER_VALUES_PER_FRAME if self in FINGER_STREAMS else VALUES_PER_FRAME
 
 
-_STREAM_OF_CODE = {1: StreamName.TARGET, 2: StreamName.ACTUAL}
-_CODE_OF_STREAM = {name: code for code, name in _STREAM_OF_CODE.items()}
+BODY_STREAMS = (StreamName.TARGET, StreamName.ACTUAL)
+FINGER_STREAMS = (StreamName.TARGET_FINGERS, StreamName.ACTUAL_FINGERS)
+STREAM_OF_CODE = {
+    1: StreamName.TARGET,
+    2: StreamName.ACTUAL,
+    3: StreamName.TARGET_FINGERS,
+    4: StreamName.ACTUAL_FINGERS,
+}
+CODE_OF_STREAM = {name: code for code, name in STREAM_OF_CODE.items()}
 
 
 class MalformedBatchError(ValueError):
@@ -105,19 +125,21 @@ def decode_header(message: bytes) -> BatchHeader:
         raise MalformedBatchError(
             f"magic {magic!r}, header length {length}; expected {MAGIC!r}, 64"
         )
-    if code not in _STREAM_OF_CODE:
-        raise MalformedBatchError(f"stream code {code}; valid are 1 (target) and 2 (actual)")
+    stream = STREAM_OF_CODE.get(code)
+    if stream is None:
+        named = ", ".join(f"{valid} ({name})" for valid, name in STREAM_OF_CODE.items())
+        raise MalformedBatchError(f"stream code {code}; valid are {named}")
     if not 1 <= n <= MAX_FRAMES:
         raise MalformedBatchError(f"frame count {n}; valid are 1 to {MAX_FRAMES}")
-    if w != VALUES_PER_FRAME:
-        raise MalformedBatchError(f"{w} values per frame; expected {VALUES_PER_FRAME}")
+    if w != stream.values_per_frame:
+        raise MalformedBatchError(
+            f"{w} values per frame of stream {stream}; expected {stream.values_per_frame}"
+        )
     _require_usable(seq, phase_id, {"active_s": active, "closed_at_s": closed})
     expected = HEADER_BYTES + body_bytes(n, w)
     if len(message) != expected:
         raise MalformedBatchError(f"message of {len(message)} bytes; {n} frames need {expected}")
-    return BatchHeader(
-        _STREAM_OF_CODE[code], epoch, phase_id, seq, n, w, crc, float(active), float(closed)
-    )
+    return BatchHeader(stream, epoch, phase_id, seq, n, w, crc, float(active), float(closed))
 
 
 def _require_usable(seq: int, phase_id: int, times_s: Mapping[str, float]) -> None:
@@ -163,11 +185,13 @@ def encode_batch(
     active_s: float,
     closed_at_s: float,
 ) -> bytes:
-    """Encode frames: `times_s` (n,), `flags` (n,), `values` (n, 91)."""
+    """Encode frames: `times_s` (n,), `flags` (n,), `values` (n, 91), of fingers (n, 120)."""
     n, w = values.shape
-    if w != VALUES_PER_FRAME or times_s.shape != (n,) or flags.shape != (n,):
+    expected = stream.values_per_frame
+    if w != expected or times_s.shape != (n,) or flags.shape != (n,):
         raise MalformedBatchError(
-            f"shapes {times_s.shape}, {flags.shape}, {values.shape}; expected (n,), (n,), (n, 91)"
+            f"shapes {times_s.shape}, {flags.shape}, {values.shape}; expected (n,), (n,),"
+            f" (n, {expected})"
         )
     body = b"".join(
         (
@@ -180,7 +204,7 @@ def encode_batch(
         HEADER.pack(
             MAGIC,
             HEADER_BYTES,
-            _CODE_OF_STREAM[stream],
+            CODE_OF_STREAM[stream],
             0,
             epoch,
             phase_id,

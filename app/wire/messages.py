@@ -35,7 +35,9 @@ class Hello(Message):
     """The client's first message. `epoch` is null for a new run of the client.
 
     `avatars`: the kinds of avatar that the client can show. A client that cannot show the session's
-    avatar is refused: the record would name an avatar that the participant did not see.
+    avatar is refused: the record would name an avatar that the participant did not see. `fingers`:
+    this run sends the streams of fingers, too, with every frame from its first one on; phases
+    without them are then reported as incomplete.
     """
 
     type: Literal["hello"] = "hello"
@@ -45,6 +47,7 @@ class Hello(Message):
     avatars: tuple[Annotated[Name, Field(max_length=40)], ...] = Field(
         default=("delayed_copy",), max_length=10
     )
+    fingers: bool = False
 
 
 PhaseEvent = Literal[
@@ -154,7 +157,9 @@ class Produced(Message):
 
     type: Literal["produced"] = "produced"
     epoch: Epoch
-    streams: dict[Literal["target", "actual", "reports"], Seq] = Field(max_length=3)
+    streams: dict[
+        Literal["target", "actual", "target_fingers", "actual_fingers", "reports"], Seq
+    ] = Field(max_length=5)
 
 
 ClientMessages = Hello | Report | Probe | Probed | Produced

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from app.wire.batch import BODY_JOINTS, Batch
+from app.wire.batch import FINGER_VALUES_PER_FRAME, Batch
 
 UNIT_TOLERANCE = 1e-3
 """A float32 unit quaternion that is the product of a few keeps its length within this of 1."""
@@ -34,11 +34,24 @@ class FrameFlags:
         return self.non_finite | self.non_unit
 
 
+def untracked_hands(values: NDArray[np.float32]) -> NDArray[np.bool_]:
+    """Return which hands (n, 2), left and right, `values` (n, 120) of fingers say nothing about."""
+    return np.asarray(np.isnan(values).reshape(len(values), 2, -1).all(axis=2))
+
+
 def flag_frames(times_s: NDArray[np.float64], values: NDArray[np.float32]) -> FrameFlags:
-    """Flag frames: `times_s` (n,) in s, `values` (n, 91) as in a batch."""
+    """Flag frames: `times_s` (n,) in s, `values` (n, 91) or, of fingers, (n, 120) as in a batch.
+
+    A hand that is not tracked is no fault.
+    """
+    if values.shape[1] == FINGER_VALUES_PER_FRAME:
+        untracked = np.repeat(untracked_hands(values), FINGER_VALUES_PER_FRAME // 2, axis=1)
+        if untracked.any():
+            values = np.where(untracked, np.float32(0.5), values)
     finite = np.isfinite(values).all(axis=1) & np.isfinite(times_s)
     with np.errstate(invalid="ignore", over="ignore"):
-        rotations = values[:, 3:].reshape(len(values), BODY_JOINTS, 4).astype(np.float64)
+        # The values of the root come first; fingers have none.
+        rotations = values[:, values.shape[1] % 4 :].reshape(len(values), -1, 4).astype(np.float64)
         length = np.sqrt(np.einsum("njk,njk->nj", rotations, rotations))
         unit = (np.abs(length - 1.0) <= UNIT_TOLERANCE).all(axis=1)
     return FrameFlags(non_finite=~finite, non_unit=finite & ~unit)
@@ -46,6 +59,17 @@ def flag_frames(times_s: NDArray[np.float64], values: NDArray[np.float32]) -> Fr
 
 def flag_batches(batches: Sequence[Batch]) -> Iterator[FrameFlags]:
     """Yield the flags of each batch. Checking many together is much cheaper than one by one."""
+    widths = {batch.header.values_per_frame for batch in batches}
+    flags = {
+        width: _flags([one for one in batches if one.header.values_per_frame == width])
+        for width in widths
+    }
+    for batch in batches:
+        yield next(flags[batch.header.values_per_frame])
+
+
+def _flags(batches: Sequence[Batch]) -> Iterator[FrameFlags]:
+    """Yield the flags of batches of the same width."""
     for group in _grouped(batches):
         flags = flag_frames(
             np.concatenate([batch.times_s for batch in group]),

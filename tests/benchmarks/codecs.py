@@ -151,7 +151,7 @@ def _three(rows: Bits) -> tuple[bytes, Bits]:
 
 
 def _four(beside: NDArray[np.uint8], rows: Bits) -> Bits:
-    left_out = LeftOut.of_bytes(beside)
+    left_out = LeftOut.of_bytes(beside, len(rows) % 4)
     kept_count = len(rows) - len(beside)
     bits = np.empty_like(rows)
     kept = _summed(beside, rows[:kept_count], times=2)

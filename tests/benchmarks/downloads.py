@@ -19,7 +19,7 @@ from sqlalchemy import Table, insert, literal, select, update
 
 from app.database import Base, Database
 from app.models import TelemetryStream
-from app.wire import StreamName
+from app.wire import BODY_STREAMS
 from tests.benchmarks.headsets import FRAMES_PER_BATCH, movement
 from tests.benchmarks.report import Figure, Report
 from tests.benchmarks.thousand import shipped_database
@@ -73,7 +73,7 @@ def _fill(server: LiveServer) -> None:
         first = build_session(db, SessionSpec("SIM-01", kind="simulated"))
         pieces = [movement(seed)[:-FRAMES_PER_BATCH] for seed in range(-(-FRAMES // 900))]
         values = np.concatenate(pieces)[:FRAMES]
-        for stream in StreamName:
+        for stream in BODY_STREAMS:
             for phase, seqs in enumerate(np.array_split(np.arange(FRAMES), PHASES), start=1):
                 rows = values[seqs[0] : seqs[-1] + 1]
                 store_chunks(db, first.id, stream, seqs.tolist(), rows, phase_id=phase)

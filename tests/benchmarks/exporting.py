@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from app.database import Database, open_database
 from app.features.results.exports.writing import export_study
 from app.schema_revisions import migrate
-from app.wire import StreamName
+from app.wire import BODY_STREAMS
 from tests.benchmarks.headsets import FRAMES_PER_BATCH, movement
 from tests.benchmarks.report import Figure
 from tests.features.builders import NOW, STUDY, SessionSpec, build_session, build_study
@@ -62,7 +62,7 @@ def _build(database: Database, values: NDArray[np.float32]) -> None:
     for number in range(SESSIONS):
         with database.writing() as db:
             session = build_session(db, SessionSpec(f"SIM-{number + 1:02}", kind="simulated"))
-            for stream in StreamName:
+            for stream in BODY_STREAMS:
                 for phase, seqs in enumerate(np.array_split(np.arange(FRAMES), PHASES), start=1):
                     rows = values[seqs[0] : seqs[-1] + 1]
                     store_chunks(db, session.id, stream, seqs.tolist(), rows, phase_id=phase)

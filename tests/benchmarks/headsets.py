@@ -17,7 +17,7 @@ import numpy as np
 from app.client.journal import Entry, Journal
 from app.client.telemetry import TelemetryClient
 from app.rehearsal.rehearse import AVATARS
-from app.wire import VALUES_PER_FRAME, StreamName, encode_batch
+from app.wire import BODY_STREAMS, VALUES_PER_FRAME, StreamName, encode_batch
 
 RATE_HZ = 90.0
 FRAMES_PER_BATCH = 6
@@ -61,7 +61,7 @@ async def stream(url: str, token: str, duration_s: float, seed: int) -> list[tup
         start_s = time.monotonic()
         for batch in range(int(duration_s * RATE_HZ / FRAMES_PER_BATCH)):
             seq = batch * FRAMES_PER_BATCH
-            for name in StreamName:
+            for name in BODY_STREAMS:
                 message = batch_of(name, client.epoch, seq, values)
                 await client.send_batch(name, seq + FRAMES_PER_BATCH, message)
             due_s = start_s + (seq + FRAMES_PER_BATCH) / RATE_HZ

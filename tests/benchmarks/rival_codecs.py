@@ -133,7 +133,7 @@ def _predicted(pco: _Pcodec) -> tuple[Any, Any]:
         sizes = [pco.expand(group, np.uint32) for group in groups]
         differences[by_size] = np.concatenate(sizes).reshape(w, n)
         rows = summed(order, differences)
-        coarse, left_out = rows[: w - joints], LeftOut.of_bytes(which)
+        coarse, left_out = rows[: w - joints], LeftOut.of_bytes(which, w % 4)
         widths = rest_widths(coarse)
         rests = unpack(rest, widths.ravel()).reshape(coarse.shape)
         kept = joined(Significands(top, coarse, rests, widths, pco.expand(exceptions, np.uint32)))

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from playwright.sync_api import BrowserContext, CDPSession, Page
 
-from app.wire import StreamName
+from app.wire import BODY_STREAMS
 from app.wire.messages import REPORT_STREAM
 from tests.benchmarks.headsets import movement
 from tests.faults.record import record_of
@@ -158,7 +158,7 @@ def sent_by(runs: dict[int, Made]) -> LedgerJournal:
     ledger, rows = LedgerJournal(), table()
     for epoch, made in runs.items():
         seqs = np.arange(made.frames + made.perhaps)
-        for number, stream in enumerate(StreamName, start=1):
+        for number, stream in enumerate(BODY_STREAMS, start=1):
             values = rows[seqs % len(rows)]
             values[:, 0], values[:, 1], values[:, 2] = epoch, number, seqs
             flags = (seqs % 2).astype(np.uint8)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.features.record.sessions import commands as c
-from app.wire import StreamName, encode_batch
+from app.wire import BODY_STREAMS, StreamName, encode_batch
 from tests.faults.simulated_site import Json, Site, Socket
 from tests.wire.samples import standing
 
@@ -256,7 +256,7 @@ class SimulatedHeadset:
             self._touch(begin_s, begin_active_s)
 
     def _draw(self, times_s: NDArray[np.float64]) -> None:
-        for stream in StreamName:
+        for stream in BODY_STREAMS:
             self._journal(
                 Frames(
                     stream,

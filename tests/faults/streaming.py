@@ -11,7 +11,7 @@ import httpx2
 
 from app.client.telemetry import TelemetryClient
 from app.rehearsal.rehearse import AVATARS
-from app.wire import StreamName
+from app.wire import BODY_STREAMS
 from app.wire.messages import MaterialisedReport
 from tests.benchmarks.headsets import FRAMES_PER_BATCH, RATE_HZ, batch_of, movement
 from tests.rehearsal.ledger import LedgerJournal
@@ -99,7 +99,7 @@ async def _stream_one(
         batch = 0
         while more():
             seq = batch * FRAMES_PER_BATCH
-            for name in StreamName:
+            for name in BODY_STREAMS:
                 message = batch_of(name, client.epoch, seq, values)
                 await client.send_batch(name, seq + FRAMES_PER_BATCH, message)
             if batch % BATCHES_PER_REPORT == 0:

@@ -14,7 +14,7 @@ import pytest
 
 from app.client.journal import Entry
 from app.client.telemetry import TelemetryClient
-from app.wire import StreamName
+from app.wire import BODY_STREAMS
 from tests.benchmarks.headsets import batch_of, movement
 from tests.faults.figures import note
 from tests.faults.streaming import StreamingHeadset, pair_headsets, signed_in, stream
@@ -103,7 +103,7 @@ async def _burst_one(server: LiveServer, headset: StreamingHeadset, burst_s: flo
     ) as client:
         began_s, values = time.monotonic(), movement(1)
         for at in range(int(90 * BURST * burst_s / FRAMES)):
-            for name in StreamName:
+            for name in BODY_STREAMS:
                 await client.send_batch(
                     name, (at + 1) * FRAMES, batch_of(name, client.epoch, at * FRAMES, values)
                 )

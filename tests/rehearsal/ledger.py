@@ -19,7 +19,7 @@ from sqlalchemy.orm import Session
 from app.client.journal import Entry, Journal
 from app.features.record.telemetry import epochs_of, iter_frames
 from app.models import ClientReport, TelemetryBatch, TelemetryChunk
-from app.wire import StreamName, decode_batch
+from app.wire import BODY_STREAMS, decode_batch
 from app.wire.messages import REPORT_STREAM
 
 Key = tuple[str, int]
@@ -144,7 +144,7 @@ def reconcile(db: Session, session_id: str, ledger: LedgerJournal) -> Reconcilia
     totals = np.zeros(7, dtype=np.int64)
     known = {
         (stream, epoch)
-        for stream in (*StreamName, REPORT_STREAM)
+        for stream in (*BODY_STREAMS, REPORT_STREAM)
         for epoch in epochs_of(db, session_id, stream)
     }
     for key in sorted(known | ledger.sent.keys()):

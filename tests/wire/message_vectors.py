@@ -74,6 +74,23 @@ FROM_CLIENT: list[tuple[str, Json]] = [
             "avatars": ["delayed_copy", "physics"],
         },
     ),
+    (
+        "hello_of_one_that_sends_fingers",
+        {
+            "type": "hello",
+            "protocol": 1,
+            "client": "my client 0.5",
+            "epoch": None,
+            "fingers": True,
+        },
+    ),
+    (
+        "produced_with_fingers",
+        {
+            **PRODUCED,
+            "streams": {**PRODUCED["streams"], "target_fingers": 540, "actual_fingers": 534},
+        },
+    ),
     ("materialised", report({"kind": "materialised", "t_s": 10.125})),
     ("phase_started", report(PHASE)),
     ("phase_paused", report({**PHASE, "what": "paused", "cause": "disconnected"})),

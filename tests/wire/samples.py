@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.wire import VALUES_PER_FRAME, StreamName, encode_batch
+from app.wire import FINGER_VALUES_PER_FRAME, VALUES_PER_FRAME, StreamName, encode_batch
 
 RATE_HZ = 90.0
 CONTACT_REPORT: dict[str, Any] = {
@@ -30,6 +30,20 @@ def standing(count: int) -> NDArray[np.float32]:
     values[:, 1] = 1.0
     values[:, 3::4] = 1.0
     return values
+
+
+def resting_fingers(count: int) -> NDArray[np.float32]:
+    """Return frames (count, 120) of fingers that lie flat, as in the T-pose."""
+    values = np.zeros((count, FINGER_VALUES_PER_FRAME), np.float32)
+    values[:, 0::4] = 1.0
+    return values
+
+
+def without_left_hand(values: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Return frames of fingers (count, 120) in which the left hand is not tracked."""
+    changed = values.copy()
+    changed[:, : FINGER_VALUES_PER_FRAME // 2] = np.nan
+    return changed
 
 
 def bits(values: NDArray[np.float32]) -> NDArray[np.uint32]:

@@ -39,7 +39,9 @@ def test_a_batch_is_encoded_and_decoded(vector: dict[str, Any]) -> None:
     """Each batch of the vectors is encoded and decoded bit by bit."""
     message = bytes.fromhex(vector["message_hex"])
     times_s = np.frombuffer(bytes.fromhex(vector["times_hex"]), "<f8")
-    values = np.frombuffer(bytes.fromhex(vector["values_hex"]), "<f4").reshape(-1, 91)
+    values = np.frombuffer(bytes.fromhex(vector["values_hex"]), "<f4").reshape(
+        -1, StreamName(vector["stream"]).values_per_frame
+    )
     batch = decode_batch(message)
     assert batch.times_s.tobytes() == times_s.tobytes()
     assert batch.flags.tolist() == vector["flags"]

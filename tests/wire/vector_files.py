@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from app.wire import HEADER_BYTES, StreamName, decode_batch, encode_batch
 from app.wire.batch import HEADER, MAX_TIME_S
 from tests.wire.message_vectors import FROM_CLIENT, FROM_SERVER, REFUSED_CLIENT, REFUSED_SERVER
-from tests.wire.samples import every_odd_float, standing
+from tests.wire.samples import every_odd_float, resting_fingers, standing, without_left_hand
 
 FOLDER = Path(__file__).parents[1] / "vectors" / "wire"
 Json = dict[str, Any]
@@ -67,6 +67,12 @@ def _batches() -> dict[str, Json]:
         "one_frame_of_the_actual_stream": _given(standing(1), stream=StreamName.ACTUAL),
         "eight_frames_need_no_padding": _given(standing(8)),
         "nine_frames_need_seven_bytes_of_padding": _given(standing(9), active=True),
+        "two_frames_of_the_target_fingers": _given(
+            resting_fingers(2), stream=StreamName.TARGET_FINGERS, phase_id=3
+        ),
+        "fingers_of_which_the_left_hand_is_not_tracked": _given(
+            without_left_hand(resting_fingers(3)), stream=StreamName.ACTUAL_FINGERS
+        ),
         "every_odd_float": _given(every_odd_float(), times_s=broken_s),
         "largest_numbers": _given(
             standing(2),
@@ -128,7 +134,7 @@ def _invalid_batches() -> list[tuple[str, str, bytes]]:
     changes: list[tuple[str, str, Any]] = [
         ("another_magic", "magic", b"RMB2"),
         ("another_header_length", "length", 128),
-        ("unknown_stream", "stream", 3),
+        ("unknown_stream", "stream", 5),
         ("no_frames", "n", 0),
         ("too_many_frames", "n", 1025),
         ("fewer_frames_than_it_says", "n", 3),

@@ -9,6 +9,7 @@ from app.science.joint_error.course import COURSE_BIN_S, active_times, joint_err
 from app.science.joint_error.errors import (
     ERROR_AXES,
     ERROR_JOINTS,
+    ERROR_JOINTS_WITH_FINGERS,
     Clipping,
     JointErrorSummary,
     joint_error_summary,
@@ -20,6 +21,7 @@ __all__ = [
     "COURSE_BIN_S",
     "ERROR_AXES",
     "ERROR_JOINTS",
+    "ERROR_JOINTS_WITH_FINGERS",
     "Clipping",
     "JointErrorSummary",
     "Recorded",

@@ -15,6 +15,9 @@ flagged and counted, not repaired. This is the joint error of Karas (2020), sect
 The target is never clamped: a rotation that the limits of an avatar's hinges prevent is part of the
 error. The share of samples in which a limit did so is given as well (`Clipping`), which
 distinguishes a joint that could not follow from one that followed badly.
+
+A pose has 22 rotations or, where fingers are recorded, 52: those of the body, then those of the
+`FINGER_PARTS`. Below, J is the number of joints that have an error: 21, or 51 with fingers.
 """
 
 from dataclasses import dataclass
@@ -31,13 +34,16 @@ from app.science.rotations import (
     multiply,
     to_rotation_vector,
 )
-from app.science.skeleton import JOINT_COUNT, JOINT_NAMES
+from app.science.skeleton import FINGER_COUNT, FINGER_PARTS, JOINT_COUNT, JOINT_NAMES
 
 #: The joints that have an error, in order: all but the hips.
 ERROR_JOINTS: tuple[str, ...] = JOINT_NAMES[1:]
+#: The same of a body whose fingers are recorded, too.
+ERROR_JOINTS_WITH_FINGERS: tuple[str, ...] = (*ERROR_JOINTS, *FINGER_PARTS)
 #: What is summarised for each joint: the angle and the components of the rotation vector.
 ERROR_AXES: tuple[str, ...] = ("angle", "x", "y", "z")
 _P95 = 95.0
+_POSES = ((JOINT_COUNT, 4), (JOINT_COUNT + FINGER_COUNT, 4))
 _Bools = npt.NDArray[np.bool_]
 
 
@@ -50,8 +56,8 @@ class JointErrors:
     """The joint errors of N frames, in radians.
 
     Attributes:
-        values_rad: (N, 21, 4) in the order of ERROR_JOINTS and ERROR_AXES; zero where not valid.
-        valid: (N, 21) whether each sample counts.
+        values_rad: (N, J, 4) in the order of the joints and ERROR_AXES; zero where not valid.
+        valid: (N, J) whether each sample counts.
     """
 
     values_rad: FloatArray
@@ -66,9 +72,9 @@ class Clipping:
     stays on the parent's axis in every pose; the others turn with it.
 
     Attributes:
-        clipped: (N, 21, 3) whether the hinge along x, y and z reached its limit.
-        turns: (21, 3) whether there is such a hinge, and it is not locked.
-        hinged: (21,) whether the joint has a hinge at all, locked or not. A joint without hinges
+        clipped: (N, J, 3) whether the hinge along x, y and z reached its limit.
+        turns: (J, 3) whether there is such a hinge, and it is not locked.
+        hinged: (J,) whether the joint has a hinge at all, locked or not. A joint without hinges
             has no target of its own, so it has no error.
     """
 
@@ -78,7 +84,7 @@ class Clipping:
 
     @property
     def by_axis(self) -> _Bools:
-        """Whether each axis is clipped: (N, 21, 4), in the order of ERROR_AXES.
+        """Whether each axis is clipped: (N, J, 4), in the order of ERROR_AXES.
 
         The angle counts as clipped where one of its axes is.
         """
@@ -87,7 +93,7 @@ class Clipping:
 
     @property
     def driven(self) -> _Bools:
-        """Whether each joint and axis can be clipped: (21, 4), in the order of ERROR_AXES."""
+        """Whether each joint and axis can be clipped: (J, 4), in the order of ERROR_AXES."""
         return np.concatenate((self.turns.any(axis=1, keepdims=True), self.turns), axis=1)
 
 
@@ -98,17 +104,16 @@ class JointErrorSummary:
     Values are NaN for a joint without a valid sample.
 
     Attributes:
-        mean_rad: (21, 4) signed mean.
-        rms_rad: (21, 4) root mean square.
-        p95_rad: (21, 4) 95th percentile of the absolute value (linear interpolation).
-        max_rad: (21, 4) largest absolute value.
-        count: (21,) valid samples.
-        left_out: (21,) samples that did not count.
-        clipped_share: (21, 4) share of the valid samples in which a limit reduced the target; NaN
+        mean_rad: (J, 4) signed mean.
+        rms_rad: (J, 4) root mean square.
+        p95_rad: (J, 4) 95th percentile of the absolute value (linear interpolation).
+        max_rad: (J, 4) largest absolute value.
+        count: (J,) valid samples.
+        left_out: (J,) samples that did not count.
+        clipped_share: (J, 4) share of the valid samples in which a limit reduced the target; NaN
             without a hinge that turns, and everywhere for a body without limits.
     """
 
-    joints: ClassVar[tuple[str, ...]] = ERROR_JOINTS
     axes: ClassVar[tuple[str, ...]] = ERROR_AXES
 
     mean_rad: FloatArray
@@ -119,20 +124,26 @@ class JointErrorSummary:
     left_out: npt.NDArray[np.int64]
     clipped_share: FloatArray
 
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """Return the names of the joints, in order."""
+        return ERROR_JOINTS_WITH_FINGERS[: len(self.count)]
+
 
 def joint_errors(target: FloatArray, actual: FloatArray) -> JointErrors:
     """Return the error of each joint in each frame.
 
     Args:
-        target, actual: (N, 22, 4) local rotations wxyz at the same times.
+        target, actual: (N, 22, 4), or (N, 52, 4) with fingers: local rotations wxyz at the same
+            times.
 
     Raises:
-        JointErrorError: the shapes differ or are not (N, 22, 4).
+        JointErrorError: the shapes differ or are others.
     """
-    if target.shape != actual.shape or target.ndim != 3 or target.shape[1:] != (JOINT_COUNT, 4):
+    if target.shape != actual.shape or target.ndim != 3 or target.shape[1:] not in _POSES:
         raise JointErrorError(
             f"Target {target.shape} and actual {actual.shape} do not fit: both must be (N, 22, 4),"
-            " frame for frame."
+            " or (N, 52, 4) with fingers, frame for frame."
         )
     expected = np.asarray(target[:, 1:], dtype=np.float64)
     observed = np.asarray(actual[:, 1:], dtype=np.float64)
@@ -157,7 +168,7 @@ def summarise_joint_errors(
     Raises:
         JointErrorError: the clipping has another number of frames.
     """
-    joints, axes = len(ERROR_JOINTS), len(ERROR_AXES)
+    joints, axes = errors.valid.shape[1], len(ERROR_AXES)
     rows = np.full((4, joints, axes), np.nan)
     valid, frames = errors.valid, errors.valid.shape[0]
     left_out = frames - valid.sum(axis=0, dtype=np.int64)
@@ -183,7 +194,7 @@ def summarise_joint_errors(
 
 
 def _clipped_shares(valid: _Bools, clipping: Clipping | None) -> FloatArray:
-    shares = np.full((len(ERROR_JOINTS), len(ERROR_AXES)), np.nan)
+    shares = np.full((valid.shape[1], len(ERROR_AXES)), np.nan)
     if clipping is not None:
         clipped = clipping.by_axis
         for joint in np.flatnonzero(valid.any(axis=0)):

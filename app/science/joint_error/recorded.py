@@ -31,7 +31,6 @@ from app.science.joint_error.errors import (
     summarise_joint_errors,
 )
 from app.science.rotations import FloatArray
-from app.science.skeleton import JOINT_COUNT
 
 Indices = npt.NDArray[np.int64]
 
@@ -41,7 +40,8 @@ class ReferenceMotion:
     """The reference of an avatar: the pose that it should reach, in each of N frames.
 
     Attributes:
-        rotations: (N, 22, 4) local rotations wxyz, unclamped; not finite where they are unknown.
+        rotations: (N, 22, 4) or (N, 52, 4) local rotations wxyz, unclamped; not finite where they
+            are unknown.
         clipping: the clipping of the same frames; None for an avatar without limits.
     """
 
@@ -63,7 +63,7 @@ class Recorded:
         partners: (M,) for each frame of the avatar, the index of the corresponding frame of the
             participant.
         actual_times_s: (M,) times of the avatar's frames, s; only those that count.
-        actual: (M, 22, 4) the avatar's local rotations.
+        actual: (M, 22, 4) or (M, 52, 4) the avatar's local rotations; as many as the reference has.
     """
 
     times_s: FloatArray
@@ -79,7 +79,7 @@ class RecordedErrors:
 
     Attributes:
         present, command: summaries of the errors against the present and the delayed reference.
-        present_rad, command_rad: (N, 21) angle of each joint in all frames of the avatar, run after
+        present_rad, command_rad: (N, J) angle of each joint in all frames of the avatar, run after
             run; NaN where a sample does not count.
     """
 
@@ -120,7 +120,7 @@ def _together(
 
 
 def _counted_angles(errors: JointErrors, clipping: Clipping | None) -> FloatArray:
-    """Return the angles (N, 21); NaN where the summary does not count the sample."""
+    """Return the angles (N, J); NaN where the summary does not count the sample."""
     counts = errors.valid if clipping is None else errors.valid & clipping.hinged
     return np.where(counts, errors.values_rad[..., ERROR_AXES.index("angle")], np.nan)
 
@@ -128,7 +128,7 @@ def _counted_angles(errors: JointErrors, clipping: Clipping | None) -> FloatArra
 def _commanded(run: Recorded, delay_s: float) -> ReferenceMotion:
     """Return the reference one delay before each of the avatar's frames; NaN where unknown."""
     query_s = run.actual_times_s
-    rotations = np.full((len(query_s), JOINT_COUNT, 4), np.nan)
+    rotations = np.full((len(query_s), *run.reference.rotations.shape[1:]), np.nan)
     nearest = np.zeros(len(query_s), np.int64)
     rising = np.flatnonzero(_rising(run.times_s))
     finite = np.isfinite(query_s)

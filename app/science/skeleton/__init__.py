@@ -1,5 +1,13 @@
 """Model the 22-joint body of Reembody: joints, proportions, forward kinematics and movement."""
 
+from app.science.skeleton.fingers import (
+    FINGER_COUNT,
+    FINGER_PARTS,
+    FINGERS,
+    PARTS_PER_HAND,
+    SEGMENTS,
+    finger_of,
+)
 from app.science.skeleton.joints import JOINT_COUNT, JOINT_INDEX, JOINT_NAMES, PARENTS
 from app.science.skeleton.kinematics import Pose, body_part_segments, forward_kinematics
 from app.science.skeleton.model import Skeleton, SkeletonError, build_skeleton
@@ -14,10 +22,15 @@ from app.science.skeleton.movement import (
 from app.science.skeleton.soles import flat_soles, ground_height
 
 __all__ = [
+    "FINGERS",
+    "FINGER_COUNT",
+    "FINGER_PARTS",
     "JOINT_COUNT",
     "JOINT_INDEX",
     "JOINT_NAMES",
     "PARENTS",
+    "PARTS_PER_HAND",
+    "SEGMENTS",
     "Movement",
     "Pose",
     "Skeleton",
@@ -25,6 +38,7 @@ __all__ = [
     "body_part_segments",
     "build_skeleton",
     "continuous",
+    "finger_of",
     "flat_soles",
     "forward_kinematics",
     "ground_height",

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from app.wire import StreamName, encode_batch
+from app.wire import BODY_STREAMS, StreamName, encode_batch
 from app.wire.batch import ACTIVE
 from app.wire.messages import ContactReport, PhaseReport
 from tests.benchmarks.load.headset import Headset
@@ -55,7 +55,7 @@ class Streaming:
     async def run(self, begin_s: float, end_s: float) -> None:
         """Stream in real time between two readings of this machine's monotonic clock."""
         if self.digested:
-            self.record.digests.update((name.value, Digest()) for name in StreamName)
+            self.record.digests.update((name.value, Digest()) for name in BODY_STREAMS)
         seq, contact_s = 0, self.contact_every_s or 0.0
         while True:
             due_s = begin_s + (seq + FRAMES_PER_BATCH) / RATE_HZ

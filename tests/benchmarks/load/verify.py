@@ -14,7 +14,7 @@ from app.database import Database, open_database
 from app.features.record.telemetry import Frames
 from app.features.record.telemetry.encoding import decode_frames
 from app.models import AlarmRow, ClientReport, TelemetryBatch, TelemetryChunk
-from app.wire import StreamName, decode_batch
+from app.wire import BODY_STREAMS, decode_batch
 from app.wire.messages import REPORT_STREAM
 from tests.benchmarks.load.record import Digest
 
@@ -59,7 +59,7 @@ def verify(
     try:
         _measure(database, verdict, lasted)
         for told in sessions:
-            for stream in (*StreamName, REPORT_STREAM):
+            for stream in (*BODY_STREAMS, REPORT_STREAM):
                 _count(database, told, str(stream), verdict)
             for stream, digest in told["digests"].items():
                 verdict.digested += 1

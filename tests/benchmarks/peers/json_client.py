@@ -17,7 +17,7 @@ import uvloop
 from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake
 
-from app.wire import StreamName
+from app.wire import BODY_STREAMS
 from tests.benchmarks.load.movement import RATE_HZ
 
 RETRY_S = 0.1
@@ -87,7 +87,7 @@ def records(joints: int) -> Iterator[str]:
     """
     seq = 0
     while True:
-        for stream in StreamName:
+        for stream in BODY_STREAMS:
             for joint in range(joints):
                 yield json.dumps(
                     {

@@ -39,6 +39,7 @@ from app.models import (
     TelemetryStream,
 )
 from app.protocol import BOX_KINDS, StudyProtocol
+from app.wire import BODY_STREAMS
 
 OBSERVED = "impossible"
 """The code of the alarm for contradictions that only the connection can see, not the record."""
@@ -290,7 +291,7 @@ class _Reader:
             PhaseQuality.span_s,
             PhaseQuality.gap_s,
             PhaseQuality.backwards,
-        )
+        ).where(PhaseQuality.stream.in_(BODY_STREAMS))
         found: dict[Key, Coverage] = {}
         for session_id, phase_id, *values in self._of_chosen(query, PhaseQuality):
             one, key = Coverage(*values), (session_id, phase_id)

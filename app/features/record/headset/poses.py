@@ -8,13 +8,14 @@ A pose message is little-endian binary:
 
     offset  type     field
     0       4 bytes  magic "RMP1"
-    4       u8       stream: 1 target, 2 actual
+    4       u8       stream: 1 target, 2 actual, 3 and 4 their fingers
     5       u8       frame flags (bit 0: the phase's clock ran)
-    6       u16      values that follow, 91
+    6       u16      values that follow: 91 of a body, 120 of fingers
     8       u32      phase_id, 0 outside phases
     12      u64      seq of the frame
     20      f64      client monotonic time of the frame, s
     28      f32[91]  root position x, y, z (m, world) then 22 local rotations w, x, y, z
+            f32[120] of fingers: 30 local rotations w, x, y, z
 """
 
 import struct
@@ -26,15 +27,14 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict
 
 from app.platform.hub import Hub
-from app.wire import Batch, CompletionReport, ContactReport, Report, StreamName
+from app.wire import CODE_OF_STREAM, Batch, CompletionReport, ContactReport, Report, StreamName
 
 MAGIC = b"RMP1"
 HEADER = struct.Struct("<4sBBHIQd")
 RATE_HZ = 30.0
-TOPICS = {StreamName.TARGET: "pose_target", StreamName.ACTUAL: "pose_actual"}
+TOPICS = {stream: f"pose_{stream}" for stream in StreamName}
 TOUCHES = "touches"
 MAX_TOUCHES = 16
-_CODES = {StreamName.TARGET: 1, StreamName.ACTUAL: 2}
 
 
 class Touch(BaseModel):
@@ -88,7 +88,7 @@ def encode_pose(batch: Batch) -> bytes:
     return (
         HEADER.pack(
             MAGIC,
-            _CODES[header.stream],
+            CODE_OF_STREAM[header.stream],
             int(batch.flags[-1]),
             len(values),
             header.phase_id,

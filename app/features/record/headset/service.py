@@ -58,7 +58,7 @@ def welcome(db: Session, session_id: str, hello: Hello, now: datetime) -> Welcom
     return Welcome(
         protocol=PROTOCOL_VERSION,
         session_id=session.id,
-        epoch=hello.epoch or assign_epoch(db, session_id, now),
+        epoch=hello.epoch or assign_epoch(db, session_id, now, fingers=hello.fingers),
         time_scale=session.time_scale,
         language=session.language,
         avatar=session.avatar,

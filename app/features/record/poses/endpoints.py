@@ -1,7 +1,7 @@
 """Stream live poses to a console over a WebSocket.
 
-The console answers every pose that it has drawn, with any message. At most `MAX_UNDRAWN` poses are
-in flight: a slow console gets fewer poses but always the latest, regardless of how much the network
+The console answers every pose of a body that it has drawn, with any message. At most `MAX_UNDRAWN`
+poses are in flight: a slow console gets fewer poses but always the latest, regardless of how much the network
 and the browser would buffer.
 """
 
@@ -18,7 +18,7 @@ from app.features.record.headset import TOPICS, TOUCHES
 from app.features.record.poses.setting import Setup, Touches, setup_of
 from app.platform.context import AppContext
 from app.platform.dependencies import authorised_caller
-from app.wire import StreamName
+from app.wire import BODY_STREAMS, CODE_OF_STREAM, StreamName
 
 router = APIRouter(tags=["sessions"])
 CLOSE_NOT_SIGNED_IN = 4401
@@ -26,6 +26,7 @@ CLOSE_REFUSED = 4403
 RECHECK_S = 5.0
 """How often access is checked, so that an expired login or a revoked study is noticed."""
 MAX_UNDRAWN = 4
+_STREAM_BYTE = 4
 
 
 @router.websocket("/sessions/{session_id}/pose")
@@ -116,29 +117,35 @@ class _Viewer:
         blinded = self._sent_setup is None or self._sent_setup.blinded
         for message in visible(messages, blinded=blinded):
             if isinstance(message, bytes):
-                self._undrawn += 1
+                self._undrawn += _is_body(message)
                 await self.socket.send_bytes(message)
             else:
                 await self.socket.send_text(message.model_dump_json())
 
     async def _until_drawn(self) -> None:
-        while self._undrawn > MAX_UNDRAWN - len(TOPICS):
+        while self._undrawn > MAX_UNDRAWN - len(BODY_STREAMS):
             self._drawn.clear()
             await self._drawn.wait()
+
+
+def _is_body(message: bytes) -> bool:
+    """Return whether a pose is a body's. Its fingers come with it and are not counted."""
+    return message[_STREAM_BYTE] <= CODE_OF_STREAM[StreamName.ACTUAL]
 
 
 def visible(messages: Mapping[str, Any], *, blinded: bool) -> Iterator[bytes | Touches]:
     """Yield those messages that a console may see.
 
     Target and actual figure side by side reveal the latency, and so does a box that lights up after
-    the participant has reached it. So a blinded console sees only the participant's own pose.
+    the participant has reached it. So a blinded console sees only the participant's own pose, with
+    its fingers.
     """
-    target, actual = TOPICS[StreamName.TARGET], TOPICS[StreamName.ACTUAL]
-    if target in messages:
-        yield messages[target]
+    of_target = (StreamName.TARGET, StreamName.TARGET_FINGERS)
+    of_actual = (StreamName.ACTUAL, StreamName.ACTUAL_FINGERS)
+    for stream in of_target if blinded else (*of_target, *of_actual):
+        if TOPICS[stream] in messages:
+            yield messages[TOPICS[stream]]
     if blinded:
         return
-    if actual in messages:
-        yield messages[actual]
     if TOUCHES in messages:
         yield Touches(touches=messages[TOUCHES])

@@ -13,8 +13,16 @@ from app.features.record.receipts.completions import CompletionReceipt, completi
 from app.features.record.receipts.latencies import LatencyReceipt, latency_receipts
 from app.features.record.receipts.streams import StreamReceipt, stream_receipts
 from app.features.record.sessions import ChainCheck, events_of, verify_chain
-from app.models import Phase, Study, TelemetryBatch, TelemetryChunk
+from app.models import Phase, Study, TelemetryBatch, TelemetryChunk, TelemetryStream
 from app.platform.access import session_by_id
+from app.wire import BODY_STREAMS, FINGER_STREAMS, StreamName
+
+_WHAT = {
+    StreamName.TARGET: "target body",
+    StreamName.ACTUAL: "actual body",
+    StreamName.TARGET_FINGERS: "target fingers, which the headset announced",
+    StreamName.ACTUAL_FINGERS: "actual fingers, which the headset announced",
+}
 
 
 @dataclass(frozen=True)
@@ -111,11 +119,20 @@ def _phase_problems(db: Session, session_id: str) -> list[str]:
         .order_by(Phase.phase_id)
     ).all()
     return [
-        f"phase {phase.phase_id}: no frames of the {stream} body"
+        f"phase {phase.phase_id}: no frames of the {_WHAT[stream]}"
         for phase in phases
-        for stream in ("target", "actual")
+        for stream in (*BODY_STREAMS, *_announced_fingers(db, session_id))
         if not _has_frames(db, phase, stream)
     ]
+
+
+def _announced_fingers(db: Session, session_id: str) -> list[StreamName]:
+    """Return the streams of fingers if a headset has said that it sends them."""
+    query = select(TelemetryStream.stream).where(
+        TelemetryStream.session_id == session_id, TelemetryStream.stream.in_(FINGER_STREAMS)
+    )
+    found = set(db.scalars(query))
+    return [stream for stream in FINGER_STREAMS if stream in found]
 
 
 def _has_frames(db: Session, phase: Phase, stream: str) -> bool:
@@ -140,14 +157,15 @@ def _chain_problems(chain: ChainCheck) -> list[str]:
 def receipt_text(receipt: SessionReceipt) -> str:
     """Format a receipt as text: verdict, problems, streams, event log, completions, latencies."""
     verdict = "COMPLETE" if receipt.complete else "NOT COMPLETE"
+    wide = max([8, *(len(one.stream) for one in receipt.streams)]) + 2
     simulated = ", simulated" if receipt.simulated else ""
     lines = [
         f"{verdict}  session {receipt.session_id} ({receipt.study}, {receipt.status}{simulated})",
         *(f"  ! {problem}" for problem in receipt.problems),
         "",
-        f"{'stream':<10}{'epoch':>6}{'sent':>10}{'stored':>10}{'missing':>9}{'flagged':>9}",
+        f"{'stream':<{wide}}{'epoch':>6}{'sent':>10}{'stored':>10}{'missing':>9}{'flagged':>9}",
         *(
-            f"{one.stream:<10}{one.epoch:>6}{one.sent:>10}{one.stored:>10}{one.missing:>9}"
+            f"{one.stream:<{wide}}{one.epoch:>6}{one.sent:>10}{one.stored:>10}{one.missing:>9}"
             f"{one.flagged:>9}"
             for one in receipt.streams
         ),

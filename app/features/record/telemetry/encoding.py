@@ -26,8 +26,9 @@ _DECODERS: dict[str, Callable[[bytes, int, int], Columns]] = {
 class Frames:
     """Consecutive frames of a stream.
 
-    `seq` (n,), `times_s` (n,) client monotonic s, `flags` (n,) bits, `values` (n, 91) as on the
-    wire: root position (m, world), then 22 local rotations w, x, y, z.
+    `seq` (n,), `times_s` (n,) client monotonic s, `flags` (n,) bits, `values` as on the wire:
+    (n, 91) of a body, root position (m, world), then 22 local rotations w, x, y, z; (n, 120) of
+    fingers, 30 local rotations.
     """
 
     seq: NDArray[np.int64]
@@ -40,10 +41,10 @@ class Frames:
 
     @property
     def rotations(self) -> NDArray[np.float64]:
-        """Return the local rotations (n, 22, 4), w x y z."""
+        """Return the local rotations (n, 22, 4), of fingers (n, 30, 4), w x y z."""
         with np.errstate(invalid="ignore"):  # the values may contain signalling NaNs
-            joints = (self.values.shape[1] - 3) // 4
-            return self.values[:, 3:].reshape(len(self), joints, 4).astype(np.float64)
+            joints, root = divmod(self.values.shape[1], 4)
+            return self.values[:, root:].reshape(len(self), joints, 4).astype(np.float64)
 
     @property
     def active(self) -> NDArray[np.bool_]:

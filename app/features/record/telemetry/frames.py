@@ -10,7 +10,7 @@ from sqlalchemy.orm import Session
 
 from app.features.record.telemetry.encoding import DamagedChunkError, Frames, decode_frames
 from app.models import TelemetryBatch, TelemetryChunk, TelemetryStream
-from app.wire import VALUES_PER_FRAME, MalformedBatchError, decode_batch
+from app.wire import MalformedBatchError, StreamName, decode_batch
 
 Piece = TelemetryChunk | TelemetryBatch
 log = logging.getLogger(__name__)
@@ -104,14 +104,14 @@ def phase_frames(
     return runs
 
 
-def concatenate(pieces: Sequence[Frames]) -> Frames:
-    """Join consecutive pieces into one; an empty sequence gives no frames."""
+def concatenate(pieces: Sequence[Frames], stream: StreamName = StreamName.TARGET) -> Frames:
+    """Join consecutive pieces into one; an empty sequence gives no frames, of this stream."""
     if not pieces:
         return Frames(
             seq=np.empty(0, np.int64),
             times_s=np.empty(0),
             flags=np.empty(0, np.uint8),
-            values=np.empty((0, VALUES_PER_FRAME), np.float32),
+            values=np.empty((0, stream.values_per_frame), np.float32),
         )
     return Frames(
         seq=np.concatenate([piece.seq for piece in pieces]),

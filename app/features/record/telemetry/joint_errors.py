@@ -5,6 +5,9 @@ shows the effect of the latency) and the delayed command (`command`, which shows
 controller). For a physics avatar, the reference is the participant's pose as its hinges can
 reproduce it, before their limits are applied; how often the limits clipped it is stored as well.
 Both can be recomputed at any time.
+
+The summary has rows for the finger parts, too, if fingers were recorded. The course over time is
+that of the body in all sessions, so that it means the same with and without fingers.
 """
 
 from collections.abc import Iterator, Sequence
@@ -15,6 +18,7 @@ from numpy.typing import NDArray
 from app.features.record.telemetry.movement import Run
 from app.models import JointErrorCourseRow, JointErrorRow, Phase
 from app.science.joint_error import (
+    ERROR_JOINTS,
     JointErrorSummary,
     Recorded,
     active_times,
@@ -24,6 +28,7 @@ from app.science.joint_error import (
 from app.science.rotations import FloatArray
 
 Indices = NDArray[np.int64]
+BODY = len(ERROR_JOINTS)
 
 
 def joint_error_rows(
@@ -39,8 +44,8 @@ def joint_error_rows(
     return [
         *_rows(phase, "present", errors.present),
         *_rows(phase, "command", errors.command),
-        _course(phase, "present", errors.present_rad, active_s),
-        _course(phase, "command", errors.command_rad, active_s),
+        _course(phase, "present", errors.present_rad[:, :BODY], active_s),
+        _course(phase, "command", errors.command_rad[:, :BODY], active_s),
     ]
 
 
@@ -62,7 +67,7 @@ def _recorded(run: Run, partners: Indices, frames: Indices) -> Recorded:
         run.reference,
         partners,
         run.actual.times_s[frames],
-        run.actual.rotations[frames],
+        run.actual_rotations[frames],
     )
 
 

@@ -7,6 +7,7 @@ from sqlalchemy.orm import Session
 from app.features.record.telemetry.movement import Run, phase_runs
 from app.models import Phase, PhaseLatency
 from app.science.latency import HIGHEST_S, AchievedLatency, StreamPair, is_off, latency_of_runs
+from app.science.skeleton import JOINT_COUNT
 
 MS_PER_S = 1000.0
 # How far beyond the set latency the search extends if that latency is long.
@@ -37,7 +38,7 @@ def measure(phase: Phase, runs: Sequence[Run]) -> AchievedLatency:
     pairs = [
         StreamPair(
             run.target.times_s,
-            run.reference.rotations,
+            run.reference.rotations[:, :JOINT_COUNT],
             run.actual.times_s,
             run.actual.rotations,
             run.actual.active,

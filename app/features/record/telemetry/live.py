@@ -11,7 +11,7 @@ from app.science.avatar.targets import HingeReference
 from app.science.rotations import identity
 from app.science.skeleton import JOINT_COUNT, JOINT_NAMES
 from app.science.tasks import side_unit
-from app.wire import Batch, CompletionReport, ContactReport, Report, StreamName
+from app.wire import FINGER_STREAMS, Batch, CompletionReport, ContactReport, Report, StreamName
 
 PERIOD_S = 0.2
 
@@ -58,6 +58,8 @@ class LiveTelemetry:
     def take(self, batch: Batch) -> None:
         """Process a batch of frames."""
         header = batch.header
+        if header.stream in FINGER_STREAMS:
+            return  # the figures are those of the body
         if header.phase_id != self._phase_id:
             self._phase_id, self._completions, self._side_contacts = header.phase_id, 0, 0
             self._red_until_s = {}

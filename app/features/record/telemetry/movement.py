@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 from sqlalchemy.orm import Session
 
 from app.features.movement.avatar import configuration_by_hash
@@ -26,6 +27,7 @@ from app.models import TelemetryChunk
 from app.platform.access import session_by_id
 from app.science.avatar.targets import HingeReference
 from app.science.joint_error import ReferenceMotion
+from app.science.skeleton import FINGER_COUNT, JOINT_COUNT
 from app.wire import StreamName
 
 log = logging.getLogger(__name__)
@@ -35,18 +37,30 @@ log = logging.getLogger(__name__)
 class Run:
     """Both streams of one epoch of a phase; times in seconds of the epoch's clock.
 
-    `hinges`: those of a physics avatar; None for a delayed copy.
+    `hinges`: those of a physics avatar; None for a delayed copy. `fingers`: the frames of the
+    target's and the actual fingers; None if none were recorded.
     """
 
     epoch: int
     target: Frames
     actual: Frames
     hinges: HingeReference | None = None
+    fingers: tuple[Frames, Frames] | None = None
+
+    @cached_property
+    def target_rotations(self) -> NDArray[np.float64]:
+        """Return the target's local rotations (n, 22, 4), or (n, 52, 4) with fingers."""
+        return _with_fingers(self.target, None if self.fingers is None else self.fingers[0])
+
+    @cached_property
+    def actual_rotations(self) -> NDArray[np.float64]:
+        """Return the avatar's local rotations (m, 22, 4), or (m, 52, 4) with fingers."""
+        return _with_fingers(self.actual, None if self.fingers is None else self.fingers[1])
 
     @cached_property
     def reference(self) -> ReferenceMotion:
         """Return the motion that the avatar should reproduce, for all target frames."""
-        rotations = self.target.rotations
+        rotations = self.target_rotations
         if self.hinges is None:
             return ReferenceMotion(rotations)
         return self.hinges.recording(self.target.times_s, rotations)
@@ -55,32 +69,82 @@ class Run:
 def phase_runs(db: Session, session_id: str, phase_id: int, *, history_s: float) -> list[Run]:
     """Return the runs of a phase, with target frames from `history_s` before its first frame."""
     hinges = hinges_of(db, session_id)
+    fingers = dict(phase_frames(db, session_id, StreamName.ACTUAL_FINGERS, phase_id))
     return [
-        Run(epoch, _target(db, session_id, epoch, actual, history_s), actual, hinges)
+        Run(
+            epoch,
+            _target(db, session_id, epoch, StreamName.TARGET, actual, history_s),
+            actual,
+            hinges,
+            _fingers(db, session_id, epoch, fingers.get(epoch), actual, history_s),
+        )
         for epoch, actual in phase_frames(db, session_id, StreamName.ACTUAL, phase_id)
     ]
 
 
-def _target(db: Session, session_id: str, epoch: int, actual: Frames, history_s: float) -> Frames:
+def _with_fingers(body: Frames, fingers: Frames | None) -> NDArray[np.float64]:
+    """Join the rotations of a body with those of its fingers in the same frames.
+
+    They are NaN in frames without fingers.
+    """
+    if fingers is None:
+        return body.rotations
+    joined = np.full((len(body), JOINT_COUNT + FINGER_COUNT, 4), np.nan)
+    joined[:, :JOINT_COUNT] = body.rotations
+    _, at_body, at_fingers = np.intersect1d(
+        body.seq, fingers.seq, assume_unique=True, return_indices=True
+    )
+    joined[at_body, JOINT_COUNT:] = fingers.rotations[at_fingers]
+    return joined
+
+
+def _fingers(
+    db: Session,
+    session_id: str,
+    epoch: int,
+    actual_fingers: Frames | None,
+    actual: Frames,
+    history_s: float,
+) -> tuple[Frames, Frames] | None:
+    """Return the frames of target and actual fingers that belong to a run; None without any."""
+    if actual_fingers is None:
+        return None
+    stream = StreamName.TARGET_FINGERS
+    return _target(db, session_id, epoch, stream, actual, history_s), actual_fingers
+
+
+def _target(
+    db: Session,
+    session_id: str,
+    epoch: int,
+    stream: StreamName,
+    actual: Frames,
+    history_s: float,
+) -> Frames:
     finite = actual.times_s[np.isfinite(actual.times_s)]
     if not len(finite):
-        return concatenate([])
+        return concatenate([], stream)
     since_s, until_s = float(finite.min()) - history_s, float(finite.max()) + 1.0
-    return concatenate(list(_between(db, session_id, epoch, since_s, until_s)))
+    return concatenate(list(_between(db, session_id, epoch, stream, since_s, until_s)), stream)
 
 
 def _between(
-    db: Session, session_id: str, epoch: int, since_s: float, until_s: float
+    db: Session,
+    session_id: str,
+    epoch: int,
+    stream: StreamName,
+    since_s: float,
+    until_s: float,
 ) -> Iterator[Frames]:
     """Yield the target frames of an interval of client time, rounded up to whole pieces."""
-    for piece in iter_pieces(db, session_id, StreamName.TARGET, epoch, since_s=since_s):
+    for piece in iter_pieces(db, session_id, stream, epoch, since_s=since_s):
         # Iterate to the end: leaving the loop early would leave PostgreSQL's cursor open.
         if isinstance(piece, TelemetryChunk) and piece.t_first_s > until_s:
             continue
         try:
             yield decode_piece(piece)
         except DamagedChunkError as error:
-            log.warning("target of %s, seq %d: %s", session_id, piece.seq_first, error)
+            log.warning("%s of %s, seq %d: %s", stream, session_id, piece.seq_first, error)
 
 
 def hinges_of(db: Session, session_id: str) -> HingeReference | None:

@@ -12,7 +12,7 @@ from sqlalchemy.orm import Session
 from app.features.record.doubts import exceeds_possible
 from app.models import TelemetryStream
 from app.rows import insert_rows
-from app.wire import MAX_EPOCH, REPORT_STREAM, Message, StreamPosition
+from app.wire import FINGER_STREAMS, MAX_EPOCH, REPORT_STREAM, Message, StreamPosition
 
 Key = tuple[str, str, int]
 """Session id, stream and epoch."""
@@ -119,9 +119,10 @@ def positions_of(db: Session, session_id: str) -> tuple[StreamPosition, ...]:
     )
 
 
-def assign_epoch(db: Session, session_id: str, now: datetime) -> int:
+def assign_epoch(db: Session, session_id: str, now: datetime, *, fingers: bool = False) -> int:
     """Assign the next epoch number; none is assigned twice, even if nothing is sent under it.
 
+    `fingers`: the epoch's streams of fingers exist from now on, even if nothing arrives in them.
     The session must be locked.
     """
     # A client may have used a number that the server never assigned, up to the maximum.
@@ -131,10 +132,11 @@ def assign_epoch(db: Session, session_id: str, now: datetime) -> int:
     epoch = max(taken, default=0) + 1
     if epoch > MAX_EPOCH:
         epoch = next(number for number in count(1) if number not in taken)
-    db.add(
+    announced: tuple[str, ...] = FINGER_STREAMS if fingers else ()
+    db.add_all(
         TelemetryStream(
             session_id=session_id,
-            stream=REPORT_STREAM,
+            stream=str(stream),
             epoch=epoch,
             phase_id=0,
             active_s=0.0,
@@ -144,6 +146,7 @@ def assign_epoch(db: Session, session_id: str, now: datetime) -> int:
             first_at=now,
             last_at=now,
         )
+        for stream in (REPORT_STREAM, *announced)
     )
     db.flush()
     return epoch

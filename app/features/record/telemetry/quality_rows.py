@@ -16,7 +16,7 @@ from app.features.record.telemetry.movement import Run, phase_runs
 from app.models import Phase, PhaseQuality
 from app.science.skeleton import JOINT_COUNT
 from app.science.stream_quality import StreamQuality, assess, combine
-from app.wire import MAX_TIME_S, StreamName
+from app.wire import MAX_TIME_S, StreamName, flag_frames
 
 HISTORY_S = 10.0
 """How much target movement before the phase is read: a joint may have frozen before it."""
@@ -32,17 +32,43 @@ def phase_quality(db: Session, session_id: str, phase_id: int) -> list[PhaseQual
 
 
 def quality_rows(phase: Phase, runs: Sequence[Run]) -> list[PhaseQuality]:
-    """Return the rows of both streams from frames already read, even if there are no frames."""
-    target = combine([_quality(run.target, _in_phase(run)) for run in runs])
+    """Return the rows of both streams from frames already read, even if there are no frames.
+
+    Streams of fingers have rows of their own where they were recorded.
+    """
+    target = combine([_quality(run.target, _in_phase(run, run.target)) for run in runs])
     actual = combine([_quality(run.actual, run.actual.active) for run in runs])
-    return [_row(phase, StreamName.TARGET, target), _row(phase, StreamName.ACTUAL, actual)]
+    rows = [_row(phase, StreamName.TARGET, target), _row(phase, StreamName.ACTUAL, actual)]
+    fingers = [(run, *run.fingers) for run in runs if run.fingers is not None]
+    if fingers:
+        target = combine([_of_fingers(one, _in_phase(run, one)) for run, one, _ in fingers])
+        actual = combine([_of_fingers(one, one.active) for _, _, one in fingers])
+        rows.append(_row(phase, StreamName.TARGET_FINGERS, target))
+        rows.append(_row(phase, StreamName.ACTUAL_FINGERS, actual))
+    return rows
 
 
-def _in_phase(run: Run) -> NDArray[np.bool_]:
-    """Select the active target frames whose seqs are in the range of the actual body's."""
+def _in_phase(run: Run, target: Frames) -> NDArray[np.bool_]:
+    """Select the active frames of a target whose seqs are in the range of the actual body's."""
     seq = run.actual.seq
-    of_phase = (run.target.seq >= seq[0]) & (run.target.seq <= seq[-1])
-    return np.asarray(run.target.active & of_phase)
+    of_phase = (target.seq >= seq[0]) & (target.seq <= seq[-1])
+    return np.asarray(target.active & of_phase)
+
+
+def _of_fingers(frames: Frames, counted: NDArray[np.bool_]) -> StreamQuality:
+    """Assess the timing of fingers, and count their frames with broken values.
+
+    Trackers lose and find hands all the time, so a finger that jumps or rests is no fault.
+    """
+    standing = np.zeros((len(frames), JOINT_COUNT, 4), np.float32)
+    standing[..., 0] = 1.0
+    quality = assess(frames.times_s, standing, np.zeros((len(frames), 3)), counted=counted)
+    flags = flag_frames(frames.times_s, frames.values)
+    return replace(
+        quality,
+        non_unit=int((flags.non_unit & counted).sum()),
+        non_finite=int((flags.non_finite & counted).sum()),
+    )
 
 
 def _quality(frames: Frames, counted: NDArray[np.bool_]) -> StreamQuality:

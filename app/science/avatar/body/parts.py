@@ -27,11 +27,12 @@ from types import MappingProxyType
 from typing import Literal
 
 from app.science.rotations import Vector
+from app.science.skeleton import FINGER_PARTS as FINGER_PARTS
+from app.science.skeleton import FINGERS as FINGERS
+from app.science.skeleton import SEGMENTS as SEGMENTS
 
 Letter = Literal["X", "Y", "Z"]
 SIDES = ("Left", "Right")
-FINGERS = ("Thumb", "Index", "Middle", "Ring", "Little")
-SEGMENTS = ("Proximal", "Intermediate", "Distal")
 
 
 @dataclass(frozen=True)
@@ -92,9 +93,6 @@ def _tree() -> Iterator[tuple[str, str | None]]:
 PARENT_OF: Mapping[str, str | None] = MappingProxyType(dict(_tree()))
 """Each part's parent; a parent comes before its children."""
 PART_NAMES: tuple[str, ...] = tuple(PARENT_OF)
-FINGER_PARTS: tuple[str, ...] = tuple(
-    part for part in PART_NAMES if any(finger in part for finger in FINGERS)
-)
 
 _RIGHT, _UP, _BACK = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 _LEFT, _DOWN, _FORWARD = (-1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, -1.0)

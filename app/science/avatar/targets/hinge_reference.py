@@ -17,7 +17,8 @@ This reference does not include:
 - In a configuration with targets in the world, the way in which head and arms give way when the
   trunk is pushed aside (`following`). It follows from the avatar's own movement, so it is not part
   of the target.
-- Fingers, whose errors are not computed.
+
+Fingers belong to the reference where they are recorded.
 
 None of this applies to a delayed copy, which repeats the participant's rotations.
 """
@@ -28,9 +29,15 @@ import numpy as np
 import numpy.typing as npt
 
 from app.science.avatar.body import AXES, PART_NAMES
-from app.science.avatar.targets.targets import Limits, TargetAngles, joint_rotations
-from app.science.joint_error import ERROR_JOINTS, Clipping, ReferenceMotion
+from app.science.avatar.targets.targets import (
+    Limits,
+    TargetAngles,
+    finger_rotations,
+    joint_rotations,
+)
+from app.science.joint_error import ERROR_JOINTS_WITH_FINGERS, Clipping, ReferenceMotion
 from app.science.rotations import FloatArray, is_unit
+from app.science.skeleton import FINGER_PARTS, JOINT_COUNT
 
 GAP_S = 0.25
 """Longest gap between two frames; after a longer one, hinges restart, as the direction in which
@@ -52,10 +59,10 @@ class HingeReference:
 
     def __init__(self, limits: Mapping[str, Limits], parts: Collection[str] = PART_NAMES) -> None:
         self._angles = TargetAngles(limits, parts)
-        self._columns = np.full((len(ERROR_JOINTS), len(_LETTERS)), -1)
+        self._columns = np.full((len(ERROR_JOINTS_WITH_FINGERS), len(_LETTERS)), -1)
         for column, axis in enumerate(AXES):
-            if axis.part in ERROR_JOINTS and axis.part in parts:
-                joint = ERROR_JOINTS.index(axis.part)
+            if axis.part in ERROR_JOINTS_WITH_FINGERS and axis.part in parts:
+                joint = ERROR_JOINTS_WITH_FINGERS.index(axis.part)
                 self._columns[joint, _LETTERS.index(axis.letter)] = column
         present = self._columns >= 0
         turning = self._angles.low_rad < self._angles.high_rad
@@ -70,18 +77,26 @@ class HingeReference:
         Args:
             times_s: (N,) times of the frames, with any values. After a gap, or a time that does
                 not increase, the hinges restart from rest.
-            rotations: (N, 22, 4) the participant's local rotations wxyz, as received.
+            rotations: (N, 22, 4), or (N, 52, 4) with fingers: the participant's local rotations
+                wxyz, as received.
         """
         target_rotations = np.empty(rotations.shape)
+        columns = self._columns[: rotations.shape[1] - 1]
         if len(rotations) == 0:
             return ReferenceMotion(
-                target_rotations, self._clipping(np.zeros((0, *self._turns.shape), np.bool_))
+                target_rotations, self._clipping(np.zeros((0, *columns.shape), np.bool_))
             )
-        targets = self._angles.batch(_usable(rotations), restarts=_gaps(times_s))
+        usable = _usable(rotations)
+        body, fingers = usable[:, :JOINT_COUNT], usable[:, JOINT_COUNT:]
+        given = dict(zip(FINGER_PARTS, np.moveaxis(fingers, 1, 0), strict=False))
+        targets = self._angles.batch(body, given, restarts=_gaps(times_s))
         for first in range(0, len(rotations), _CHUNK_FRAMES):
             at = slice(first, first + _CHUNK_FRAMES)
-            target_rotations[at] = joint_rotations(targets.unclamped_rad[at], rotations[at, 0])
-        return ReferenceMotion(target_rotations, self._clipping(targets.clipped[:, self._columns]))
+            angles_rad = targets.unclamped_rad[at]
+            target_rotations[at, :JOINT_COUNT] = joint_rotations(angles_rad, rotations[at, 0])
+            if given:
+                target_rotations[at, JOINT_COUNT:] = finger_rotations(angles_rad)
+        return ReferenceMotion(target_rotations, self._clipping(targets.clipped[:, columns]))
 
     def pose(self, rotations: FloatArray) -> FloatArray:
         """Return the target rotations of a single pose (22, 4), without previous frames.
@@ -92,11 +107,12 @@ class HingeReference:
         self._angles.forget()
         unclamped_rad = self._angles.follow(_usable(rotations)).unclamped_rad
         target_rotations = joint_rotations(unclamped_rad, rotations[0])
-        target_rotations[1:][~self._hinged] = np.nan
+        target_rotations[1:][~self._hinged[: JOINT_COUNT - 1]] = np.nan
         return target_rotations
 
     def _clipping(self, clipped: npt.NDArray[np.bool_]) -> Clipping:
-        return Clipping(clipped, self._turns, self._hinged)
+        joints = clipped.shape[1]
+        return Clipping(clipped, self._turns[:joints], self._hinged[:joints])
 
 
 def _usable(rotations: FloatArray) -> FloatArray:

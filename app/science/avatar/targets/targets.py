@@ -34,7 +34,7 @@ import numpy.typing as npt
 from app.science.avatar.body import AXES, PART_NAMES
 from app.science.avatar.targets.target_plan import plan_targets
 from app.science.rotations import FloatArray, from_rotation_vector, identity, multiply
-from app.science.skeleton import JOINT_COUNT, JOINT_INDEX
+from app.science.skeleton import FINGER_PARTS, JOINT_COUNT, JOINT_INDEX
 
 AXIS_COUNT = len(AXES)
 ROUNDING_RAD = 1e-6
@@ -226,6 +226,12 @@ def rotations_of(
         part = AXES[column].part
         rotations[part] = multiply(rotations[part], turns[..., index, :])
     return rotations
+
+
+def finger_rotations(angles_rad: FloatArray) -> FloatArray:
+    """Return the local rotations of the fingers (..., 30, 4) at angles (..., 91)."""
+    parts = rotations_of(angles_rad, FINGER_PARTS)
+    return np.stack([parts[part] for part in FINGER_PARTS], axis=-2)
 
 
 def joint_rotations(angles_rad: FloatArray, hips: FloatArray) -> FloatArray:

@@ -55,20 +55,45 @@ export interface Pose {
   readonly values: Float32Array;
 }
 
+/** The fingers of a body, in sessions that record them. */
+export interface FingerPose extends Omit<Pose, "values"> {
+  /**
+   * For each finger part (`FINGER_PARTS`) a rotation wxyz in its parent's frame, relative to the
+   * T-pose; NaN throughout for a hand that is not tracked.
+   */
+  readonly values: Float32Array;
+}
+
+/** The 30 finger parts in the order of their values: left hand, then right, from the thumb on. */
+export const FINGER_PARTS: readonly string[] = ["Left", "Right"].flatMap((side) =>
+  ["Thumb", "Index", "Middle", "Ring", "Little"].flatMap((finger) =>
+    ["Proximal", "Intermediate", "Distal"].map((segment) => `${side}${finger}${segment}`),
+  ),
+);
+
 const HEADER_BYTES = 28;
 const MAGIC = "RMP1";
 
-/** The pose in a binary message; null if the bytes are not a pose. */
+/** The pose of a body in a binary message; null if the bytes are not one. */
 export function decodePose(bytes: ArrayBuffer): Pose | null {
+  return decoded(bytes, { 1: "target", 2: "actual" });
+}
+
+/** The pose of a body's fingers in a binary message; null if the bytes are not one. */
+export function decodeFingers(bytes: ArrayBuffer): FingerPose | null {
+  return decoded(bytes, { 3: "target", 4: "actual" });
+}
+
+function decoded(bytes: ArrayBuffer, streams: Readonly<Record<number, PoseStream>>): Pose | null {
   if (bytes.byteLength < HEADER_BYTES) return null;
   const view = new DataView(bytes);
   const magic = String.fromCharCode(...new Uint8Array(bytes, 0, 4));
   const count = view.getUint16(6, true);
   if (magic !== MAGIC || bytes.byteLength !== HEADER_BYTES + 4 * count) return null;
-  const code = view.getUint8(4);
-  if (code !== 1 && code !== 2) return null;
+  const stream = streams[view.getUint8(4)];
+  if (stream === undefined) return null;
   return {
-    stream: code === 1 ? "target" : "actual",
+    stream,
     running: (view.getUint8(5) & 1) === 1,
     phaseId: view.getUint32(8, true),
     time: view.getFloat64(20, true),
@@ -89,6 +114,8 @@ export interface PoseFeedOptions {
   readonly onState: (state: FeedState) => void;
   readonly onSetup: (setup: PoseSetup) => void;
   readonly onPose: (pose: Pose) => void;
+  /** Called for the fingers of a body; they need not be acknowledged. */
+  readonly onFingers?: (fingers: FingerPose) => void;
   readonly onTouches: (touches: readonly PoseTouch[]) => void;
   readonly open?: (url: string) => WebSocket;
 }
@@ -132,7 +159,9 @@ export function openPoses(options: PoseFeedOptions): PoseFeed {
   const receive = (data: unknown) => {
     if (data instanceof ArrayBuffer) {
       const pose = decodePose(data);
-      if (pose !== null) options.onPose(pose);
+      if (pose !== null) return options.onPose(pose);
+      const fingers = decodeFingers(data);
+      if (fingers !== null) options.onFingers?.(fingers);
       return;
     }
     const message = JSON.parse(String(data)) as

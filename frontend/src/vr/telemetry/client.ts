@@ -90,6 +90,8 @@ export interface TelemetryOptions {
   readonly token: string;
   /** The client's name: program and version, up to 120 characters. */
   readonly name: string;
+  /** Whether this client sends the streams of fingers with every frame; it does not by default. */
+  readonly fingers?: boolean;
   /** The name of the journal on this device: use the id of the session. */
   readonly storageKey: string;
   readonly durability?: Durability;

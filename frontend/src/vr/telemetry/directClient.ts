@@ -54,6 +54,7 @@ export class DirectClient extends ClientEvents implements TelemetryClient {
       ...ground,
       address: options,
       name: options.name,
+      fingers: options.fingers ?? false,
       hooks: {
         onWelcome: (welcome) => this.#welcomed(welcome),
         onState: (state) => {

@@ -6,6 +6,12 @@ export { deleteJournal, type LeftJournal, leftJournals } from "./journal/indexed
 export { DEFAULT_LIMITS, type Limits } from "./limits";
 export { openTelemetry, type Surroundings } from "./open";
 export { flushWhenLeft, openTelemetryInWorker } from "./page";
-export { ACTIVE, type Frames, type StreamName, VALUES_PER_FRAME } from "./wire/batch";
+export {
+  ACTIVE,
+  FINGER_VALUES_PER_FRAME,
+  type Frames,
+  type StreamName,
+  VALUES_PER_FRAME,
+} from "./wire/batch";
 export type { ReportBody } from "./wire/fromClient";
 export type { HeadsetState, PhaseOrder, Welcome } from "./wire/fromServer";

@@ -25,7 +25,7 @@ from sqlalchemy import (
     select,
 )
 
-from app.wire import StreamName
+from app.wire import BODY_STREAMS
 from tests.features.lab import STUDY, Json, key, ok
 from tests.features.record.headset.site import Site
 from tests.wire.samples import message, standing
@@ -71,7 +71,7 @@ def make_visit(site: Site, code: str = CANARY) -> Visit:
     token = site.token(session_id)
     with site.headset(token) as headset:
         for first in range(0, FRAMES, 9):
-            for stream in StreamName:
+            for stream in BODY_STREAMS:
                 headset.say(message(_frames(code), stream=stream, seq_first=first))
         headset.acknowledged("actual", FRAMES)
         headset.reported(kind="materialised", t_s=1.0)

@@ -6,7 +6,7 @@ from sqlalchemy import text
 import app.features.care.storage.tables as tables
 from app.database import Base
 from app.features.care.storage.families import FAMILIES, FAMILY_OF
-from app.wire import StreamName
+from app.wire import BODY_STREAMS
 from tests.features.builders import STUDY, SessionSpec, build_session
 from tests.features.lab import Json, Lab, ok
 from tests.features.movement_builders import moving_values, store_chunks
@@ -21,7 +21,7 @@ def usage(lab: Lab) -> Json:
         for code, frames in FRAMES.items():
             session = build_session(db, SessionSpec(code))
             if frames:
-                for seed, stream in enumerate(StreamName):
+                for seed, stream in enumerate(BODY_STREAMS):
                     values = moving_values(frames, seed)
                     store_chunks(db, session.id, stream, range(frames), values)
     reply: Json = ok(lab.operator.get("/api/storage", params={"anew": True}))

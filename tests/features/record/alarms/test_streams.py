@@ -7,7 +7,7 @@ import pytest
 
 from app.science import rotations as rot
 from app.science.skeleton import JOINT_INDEX
-from app.wire import StreamName
+from app.wire import BODY_STREAMS, StreamName
 from tests.features.record.alarms.watched import TREMBLING, Watched, at, batch, there_and_back
 from tests.science.stream_quality.recordings import Recording, generated
 
@@ -34,7 +34,7 @@ def test_valid_movement_raises_no_alarm_at_any_speed(sound: Recording, time_scal
 @pytest.mark.parametrize("time_scale", [1.0, 20.0])
 def test_each_fault_raises_its_alarm_and_no_other(time_scale: float) -> None:
     """Each fault in both streams raises its own alarm in both, and no other alarm."""
-    both = set(StreamName)
+    both = set(BODY_STREAMS)
 
     def raised_by(bad: Recording) -> set[str]:
         found = raised_alarms(bad, time_scale)

@@ -8,7 +8,7 @@ import numpy as np
 
 from app.features.record.alarms.alarm import Change, Moment, WatchLimits
 from app.features.record.alarms.watch import CheckResult, QualityWatch
-from app.wire import Batch, StreamName, decode_batch, encode_batch
+from app.wire import BODY_STREAMS, Batch, StreamName, decode_batch, encode_batch
 from app.wire.messages import HeadsetState, PhaseOrder, Welcome
 from tests.science.stream_quality.recordings import Recording, generated, jitter
 
@@ -125,7 +125,7 @@ class Watched:
         now_s, checked_s = begin_s, begin_s
         for first in range(0, len(recording) - PER_BATCH + 1, PER_BATCH):
             now_s = begin_s + float(np.nan_to_num(first / 90.0)) / self.time_scale
-            for stream in StreamName:
+            for stream in BODY_STREAMS:
                 sent = batch(recording, first, stream=stream)
                 self.changes += self.watch.batch(sent, at(now_s))
                 self.watch.backlog.acknowledged(at(now_s).monotonic_s, waiting=False)

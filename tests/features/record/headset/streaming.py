@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.wire import StreamName
+from app.wire import BODY_STREAMS
 from tests.features.record.headset.site import Headset, Site
 from tests.science.stream_quality.recordings import generated
 from tests.wire.samples import RATE_HZ, message
@@ -46,7 +46,7 @@ class Streamer:
         times_s = self.t_s + np.arange(PER_BATCH) / RATE_HZ
         self.t_s += PER_BATCH / RATE_HZ
         self.active_s += PER_BATCH / RATE_HZ if running else 0.0
-        for stream in StreamName:
+        for stream in BODY_STREAMS:
             self.headset.say(
                 message(
                     values,

@@ -6,6 +6,7 @@ import pytest
 from sqlalchemy import select
 
 from app.models import ClientReport, Completion, Contact, JointErrorRow, Phase, StudySession
+from app.wire import BODY_STREAMS
 from tests.features.lab import Json
 from tests.features.record.headset.site import Headset, Site
 from tests.wire.samples import CONTACT_REPORT, message, standing
@@ -117,12 +118,11 @@ def test_losing_the_headset_pauses_at_the_last_time_on_disk(site: Site) -> None:
 
 def test_a_whole_phase_ends_with_its_joint_errors(site: Site) -> None:
     """A completed phase counts, and its joint errors are computed."""
-    from app.wire import StreamName
 
     session_id, token = running(site)
     with site.headset(token) as headset:
         phase_id = begin(site, session_id, headset)
-        for stream in StreamName:
+        for stream in BODY_STREAMS:
             headset.say(
                 message(standing(90), stream=stream, phase_id=phase_id, active=True, active_s=120)
             )

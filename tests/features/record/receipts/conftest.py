@@ -11,7 +11,7 @@ from app.database import Database, open_database
 from app.features.record.receipts.service import SessionReceipt, receipt_of
 from app.features.record.receipts.streams import StreamReceipt
 from app.models import TelemetryStream
-from app.wire import StreamName
+from app.wire import BODY_STREAMS, StreamName
 from tests.features.builders import SessionSpec, build_session, build_study
 from tests.features.movement_builders import moving_values, store_chunks
 
@@ -49,7 +49,7 @@ def stored(database_url: str) -> Iterator[StoredSession]:
     with database.writing() as db:
         build_study(db)
         session_id = build_session(db, SessionSpec("P-0001")).id
-        for seed, stream in enumerate(StreamName):
+        for seed, stream in enumerate(BODY_STREAMS):
             store_chunks(db, session_id, stream, range(FRAMES), moving_values(FRAMES, seed))
         store_chunks(db, session_id, StreamName.TARGET, range(100), moving_values(100, 9), epoch=2)
         db.execute(update(TelemetryStream).values(produced=TelemetryStream.next_seq))

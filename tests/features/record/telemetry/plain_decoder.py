@@ -41,7 +41,7 @@ def decode_plainly(data: bytes) -> PlainChunk:
     assert zlib.crc32(data[4:]) == crc
     raw = memoryview(zstandard.ZstdDecompressor().decompress(data[14 : 14 + length]))
     bits = Bits(data[14 + length :])
-    joint_count = (w - 3) // 4
+    joint_count, root = divmod(w, 4)
     ends = [0]
     for size in (joint_count, w - joint_count, w, 1, n, 8 * n, 4 * w * n):
         ends.append(ends[-1] + size)
@@ -57,9 +57,9 @@ def decode_plainly(data: bytes) -> PlainChunk:
         [next(whole) if c == 0 else _float_bits(c, top[row], bits) for c in summed[row]]
         for row in range(w - joint_count)
     ]
-    columns = kept[:3]
+    columns = kept[:root]
     for joint in range(joint_count):
-        three = kept[3 + 3 * joint : 6 + 3 * joint]
+        three = kept[root + 3 * joint : root + 3 + 3 * joint]
         off = summed[w - joint_count + joint]
         expected = [_expected(frame, joints[joint]) for frame in zip(*three, strict=True)]
         restored = [(e + d) % U32 for e, d in zip(expected, off, strict=True)]

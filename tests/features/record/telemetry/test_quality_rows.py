@@ -8,7 +8,7 @@ from sqlalchemy.orm import Session
 from app.features.record.telemetry.quality_rows import phase_quality
 from app.models import PhaseQuality, StudySession
 from app.science.skeleton import JOINT_INDEX
-from app.wire import StreamName
+from app.wire import BODY_STREAMS, StreamName
 from tests.features.builders import SessionSpec, build_session
 from tests.features.lab import Lab
 from tests.features.movement_builders import RATE_HZ, store_batch, store_chunks
@@ -50,7 +50,7 @@ def store(
 
 def both(values: Values) -> dict[StreamName, Values]:
     """Return the same values for both streams."""
-    return dict.fromkeys(StreamName, values)
+    return dict.fromkeys(BODY_STREAMS, values)
 
 
 def quality(lab: Lab, session_id: str) -> dict[str, PhaseQuality]:
@@ -125,7 +125,7 @@ def test_frames_that_are_not_folded_yet_count_too(lab: Lab, session_id: str) -> 
     values = values_of(generated())
     with lab.database.writing() as db:
         store(db, session_id, both(values[:900]))
-        for stream in StreamName:
+        for stream in BODY_STREAMS:
             store_batch(db, session_id, stream, 900, values[900:990], phase_id=PHASE)
     assert {row.frames for row in quality(lab, session_id).values()} == {990}
 

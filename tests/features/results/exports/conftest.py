@@ -6,7 +6,7 @@ from contextlib import contextmanager
 import pytest
 
 from app.database import Database, open_database
-from app.wire import StreamName
+from app.wire import BODY_STREAMS
 from tests.features.builders import SessionSpec, build_session, build_study
 from tests.features.movement_builders import moving_values, store_chunks
 from tests.support.postgres import fresh_postgres
@@ -31,7 +31,7 @@ def fill(database: Database) -> None:
         first = build_session(db, SessionSpec("P-0001", open_answer='=HYPERLINK("http://x","y")'))
         build_session(db, SessionSpec("P-0002", status="withdrawn"))
         build_session(db, SessionSpec("SIM-0001", kind="simulated"))
-        for seed, stream in enumerate(StreamName):
+        for seed, stream in enumerate(BODY_STREAMS):
             store_chunks(db, first.id, stream, range(200), moving_values(200, seed))
 
 

@@ -16,7 +16,7 @@ from app.features.results.exports.export_queue import ExportQueue
 from app.features.results.exports.jobs import KEEP_FOR
 from app.features.results.exports.writing.service import study_archive
 from app.models import CopyMade
-from app.wire import StreamName
+from app.wire import BODY_STREAMS
 from tests.api.people import sign_in
 from tests.features.builders import STUDY, SessionSpec, build_session
 from tests.features.lab import Json, Lab, error, ok, running_lab
@@ -48,7 +48,7 @@ def _fill(lab: Lab) -> None:
     with lab.database.writing() as db:
         first = build_session(db, SessionSpec("P-0001"))
         build_session(db, SessionSpec("P-0002"))
-        for seed, stream in enumerate(StreamName):
+        for seed, stream in enumerate(BODY_STREAMS):
             store_chunks(db, first.id, stream, range(FRAMES), moving_values(FRAMES, seed))
 
 

@@ -14,7 +14,7 @@ from app.features.results.replay.movement import placed_movement
 from app.models import Phase, StudySession, TelemetryChunk, TelemetryStream
 from app.science.joint_error import joint_errors
 from app.science.skeleton import build_skeleton, forward_kinematics
-from app.wire import StreamName
+from app.wire import BODY_STREAMS, StreamName
 from tests.api.people import sign_in
 from tests.features.builders import SessionSpec, build_session
 from tests.features.lab import STUDY, Json, Lab, error, ok
@@ -123,7 +123,7 @@ def test_unrecorded_time_is_a_gap(lab: Lab, phase: Phase) -> None:
         for table in (TelemetryChunk, TelemetryStream):
             db.execute(delete(table).where(table.session_id == phase.session_id))
         db.merge(phase).client_started_s = 0.0
-        for stream in StreamName:
+        for stream in BODY_STREAMS:
             values = moving_values(len(seqs), 1)
             store_chunks(db, phase.session_id, stream, seqs, values, phase_id=phase.phase_id)
     shown = placed(lab, phase)

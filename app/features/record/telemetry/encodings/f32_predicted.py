@@ -13,13 +13,13 @@
     offset  type    field
     0       u32     CRC-32 of everything after it
     4       u32     n, the number of frames
-    8       u16     w, values per frame: 3 + 4 for each joint
+    8       u16     w, values per frame: 4 for each joint, after the r = w mod 4 of the root
     10      u32     length z of the zstd frame
     14      u8[z]   zstd frame of the parts below
     14 + z  bits    low bits of all rows, then the remainders of the floats
 
     u8[joints]          the component that is left out, and its sign
-    u8[3 + 3 joints]    exponent of the unit of each kept column
+    u8[r + 3 joints]    exponent of the unit of each kept column
     u8[w]               per row: 32 x order of its differences + number of its low bits
     u8                  order of the differences of the times
     u8[n]               flags
@@ -52,7 +52,7 @@ from app.features.record.telemetry.encodings.significands import (
     joined,
     rest_widths,
 )
-from app.features.record.telemetry.encodings.unit_quaternions import ROOT_VALUES, LeftOut, choose
+from app.features.record.telemetry.encodings.unit_quaternions import LeftOut, choose
 
 NAME = "f32-predicted-zstd/1"
 LEVEL = 1
@@ -65,13 +65,15 @@ _BITS_TO_COMPRESS = 4
 
 
 def encode(columns: Columns, *, level: int = LEVEL) -> bytes:
-    """Encode a chunk of at least one frame of 3 + 4 x joints values; other shapes: ValueError.
+    """Encode a chunk of at least one frame of a root's 3 or no values, and 4 for each joint.
+
+    Raises ValueError for other shapes.
 
     `level` is the compression level of zstd; decoding does not depend on it.
     """
     n, w = columns.values.shape
-    if n < 1 or w < ROOT_VALUES or (w - ROOT_VALUES) % 4:
-        raise ValueError(f"values of shape ({n}, {w}); expected (n >= 1, 3 + 4 x joints)")
+    if n < 1 or w % 4 not in (0, 3):
+        raise ValueError(f"values of shape ({n}, {w}); expected (n >= 1, 0 or 3 + 4 x joints)")
     bits = np.ascontiguousarray(columns.values.T, np.float32).view(np.uint32)
     left_out = choose(bits)
     kept = bits[left_out.kept_rows]
@@ -103,9 +105,9 @@ def decode(data: bytes, frame_count: int, values_per_frame: int) -> Columns:
     """Decode a chunk; raises DamagedChunkError if the data are not what was encoded."""
     compressed, noise = _checked(data, frame_count, values_per_frame)
     n, w = frame_count, values_per_frame
-    joints = (w - ROOT_VALUES) // 4
+    joints = w // 4
     parts = _Parts(zstandard.ZstdDecompressor().decompress(compressed))
-    left_out = LeftOut.of_bytes(parts.take(joints, np.uint8))
+    left_out = LeftOut.of_bytes(parts.take(joints, np.uint8), w % 4)
     top = parts.take(w - joints, np.uint8)
     row_bytes = parts.take(w, np.uint8)
     time_order = parts.take(1, np.uint8)

@@ -14,7 +14,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-ROOT_VALUES = 3
 _SIGN_AT = np.uint32(31)
 _NEGATIVE = 4
 
@@ -23,21 +22,23 @@ _NEGATIVE = 4
 class LeftOut:
     """The components left out of a chunk's quaternions.
 
-    `component` (joints,): 0 to 3 of w, x, y, z; `negative` (joints,): whether it is negative.
+    `component` (joints,): 0 to 3 of w, x, y, z; `negative` (joints,): whether it is negative;
+    `before`: how many values precede the quaternions, 3 of a body's root, none of fingers.
     """
 
     component: NDArray[np.uint8]
     negative: NDArray[np.bool_]
+    before: int
 
     @property
     def rows(self) -> NDArray[np.int64]:
         """Return the row indices of the left-out components, one per joint."""
-        return ROOT_VALUES + 4 * np.arange(len(self.component)) + self.component
+        return self.before + 4 * np.arange(len(self.component)) + self.component
 
     @property
     def kept_rows(self) -> NDArray[np.int64]:
         """Return the row indices of the remaining components, in order."""
-        width = ROOT_VALUES + 4 * len(self.component)
+        width = self.before + 4 * len(self.component)
         return np.delete(np.arange(width), self.rows)
 
     def as_bytes(self) -> bytes:
@@ -45,16 +46,16 @@ class LeftOut:
         return (self.component + _NEGATIVE * self.negative).astype(np.uint8).tobytes()
 
     @staticmethod
-    def of_bytes(data: NDArray[np.uint8]) -> "LeftOut":
+    def of_bytes(data: NDArray[np.uint8], before: int) -> "LeftOut":
         """Parse the bytes that `as_bytes` returns."""
-        return LeftOut(data & np.uint8(3), (data & np.uint8(_NEGATIVE)) != 0)
+        return LeftOut(data & np.uint8(3), (data & np.uint8(_NEGATIVE)) != 0, before)
 
     def expected(self, kept: NDArray[np.uint32]) -> NDArray[np.uint32]:
         """Return the expected bits (joints, n) of the left-out components.
 
-        `kept` (3 + 3 joints, n) are the bits of the components that remain.
+        `kept` (before + 3 joints, n) are the bits of the components that remain.
         """
-        three = kept[ROOT_VALUES:].view(np.float32).reshape(len(self.component), 3, kept.shape[1])
+        three = kept[self.before :].view(np.float32).reshape(len(self.component), 3, kept.shape[1])
         with np.errstate(invalid="ignore"):  # frames may contain NaNs and infinities
             a, b, c = np.moveaxis(three.astype(np.float64), 1, 0)
             left = 1.0 - (a * a + b * b + c * c)
@@ -64,10 +65,11 @@ class LeftOut:
 
 
 def choose(bits: NDArray[np.uint32]) -> LeftOut:
-    """Choose which components to leave out of a chunk with these `bits` (3 + 4 joints, n)."""
-    quaternions = bits[ROOT_VALUES:].reshape(-1, 4, bits.shape[1])
+    """Choose which components to leave out of a chunk with these `bits` (before + 4 joints, n)."""
+    before = bits.shape[0] % 4
+    quaternions = bits[before:].reshape(-1, 4, bits.shape[1])
     # Without the sign, the bits of floats have the same order as their magnitudes, NaNs included.
     component = (quaternions & np.uint32(0x7FFFFFFF)).mean(axis=2).argmax(axis=1)
     greatest = quaternions[np.arange(len(component)), component]
     negative = (greatest >> _SIGN_AT).mean(axis=1) > 0.5
-    return LeftOut(component.astype(np.uint8), negative)
+    return LeftOut(component.astype(np.uint8), negative, before)

@@ -1,4 +1,10 @@
-import { decodePose, openPoses, type PoseSetup, type PoseTouch } from "@shared/api/poses";
+import {
+  decodeFingers,
+  decodePose,
+  openPoses,
+  type PoseSetup,
+  type PoseTouch,
+} from "@shared/api/poses";
 import { describe, expect, it, vi } from "vitest";
 import { FULL_SCALE_DEG, heatColour } from "./heat";
 import { makePlaced, place, restValues } from "./kinematics";
@@ -151,6 +157,9 @@ describe("the feed of poses", () => {
     });
     expect(decodePose(message(2))?.values[0]).toBe(0.25);
     expect(decodePose(message(3))).toBeNull();
+    expect(decodeFingers(message(2))).toBeNull();
+    expect(decodeFingers(message(4))).toMatchObject({ stream: "actual", phaseId: 7 });
+    expect(decodeFingers(message(5))).toBeNull();
     expect(decodePose(message(1).slice(0, 60))).toBeNull();
   });
 

@@ -47,4 +47,4 @@ export class Announcer {
   }
 }
 
-const STREAMS = ["target", "actual", "reports"] as const;
+const STREAMS = ["target", "actual", "target_fingers", "actual_fingers", "reports"] as const;

@@ -38,6 +38,8 @@ export interface ConnectionParts extends Omit<Parts, "onFailure"> {
   readonly address: Address;
   /** The client's name. */
   readonly name: string;
+  /** Whether the client sends the streams of fingers. */
+  readonly fingers?: boolean;
   readonly makeSocket: MakeSocket;
   readonly hooks: Hooks;
 }
@@ -115,8 +117,15 @@ export class Connection {
   }
 
   get #hello(): string {
-    const { name } = this.#parts;
-    return textOf({ type: "hello", protocol: PROTOCOL_VERSION, client: name, epoch: this.epoch });
+    const { name, fingers = false } = this.#parts;
+    return textOf({
+      type: "hello",
+      protocol: PROTOCOL_VERSION,
+      client: name,
+      epoch: this.epoch,
+      // A server of an older version does not know the field.
+      ...(fingers && { fingers }),
+    });
   }
 
   #receive(channel: Channel, text: string): void {

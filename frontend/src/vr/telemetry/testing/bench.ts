@@ -17,7 +17,7 @@ import {
   type TelemetryOptions,
   VALUES_PER_FRAME,
 } from "../index";
-import { STREAM_NAMES } from "../wire/batch";
+import { BODY_STREAMS } from "../wire/batch";
 
 const FRAMES_PER_BATCH = 6;
 const RATE_HZ = 90;
@@ -64,7 +64,7 @@ export class Bench {
     const beganMs = performance.now() - (speed ? this.#dueMs(speed) : 0);
     for (let batch = 0; batch < batches; batch++) {
       const first = this.produced.frames;
-      for (const stream of STREAM_NAMES)
+      for (const stream of BODY_STREAMS)
         await client.sendFrames(stream, this.#frames(stream, first));
       this.produced.frames += FRAMES_PER_BATCH;
       if (this.produced.frames % FRAMES_PER_REPORT === 0) {
@@ -107,7 +107,7 @@ export class Bench {
       const row = (first + frame) % rows;
       // Copied as bytes: a NaN must keep its payload.
       bytes.set(new Uint8Array(this.#table.buffer, row * rowBytes, rowBytes), frame * rowBytes);
-      const place = [this.#opened().epoch, STREAM_NAMES.indexOf(stream) + 1, first + frame];
+      const place = [this.#opened().epoch, stream === "target" ? 1 : 2, first + frame];
       values.set(place, frame * VALUES_PER_FRAME);
     }
     const seqs = Array.from({ length: FRAMES_PER_BATCH }, (_, frame) => first + frame);

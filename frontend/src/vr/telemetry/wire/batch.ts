@@ -11,7 +11,11 @@
 
 const HEADER_BYTES = 64;
 const BODY_JOINTS = 22;
+const FINGER_PARTS = 30;
+/** Values in a frame of a body: its root's position, then its rotations. */
 export const VALUES_PER_FRAME = 3 + 4 * BODY_JOINTS;
+/** Values in a frame of fingers: rotations only. */
+export const FINGER_VALUES_PER_FRAME = 4 * FINGER_PARTS;
 const MAX_FRAMES = 1024;
 /** Frame flag: the phase's clock was running when this frame was shown. */
 export const ACTIVE = 1;
@@ -19,11 +23,21 @@ export const ACTIVE = 1;
 const MAX_TIME_S = 1e9;
 const MAX_U31 = 2 ** 31 - 1;
 const MAGIC = 0x31424d52; // "RMB1"
-const CODES = { target: 1, actual: 2 } as const;
+const CODES = { target: 1, actual: 2, target_fingers: 3, actual_fingers: 4 } as const;
 
-/** `target` is the tracked pose, `actual` the remote avatar's. */
+/**
+ * `target` is the tracked pose, `actual` the remote avatar's. Those of their fingers are optional
+ * streams of their own.
+ */
 export type StreamName = keyof typeof CODES;
-export const STREAM_NAMES: readonly StreamName[] = ["target", "actual"];
+/** The streams that every client sends. */
+export const BODY_STREAMS = ["target", "actual"] as const satisfies readonly StreamName[];
+const STREAM_NAMES = Object.keys(CODES) as readonly StreamName[];
+
+/** The number of values in each frame of a stream. */
+export function valuesPerFrame(stream: StreamName): number {
+  return stream.endsWith("_fingers") ? FINGER_VALUES_PER_FRAME : VALUES_PER_FRAME;
+}
 
 /** Frames of one stream in one phase, as the headset passes them in. */
 export interface Frames {
@@ -33,7 +47,10 @@ export interface Frames {
   readonly timesS: Float64Array;
   /** `ACTIVE` or 0 (n). */
   readonly flags: Uint8Array;
-  /** Root position x, y, z (m, world), then 22 local rotations w, x, y, z (n x 91). */
+  /**
+   * Of a body root position x, y, z (m, world), then 22 local rotations w, x, y, z (n x 91); of
+   * fingers 30 local rotations (n x 120), NaN throughout for a hand that is not tracked.
+   */
   readonly values: Float32Array;
   /** Active time of the phase at the last frame, s. */
   readonly activeS: number;
@@ -56,16 +73,16 @@ export class MalformedBatch extends Error {
   override readonly name = "MalformedBatch";
 }
 
-/** Size in bytes of the message for so many frames. */
-export function batchBytes(frames: number): number {
-  return valuesAt(frames) + 4 * VALUES_PER_FRAME * frames;
+/** Size in bytes of the message for so many frames of a stream. */
+export function batchBytes(frames: number, stream: StreamName = "target"): number {
+  return valuesAt(frames) + 4 * valuesPerFrame(stream) * frames;
 }
 
 /** The message for a batch; throws MalformedBatch if the server could not use it. */
 export function encodeBatch(batch: Batch): Uint8Array<ArrayBuffer> {
   requireUsable(batch);
   const count = batch.timesS.length;
-  const message = new Uint8Array(batchBytes(count));
+  const message = new Uint8Array(batchBytes(count, batch.stream));
   message.set(bytesOf(batch.timesS), HEADER_BYTES);
   message.set(batch.flags, HEADER_BYTES + 8 * count);
   message.set(bytesOf(batch.values), valuesAt(count));
@@ -77,7 +94,7 @@ export function encodeBatch(batch: Batch): Uint8Array<ArrayBuffer> {
   header.setUint32(12, batch.phaseId, true);
   header.setBigUint64(16, BigInt(batch.seqFirst), true);
   header.setUint16(24, count, true);
-  header.setUint16(26, VALUES_PER_FRAME, true);
+  header.setUint16(26, valuesPerFrame(batch.stream), true);
   header.setUint32(28, crc32(message.subarray(HEADER_BYTES)), true);
   header.setFloat64(32, batch.activeS, true);
   header.setFloat64(40, batch.closedAtS, true);
@@ -91,9 +108,10 @@ export function encodeBatch(batch: Batch): Uint8Array<ArrayBuffer> {
 function requireUsable(batch: Batch): void {
   const { timesS, flags, values } = batch;
   const count = timesS.length;
-  if (flags.length !== count || values.length !== count * VALUES_PER_FRAME) {
+  const width = valuesPerFrame(batch.stream);
+  if (flags.length !== count || values.length !== count * width) {
     throw new MalformedBatch(
-      `${count} times, ${flags.length} flags, ${values.length} values; expected n, n, 91 n`,
+      `${count} times, ${flags.length} flags, ${values.length} values; expected n, n, ${width} n`,
     );
   }
   requireRange("frame count", count, 1, MAX_FRAMES);
@@ -129,7 +147,7 @@ export function decodeBatch(message: Uint8Array<ArrayBuffer>): Batch {
     closedAtS: header.getFloat64(40, true),
     timesS: new Float64Array(bytes.buffer, at(HEADER_BYTES), count),
     flags: new Uint8Array(bytes.buffer, at(HEADER_BYTES + 8 * count), count),
-    values: new Float32Array(bytes.buffer, at(valuesAt(count)), count * VALUES_PER_FRAME),
+    values: new Float32Array(bytes.buffer, at(valuesAt(count)), count * valuesPerFrame(stream)),
   };
 }
 
@@ -138,14 +156,16 @@ function readShape(header: DataView, length: number): { stream: StreamName; coun
   requireRange("header length", header.getUint16(4, true), HEADER_BYTES, HEADER_BYTES);
   const code = header.getUint8(6);
   const stream = STREAM_NAMES.find((name) => CODES[name] === code);
-  if (stream === undefined) throw new MalformedBatch(`stream code ${code}; valid are 1 and 2`);
+  if (stream === undefined) throw new MalformedBatch(`stream code ${code}; valid are 1 to 4`);
   const count = header.getUint16(24, true);
   requireRange("frame count", count, 1, MAX_FRAMES);
-  requireRange("values per frame", header.getUint16(26, true), VALUES_PER_FRAME, VALUES_PER_FRAME);
+  const width = valuesPerFrame(stream);
+  requireRange("values per frame", header.getUint16(26, true), width, width);
   requireRange("phase_id", header.getUint32(12, true), 0, MAX_U31);
   requireRange("seq", Number(header.getBigUint64(16, true)), 0, Number.MAX_SAFE_INTEGER);
   requireTimes(header.getFloat64(32, true), header.getFloat64(40, true));
-  requireRange(`bytes of ${count} frames`, length, batchBytes(count), batchBytes(count));
+  const bytes = batchBytes(count, stream);
+  requireRange(`bytes of ${count} frames`, length, bytes, bytes);
   return { stream, count };
 }
 

@@ -26,6 +26,8 @@ const Hello = v.strictObject({
   epoch: v.nullable(Epoch),
   /** What the client can show; only a delayed copy by default. */
   avatars: v.optional(v.pipe(v.array(Name40), v.maxLength(10))),
+  /** Whether this run sends the streams of fingers with every frame; it does not by default. */
+  fingers: v.optional(v.boolean()),
 });
 
 /** What the headset did to the clock of a phase, at its own monotonic time. */
@@ -84,7 +86,10 @@ const Probe = v.strictObject({ type: v.literal("probe"), client_sent_s: Seconds 
 const Produced = v.strictObject({
   type: v.literal("produced"),
   epoch: Epoch,
-  streams: v.record(v.picklist(["target", "actual", "reports"]), Seq),
+  streams: v.record(
+    v.picklist(["target", "actual", "target_fingers", "actual_fingers", "reports"]),
+    Seq,
+  ),
 });
 
 /** How much the client has produced in each stream: its next seqs. */
