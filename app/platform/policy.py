@@ -103,6 +103,7 @@ POLICY: dict[str, frozenset[str]] = {
     "GET /api/humanoids": LAB,
     "POST /api/humanoids": DESIGNERS,
     "GET /api/humanoids/{content_hash}": LAB,
+    "GET /api/humanoids/{content_hash}/binding": LAB,
     "GET /api/humanoids/{content_hash}/file": LAB,
     # Walking: scenes, walks, and the models that are fitted to them.
     "GET /api/walking/scenes": LAB,

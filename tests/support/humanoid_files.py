@@ -192,8 +192,9 @@ class _File:
         if joints:
             above = [max(0, row - 1) for row in joints]
             four = np.array([(row, other, 0, 0) for row, other in zip(joints, above, strict=True)])
+            own = self._model.own_share
             # The influence of a second bone changes nothing while the bones are at rest.
-            shares = np.tile(np.array((0.8, 0.2, 0.0, 0.0)), (len(joints), 1))
+            shares = np.tile(np.array((own, 1.0 - own, 0.0, 0.0)), (len(joints), 1))
             attributes["JOINTS_0"] = self._table(four.astype("<u2"), "VEC4", 5123)
             attributes["WEIGHTS_0"] = self._table(shares.astype("<f4"), "VEC4", 5126)
             world = np.array([self._world[self._node_of[row]] for row in rows])

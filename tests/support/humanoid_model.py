@@ -56,6 +56,7 @@ class Model:
         hair: whether the head has a bone without a part, with skin.
         helpers: bones without skin and the part each is attached to, None for the root.
         skin: parts that have skin.
+        own_share: weight of a vertex's own bone; the bone before it in the list has the rest.
         binary: GLB, else JSON with the buffer inside.
     """
 
@@ -70,6 +71,7 @@ class Model:
     hair: bool = False
     helpers: Mapping[str, str | None] = field(default_factory=dict)
     skin: Sequence[str] = PART_NAMES
+    own_share: float = 0.8
     binary: bool = True
     edit: Callable[[dict[str, Any]], None] = field(default=lambda _: None)
     """Changes the JSON before it is written."""

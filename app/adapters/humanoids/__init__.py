@@ -4,6 +4,12 @@ They become `app.science.avatar.body.Humanoid`.
 """
 
 from app.adapters.humanoids.container import HumanoidFileError
-from app.adapters.humanoids.reader import Limits, ReadHumanoid, read_humanoid
+from app.adapters.humanoids.reader import (
+    Limits,
+    ReadHumanoid,
+    ReadSkin,
+    read_humanoid,
+    read_skin,
+)
 
-__all__ = ["HumanoidFileError", "Limits", "ReadHumanoid", "read_humanoid"]
+__all__ = ["HumanoidFileError", "Limits", "ReadHumanoid", "ReadSkin", "read_humanoid", "read_skin"]

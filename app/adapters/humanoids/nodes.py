@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from app.adapters.humanoids.container import HumanoidFileError
 from app.adapters.humanoids.document import Document, Node
+from app.science.avatar.body import NodeTree
 from app.science.rig import Rig
 from app.science.rotations import (
     FloatArray,
@@ -27,28 +28,10 @@ _ROOT = "(file)"
 
 
 @dataclass(frozen=True, eq=False)
-class Tree:
-    """All nodes of a file.
-
-    Attributes:
-        names: unique names of the nodes.
-        parents: index of the parent, -1 for root nodes.
-        order: every node after its parent.
-        world: (N, 4, 4) matrices world_from_node.
-    """
+class Tree(NodeTree):
+    """All nodes of a file, with unique names."""
 
     names: tuple[str, ...]
-    parents: tuple[int, ...]
-    order: tuple[int, ...]
-    world: FloatArray
-
-    def line_up(self, node: int) -> list[int]:
-        """Return the node and all its ancestors, upwards."""
-        line = []
-        while node >= 0:
-            line.append(node)
-            node = self.parents[node]
-        return line
 
 
 def tree_of(document: Document) -> Tree:
@@ -70,7 +53,9 @@ def tree_of(document: Document) -> Tree:
     if len(order) < len(nodes):
         rest = sorted(set(range(len(nodes))) - set(order))
         raise HumanoidFileError("The node is its own descendant.", f"nodes.{rest[0]}")
-    return Tree(_names(nodes), tuple(parents), tuple(order), _world(nodes, parents, order))
+    local = np.array([_local(node) for node in nodes]).reshape(-1, 4, 4)
+    world = _world(local, parents, order)
+    return Tree(tuple(parents), tuple(order), local, world, _names(nodes))
 
 
 def rig_of(tree: Tree, required: set[int]) -> tuple[Rig, dict[int, int]]:
@@ -114,13 +99,12 @@ def _names(nodes: list[Node]) -> tuple[str, ...]:
     return tuple(names)
 
 
-def _world(nodes: list[Node], parents: list[int], order: list[int]) -> FloatArray:
-    world = np.empty((len(nodes), 4, 4))
+def _world(local: FloatArray, parents: list[int], order: list[int]) -> FloatArray:
+    world = np.empty_like(local)
     with np.errstate(over="ignore", invalid="ignore"):
         for number in order:
-            local = _local(nodes[number])
             above = parents[number]
-            world[number] = local if above < 0 else world[above] @ local
+            world[number] = local[number] if above < 0 else world[above] @ local[number]
             if not (np.abs(world[number]) < _FARTHEST).all():
                 raise HumanoidFileError(
                     "The node lies too far away to be part of a body.", f"nodes.{number}"

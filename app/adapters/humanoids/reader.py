@@ -15,8 +15,17 @@ from app.adapters.humanoids.bone_names import named_bones, vrm_nodes
 from app.adapters.humanoids.container import HumanoidFileError, open_container
 from app.adapters.humanoids.document import Document, read_document
 from app.adapters.humanoids.nodes import Tree, rig_of, tree_of
-from app.adapters.humanoids.skin import read_skin
-from app.science.avatar.body import Humanoid, HumanoidError, RiggedMesh, humanoid_of
+from app.adapters.humanoids.skin import skin_at_rest, skin_pieces
+from app.science.avatar.body import (
+    Binding,
+    Humanoid,
+    HumanoidError,
+    NodeTree,
+    RiggedMesh,
+    SkinPiece,
+    bind,
+    humanoid_of,
+)
 from app.science.rig import RigError
 
 MapSource = Literal["vrm", "names"]
@@ -34,10 +43,22 @@ class Limits:
 
 @dataclass(frozen=True, eq=False)
 class ReadHumanoid:
-    """A model, and how its bones were identified."""
+    """A model in the T-pose, and how the nodes of its file follow its parts.
+
+    `bones_by` is how its bones were identified.
+    """
 
     humanoid: Humanoid
     bones_by: MapSource
+    binding: Binding
+
+
+@dataclass(frozen=True, eq=False)
+class ReadSkin:
+    """The nodes of a file and all its skin; `posed_nodes` and `posed_vertices` move them."""
+
+    tree: NodeTree
+    pieces: tuple[SkinPiece, ...]
 
 
 def read_humanoid(data: bytes, limits: Limits | None = None) -> ReadHumanoid:
@@ -48,19 +69,34 @@ def read_humanoid(data: bytes, limits: Limits | None = None) -> ReadHumanoid:
             with the missing parts.
     """
     most = Limits() if limits is None else limits
+    document, tables = _opened(data, most)
+    tree = tree_of(document)
+    mapped = vrm_nodes(document)
+    mesh, node_of_bone = _mesh(document, tree, tables, mapped, most)
+    try:
+        posed = humanoid_of(mesh)
+        nodes = {part: node_of_bone[bone] for part, bone in mesh.bones.items()}
+        binding = bind(posed, mesh.bones, nodes, tree.world)
+    except (HumanoidError, RigError) as error:
+        raise HumanoidFileError(str(error)) from error
+    return ReadHumanoid(posed.humanoid, "names" if mapped is None else "vrm", binding)
+
+
+def read_skin(data: bytes, limits: Limits | None = None) -> ReadSkin:
+    """Read the skin of a model, with all its vertices; raises HumanoidFileError."""
+    most = Limits() if limits is None else limits
+    document, tables = _opened(data, most)
+    return ReadSkin(tree_of(document), tuple(skin_pieces(document, tables, most.vertices)))
+
+
+def _opened(data: bytes, most: Limits) -> tuple[Document, Tables]:
     if len(data) > most.bytes:
         raise HumanoidFileError(f"The file has {len(data)} bytes; up to {most.bytes} are read.")
     container = open_container(data)
     document = read_document(container.text)
     if not document.nodes:
         raise HumanoidFileError("The file has no nodes, so there are no bones.", "nodes")
-    tree = tree_of(document)
-    mapped = vrm_nodes(document)
-    mesh = _mesh(document, tree, Tables(document, container.binary, most.values), mapped, most)
-    try:
-        return ReadHumanoid(humanoid_of(mesh), "names" if mapped is None else "vrm")
-    except (HumanoidError, RigError) as error:
-        raise HumanoidFileError(str(error)) from error
+    return document, Tables(document, container.binary, most.values)
 
 
 def _mesh(
@@ -69,8 +105,9 @@ def _mesh(
     tables: Tables,
     mapped: dict[str, int] | None,
     most: Limits,
-) -> RiggedMesh:
-    skin = read_skin(document, tree, tables, most.vertices)
+) -> tuple[RiggedMesh, dict[int, int]]:
+    """Return the bones with the skin on them, and bone -> node."""
+    skin = skin_at_rest(document, tree, tables, most.vertices)
     rig, bone_of = rig_of(tree, _bone_nodes(document, mapped))
     if mapped is None:
         bones = named_bones(rig)
@@ -83,7 +120,8 @@ def _mesh(
         owner[node] = bone_of.get(node, owner[above] if above >= 0 else -1)
     owners = owner[skin.nodes]
     owned = owners >= 0
-    return RiggedMesh(rig, bones, skin.places_m[owned], owners[owned])
+    node_of_bone = {bone: node for node, bone in bone_of.items()}
+    return RiggedMesh(rig, bones, skin.places_m[owned], owners[owned]), node_of_bone
 
 
 def _bone_nodes(document: Document, mapped: dict[str, int] | None) -> set[int]:

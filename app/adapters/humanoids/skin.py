@@ -1,11 +1,7 @@
-"""Compute the skin at rest in the world: each vertex, and the node that moves it most.
+"""Read the skin of a file: the vertices of all its meshes, and the bones that move them.
 
-A skinned vertex is the weighted sum of its transformations by its bones,
-
-    v_world = sum_k w_k  world_from_bone_k  bone_from_mesh_k  v,
-
-with the bones in the file's rest pose. A mesh without a skin follows its own node. Only vertices of
-triangles count: others are not drawn.
+Only vertices of triangles count: others are not drawn. At rest, each vertex belongs to the node
+that moves it most.
 
 Source: Khronos, glTF 2.0 specification, section 3.7.3.
 """
@@ -19,13 +15,12 @@ from app.adapters.humanoids.accessors import IndexArray, Tables
 from app.adapters.humanoids.container import HumanoidFileError
 from app.adapters.humanoids.document import Document, Primitive, Skin
 from app.adapters.humanoids.nodes import Tree
+from app.science.avatar.body import SkinPiece, posed_vertices
 from app.science.rotations import FloatArray
 
 _TRIANGLES = (4, 5, 6)
 _FARTHEST = 1e9
 _MOST_PRIMITIVES = 20_000
-_AT_ONCE = 65_536
-"""Vertices transformed together; each needs a matrix meanwhile."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,13 +35,13 @@ class SkinnedVertices:
 
 
 class _Reader:
-    def __init__(self, document: Document, tree: Tree, tables: Tables, most: int) -> None:
-        self._document, self._tree, self._tables = document, tree, tables
+    def __init__(self, document: Document, tables: Tables, most: int) -> None:
+        self._document, self._tables = document, tables
         self._most, self._left = most, most
         self._primitives = 0
 
-    def pieces(self) -> Iterator[SkinnedVertices]:
-        """Yield the vertices of every mesh at every node."""
+    def pieces(self) -> Iterator[tuple[SkinPiece, str]]:
+        """Yield every primitive of the mesh of every node, and where the file has it."""
         for number, node in enumerate(self._document.nodes):
             if node.mesh is None:
                 continue
@@ -58,11 +53,11 @@ class _Reader:
             for row, primitive in enumerate(self._document.meshes[node.mesh].primitives):
                 at = f"meshes.{node.mesh}.primitives.{row}"
                 if primitive.mode in _TRIANGLES and "POSITION" in primitive.attributes:
-                    yield from self._piece(number, node.skin, primitive, at)
+                    yield self._piece(number, node.skin, row, primitive, at), at
 
     def _piece(
-        self, node: int, skin: int | None, primitive: Primitive, place: str
-    ) -> Iterator[SkinnedVertices]:
+        self, node: int, skin: int | None, row: int, primitive: Primitive, place: str
+    ) -> SkinPiece:
         self._primitives += 1
         if self._primitives > _MOST_PRIMITIVES:
             raise HumanoidFileError(f"It has more than {_MOST_PRIMITIVES} meshes.", place)
@@ -74,24 +69,19 @@ class _Reader:
                 f"The model has more than {self._most} vertices. Export it with fewer.", place
             )
         if skin is None or "JOINTS_0" not in primitive.attributes:
-            world = self._tree.world[node]
-            moved = points[used] @ world[:3, :3].T + world[:3, 3]
-            yield _finite(SkinnedVertices(moved, np.full(len(used), node)), place)
-            return
+            own, alone = np.array([node]), np.eye(4)[np.newaxis]
+            shape = (len(points), 1)
+            joints, weights = np.zeros(shape, dtype=np.int64), np.ones(shape)
+            return SkinPiece(node, row, points, used, own, alone, joints, weights)
         bones = self._document.skins[skin]
-        matrices = self._bone_matrices(bones, f"skins.{skin}")
+        matrices = self._inverse_bind(bones, f"skins.{skin}")
         joints, weights = self._influences(primitive, len(points), place)
         if len(joints) and joints.max() >= len(bones.joints):
             raise HumanoidFileError(
                 f"A vertex refers to bone {joints.max()} of {len(bones.joints)}.", place
             )
-        weighted = used[
-            weights[used].sum(axis=1) > 0.0
-        ]  # a vertex without any weight has no position
-        strongest = np.argmax(weights[weighted], axis=1)
-        owners = np.array(bones.joints)[joints[weighted, strongest]]
-        moved = _blended(points[weighted], joints[weighted], weights[weighted], matrices)
-        yield _finite(SkinnedVertices(moved, owners), place)
+        nodes = np.array(bones.joints)
+        return SkinPiece(node, row, points, used, nodes, matrices, joints, weights)
 
     def _used(self, primitive: Primitive, count: int, place: str) -> IndexArray:
         """Return the vertices that belong to any triangle, in ascending order."""
@@ -102,21 +92,18 @@ class _Reader:
             raise HumanoidFileError(f"A triangle wants vertex {used[-1]} of {count}.", place)
         return used
 
-    def _bone_matrices(self, skin: Skin, place: str) -> FloatArray:
+    def _inverse_bind(self, skin: Skin, place: str) -> FloatArray:
         joints = np.array(skin.joints)
         if joints.max() >= len(self._document.nodes):
             raise HumanoidFileError(f"There is no node {joints.max()}.", place)
-        world: FloatArray = self._tree.world[joints]
         if skin.inverseBindMatrices is None:
-            return world
+            return np.tile(np.eye(4), (len(joints), 1, 1))
         inverse = self._tables.floats(skin.inverseBindMatrices, "MAT4")
         if len(inverse) < len(joints):
             raise HumanoidFileError(
                 f"It has {len(inverse)} inverse bind matrices for {len(joints)} bones.", place
             )
-        with np.errstate(over="ignore", invalid="ignore"):
-            matrices: FloatArray = world @ inverse[: len(joints)].reshape(-1, 4, 4).swapaxes(1, 2)
-        return matrices
+        return inverse[: len(joints)].reshape(-1, 4, 4).swapaxes(1, 2)
 
     def _influences(
         self, primitive: Primitive, count: int, place: str
@@ -137,32 +124,30 @@ class _Reader:
         return np.concatenate(joints, axis=1), shares / np.where(total > 0.0, total, 1.0)
 
 
-def read_skin(document: Document, tree: Tree, tables: Tables, most: int) -> SkinnedVertices:
-    """Read all meshes, with at most `most` vertices; raise HumanoidFileError."""
-    pieces = list(_Reader(document, tree, tables, most).pieces())
-    if not pieces:
+def skin_pieces(document: Document, tables: Tables, most: int) -> Iterator[SkinPiece]:
+    """Yield the skin of every mesh; raise HumanoidFileError if they have over `most` vertices."""
+    for piece, _ in _Reader(document, tables, most).pieces():
+        yield piece
+
+
+def skin_at_rest(document: Document, tree: Tree, tables: Tables, most: int) -> SkinnedVertices:
+    """Return the vertices of all meshes at rest, at most `most`; raise HumanoidFileError."""
+    rows = [
+        _at_rest(piece, tree, place) for piece, place in _Reader(document, tables, most).pieces()
+    ]
+    if not rows:
         return SkinnedVertices(np.zeros((0, 3)), np.zeros(0, dtype=np.int64))
     return SkinnedVertices(
-        np.concatenate([piece.places_m for piece in pieces]),
-        np.concatenate([piece.nodes for piece in pieces]),
+        np.concatenate([piece.places_m for piece in rows]),
+        np.concatenate([piece.nodes for piece in rows]),
     )
 
 
-def _blended(
-    points: FloatArray, joints: IndexArray, weights: FloatArray, matrices: FloatArray
-) -> FloatArray:
-    moved = np.zeros_like(points)
-    with np.errstate(over="ignore", invalid="ignore"):
-        for start in range(0, len(points), _AT_ONCE):
-            rows = slice(start, start + _AT_ONCE)
-            for influence in range(joints.shape[1]):
-                bones = matrices[joints[rows, influence]]
-                there = np.einsum("nij,nj->ni", bones[:, :3, :3], points[rows]) + bones[:, :3, 3]
-                moved[rows] += weights[rows, influence, np.newaxis] * there
-    return moved
-
-
-def _finite(vertices: SkinnedVertices, place: str) -> SkinnedVertices:
-    if not (np.abs(vertices.places_m) < _FARTHEST).all():
+def _at_rest(piece: SkinPiece, tree: Tree, place: str) -> SkinnedVertices:
+    # A vertex without any weight has no certain position.
+    weighted = piece.used[piece.weights[piece.used].any(axis=1)]
+    places = posed_vertices(piece, tree.world, weighted)
+    if not (np.abs(places) < _FARTHEST).all():
         raise HumanoidFileError("A vertex lies too far away to be part of a body.", place)
-    return vertices
+    strongest = np.argmax(piece.weights[weighted], axis=1)
+    return SkinnedVertices(places, piece.bones[piece.joints[weighted, strongest]])

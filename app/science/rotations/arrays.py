@@ -91,6 +91,11 @@ def rotate(q: FloatArray, vectors: FloatArray) -> FloatArray:
     )
 
 
+def matrices(q: FloatArray) -> FloatArray:
+    """Return unit quaternions (..., 4) as rotation matrices (..., 3, 3)."""
+    return np.swapaxes(rotate(q[..., np.newaxis, :], np.eye(3)), -1, -2)
+
+
 def shortest(q: FloatArray, reference: FloatArray | None = None) -> FloatArray:
     """Return whichever of q and -q is nearer to `reference` (default: the identity)."""
     side = q[..., 0] if reference is None else np.einsum("...i,...i->...", q, reference)

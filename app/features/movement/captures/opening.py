@@ -9,13 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sqlalchemy import make_url
-from sqlalchemy.orm import Session
-
 from app.adapters.captures import Capture, CaptureError, Limits, Reading, read_capture
-from app.database import make_engine
 from app.features.movement.captures.source import Cannot, Source
-from app.features.movement.files import plain_pieces
+from app.features.movement.files import stored_files
 from app.science.retargeting import (
     REFERENCE_JOINT_MAP,
     AvatarError,
@@ -74,13 +70,7 @@ def open_stored(store: Store, source: Source) -> Opened:
     """Return the capture with these contents, read from the database; raise Cannot."""
     if source in _last:
         return _last[source]
-    pooled = make_url(store.url).get_backend_name() != "sqlite"
-    engine = make_engine(store.url, pooled=pooled)
-    try:
-        with Session(engine) as db:
-            files = {one: _joined(plain_pieces(db, one)) for one in source.hashes}
-    finally:
-        engine.dispose()
+    files = stored_files(store.url, source.hashes)
     if not all(files.values()):
         raise Cannot("the capture was deleted in the meantime", source.name)
     return _open(store.max_bytes, source, files)
@@ -120,13 +110,6 @@ def _with_skeleton(capture: Capture) -> Opened:
     except FitError as error:
         return Opened(capture, None, None, str(error))
     return Opened(capture, fitted.motion, fitted, None)
-
-
-def _joined(pieces: Iterable[bytes]) -> bytes:
-    whole = bytearray()
-    for piece in pieces:
-        whole += piece
-    return bytes(whole)
 
 
 @dataclass(frozen=True)

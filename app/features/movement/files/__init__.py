@@ -10,6 +10,7 @@ from app.features.movement.files.contents import (
     plain_pieces,
     size_of,
     store,
+    stored_files,
 )
 from app.features.movement.files.transfer import (
     BINARY,
@@ -39,6 +40,7 @@ __all__ = [
     "sent",
     "size_of",
     "store",
+    "stored_files",
     "streamed",
     "uploaded",
 ]

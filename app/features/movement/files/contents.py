@@ -1,13 +1,14 @@
 """Store files in the database: compressed, in pieces, and once per content hash."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import zstandard
-from sqlalchemy import delete, or_, select
+from sqlalchemy import delete, make_url, or_, select
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
 
+from app.database import make_engine
 from app.models import (
     CaptureContent,
     CapturePiece,
@@ -55,6 +56,20 @@ def plain_pieces(db: Session, content_hash: str) -> Iterator[bytes]:
         plain = decompressor.decompress(data)
         if plain:
             yield plain
+
+
+def stored_files(url: str, hashes: Iterable[str]) -> dict[str, bytes]:
+    """Read whole files from the database at a URL, as a worker process does; by content hash.
+
+    A file that is not stored is empty.
+    """
+    pooled = make_url(url).get_backend_name() != "sqlite"
+    engine = make_engine(url, pooled=pooled)
+    try:
+        with Session(engine) as db:
+            return {one: b"".join(plain_pieces(db, one)) for one in hashes}
+    finally:
+        engine.dispose()
 
 
 def size_of(db: Session, content_hash: str) -> int:

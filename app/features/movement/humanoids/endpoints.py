@@ -7,9 +7,9 @@ from fastapi.responses import StreamingResponse
 from starlette.concurrency import run_in_threadpool
 
 from app.features.movement.files import BODY, BYTES, FileName, attachment, binary, sent
-from app.features.movement.humanoids.schemas import HumanoidPage, HumanoidView
+from app.features.movement.humanoids.schemas import BindingView, HumanoidPage, HumanoidView
 from app.features.movement.humanoids.service import humanoid_by_hash, humanoid_page, humanoid_view
-from app.features.movement.humanoids.uploading import add_humanoid
+from app.features.movement.humanoids.uploading import add_humanoid, stored_binding
 from app.platform.context import AppContext
 from app.platform.dependencies import Context, Reading, SignedIn
 
@@ -48,6 +48,18 @@ def get_humanoids(
 def get_humanoid(content_hash: ContentHash, db: Reading, _: SignedIn) -> HumanoidView:
     """Return one humanoid model: the body parts it has and lacks, its lengths and convex pieces."""
     return humanoid_view(db, content_hash)
+
+
+@router.get("/{content_hash}/binding", response_model=BindingView)
+async def get_humanoid_binding(
+    content_hash: ContentHash, context: Context, _: SignedIn
+) -> Response:
+    """Return how the nodes of a model's file follow the parts of its body, to draw it posed."""
+    return Response(
+        await stored_binding(context, content_hash),
+        media_type="application/json",
+        headers={"cache-control": "private, max-age=3600"},
+    )
 
 
 @router.get(

@@ -1,9 +1,11 @@
 """Response models of humanoid models; lengths are in metres."""
 
 from datetime import datetime
-from typing import Literal
+from typing import Annotated, Literal
 
-from pydantic import BaseModel
+from pydantic import BaseModel, Field
+
+from app.science.rotations import Vector
 
 BonesBy = Literal["vrm", "names"]
 
@@ -52,6 +54,26 @@ class HumanoidView(HumanoidListed):
     convex_pieces: list[PieceView]
     segments_m: dict[str, float]
     notes: list[str]
+
+
+class BindingView(BaseModel):
+    """How the nodes of a model's file follow the parts of its body; all in its own size.
+
+    World: x right, y up, facing -z, soles at height 0. The frame of a part has its origin in the
+    part's joint and is parallel to the world in the T-pose. `parts` are those that the model has,
+    parents first; `parents` are rows of `parts`, -1 for the hips, and `joints_m` their joints in
+    the T-pose. `nodes` are the glTF nodes that the parts move: world_from_node is world_from_part
+    times `part_from_node`, each 16 numbers, row by row. Nodes below a part keep their local
+    transform; nodes above the hips keep their place relative to the hips. For another stature,
+    multiply `joints_m` and the first three rows of each matrix by it / `stature_m`.
+    """
+
+    stature_m: float
+    parts: list[str]
+    parents: list[int]
+    joints_m: list[Vector]
+    nodes: list[int]
+    part_from_node: list[Annotated[list[float], Field(min_length=16, max_length=16)]]
 
 
 class HumanoidPage(BaseModel):

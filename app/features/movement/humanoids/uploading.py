@@ -1,4 +1,4 @@
-"""Upload humanoid models: parse them in the worker process for captures, store them once."""
+"""Parse humanoid models in the worker process for captures: new ones, which are stored, and old."""
 
 from collections.abc import AsyncIterator
 from dataclasses import asdict
@@ -10,8 +10,8 @@ from sqlalchemy.orm import Session
 from app.errors import InvalidInput
 from app.features.movement.captures import CaptureQueue
 from app.features.movement.files import Uploaded, compressed_beside, store, uploaded
-from app.features.movement.humanoids.service import is_known
-from app.features.movement.humanoids.worker_tasks import Measured, Refused, measure
+from app.features.movement.humanoids.service import humanoid_by_hash, is_known
+from app.features.movement.humanoids.worker_tasks import Measured, Refused, binding_json, measure
 from app.features.people.audit import record
 from app.models import HumanoidRow
 from app.platform.access import Caller
@@ -40,6 +40,14 @@ async def add_humanoid(
             return file.hash, new
 
 
+async def stored_binding(context: AppContext, content_hash: str) -> bytes:
+    """Return the binding of a stored model as JSON; raise NotFound if there is no such model."""
+    await run_sync(_require, context, content_hash)
+    settings = context.settings
+    url, max_bytes = settings.resolved_database_url, settings.max_capture_bytes
+    return await context.part(CaptureQueue).run_cached(binding_json, url, max_bytes, content_hash)
+
+
 async def _measured(context: AppContext, name: str, file: Uploaded) -> Measured:
     try:
         max_bytes = context.settings.max_capture_bytes
@@ -60,6 +68,11 @@ async def _measured(context: AppContext, name: str, file: Uploaded) -> Measured:
             details=[{"path": found.place, "message": found.reason}],
         )
     return found
+
+
+def _require(context: AppContext, content_hash: str) -> None:
+    with context.database.reading() as db:
+        humanoid_by_hash(db, content_hash)
 
 
 def _is_known(context: AppContext, content_hash: str) -> bool:

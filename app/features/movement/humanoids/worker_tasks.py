@@ -1,10 +1,11 @@
-"""Parse and measure a model's file, in the worker process for captures and within its limits."""
+"""Parse models' files, in the worker process for captures and within its limits."""
 
 from dataclasses import dataclass
 from pathlib import Path
 
 from app.adapters.humanoids import HumanoidFileError, Limits, read_humanoid
-from app.features.movement.files import compress, compressed_beside
+from app.features.movement.files import compress, compressed_beside, stored_files
+from app.features.movement.humanoids.schemas import BindingView
 from app.protocol.humanoid import figure_json
 from app.science.avatar.body import Figure, HumanoidError, figure_of
 
@@ -41,6 +42,21 @@ class Refused:
 
     reason: str
     place: str
+
+
+def binding_json(database_url: str, max_bytes: int, content_hash: str) -> bytes:
+    """Return a stored model's binding as the JSON of a `BindingView`."""
+    data = stored_files(database_url, (content_hash,))[content_hash]
+    binding = read_humanoid(data, Limits(bytes=max_bytes)).binding
+    view = BindingView(
+        stature_m=binding.stature_m,
+        parts=list(binding.parts),
+        parents=list(binding.parents),
+        joints_m=binding.joints_m.tolist(),
+        nodes=list(binding.nodes),
+        part_from_node=binding.part_from_node.reshape(-1, 16).tolist(),
+    )
+    return view.model_dump_json().encode()
 
 
 def measure(max_bytes: int, path: Path) -> Measured | Refused:

@@ -6,12 +6,13 @@ mass among the parts, and `figure_of` measures a `Humanoid`, a rigged model. All
 metres in the T-pose, y up; nothing here depends on a simulator.
 """
 
+from app.science.avatar.body.binding import Binding, bind
 from app.science.avatar.body.body import REQUIRED_PARTS, Body, BodyPart, build_body
 from app.science.avatar.body.deleva import Population, mass_fractions, segments_of
 from app.science.avatar.body.figure import Figure, figure_of
 from app.science.avatar.body.hulls import Piece
 from app.science.avatar.body.humanoid import Humanoid, HumanoidError
-from app.science.avatar.body.humanoid_pose import RiggedMesh, humanoid_of
+from app.science.avatar.body.humanoid_pose import RiggedMesh, TPosed, humanoid_of
 from app.science.avatar.body.inertial import Inertial, combined
 from app.science.avatar.body.layers import (
     NO_COLLISION,
@@ -38,6 +39,7 @@ from app.science.avatar.body.parts import (
 )
 from app.science.avatar.body.proportions import BodyError, proportions
 from app.science.avatar.body.shapes import Capsule, Shape
+from app.science.avatar.body.skinning import NodeTree, SkinPiece, posed_nodes, posed_vertices
 
 __all__ = [
     "AXES",
@@ -54,6 +56,7 @@ __all__ = [
     "SEGMENTS",
     "SIDES",
     "Axis",
+    "Binding",
     "Body",
     "BodyError",
     "BodyMasses",
@@ -65,10 +68,14 @@ __all__ = [
     "HumanoidError",
     "Inertial",
     "Letter",
+    "NodeTree",
     "Piece",
     "Population",
     "RiggedMesh",
     "Shape",
+    "SkinPiece",
+    "TPosed",
+    "bind",
     "body_masses",
     "build_body",
     "collision_bits",
@@ -78,6 +85,8 @@ __all__ = [
     "humanoid_of",
     "mass_fractions",
     "mirrored_name",
+    "posed_nodes",
+    "posed_vertices",
     "proportions",
     "segments_of",
 ]

@@ -28,7 +28,16 @@ from app.science.avatar.body.humanoid_checks import check_bones, check_feet, che
 from app.science.avatar.body.parts import PART_NAMES
 from app.science.retargeting import t_pose
 from app.science.rig import Rig, RigError
-from app.science.rotations import FloatArray, Vector, conjugate, multiply, rotate, swing_between
+from app.science.rotations import (
+    FloatArray,
+    Vector,
+    conjugate,
+    identity,
+    matrices,
+    multiply,
+    rotate,
+    swing_between,
+)
 from app.science.skeleton import JOINT_NAMES
 
 HEAD_AT, ANKLE_AT = 0.875, 0.039
@@ -39,6 +48,21 @@ _LOWEST_M, _HIGHEST_M, _USUAL_M = 0.5, 2.6, 1.75
 _UP = np.array((0.0, 1.0, 0.0))
 _SOLES = ("LeftFoot", "LeftToes", "RightFoot", "RightToes")
 IndexArray = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class TPosed:
+    """A humanoid in the T-pose, and how its bones came there.
+
+    Attributes:
+        humanoid: the model in the T-pose.
+        moves: (J, 4, 4) of each bone of the rig: the similarity from where the file has the bone
+            and what is fixed to it, in the file's world, to where they are in the T-pose; with
+            rotation, change of unit and translation.
+    """
+
+    humanoid: Humanoid
+    moves: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +82,7 @@ class RiggedMesh:
     owners: IndexArray
 
 
-def humanoid_of(mesh: RiggedMesh) -> Humanoid:
+def humanoid_of(mesh: RiggedMesh) -> TPosed:
     """Bring a rigged mesh into the T-pose.
 
     Raises:
@@ -66,11 +90,11 @@ def humanoid_of(mesh: RiggedMesh) -> Humanoid:
     """
     check_bones(mesh.rig, mesh.bones)
     notes: list[str] = []
-    mesh = _upright(mesh, notes)
+    mesh, upwards = _upright(mesh, notes)
     check_standing(mesh.rig, mesh.bones)
-    mesh = _in_metres(mesh, notes)
+    mesh, factor = _in_metres(mesh, notes)
     try:
-        joints, vertices = _in_t_pose(mesh)
+        turns, joints, vertices = _in_t_pose(mesh)
     except RigError as error:
         raise HumanoidError(f"The bones do not form a human skeleton: {error}") from error
     part_of = _parts_of_bones(mesh)[mesh.owners]
@@ -85,10 +109,14 @@ def humanoid_of(mesh: RiggedMesh) -> Humanoid:
         for part, place in places.items()
     }
     check_feet(parts, stature_m)
-    return Humanoid(stature_m, MappingProxyType(parts), tuple(notes))
+    moves = np.tile(np.eye(4), (mesh.rig.joint_count, 1, 1))
+    moves[:, :3, :3] = matrices(multiply(turns, upwards)) * factor
+    moves[:, :3, 3] = joints - origin - rotate(turns, mesh.rig.rest_world()[0])
+    return TPosed(Humanoid(stature_m, MappingProxyType(parts), tuple(notes)), moves)
 
 
-def _upright(mesh: RiggedMesh, notes: list[str]) -> RiggedMesh:
+def _upright(mesh: RiggedMesh, notes: list[str]) -> tuple[RiggedMesh, FloatArray]:
+    """Return the mesh with its head up, and the rotation (4,) that turned it."""
     places = mesh.rig.rest_world()[0]
     across = places[mesh.bones["Head"]] - places[mesh.bones["Hips"]]
     axis = int(np.argmax(np.abs(across)))
@@ -97,21 +125,23 @@ def _upright(mesh: RiggedMesh, notes: list[str]) -> RiggedMesh:
     up = np.zeros(3)
     up[axis] = np.sign(across[axis])
     if axis == 1 and up[1] > 0.0:
-        return mesh
+        return mesh, identity()
     turn = swing_between(up, _UP)
     rig = mesh.rig
     offsets, rotations = rig.offsets_m.copy(), rig.rest_rotations.copy()
     offsets[0], rotations[0] = rotate(turn, offsets[0]), multiply(turn, rotations[0])
     axis_name = f"{'+' if up[axis] > 0.0 else '-'}{'xyz'[axis]}"
     notes.append(f"The head lies over the hips along {axis_name}, so the model was turned upright.")
-    return replace(
+    turned = replace(
         mesh,
         rig=replace(rig, offsets_m=offsets, rest_rotations=rotations),
         vertices_m=rotate(turn, mesh.vertices_m),
     )
+    return turned, turn
 
 
-def _in_metres(mesh: RiggedMesh, notes: list[str]) -> RiggedMesh:
+def _in_metres(mesh: RiggedMesh, notes: list[str]) -> tuple[RiggedMesh, float]:
+    """Return the mesh in metres, and the metres in a unit of the file."""
     heights = mesh.rig.rest_world()[0][:, 1]
     feet = min(heights[mesh.bones["LeftFoot"]], heights[mesh.bones["RightFoot"]])
     stature = float(heights[mesh.bones["Head"]] - feet) / (HEAD_AT - ANKLE_AT)
@@ -128,27 +158,30 @@ def _in_metres(mesh: RiggedMesh, notes: list[str]) -> RiggedMesh:
         factor = _USUAL_M / stature
         notes.append(f"No person has a stature of {stature:.4g} m: only the proportions are used.")
     if factor == 1.0:
-        return mesh
+        return mesh, factor
     rig = replace(mesh.rig, offsets_m=mesh.rig.offsets_m * factor)
-    return replace(mesh, rig=rig, vertices_m=mesh.vertices_m * factor)
+    return replace(mesh, rig=rig, vertices_m=mesh.vertices_m * factor), factor
 
 
-def _in_t_pose(mesh: RiggedMesh) -> tuple[FloatArray, FloatArray]:
-    """Return the joints (J, 3) and the vertices (V, 3) in the T-pose, facing -z."""
+def _in_t_pose(mesh: RiggedMesh) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return how each bone turned (J, 4), and the T-pose, facing -z.
+
+    It has the joints (J, 3) and the vertices (V, 3).
+    """
     rig = mesh.rig
     named = {
         part: rig.names[bone] for part, bone in mesh.bones.items() if part in JOINT_NAMES
     }  # fingers turn with the hand
     posed = t_pose(rig, named)
     rest_places, rest_turns = rig.rest_world()
+    turns = multiply(posed.world_rotations, conjugate(rest_turns))
     vertices = np.empty_like(mesh.vertices_m)
     for bone in np.unique(mesh.owners).tolist():
         rows = mesh.owners == bone
-        turn = multiply(posed.world_rotations[bone], conjugate(rest_turns[bone]))
-        moved = rotate(turn, mesh.vertices_m[rows] - rest_places[bone])
+        moved = rotate(turns[bone], mesh.vertices_m[rows] - rest_places[bone])
         vertices[rows] = moved + posed.positions_m[bone]
     back = conjugate(posed.facing)
-    return rotate(back, posed.positions_m), rotate(back, vertices)
+    return multiply(back, turns), rotate(back, posed.positions_m), rotate(back, vertices)
 
 
 def _parts_of_bones(mesh: RiggedMesh) -> IndexArray:

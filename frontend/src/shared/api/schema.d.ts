@@ -645,6 +645,26 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/humanoids/{content_hash}/binding": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Humanoid Binding
+         * @description Return how the nodes of a model's file follow the parts of its body, to draw it posed.
+         */
+        readonly get: operations["get_humanoid_binding_api_humanoids__content_hash__binding_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/humanoids/{content_hash}/file": {
         readonly parameters: {
             readonly query?: never;
@@ -3250,6 +3270,36 @@ export interface components {
              * @description greatest torque, N m
              */
             readonly max_torque_nm: number;
+        };
+        /**
+         * BindingView
+         * @description How the nodes of a model's file follow the parts of its body; all in its own size.
+         *
+         *     World: x right, y up, facing -z, soles at height 0. The frame of a part has its origin in the
+         *     part's joint and is parallel to the world in the T-pose. `parts` are those that the model has,
+         *     parents first; `parents` are rows of `parts`, -1 for the hips, and `joints_m` their joints in
+         *     the T-pose. `nodes` are the glTF nodes that the parts move: world_from_node is world_from_part
+         *     times `part_from_node`, each 16 numbers, row by row. Nodes below a part keep their local
+         *     transform; nodes above the hips keep their place relative to the hips. For another stature,
+         *     multiply `joints_m` and the first three rows of each matrix by it / `stature_m`.
+         */
+        readonly BindingView: {
+            /** Joints M */
+            readonly joints_m: readonly (readonly [
+                number,
+                number,
+                number
+            ])[];
+            /** Nodes */
+            readonly nodes: readonly number[];
+            /** Parents */
+            readonly parents: readonly number[];
+            /** Part From Node */
+            readonly part_from_node: readonly (readonly number[])[];
+            /** Parts */
+            readonly parts: readonly string[];
+            /** Stature M */
+            readonly stature_m: number;
         };
         /**
          * CableView
@@ -10021,6 +10071,46 @@ export interface operations {
                 };
                 content: {
                     readonly "application/json": components["schemas"]["HumanoidView"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_humanoid_binding_api_humanoids__content_hash__binding_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly content_hash: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["BindingView"];
                 };
             };
             /** @description Cannot be stored now; nothing was stored. */

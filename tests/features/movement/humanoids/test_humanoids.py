@@ -9,6 +9,7 @@ import pytest
 from httpx2 import Response
 from sqlalchemy import func, select
 
+from app.adapters.humanoids import read_humanoid
 from app.database import open_database
 from app.features.movement.files import drop_unused, plain_pieces
 from app.models import CaptureContent, HumanoidRow
@@ -188,3 +189,19 @@ def test_only_designers_may_upload_models(fresh_lab: Lab) -> None:
     analyst = sign_in(fresh_lab, "analyst")
     assert ok(analyst.get(PATH))["total"] == 1
     assert analyst.post(f"{PATH}?name=a.glb", content=FOUR).status_code == 403
+
+
+def test_a_stored_model_has_a_binding(fresh_lab: Lab) -> None:
+    """The binding of a stored model is that of its file, and of no other; lab members may read."""
+    upload(fresh_lab, FOUR)
+    content_hash = hashlib.sha256(FOUR).hexdigest()
+    analyst = sign_in(fresh_lab, "analyst")
+    view: Json = ok(analyst.get(f"{PATH}/{content_hash}/binding"))
+    own = read_humanoid(FOUR).binding
+    assert view["parts"] == list(own.parts)
+    assert view["parents"] == list(own.parents)
+    assert view["nodes"] == list(own.nodes)
+    assert (view["parts"][0], view["parents"][0]) == ("Hips", -1)
+    assert (view["stature_m"], view["joints_m"]) == (own.stature_m, own.joints_m.tolist())
+    assert view["part_from_node"] == own.part_from_node.reshape(-1, 16).tolist()
+    error(analyst.get(f"{PATH}/{HASH}/binding"), 404, "not_found")
