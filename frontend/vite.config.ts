@@ -76,5 +76,7 @@ export default defineConfig({
       },
     },
   },
+  // Workers that run WebAssembly: the server gives this folder a policy that allows it.
+  worker: { rolldownOptions: { output: { entryFileNames: "assets/wasm/[name]-[hash].js" } } },
   server: { port: 5173, fs: { allow: [repository] }, proxy: { "/api": proxyToServer } },
 });

@@ -23,6 +23,10 @@ _LEVEL = 6
 PAGES = {"/": "console/index.html", "/tablet": "tablet/index.html"}
 # A service worker controls the addresses next to and below its own, which identifies it.
 TABLET_WORKER = "/tablet-worker.js"
+# Workers that decode compressed models with WebAssembly. A worker has the policy of its own file,
+# so pages need not be allowed to run WebAssembly; and these may fetch nothing from anywhere.
+WASM_WORKERS = "wasm/"
+WASM_POLICY = "default-src 'none'; script-src 'self' blob: 'wasm-unsafe-eval'"
 _NOT_BUILT = """<!doctype html><html lang="en"><meta charset="utf-8"><title>Reembody</title>
 <h1>The pages are not built yet</h1><p>The interface under /api works. Start the server with
 <code>./run</code>, which builds the pages.</p></html>"""
@@ -43,6 +47,8 @@ class Assets(StaticFiles):
     async def get_response(self, path: str, scope: Scope) -> Response:
         """Return the file, compressed if the client accepts gzip."""
         response = await super().get_response(path, scope)
+        policy = {"content-security-policy": WASM_POLICY} if path.startswith(WASM_WORKERS) else {}
+        response.headers.update(policy)
         if not isinstance(response, FileResponse) or not _is_worth_it(response):
             return response
         response.headers["vary"] = "Accept-Encoding"
@@ -53,6 +59,7 @@ class Assets(StaticFiles):
             "cache-control": response.headers["cache-control"],
             "content-encoding": "gzip",
             "vary": "Accept-Encoding",
+            **policy,
         }
         return Response(body, headers=headers, media_type=response.media_type)
 

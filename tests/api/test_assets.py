@@ -50,3 +50,15 @@ def test_small_and_compressed_files_are_not_compressed(client: TestClient, name:
     answer = client.get(f"/assets/{name}", headers={"accept-encoding": "gzip"})
     assert answer.status_code == 200
     assert "content-encoding" not in answer.headers
+
+
+def test_only_the_workers_for_webassembly_may_run_it(client: TestClient, tmp_path: Path) -> None:
+    """Only files of the folder of WebAssembly's workers get a policy that allows it to run."""
+    (tmp_path / "wasm").mkdir()
+    for script in ("short.js", "long.js"):
+        (tmp_path / "wasm" / script).write_text(SCRIPT if script == "long.js" else "1;\n")
+        policy = client.get(f"/assets/wasm/{script}").headers["content-security-policy"]
+        assert "'wasm-unsafe-eval'" in policy
+        assert "'unsafe-eval'" not in policy
+        assert "default-src 'none'" in policy
+    assert "content-security-policy" not in client.get("/assets/page.js").headers

@@ -5,6 +5,7 @@ import {
   type Texts,
   useTranslations,
 } from "@shared/i18n/i18n";
+import { bodyViewDe, bodyViewEn } from "../bodyView/texts";
 import { jointMapDe, jointMapEn } from "../captures/jointMapTexts";
 import { capturesDe, capturesEn } from "../captures/texts";
 import { verificationDe, verificationEn } from "../captures/verificationTexts";
@@ -60,6 +61,7 @@ const allEn = {
   ...equipmentEn,
   ...capturesEn,
   ...captureViewEn,
+  ...bodyViewEn,
   ...walkingEn,
   ...walkingModelEn,
   ...walkSetEn,
@@ -96,6 +98,7 @@ const allDe = {
   ...equipmentDe,
   ...capturesDe,
   ...captureViewDe,
+  ...bodyViewDe,
   ...walkingDe,
   ...walkingModelDe,
   ...walkSetDe,

@@ -1,5 +1,6 @@
 /** What is drawn on a stage, and how it is distinguished. */
 import type { PointMotion } from "./motion";
+import type { Worn } from "./skin/worn";
 
 /** Which points of a skeleton are which part of a body; unknown ones are left out. */
 export interface BodyRoles {
@@ -20,6 +21,8 @@ export interface Figure {
   readonly roles?: BodyRoles;
   /** The point to highlight. */
   readonly highlighted?: number | null;
+  /** The body to draw it with; without one it is drawn as a skeleton. */
+  readonly worn?: Worn;
 }
 
 /**
@@ -27,7 +30,7 @@ export interface Figure {
  * figure's.
  */
 export type CameraMode = "orbit" | "follow" | "eyes";
-export type CameraSide = "corner" | "front" | "side" | "top";
+export type CameraSide = "corner" | "front" | "side" | "back" | "top";
 
 export interface StagePalette {
   readonly ground: string;

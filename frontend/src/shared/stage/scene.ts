@@ -5,7 +5,6 @@
 import { Color, PerspectiveCamera, Vector3 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Seconds } from "../units";
-import { Body3d } from "./body3d";
 import {
   type Block,
   type CameraMode,
@@ -17,7 +16,7 @@ import {
 } from "./figure";
 import { type FloorPlan, floorPlan } from "./floor";
 import type { Placing } from "./placing";
-import { Space3d } from "./space3d";
+import { bodyOf, Space3d } from "./space3d";
 import { alongFloor, directionOf, fitting, lookThroughEyes } from "./views";
 
 /** What else is in the scene with the figures. */
@@ -55,7 +54,7 @@ export class Stage3d extends Space3d {
     palette: StagePalette,
     { blocks = [], comparedFigures = [] }: Surroundings = {},
   ): void {
-    this.standBodies(figures.map((figure) => new Body3d(figure, palette)));
+    this.standBodies(figures.map((figure) => bodyOf(figure, palette)));
     this.standBlocks(blocks, palette);
     const plan = floorPlan([...figures, ...comparedFigures], blocks);
     const isElsewhere = JSON.stringify(plan) !== JSON.stringify(this.#plan);

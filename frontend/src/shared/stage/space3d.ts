@@ -15,15 +15,24 @@ import {
   type WebGLRendererParameters,
 } from "three";
 import { Blocks3d } from "./blocks3d";
-import type { Body3d } from "./body3d";
-import type { Block, BlockTones, StagePalette } from "./figure";
+import { Body3d } from "./body3d";
+import type { Block, BlockTones, Figure, StagePalette } from "./figure";
 import type { FloorPlan } from "./floor";
 import { disposeFloor, makeFloor } from "./floor3d";
+import { SkinnedBody3d } from "./skin/skinnedBody3d";
+
+/** A figure in the scene: a skeleton, or the body that it wears. */
+export type StageBody = Body3d | SkinnedBody3d;
+
+export const bodyOf = (figure: Figure, palette: StagePalette): StageBody =>
+  figure.worn === undefined
+    ? new Body3d(figure, palette)
+    : new SkinnedBody3d(figure, figure.worn, palette);
 
 export abstract class Space3d {
   protected readonly renderer: WebGLRenderer;
   protected readonly scene = new Scene();
-  protected bodies: readonly Body3d[] = [];
+  protected bodies: readonly StageBody[] = [];
   protected blocks: Blocks3d | null = null;
   #floor: Group | null = null;
   #frameRequest = 0;
@@ -72,7 +81,7 @@ export abstract class Space3d {
   /** Called after every picture. */
   protected drawn(): void {}
 
-  protected standBodies(bodies: readonly Body3d[]): void {
+  protected standBodies(bodies: readonly StageBody[]): void {
     this.#clearBodies();
     this.bodies = bodies;
     for (const body of bodies) this.scene.add(body.group);

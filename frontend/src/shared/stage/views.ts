@@ -10,6 +10,7 @@ export function directionOf(from: CameraSide, [x, z]: readonly [x: number, z: nu
   const right = new Vector3(-z, 0, x);
   const up = new Vector3(0, 1, 0);
   if (from === "front") return front.addScaledVector(up, 0.1).normalize();
+  if (from === "back") return front.multiplyScalar(-1).addScaledVector(up, 0.1).normalize();
   if (from === "side") return right.addScaledVector(up, 0.1).normalize();
   // Not quite straight down: orbiting needs an up direction there.
   if (from === "top") return up.addScaledVector(right, 0.001).normalize();

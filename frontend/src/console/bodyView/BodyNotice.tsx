@@ -1,0 +1,34 @@
+/** What there is to say while a body is loaded, or why it cannot be shown. */
+import { Button, Loader } from "@mantine/core";
+import type { JSX } from "react";
+import { useTexts } from "../i18n";
+import classes from "./BodyViewer.module.css";
+import type { BodyState } from "./useBody";
+
+interface BodyNoticeProps {
+  readonly body: BodyState;
+  /** Whether something else is drawn instead. */
+  readonly instead?: boolean;
+}
+
+export function BodyNotice({ body, instead = false }: BodyNoticeProps): JSX.Element | null {
+  const { t } = useTexts();
+  if (body.state === "loading") {
+    return (
+      <span className={instead ? classes.corner : classes.middle} role="status">
+        <Loader size="xs" /> {t("bodyView.loading")}
+      </span>
+    );
+  }
+  if (body.state !== "failed") return null;
+  return (
+    <span className={instead ? classes.corner : classes.middle} role="status">
+      {t(instead ? "bodyView.failed.skeleton" : "bodyView.failed", {
+        reason: body.error?.message ?? "",
+      })}
+      <Button size="compact-xs" variant="default" onClick={body.retry}>
+        {t("error.retry")}
+      </Button>
+    </span>
+  );
+}

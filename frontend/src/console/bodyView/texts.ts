@@ -1,0 +1,29 @@
+/** Texts about bodies in 3-D: looking at one, and choosing how movement is drawn. */
+export const bodyViewEn = {
+  "bodyView.pose": "Pose",
+  "bodyView.pose.rest": "T-pose",
+  "bodyView.pose.stand": "Standing",
+  "bodyView.pose.walk": "Walking (generated)",
+  "bodyView.picture": "The body {{name}} in 3-D",
+  "bodyView.loading": "Loading the body",
+  "bodyView.failed": "The body cannot be shown: {{reason}}",
+  "bodyView.failed.skeleton": "The body cannot be shown, so the stick figure stays: {{reason}}",
+  "bodyView.drawn": "Drawn as",
+  "bodyView.drawn.skin": "Body",
+  "bodyView.drawn.skeleton": "Stick figure",
+} as const;
+
+export const bodyViewDe: Readonly<Record<keyof typeof bodyViewEn, string>> = {
+  "bodyView.pose": "Haltung",
+  "bodyView.pose.rest": "T-Pose",
+  "bodyView.pose.stand": "Stehen",
+  "bodyView.pose.walk": "Gehen (erzeugt)",
+  "bodyView.picture": "Der Körper {{name}} in 3-D",
+  "bodyView.loading": "Der Körper wird geladen",
+  "bodyView.failed": "Der Körper kann nicht gezeigt werden: {{reason}}",
+  "bodyView.failed.skeleton":
+    "Der Körper kann nicht gezeigt werden, deshalb bleibt die Strichfigur: {{reason}}",
+  "bodyView.drawn": "Gezeichnet als",
+  "bodyView.drawn.skin": "Körper",
+  "bodyView.drawn.skeleton": "Strichfigur",
+};

@@ -1,0 +1,144 @@
+/**
+ * The decoders of compressed meshes and textures: three's own, in workers that may run WebAssembly
+ * although the page may not (docs/threat-model.md). This module imports three.js.
+ */
+import { LoadingManager } from "three";
+import { DRACOLoader } from "three/addons/loaders/DRACOLoader.js";
+import { KTX2Loader } from "three/addons/loaders/KTX2Loader.js";
+import codeWorker from "./codeWorker?worker&url";
+import type { MeshoptRequest, MeshoptResult } from "./meshoptWorker";
+import meshoptWorker from "./meshoptWorker?worker&url";
+
+/**
+ * The URL of a worker that runs the code at a blob's URL under the worker's own policy. The
+ * development server has no policy, and workers of another kind.
+ */
+const running = (code: string): string => (import.meta.env.DEV ? code : `${codeWorker}#${code}`);
+
+/** Three's loader starts the workers of these libraries by the URL in `workerSourceURL`. */
+interface WithWorkers {
+  workerSourceURL: string;
+}
+
+class Draco extends DRACOLoader {
+  /** Load the decoder; called by three before its first worker. */
+  _initDecoder(): Promise<void> {
+    const self = this as unknown as WithWorkers & { readonly decoderPending: Promise<void> | null };
+    if (self.decoderPending !== null) return self.decoderPending;
+    const above = DRACOLoader.prototype as unknown as { _initDecoder(): Promise<void> };
+    const pending = above._initDecoder.call(this).then(() => {
+      self.workerSourceURL = running(self.workerSourceURL);
+    });
+    (this as unknown as { decoderPending: Promise<void> }).decoderPending = pending;
+    return pending;
+  }
+}
+
+class Ktx2 extends KTX2Loader {
+  #ready: Promise<void> | null = null;
+
+  override init(): Promise<void> {
+    const self = this as unknown as WithWorkers;
+    const above = KTX2Loader.prototype as unknown as { init(): Promise<void> };
+    this.#ready ??= above.init.call(this).then(() => {
+      // Workers are created later, from this address.
+      self.workerSourceURL = running(self.workerSourceURL);
+    });
+    return this.#ready;
+  }
+}
+
+/** Decodes meshopt's buffers, in the form in which GLTFLoader asks for it. */
+class Meshopt {
+  readonly supported = typeof Worker !== "undefined";
+  #worker: Worker | null = null;
+  readonly #waiting = new Map<number, (result: MeshoptResult) => void>();
+  #next = 0;
+
+  async decodeGltfBufferAsync(
+    count: number,
+    stride: number,
+    source: Uint8Array,
+    mode: string,
+    filter?: string,
+  ): Promise<Uint8Array> {
+    const id = this.#next++;
+    // A copy: the buffer holds other things too.
+    const request: MeshoptRequest = { id, count, stride, source: source.slice(), mode, filter };
+    const result = await new Promise<MeshoptResult>((resolve) => {
+      this.#waiting.set(id, resolve);
+      this.#started().postMessage(request, [request.source.buffer]);
+    });
+    if (result.decoded === null) throw new Error(result.error);
+    return result.decoded;
+  }
+
+  dispose(): void {
+    this.#worker?.terminate();
+    this.#worker = null;
+  }
+
+  #started(): Worker {
+    if (this.#worker !== null) return this.#worker;
+    const worker = new Worker(meshoptWorker, { type: "module" });
+    worker.onmessage = ({ data }: MessageEvent<MeshoptResult>) => {
+      this.#waiting.get(data.id)?.(data);
+      this.#waiting.delete(data.id);
+    };
+    worker.onerror = ({ message }) => {
+      const error = message || "The decoder of compressed meshes could not be started.";
+      for (const [id, resolve] of this.#waiting) resolve({ id, decoded: null, error });
+      this.#waiting.clear();
+    };
+    this.#worker = worker;
+    return worker;
+  }
+}
+
+export interface Decoders {
+  readonly manager: LoadingManager;
+  readonly draco: DRACOLoader;
+  readonly ktx2: KTX2Loader;
+  readonly meshopt: Meshopt;
+  readonly dispose: () => void;
+}
+
+/** Decoders for one model; nothing is loaded or started before it is needed. */
+export function makeDecoders(): Decoders {
+  const manager = new LoadingManager();
+  const draco = new Draco(manager).setWorkerLimit(1);
+  const ktx2 = new Ktx2(manager).setWorkerLimit(1).detectSupport(renderSupport() as never);
+  const meshopt = new Meshopt();
+  const dispose = () => {
+    for (const one of [draco, ktx2]) {
+      const { workerSourceURL } = one as unknown as WithWorkers;
+      URL.revokeObjectURL(workerSourceURL.slice(workerSourceURL.indexOf("#") + 1));
+      one.dispose();
+    }
+    meshopt.dispose();
+  };
+  return { manager, draco, ktx2, meshopt, dispose };
+}
+
+/** Which compressed textures the browser draws, in the form in which KTX2Loader asks for it. */
+function renderSupport() {
+  const context = document.createElement("canvas").getContext("webgl2");
+  const found = new Map<string, unknown>();
+  const get = (name: string): unknown => {
+    if (!found.has(name)) found.set(name, context?.getExtension(name) ?? null);
+    return found.get(name);
+  };
+  for (const name of TEXTURE_EXTENSIONS) get(name);
+  context?.getExtension("WEBGL_lose_context")?.loseContext();
+  return { extensions: { has: (name: string) => get(name) !== null, get } };
+}
+
+const TEXTURE_EXTENSIONS = [
+  "WEBGL_compressed_texture_astc",
+  "WEBGL_compressed_texture_etc1",
+  "WEBGL_compressed_texture_etc",
+  "WEBGL_compressed_texture_s3tc",
+  "EXT_texture_compression_bptc",
+  "WEBGL_compressed_texture_pvrtc",
+  "WEBKIT_WEBGL_compressed_texture_pvrtc",
+] as const;

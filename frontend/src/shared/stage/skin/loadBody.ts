@@ -1,0 +1,139 @@
+/**
+ * Load bodies: the file and the binding of a model, by the hash of its content. A body that several
+ * figures wear is loaded once. This module imports three.js: import it lazily.
+ */
+import { type Object3D, TextureLoader } from "three";
+import { type GLTF, GLTFLoader, type GLTFParser } from "three/addons/loaders/GLTFLoader.js";
+import { bodies } from "../../api/bodies";
+import { BodyModel, type MeshView } from "./bodyModel";
+import { makeDecoders } from "./decoders";
+import type { BodyBinding } from "./pose";
+
+/** How long a body that nobody wears is kept, so that another page need not load it again. */
+const KEPT_MS = 10_000;
+
+interface Held {
+  readonly loading: Promise<BodyModel>;
+  users: number;
+  timer: ReturnType<typeof setTimeout> | undefined;
+}
+
+const held = new Map<string, Held>();
+
+/** Load a body, or take the one that is loaded; `release` it afterwards. */
+export function takeBody(hash: string): {
+  readonly loading: Promise<BodyModel>;
+  readonly release: () => void;
+} {
+  let one = held.get(hash);
+  if (one === undefined) {
+    one = { loading: load(hash), users: 0, timer: undefined };
+    held.set(hash, one);
+    // A body that could not be loaded is tried again by the next one who wants it.
+    one.loading.catch(() => held.delete(hash));
+  }
+  const taken = one;
+  clearTimeout(taken.timer);
+  taken.users++;
+  let released = false;
+  const release = () => {
+    if (released) return;
+    released = true;
+    taken.users--;
+    if (taken.users > 0) return;
+    taken.timer = setTimeout(() => {
+      if (held.get(hash) === taken) held.delete(hash);
+      taken.loading.then((model) => model.dispose()).catch(() => {});
+    }, KEPT_MS);
+  };
+  return { loading: taken.loading, release };
+}
+
+async function load(hash: string): Promise<BodyModel> {
+  const [file, binding] = await Promise.all([bodies.file(hash), bodies.binding(hash)]);
+  return readBody(file, binding);
+}
+
+/** Read a model's file: glTF in one file, or VRM 0 or 1, whose materials are kept. */
+export async function readBody(file: ArrayBuffer, binding: BodyBinding): Promise<BodyModel> {
+  const decoders = makeDecoders();
+  try {
+    const loader = new GLTFLoader(decoders.manager)
+      .setDRACOLoader(decoders.draco)
+      .setKTX2Loader(decoders.ktx2)
+      .setMeshoptDecoder(decoders.meshopt as never);
+    loader.register((parser) => {
+      keepToFile(parser);
+      return { name: "REEMBODY_one_file" };
+    });
+    if (namesVrm(file)) {
+      const { VRMLoaderPlugin } = await import("@pixiv/three-vrm");
+      loader.register((parser) => new VRMLoaderPlugin(parser));
+    }
+    const gltf = await loader.parseAsync(file, "");
+    return new BodyModel(binding, gltf.scene, nodesOf(gltf), viewsOf(gltf));
+  } finally {
+    decoders.dispose();
+  }
+}
+
+/** Load nothing from elsewhere, and pictures as the page's policy allows: as pictures. */
+function keepToFile(parser: GLTFParser): void {
+  const own = parser as unknown as {
+    textureLoader: TextureLoader;
+    fileLoader: { load: (...all: FileLoaderArguments) => void };
+  };
+  own.textureLoader = new TextureLoader(parser.options.manager);
+  own.fileLoader = Object.assign(parser.fileLoader, {
+    load: (url: string, onLoad: (data: ArrayBuffer) => void, _: unknown, onError: () => void) => {
+      const data = /^data:[^,]*;base64,/.exec(url);
+      if (data === null) return onError();
+      const bytes = Uint8Array.from(atob(url.slice(data[0].length)), (one) => one.charCodeAt(0));
+      onLoad(bytes.buffer);
+    },
+  }) as typeof own.fileLoader;
+}
+
+type FileLoaderArguments = [
+  url: string,
+  onLoad: (data: ArrayBuffer) => void,
+  onProgress: unknown,
+  onError: () => void,
+];
+
+/** Whether the file's description names an extension of VRM, in which case its plugin is needed. */
+function namesVrm(file: ArrayBuffer): boolean {
+  const view = new DataView(file);
+  const isBinary = file.byteLength >= 20 && view.getUint32(0, true) === GLB_MAGIC;
+  const text = isBinary ? new Uint8Array(file, 20, view.getUint32(12, true)) : new Uint8Array(file);
+  return /"VRM(C_\w+)?"/.test(new TextDecoder().decode(text));
+}
+
+const GLB_MAGIC = 0x46546c67;
+
+/** The nodes of the file by their index in it. */
+function nodesOf({ parser, scene }: GLTF): ReadonlyMap<number, Object3D> {
+  const nodes = new Map<number, Object3D>();
+  scene.traverse((object) => {
+    const index = parser.associations.get(object)?.nodes;
+    if (index !== undefined && !nodes.has(index)) nodes.set(index, object);
+  });
+  return nodes;
+}
+
+interface VrmViews {
+  readonly meshAnnotations: readonly {
+    readonly meshes: readonly Object3D[];
+    readonly type: MeshView;
+  }[];
+}
+
+/** Who sees which mesh, as a VRM says. */
+function viewsOf({ userData }: GLTF): (mesh: Object3D) => MeshView {
+  const { firstPerson } = (userData.vrm ?? {}) as { readonly firstPerson?: VrmViews };
+  const views = new Map<Object3D, MeshView>();
+  for (const { meshes, type } of firstPerson?.meshAnnotations ?? []) {
+    for (const mesh of meshes) views.set(mesh, type);
+  }
+  return (mesh) => views.get(mesh) ?? "auto";
+}
