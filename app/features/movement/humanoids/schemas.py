@@ -5,8 +5,6 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, Field
 
-from app.science.rotations import Vector
-
 BonesBy = Literal["vrm", "names"]
 
 
@@ -71,7 +69,7 @@ class BindingView(BaseModel):
     stature_m: float
     parts: list[str]
     parents: list[int]
-    joints_m: list[Vector]
+    joints_m: list[Annotated[list[float], Field(min_length=3, max_length=3)]]
     nodes: list[int]
     part_from_node: list[Annotated[list[float], Field(min_length=16, max_length=16)]]
 

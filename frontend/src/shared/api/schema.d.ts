@@ -3285,11 +3285,7 @@ export interface components {
          */
         readonly BindingView: {
             /** Joints M */
-            readonly joints_m: readonly (readonly [
-                number,
-                number,
-                number
-            ])[];
+            readonly joints_m: readonly (readonly number[])[];
             /** Nodes */
             readonly nodes: readonly number[];
             /** Parents */
