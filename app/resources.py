@@ -1,8 +1,8 @@
-"""Locate the files that are read but not imported: migrations, study configs, built pages.
+"""Locate the files that are read but not imported: migrations, studies, bodies, built pages.
 
-A checkout has migrations and study configs in top-level folders, where people look for them. A
-wheel has no top level of its own, so the build puts copies under `app/_bundled/`. The built pages
-are in `app/static/` in both.
+A checkout has migrations, study configs and bodies in top-level folders, where people look for
+them. A wheel has no top level of its own, so the build puts copies under `app/_bundled/`. The built
+pages are in `app/static/` in both.
 """
 
 from pathlib import Path
@@ -18,6 +18,11 @@ def migrations_dir() -> Path:
 def study_configs_dir() -> Path:
     """Return the folder of the shipped studies and instruments, as YAML files."""
     return _shipped("study_configs")
+
+
+def bodies_dir() -> Path:
+    """Return the folder of the shipped bodies, as models with their measures."""
+    return _shipped("bodies")
 
 
 def static_dir() -> Path:

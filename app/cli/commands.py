@@ -11,6 +11,7 @@ import typer
 from app import __version__
 from app.cli.analyse.command import analyse
 from app.cli.errors import INCOMPLETE, reported, warn
+from app.cli.figure.command import figure
 from app.cli.progress import Activity
 from app.cli.retarget.command import retarget
 from app.cli.serve.command import serve, tls
@@ -25,6 +26,7 @@ app = typer.Typer(
 app.add_typer(tls, name="tls")
 app.add_typer(walk, name="walk")
 app.command()(retarget)
+app.command()(figure)
 app.command()(tune)
 app.command()(analyse)
 app.command()(serve)

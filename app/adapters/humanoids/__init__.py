@@ -1,6 +1,7 @@
-"""Read humanoid models from glTF 2.0 and VRM files.
+"""Read humanoid models from glTF 2.0 and VRM files, and write figures of our own.
 
-They become `app.science.avatar.body.Humanoid`.
+What is read becomes `app.science.avatar.body.Humanoid`. `writer` is imported by itself, because
+only the command that makes figures needs it.
 """
 
 from app.adapters.humanoids.container import HumanoidFileError

@@ -37,7 +37,7 @@ from app.science.avatar.body.parts import (
     Letter,
     mirrored_name,
 )
-from app.science.avatar.body.proportions import BodyError, proportions
+from app.science.avatar.body.proportions import SEGMENT_NAMES, BodyError, Proportions, proportions
 from app.science.avatar.body.shapes import Capsule, Shape
 from app.science.avatar.body.skinning import NodeTree, SkinPiece, posed_nodes, posed_vertices
 
@@ -54,6 +54,7 @@ __all__ = [
     "SCENE",
     "SCENE_BIT",
     "SEGMENTS",
+    "SEGMENT_NAMES",
     "SIDES",
     "Axis",
     "Binding",
@@ -71,6 +72,7 @@ __all__ = [
     "NodeTree",
     "Piece",
     "Population",
+    "Proportions",
     "RiggedMesh",
     "Shape",
     "SkinPiece",

@@ -1,0 +1,1 @@
+"""The command `figure`: make a skinned body for anybody's proportions."""
