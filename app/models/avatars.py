@@ -15,10 +15,18 @@ class HumanoidRow(Base):
     Configurations refer to it, so it is never deleted. `figure` is its measures and convex pieces
     as canonical JSON (`app.protocol.humanoid`); the other columns repeat the values that lists
     show. `bones_by` is how its bones were mapped to body parts.
+
+    `name`: how studies refer to it, unique and never changed once given. `licence`: what its file
+    says of its author and terms, `confirmed`: what somebody confirmed because the terms ask for it
+    (`app.features.movement.humanoids`). Licence, triangles, vertices and textures are null until
+    the file is measured by a release that reads them.
     """
 
     __tablename__ = "humanoids"
-    __table_args__ = (CheckConstraint("bones_by IN ('vrm', 'names')", "bones_by"),)
+    __table_args__ = (
+        CheckConstraint("bones_by IN ('vrm', 'names')", "bones_by"),
+        CheckConstraint("origin IN ('shipped', 'uploaded')", "origin"),
+    )
 
     hash: Mapped[str] = mapped_column(ForeignKey("capture_contents.hash"), primary_key=True)
     file_name: Mapped[str] = mapped_column(String(200))
@@ -29,6 +37,14 @@ class HumanoidRow(Base):
     pieces: Mapped[int]
     left_fingers: Mapped[int]
     right_fingers: Mapped[int]
+    name: Mapped[str | None] = mapped_column(String(80), unique=True)
+    title: Mapped[str | None] = mapped_column(String(200))
+    origin: Mapped[str] = mapped_column(String(20), default="uploaded", server_default="uploaded")
+    licence: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
+    confirmed: Mapped[list[dict[str, Any]] | None] = mapped_column(JSON(none_as_null=True))
+    triangles: Mapped[int | None]
+    vertices: Mapped[int | None]
+    textures: Mapped[int | None]
     by: Mapped[str] = mapped_column(String(100))
     at: Mapped[UtcTime]
 

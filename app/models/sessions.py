@@ -92,7 +92,8 @@ class Phase(Base):
     """One attempt at a timed step (free movement, practice or task), computed from the events.
 
     `phase_id` counts within the session and identifies the phase's telemetry. `active_s` is the
-    participant's active time: pauses and walks back do not count.
+    participant's active time: pauses and walks back do not count. `body`: the name of the body that
+    its condition prescribes; null for the body of the avatar's configuration.
     """
 
     __tablename__ = "phases"
@@ -108,6 +109,7 @@ class Phase(Base):
     block: Mapped[int | None]
     condition: Mapped[str | None] = mapped_column(String(40))
     latency_ms: Mapped[float]
+    body: Mapped[str | None] = mapped_column(String(80))
     status: Mapped[str] = mapped_column(String(20))
     active_s: Mapped[float] = mapped_column(default=0.0)
     paused_count: Mapped[int] = mapped_column(default=0)

@@ -99,11 +99,14 @@ POLICY: dict[str, frozenset[str]] = {
     "POST /api/avatars/{key}/versions": DESIGNERS,
     "GET /api/avatars/{key}/versions/{number}": LAB,
     "GET /api/avatars/{key}/versions/{number}/file": LAB,
-    # Humanoid models, which avatars can take their bodies from.
+    # Bodies: humanoid models that participants wear.
     "GET /api/humanoids": LAB,
     "POST /api/humanoids": DESIGNERS,
     "GET /api/humanoids/{content_hash}": LAB,
     "GET /api/humanoids/{content_hash}/binding": LAB,
+    "PATCH /api/humanoids/{content_hash}": DESIGNERS,
+    "POST /api/humanoids/{content_hash}/measure": DESIGNERS,
+    "GET /api/humanoids/{content_hash}/use": LAB,
     "GET /api/humanoids/{content_hash}/file": LAB,
     # Walking: scenes, walks, and the models that are fitted to them.
     "GET /api/walking/scenes": LAB,

@@ -1,7 +1,7 @@
 """Study and instrument files: strict parsing, frozen values, content hashes, plans and orders."""
 
 from app.protocol.common import Text, canonical_json, sha256_of
-from app.protocol.conditions import Condition
+from app.protocol.conditions import BodyName, Condition
 from app.protocol.difference import differences
 from app.protocol.durations import (
     BY_HAND_S,
@@ -64,6 +64,7 @@ __all__ = [
     "STEP_KINDS",
     "TIMED_KINDS",
     "UNCOUNTED_KINDS",
+    "BodyName",
     "Condition",
     "ConfigError",
     "ConfigProblem",

@@ -1,8 +1,8 @@
-"""The single factor of a study, its levels, and the design of their orders."""
+"""The levels of a study's factor, by latency and body, and the design of their orders."""
 
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, Field, StringConstraints
 
 from app.protocol.common import Key, Strict, Text, refusal
 
@@ -33,12 +33,24 @@ LatencyMs = Annotated[
 ]
 
 
+BodyName = Annotated[
+    str,
+    StringConstraints(pattern=r"^[a-z][a-z0-9_-]{0,79}$"),
+    Field(description="the name of a body, as on the page Bodies"),
+]
+
+
 class Condition(Strict):
-    """One level of the factor: the latency added to the target of every delayed body part."""
+    """One level of the factor: the latency added to the target of every delayed body part.
+
+    `body`: the body that participants wear in it; left out, that of the avatar's configuration.
+    """
 
     key: Key
     latency_ms: LatencyMs
     label: Text
+    # Left out of the content if not set, so that the hashes of other studies stay the same.
+    body: Annotated[BodyName | None, Field(exclude_if=lambda value: value is None)] = None
 
 
 def _distinct(conditions: tuple[Condition, ...]) -> tuple[Condition, ...]:
@@ -52,13 +64,13 @@ def _distinct(conditions: tuple[Condition, ...]) -> tuple[Condition, ...]:
                     remedy="Rename one of them.",
                     at=(index, "key"),
                 )
-            if condition.latency_ms == earlier.latency_ms:
+            if (condition.latency_ms, condition.body) == (earlier.latency_ms, earlier.body):
                 raise refusal(
                     f"The conditions {earlier.key!r} and {condition.key!r} both add "
                     f"{condition.latency_ms:g} ms, so no analysis can tell them apart.",
                     value=condition.latency_ms,
-                    valid="a latency of its own for each condition",
-                    remedy="Change or remove one of them.",
+                    valid="a latency or a body of its own for each condition",
+                    remedy="Change or remove one of them, or give them different bodies.",
                     at=(index, "latency_ms"),
                 )
     return conditions

@@ -2,13 +2,13 @@
 
 These checks read the plain tree and skip values of an unexpected shape (that problem is reported
 elsewhere). So they run even when another value is wrong, and all problems of a file are reported
-together. They also check whether a named avatar exists and matches how it is moved, and whether a
-named picture exists.
+together. They also check whether a named avatar exists and matches how it is moved, and whether
+named bodies and pictures exist.
 """
 
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 
 from app.protocol.common import TEXT_MARK
 from app.protocol.conditions import MAX_PERMUTED
@@ -36,6 +36,7 @@ def cross_problems(
     schema: Schema,
     instruments: Mapping[str, Instrument],
     avatars: Mapping[str, int] | None = None,
+    bodies: Collection[str] | None = None,
 ) -> Iterator[DefinitionProblem]:
     """Yield every problem between two places of a study file, or between it and the lab's data."""
     if not isinstance(tree, dict):
@@ -52,6 +53,7 @@ def cross_problems(
     yield from body_problems(tree)
     yield from validity_problems(tree)
     yield from avatar_problems(tree, avatars)
+    yield from worn_body_problems(tree, bodies)
     yield from preregistration_problems(tree, instruments)
 
 
@@ -288,6 +290,39 @@ def _unknown_avatar(
             f"1 to {avatars[key]}",
             "Name a version that was saved.",
         )
+
+
+def worn_body_problems(
+    tree: Mapping[str, Plain], bodies: Collection[str] | None
+) -> Iterator[DefinitionProblem]:
+    """Yield a problem for each body of a condition that does not exist or would not be worn.
+
+    Args:
+        tree: the tree of the study file.
+        bodies: the names of all bodies; None if unknown.
+    """
+    for index, condition in enumerate(_list(tree.get("conditions"))):
+        name = _dict(condition).get("body")
+        if not isinstance(name, str):
+            continue
+        path: Path = ("conditions", index, "body")
+        if tree.get("avatar") == "delayed_copy":
+            yield DefinitionProblem(
+                path,
+                "A delayed copy wears no body of its own: this one would have no effect.",
+                name,
+                "left out, or avatar: physics",
+                "Remove it, or write avatar: physics.",
+            )
+        elif bodies is not None and name not in bodies:
+            names = ", ".join(sorted(bodies)) or "no body has a name yet"
+            yield DefinitionProblem(
+                path,
+                f"There is no body {name!r}.",
+                name,
+                sorted(bodies),
+                f"Name it on the page Bodies, or use one of: {names}.",
+            )
 
 
 def picture_problems(path: Path, wordings: Mapping[str, str]) -> Iterator[DefinitionProblem]:

@@ -7,7 +7,7 @@ even if a later release changes a default.
 
 import copy
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Generic, TypeVar, cast
@@ -54,6 +54,7 @@ def load_study(
     *,
     instruments: Mapping[str, Instrument],
     avatars: Mapping[str, int] | None = None,
+    bodies: Collection[str] | None = None,
 ) -> LoadedStudy:
     """Load a study file (YAML).
 
@@ -62,12 +63,13 @@ def load_study(
         instruments: those that it may refer to, by key.
         avatars: those that it may refer to: key -> number of the newest version. None skips the
             check.
+        bodies: names of bodies that its conditions may refer to. None skips the check.
 
     Raises:
         ConfigError: the file is invalid; the error lists every problem.
     """
     source = study_source(text)
-    between = cross_problems(source.tree, _STUDY.schema, instruments, avatars)
+    between = cross_problems(source.tree, _STUDY.schema, instruments, avatars, bodies)
     found = [locate(one, source) for one in between]
     protocol = _validated(_STUDY, source, found)
     canonical = canonical_json(_STUDY.adapter.dump_python(protocol, mode="json"))

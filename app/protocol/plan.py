@@ -26,7 +26,8 @@ class Step:
 
     `index` counts from 0; `key` is unique ("form.demographics", "block2.hand",
     "block2.hand.karas2020", "block2.fms"). `block` counts from 1 and, like `condition`, is None
-    outside the blocks. `latency_ms` is also set for free movement and practice. `text` is the key
+    outside the blocks. `latency_ms` is also set for free movement and practice. `body`: the body
+    that the condition prescribes, None for that of the avatar's configuration. `text` is the key
     of a text of the study. `until_completions`: a practice ends early after this many tasks.
     `consent`: the requirements of a consent step in addition to its text.
     """
@@ -38,6 +39,7 @@ class Step:
     block: int | None = None
     condition: str | None = None
     latency_ms: float | None = None
+    body: str | None = None
     limb: Limb | None = None
     preparation_s: float | None = None
     duration_s: float | None = None
@@ -89,6 +91,7 @@ def compile_plan(
                 block=block,
                 condition=condition.key,
                 latency_ms=condition.latency_ms,
+                body=condition.body,
             )
             for step in protocol.procedure.block.after
         )
@@ -132,6 +135,7 @@ def _block(block: int, condition: Condition, phases: Sequence[TaskPhase]) -> Ite
             block=block,
             condition=condition.key,
             latency_ms=condition.latency_ms,
+            body=condition.body,
             limb=phase.limb,
             preparation_s=phase.preparation_s,
             duration_s=phase.duration_s,

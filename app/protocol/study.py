@@ -130,11 +130,30 @@ class StudyProtocol(Strict):
         return tuple(dict.fromkeys([*forms, *after_tasks, *after_block]))
 
     @property
+    def bodies(self) -> tuple[str, ...]:
+        """The bodies that conditions name, in order of first use."""
+        return tuple(dict.fromkeys(one.body for one in self.conditions if one.body is not None))
+
+    @property
+    def has_latencies_apart(self) -> bool:
+        """Whether each condition has a latency of its own, by which it can be told apart."""
+        return len({one.latency_ms for one in self.conditions}) == len(self.conditions)
+
+    @property
+    def levels(self) -> dict[str, str]:
+        """What orders call each condition: its latency in ms, or its key if some share latencies.
+
+        By the keys of the conditions.
+        """
+        apart = self.has_latencies_apart
+        return {one.key: f"{one.latency_ms:g}" if apart else one.key for one in self.conditions}
+
+    @property
     def design_hash(self) -> str:
         """The SHA-256 of what determines balance: conditions (without their labels) and orders.
 
         Versions of a study with the same design hash can share one ledger.
         """
-        conditions = [{"key": one.key, "latency_ms": one.latency_ms} for one in self.conditions]
+        conditions = [one.model_dump(mode="json", exclude={"label"}) for one in self.conditions]
         design = {"conditions": conditions, "orders": self.orders.model_dump(mode="json")}
         return sha256_of(canonical_json(design))

@@ -180,6 +180,8 @@ class PhaseOrder(Message):
 
     Of the headset's messages only this one contains the latency. `until_completions`: a practice
     ends once this many tasks are completed, before its time is up; null for all other phases.
+    `body`: the name of the body to wear, one of the welcome's `bodies`; null for that of the
+    avatar's configuration.
     """
 
     phase_id: int
@@ -195,6 +197,8 @@ class PhaseOrder(Message):
     pausing: bool
     resuming: bool
     until_completions: int | None = None
+    # Left out if not set: older clients do not know it, and accept no unknown fields.
+    body: str | None = Field(default=None, exclude_if=lambda value: value is None)
 
 
 class ParticipantInfo(Message):
@@ -220,7 +224,11 @@ class HeadsetState(Message):
 
 
 class Welcome(Message):
-    """The answer to a hello: the client's epoch, the position of each stream, the study's tasks."""
+    """The answer to a hello: the client's epoch, the position of each stream, the study's tasks.
+
+    `bodies`: the bodies that conditions of the study name, in the order of its file; left out if
+    there are none. A client requests the avatar of each before the first block.
+    """
 
     type: Literal["welcome"] = "welcome"
     protocol: int
@@ -235,6 +243,7 @@ class Welcome(Message):
     texts: dict[str, Any]
     positions: tuple[StreamPosition, ...]
     state: HeadsetState
+    bodies: tuple[str, ...] = Field(default=(), exclude_if=lambda value: not value)
 
 
 class Ack(Message):

@@ -11,6 +11,7 @@ from sqlalchemy.orm import Session
 from app.errors import Conflict, NotFound, NotNow
 from app.features.design.instruments import newest_instruments, parsed_instruments, save_instrument
 from app.features.movement.avatar import newest_numbers
+from app.features.movement.humanoids import named_bodies
 from app.models import InstrumentVersion, Study, StudySession, StudyVersion
 from app.platform.config_problems import invalid_config, unpacking
 from app.protocol import ConfigError, LoadedStudy, StudyProtocol, load_study, parse_study_json
@@ -72,7 +73,12 @@ def check_study(db: Session, text: str) -> LoadedStudy:
     Raises InvalidConfig with every problem.
     """
     try:
-        return load_study(text, instruments=parsed_instruments(db), avatars=newest_numbers(db))
+        return load_study(
+            text,
+            instruments=parsed_instruments(db),
+            avatars=newest_numbers(db),
+            bodies=named_bodies(db),
+        )
     except ConfigError as error:
         raise invalid_config("study", error) from error
 

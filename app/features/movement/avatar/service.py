@@ -14,7 +14,7 @@ from sqlalchemy.orm import Session
 
 from app.errors import Conflict, InvalidConfig, NotFound, StaleVersion
 from app.features.movement.avatar.schemas import NewAvatar, NewAvatarVersion, Origin
-from app.features.movement.humanoids import is_known
+from app.features.movement.humanoids import asked_terms, humanoid_by_hash, is_known
 from app.features.people.audit import record
 from app.models import Avatar, AvatarVersion
 from app.platform.config_problems import unpacking
@@ -201,15 +201,28 @@ def checked(db: Session, file: AvatarFile) -> LoadedAvatar:
 
 
 def unknown_humanoid(db: Session, configuration: Configuration) -> Iterator[AvatarProblem]:
-    """Yield a problem if the configuration refers to a humanoid model that was not uploaded."""
+    """Yield a problem if the configuration refers to a body that is not here or must not be worn.
+
+    A body must not be worn before the terms of its licence that ask for it are confirmed.
+    """
     content_hash = configuration.humanoid
-    if content_hash is not None and not is_known(db, content_hash):
+    if content_hash is None:
+        return
+    if not is_known(db, content_hash):
         yield AvatarProblem(
             "humanoid",
             "There is no such humanoid model here.",
             value=content_hash,
             valid="the hash of an uploaded model",
             remedy="Upload the model's file first, or leave 'humanoid' out.",
+        )
+    elif asked_terms(humanoid_by_hash(db, content_hash)):
+        yield AvatarProblem(
+            "humanoid",
+            "The licence of this body restricts who may wear it, and nobody has confirmed it.",
+            value=content_hash,
+            valid="a body that participants may wear",
+            remedy="Open the body on the page Bodies and confirm it there, or choose another body.",
         )
 
 

@@ -1,10 +1,21 @@
-"""Humanoid models that give avatars their shape: uploaded, measured and identified by hash."""
+"""Bodies: humanoid models that give avatars their shape, identified by hash and named by people."""
 
+from app.features.movement.humanoids.licences import asked_terms
 from app.features.movement.humanoids.service import (
+    body_by_name,
     figure_by_hash,
     humanoid_by_hash,
     is_known,
+    named_bodies,
     parsed_figure,
 )
 
-__all__ = ["figure_by_hash", "humanoid_by_hash", "is_known", "parsed_figure"]
+__all__ = [
+    "asked_terms",
+    "body_by_name",
+    "figure_by_hash",
+    "humanoid_by_hash",
+    "is_known",
+    "named_bodies",
+    "parsed_figure",
+]

@@ -1,4 +1,4 @@
-"""HTTP endpoints of humanoid models."""
+"""HTTP endpoints of bodies, which are humanoid models."""
 
 from typing import Annotated
 
@@ -7,11 +7,19 @@ from fastapi.responses import StreamingResponse
 from starlette.concurrency import run_in_threadpool
 
 from app.features.movement.files import BODY, BYTES, FileName, attachment, binary, sent
-from app.features.movement.humanoids.schemas import BindingView, HumanoidPage, HumanoidView
+from app.features.movement.humanoids.naming import change_body
+from app.features.movement.humanoids.schemas import (
+    BindingView,
+    BodyChange,
+    BodyUse,
+    HumanoidPage,
+    HumanoidView,
+)
 from app.features.movement.humanoids.service import humanoid_by_hash, humanoid_page, humanoid_view
-from app.features.movement.humanoids.uploading import add_humanoid, stored_binding
+from app.features.movement.humanoids.uploading import add_humanoid, measure_again, stored_binding
+from app.features.movement.humanoids.use import use_of
 from app.platform.context import AppContext
-from app.platform.dependencies import Context, Reading, SignedIn
+from app.platform.dependencies import Context, Reading, SignedIn, Writing
 
 router = APIRouter(prefix="/humanoids", tags=["humanoids"])
 ContentHash = Annotated[str, Path(pattern=r"^[0-9a-f]{64}$")]
@@ -46,7 +54,7 @@ def get_humanoids(
 
 @router.get("/{content_hash}")
 def get_humanoid(content_hash: ContentHash, db: Reading, _: SignedIn) -> HumanoidView:
-    """Return one humanoid model: the body parts it has and lacks, its lengths and convex pieces."""
+    """Return one body: the parts it has and lacks, its lengths, convex pieces, licence, checks."""
     return humanoid_view(db, content_hash)
 
 
@@ -60,6 +68,30 @@ async def get_humanoid_binding(
         media_type="application/json",
         headers={"cache-control": "private, max-age=3600"},
     )
+
+
+@router.patch("/{content_hash}")
+def patch_humanoid(
+    content_hash: ContentHash, change: BodyChange, db: Writing, context: Context, caller: SignedIn
+) -> HumanoidView:
+    """Name a body, which is possible once, give it a title, or confirm terms of its licence."""
+    change_body(db, caller.actor, content_hash, change, context.clock.utc_now())
+    return humanoid_view(db, content_hash)
+
+
+@router.post("/{content_hash}/measure")
+async def post_measure(
+    content_hash: ContentHash, context: Context, caller: SignedIn
+) -> HumanoidView:
+    """Read the stored file again for its licence and counts, which older releases did not read."""
+    await measure_again(context, caller, content_hash)
+    return await run_in_threadpool(_view, context, content_hash)
+
+
+@router.get("/{content_hash}/use")
+def get_humanoid_use(content_hash: ContentHash, db: Reading, caller: SignedIn) -> BodyUse:
+    """Return the configurations and studies that wear a body."""
+    return use_of(db, caller, content_hash)
 
 
 @router.get(

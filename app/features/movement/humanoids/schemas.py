@@ -1,23 +1,90 @@
-"""Response models of humanoid models; lengths are in metres."""
+"""Request and response models of bodies, which are humanoid models; lengths are in metres."""
 
 from datetime import datetime
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, Field
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+
+from app.protocol import BodyName
 
 BonesBy = Literal["vrm", "names"]
+Origin = Literal["shipped", "uploaded"]
+BodyTitle = Annotated[
+    str,
+    StringConstraints(
+        strip_whitespace=True, min_length=1, max_length=200, pattern=r"^[^\x00-\x1f\x7f]+$"
+    ),
+]
+Permission = Literal["allowed", "forbidden", "unknown"]
+Term = Literal["only_author", "only_licensed_people"]
+"""A term of a licence that somebody has to confirm: only the author, or only people to whom the
+author has given permission, may wear the body."""
+CheckKey = Literal[
+    "parts", "fingers", "rest_pose", "proportions", "triangles", "hulls", "licence", "wearing"
+]
+CheckStatus = Literal["good", "note", "warn", "unknown"]
+
+
+class LicenceView(BaseModel):
+    """What the file of a body says of its author and terms; empty or null where it says nothing.
+
+    `permissions`: what its author allows, by kind of use.
+    """
+
+    title: str | None
+    authors: list[str]
+    name: str | None
+    url: str | None
+    permissions: dict[str, Permission]
+
+
+class ConfirmationView(BaseModel):
+    """A term of a body's licence that somebody has confirmed to be met."""
+
+    term: Term
+    by: str
+    at: datetime
+
+
+class BodyCheck(BaseModel):
+    """One thing that was checked about a body.
+
+    `parts`: the body parts it is about. `value` and `limit`: what was measured, and what it is
+    compared with. `notes` are sentences.
+    """
+
+    key: CheckKey
+    status: CheckStatus
+    parts: list[str] = []
+    value: float | None = None
+    limit: float | None = None
+    notes: list[str] = []
+
+
+class BodyChange(BaseModel):
+    """A change of a body: its name, which can be given only once, its title, confirmed terms."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    name: BodyName | None = None
+    title: BodyTitle | None = None
+    confirmed: Annotated[list[Term], Field(max_length=2)] = []
 
 
 class HumanoidListed(BaseModel):
-    """A humanoid model in a list.
+    """A body in a list.
 
-    `content_hash` is the SHA-256 of its file, by which configurations refer to it. `stature_m` is
-    its own; an avatar has that of its participant. `bones_by`: whether bones were identified by
-    VRM's map or by their names. Counts are of body parts that the model has, and of those with a
-    convex piece.
+    `content_hash` is the SHA-256 of its file, by which configurations refer to it, `name` what
+    studies call it, null until it is given. `stature_m` is its own; an avatar has that of its
+    participant. `bones_by`: whether bones were identified by VRM's map or by their names. Counts
+    are of body parts that the model has, and of those with a convex piece; those of triangles,
+    vertices and textures are null if an earlier release has measured it.
     """
 
     content_hash: str
+    name: str | None
+    title: str | None
+    origin: Origin
     file_name: str
     size_bytes: int
     stature_m: float
@@ -26,6 +93,10 @@ class HumanoidListed(BaseModel):
     pieces: int
     left_fingers: int
     right_fingers: int
+    triangles: int | None
+    vertices: int | None
+    textures: int | None
+    licence: LicenceView | None
     by: str
     at: datetime
 
@@ -39,11 +110,12 @@ class PieceView(BaseModel):
 
 
 class HumanoidView(HumanoidListed):
-    """A humanoid model in full.
+    """A body in full.
 
     `present` and `absent` are the body parts it has and lacks; those in `simple` have too little
     skin for a convex piece and keep capsules and boxes. `segments_m` are its lengths. `notes` are
-    sentences on anything unusual in the file.
+    sentences on anything unusual in the file. `asked`: the terms of its licence that must be
+    confirmed before it is worn, `confirmations` those that were.
     """
 
     present: list[str]
@@ -52,6 +124,32 @@ class HumanoidView(HumanoidListed):
     convex_pieces: list[PieceView]
     segments_m: dict[str, float]
     notes: list[str]
+    asked: list[Term]
+    confirmations: list[ConfirmationView]
+    checks: list[BodyCheck]
+
+
+class WornBy(BaseModel):
+    """A study whose newest version wears a body in its conditions or in its configuration."""
+
+    key: str
+    title: str
+    version: int
+
+
+class ConfigurationUse(BaseModel):
+    """A version of an avatar's configuration that has the body."""
+
+    key: str
+    title: str
+    version: int
+
+
+class BodyUse(BaseModel):
+    """Who wears a body: configurations of avatars, and studies that the reader may see."""
+
+    configurations: list[ConfigurationUse]
+    studies: list[WornBy]
 
 
 class BindingView(BaseModel):
@@ -75,7 +173,7 @@ class BindingView(BaseModel):
 
 
 class HumanoidPage(BaseModel):
-    """A page of humanoid models, newest first, and the total number of models."""
+    """A page of bodies, newest first, and the total number of bodies."""
 
     humanoids: list[HumanoidListed]
     total: int

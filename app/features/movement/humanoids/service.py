@@ -1,4 +1,4 @@
-"""Query the humanoid models of the lab: lists, single models and figures for avatars."""
+"""Query the bodies of the lab: lists, single bodies and figures for avatars."""
 
 from functools import lru_cache
 
@@ -7,6 +7,8 @@ from sqlalchemy.orm import Session
 
 from app.errors import NotFound
 from app.features.movement.files import size_of
+from app.features.movement.humanoids.checks import checks_of
+from app.features.movement.humanoids.licences import asked_terms, confirmations_of, licence_of
 from app.features.movement.humanoids.schemas import (
     HumanoidListed,
     HumanoidPage,
@@ -21,13 +23,18 @@ _COLUMNS = (
     HumanoidRow.hash.label("content_hash"),
     *(HumanoidRow.file_name, HumanoidRow.stature_m, HumanoidRow.bones_by, HumanoidRow.parts),
     *(HumanoidRow.pieces, HumanoidRow.left_fingers, HumanoidRow.right_fingers),
+    *(HumanoidRow.name, HumanoidRow.title, HumanoidRow.origin, HumanoidRow.licence),
+    *(HumanoidRow.triangles, HumanoidRow.vertices, HumanoidRow.textures),
     *(HumanoidRow.by, HumanoidRow.at, CaptureContent.size.label("size_bytes")),
 )
 
 
-def humanoid_by_hash(db: Session, content_hash: str) -> HumanoidRow:
-    """Return the model with this hash; raise NotFound if there is none."""
-    row = db.get(HumanoidRow, content_hash)
+def humanoid_by_hash(db: Session, content_hash: str, *, lock: bool = False) -> HumanoidRow:
+    """Return the body with this hash; raise NotFound if there is none.
+
+    `lock` locks its row, so that concurrent writers wait.
+    """
+    row = db.get(HumanoidRow, content_hash, with_for_update=lock or None)
     if row is None:
         raise NotFound(
             "there is no such humanoid model",
@@ -42,6 +49,27 @@ def figure_by_hash(db: Session, content_hash: str | None) -> Figure | None:
     if content_hash is None:
         return None
     return parsed_figure(humanoid_by_hash(db, content_hash).figure)
+
+
+def body_by_name(db: Session, name: str) -> HumanoidRow:
+    """Return the body with this name; raise NotFound if there is none."""
+    row = db.scalar(select(HumanoidRow).where(HumanoidRow.name == name))
+    if row is None:
+        raise NotFound(
+            f"there is no body {name!r}",
+            value=name,
+            valid=sorted(named_bodies(db)),
+            remedy="Use one of these names, or name the body on the page Bodies.",
+        )
+    return row
+
+
+def named_bodies(db: Session) -> dict[str, str]:
+    """Return the hash of every body that has a name, by its name."""
+    rows = db.execute(
+        select(HumanoidRow.name, HumanoidRow.hash).where(HumanoidRow.name.is_not(None))
+    )
+    return {str(name): str(content_hash) for name, content_hash in rows}
 
 
 def is_known(db: Session, content_hash: str) -> bool:
@@ -79,6 +107,16 @@ def humanoid_view(db: Session, content_hash: str) -> HumanoidView:
     return HumanoidView.model_validate(
         {
             "content_hash": row.hash,
+            "name": row.name,
+            "title": row.title,
+            "origin": row.origin,
+            "triangles": row.triangles,
+            "vertices": row.vertices,
+            "textures": row.textures,
+            "licence": licence_of(row),
+            "asked": list(asked_terms(row)),
+            "confirmations": confirmations_of(row),
+            "checks": list(checks_of(row, figure)),
             "file_name": row.file_name,
             "size_bytes": size_of(db, row.hash),
             "stature_m": row.stature_m,

@@ -9,7 +9,7 @@ from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput
 from app.features.movement.captures import CaptureQueue
-from app.features.movement.files import Uploaded, compressed_beside, store, uploaded
+from app.features.movement.files import Uploaded, compressed_beside, sent, store, uploaded
 from app.features.movement.humanoids.service import humanoid_by_hash, is_known
 from app.features.movement.humanoids.worker_tasks import Measured, Refused, binding_json, measure
 from app.features.people.audit import record
@@ -46,6 +46,40 @@ async def stored_binding(context: AppContext, content_hash: str) -> bytes:
     settings = context.settings
     url, max_bytes = settings.resolved_database_url, settings.max_capture_bytes
     return await context.part(CaptureQueue).run_cached(binding_json, url, max_bytes, content_hash)
+
+
+async def measure_again(context: AppContext, caller: Caller, content_hash: str) -> None:
+    """Read the stored file of a body again for its licence and counts, and store them.
+
+    Its figure stays as it is: avatars that were built from it do not change. Raises NotFound, and
+    InvalidInput if this release cannot read the file any more.
+    """
+    name = await run_sync(_file_name, context, content_hash)
+    async with uploaded(context, sent(context, content_hash), None) as files:
+        measured = await _measured(context, name, files[0])
+    async with context.database.writing_async() as db:
+        await run_sync(_store_counts, db, context, caller, content_hash, measured)
+
+
+def _file_name(context: AppContext, content_hash: str) -> str:
+    with context.database.reading() as db:
+        return humanoid_by_hash(db, content_hash).file_name
+
+
+def _store_counts(
+    db: Session, context: AppContext, caller: Caller, content_hash: str, measured: Measured
+) -> None:
+    row = humanoid_by_hash(db, content_hash, lock=True)
+    row.licence, row.triangles = measured.licence, measured.triangles
+    row.vertices, row.textures = measured.vertices, measured.textures
+    record(
+        db,
+        actor=caller.actor,
+        action="humanoid.measured",
+        subject=f"humanoid:{content_hash[:12]}",
+        details={"content": content_hash[:12]},
+        now=context.clock.utc_now(),
+    )
 
 
 async def _measured(context: AppContext, name: str, file: Uploaded) -> Measured:

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from app.adapters.humanoids import HumanoidFileError, Limits, read_humanoid
 from app.features.movement.files import compress, compressed_beside, stored_files
@@ -21,6 +22,10 @@ class Measured:
     pieces: int
     left_fingers: int
     right_fingers: int
+    licence: dict[str, Any] | None = None
+    triangles: int | None = None
+    vertices: int | None = None
+    textures: int | None = None
 
 
 def measured(figure: Figure, bones_by: str) -> Measured:

@@ -49,6 +49,7 @@ def phase_views(db: Session, session: StudySession, *, blinded: bool) -> list[Ph
             kind=phase.kind,
             limb=phase.limb,
             latency_ms=None if blinded else phase.latency_ms,
+            body=None if blinded else phase.body,
             status=phase.status,
             active_s=phase.active_s,
             completions=completions.get(phase.phase_id, 0),

@@ -111,6 +111,7 @@ class StepView(BaseModel):
     title: str
     block: int | None
     latency_ms: float | None
+    body: str | None
     limb: LimbName | None
     preparation_s: float | None
     duration_s: float | None
@@ -184,6 +185,7 @@ class PhaseView(BaseModel):
     kind: StepKind
     limb: LimbName | None
     latency_ms: float | None
+    body: str | None
     status: PhaseStatus
     active_s: float
     completions: int

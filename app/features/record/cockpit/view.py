@@ -179,6 +179,7 @@ def _step(
         title=_text(step.title, "en"),
         block=step.block,
         latency_ms=None if blinded else step.latency_ms,
+        body=None if blinded else step.body,
         limb=step.limb,
         preparation_s=step.preparation_s,
         duration_s=step.duration_s,

@@ -7,7 +7,7 @@ to the event log and is removed by an erasure.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -15,7 +15,7 @@ from sqlalchemy.orm import Session
 
 from app.errors import Conflict, InvalidInput
 from app.features.movement.avatar import configuration_by_hash
-from app.features.movement.humanoids import figure_by_hash
+from app.features.movement.humanoids import body_by_name, figure_by_hash
 from app.features.record.sessions import (
     RecordAvatar,
     apply_command,
@@ -27,7 +27,7 @@ from app.features.record.sessions import (
 )
 from app.platform.access import session_by_id
 from app.platform.context import AppContext
-from app.protocol import Tasks
+from app.protocol import BodyName, StudyProtocol, Tasks
 from app.protocol.avatar import AvatarFile, file_of
 from app.science.avatar.body import BodyError, Figure
 from app.science.avatar.configuration import DEFAULT_OPTIONS, Configuration
@@ -40,13 +40,15 @@ class AvatarWish(BaseModel):
     """A request for a physics avatar: the participant's stature and any other lengths measured.
 
     `segments_m`: lengths by the names of docs/avatar-configuration.md; lengths left out follow from
-    the stature.
+    the stature. `body`: the body to wear, one of those that the study's conditions name; left out,
+    that of the avatar's configuration.
     """
 
     model_config = ConfigDict(extra="forbid")
 
     stature_m: Annotated[float, Field(ge=0.5, le=2.6, allow_inf_nan=False)]
     segments_m: Annotated[dict[str, Length], Field(max_length=40)] = {}
+    body: BodyName | None = None
 
 
 class SessionAvatar(BaseModel):
@@ -54,10 +56,11 @@ class SessionAvatar(BaseModel):
 
     `mjcf` is the MuJoCo model with the boxes of all tasks, each named after its surface; the client
     shows those of the current phase. `model_hash` is the SHA-256 of its bytes and
-    `configuration_hash` that of the configuration, both as recorded. Added latency is set while the
-    simulation runs, up to `longest_delay_s`. `standing_hips_m`: the height of the model's hips when
-    it stands; since a model may have other leg lengths than the participant, the participant's hip
-    height is scaled to it.
+    `configuration_hash` that of the session's configuration, both as recorded. `body` is the
+    requested body and `humanoid` the hash of its model; `configuration` is the session's with that
+    model. Added latency is set while the simulation runs, up to `longest_delay_s`.
+    `standing_hips_m`: the height of the model's hips when it stands; since a model may have other
+    leg lengths than the participant, the participant's hip height is scaled to it.
     """
 
     stature_m: float
@@ -67,6 +70,8 @@ class SessionAvatar(BaseModel):
     mjcf: str
     longest_delay_s: float
     standing_hips_m: float
+    body: str | None = None
+    humanoid: str | None = None
 
 
 CONTENT = "avatar"
@@ -86,7 +91,8 @@ def prepare(db: Session, session_id: str, request: AvatarWish) -> PreparedAvatar
     """Build the session's physics avatar; call this before opening the write transaction.
 
     Building takes too long for a write transaction, which others wait for. Raises Conflict if the
-    session's avatar is not a physics avatar, and InvalidInput for lengths that no body has.
+    session's avatar is not a physics avatar, and InvalidInput for lengths that no body has and for
+    a body that no condition of the study names.
     """
     session = session_by_id(db, session_id)
     if session.avatar_configuration_hash is None:
@@ -97,6 +103,7 @@ def prepare(db: Session, session_id: str, request: AvatarWish) -> PreparedAvatar
         )
     configuration = configuration_by_hash(db, session.avatar_configuration_hash)
     protocol = protocol_of_session(db, session)
+    configuration = _with_body(db, configuration, protocol, request.body)
     largest_s = max(one.latency_ms for one in protocol.conditions) / MS_PER_S
     longest_s = max(largest_s, DEFAULT_OPTIONS.longest_delay_s)
     stature_m = round(request.stature_m, 3)
@@ -110,6 +117,8 @@ def prepare(db: Session, session_id: str, request: AvatarWish) -> PreparedAvatar
         mjcf=model.mjcf,
         longest_delay_s=longest_s,
         standing_hips_m=model.body.parts["Hips"].joint_m[1],
+        body=request.body,
+        humanoid=configuration.humanoid,
     )
     return PreparedAvatar(avatar, request.segments_m)
 
@@ -117,7 +126,7 @@ def prepare(db: Session, session_id: str, request: AvatarWish) -> PreparedAvatar
 def record_avatar(
     db: Session, context: AppContext, session_id: str, prepared: PreparedAvatar, actor: str
 ) -> None:
-    """Record the model of an avatar, unless it is the same as the last one recorded.
+    """Record the model of an avatar, unless it is the last one recorded for the same body.
 
     Raises Withdrawn and the other errors that apply to everything a headset sends.
     """
@@ -125,10 +134,11 @@ def record_avatar(
     require_capture(db, session_id)
     avatar = prepared.avatar
     recorded = [content_body(row) for row in contents_of(db, session.id, CONTENT)]
-    last = recorded[-1] if recorded else None
-    if isinstance(last, dict) and last.get("model_hash") == avatar.model_hash:
+    own = [one for one in recorded if isinstance(one, dict) and one.get("body") == avatar.body]
+    if own and own[-1].get("model_hash") == avatar.model_hash:
         return
     body = {
+        **({} if avatar.body is None else {"body": avatar.body, "humanoid": avatar.humanoid}),
         "stature_m": avatar.stature_m,
         "segments_m": dict(prepared.segments_m),
         "configuration_hash": avatar.configuration_hash,
@@ -137,8 +147,26 @@ def record_avatar(
     }
     now = context.clock.utc_now()
     content = store_content(db, session_id=session.id, kind=CONTENT, body=body, by=actor, now=now)
-    command = RecordAvatar(configuration_hash=avatar.configuration_hash, content=content)
+    command = RecordAvatar(
+        configuration_hash=avatar.configuration_hash, content=content, body=avatar.body
+    )
     apply_command(db, context, session, command, actor=actor)
+
+
+def _with_body(
+    db: Session, configuration: Configuration, protocol: StudyProtocol, body: str | None
+) -> Configuration:
+    """Return the configuration with the model of the named body; unchanged for None."""
+    if body is None:
+        return configuration
+    if body not in protocol.bodies:
+        raise InvalidInput(
+            f"no condition of this study wears the body {body!r}",
+            value=body,
+            valid=list(protocol.bodies),
+            remedy="Request one of these, or leave 'body' out for that of the configuration.",
+        )
+    return replace(configuration, humanoid=body_by_name(db, body).hash)
 
 
 def _built(

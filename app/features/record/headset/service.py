@@ -71,6 +71,7 @@ def welcome(db: Session, session_id: str, hello: Hello, now: datetime) -> Welcom
         },
         positions=positions_of(db, session_id),
         state=headset_state(db, session),
+        bodies=protocol.bodies,
     )
 
 
@@ -181,4 +182,5 @@ def _phase_order(
         pausing=phase.pausing,
         resuming=phase.resuming,
         until_completions=step.until_completions,
+        body=step.body,
     )

@@ -19,7 +19,7 @@ from app.features.record.sessions.engine import Event, event_from_json, event_to
 from app.models import SessionEvent
 
 FIRST_HASH = "0" * 64
-CONDITION_FIELDS = frozenset({"latency_ms"})
+CONDITION_FIELDS = frozenset({"latency_ms", "body"})
 """Fields of events that reveal the session's condition."""
 _APPENDED = insert(SessionEvent)
 _HASH_AT = select(SessionEvent.hash).where(

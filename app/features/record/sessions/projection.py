@@ -89,6 +89,7 @@ def _phase_row(session: StudySession, step: Step, event: e.PhasePrepared, now: d
         block=step.block,
         condition=step.condition,
         latency_ms=event.latency_ms,
+        body=event.body,
         status="preparing",
         prepared_at=now,
     )

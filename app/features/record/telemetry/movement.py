@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from sqlalchemy.orm import Session
 
 from app.features.movement.avatar import configuration_by_hash
-from app.features.movement.humanoids import figure_by_hash
+from app.features.movement.humanoids import body_by_name, figure_by_hash, parsed_figure
 from app.features.record.telemetry.encoding import DamagedChunkError, Frames
 from app.features.record.telemetry.frames import (
     concatenate,
@@ -23,7 +23,7 @@ from app.features.record.telemetry.frames import (
     iter_pieces,
     phase_frames,
 )
-from app.models import TelemetryChunk
+from app.models import Phase, TelemetryChunk
 from app.platform.access import session_by_id
 from app.science.avatar.targets import HingeReference
 from app.science.joint_error import ReferenceMotion
@@ -68,8 +68,9 @@ class Run:
 
 def phase_runs(db: Session, session_id: str, phase_id: int, *, history_s: float) -> list[Run]:
     """Return the runs of a phase, with target frames from `history_s` before its first frame."""
-    hinges = hinges_of(db, session_id)
     fingers = dict(phase_frames(db, session_id, StreamName.ACTUAL_FINGERS, phase_id))
+
+    hinges = hinges_of(db, session_id, phase_id)
     return [
         Run(
             epoch,
@@ -147,17 +148,22 @@ def _between(
             log.warning("%s of %s, seq %d: %s", stream, session_id, piece.seq_first, error)
 
 
-def hinges_of(db: Session, session_id: str) -> HingeReference | None:
-    """Return the hinges of the session's avatar configuration; None for a delayed copy.
+def hinges_of(db: Session, session_id: str, phase_id: int | None = None) -> HingeReference | None:
+    """Return the hinges of the session's avatar; None for a delayed copy.
 
-    The first call in a process loads the compiler, which takes a second, so do not call it on the
+    The body is the one that the phase wears, or without a phase that of the configuration. The
+    first call in a process loads the compiler, which takes a second, so do not call it on the
     event loop. Raises NotFound if there is no such session.
     """
     content_hash = session_by_id(db, session_id).avatar_configuration_hash
     if content_hash is None:
         return None
     configuration = configuration_by_hash(db, content_hash)
-    figure = figure_by_hash(db, configuration.humanoid)
+    phase = None if phase_id is None else db.get(Phase, (session_id, phase_id))
+    if phase is None or phase.body is None:
+        figure = figure_by_hash(db, configuration.humanoid)
+    else:
+        figure = parsed_figure(body_by_name(db, phase.body).figure)
     # Leave out parts that the model lacks, even if the configuration mentions them.
     parts = [part for part in configuration.parts if figure is None or part in figure.places_m]
     return HingeReference(configuration.in_force, parts)

@@ -42,6 +42,7 @@ def dashboard_of(
     `group` limits the result to one group of figures. Only the tables that these figures need are
     read from `material`.
     """
+    chosen = material.with_body(chosen)
     filtered = material.chosen(chosen)
     return DashboardFigures(
         kind=material.kind,
@@ -60,6 +61,7 @@ def drawings_of(
     material: Material, chosen: FigureFilter = NO_FILTER, group: FigureGroup | None = None
 ) -> Iterator[Drawing]:
     """Yield the figures of one or of all groups, each marked with what the filter selected."""
+    chosen = material.with_body(chosen)
     prefix = TITLE_PREFIX[material.kind]
     note = f"{chosen.words()} {BLINDED_NOTE if material.blinded else ''}".strip()
     rows = Rows(material.chosen(chosen), invalid=chosen.rows == "all")
@@ -94,6 +96,7 @@ def _choices(material: Material) -> FilterChoices:
         participants=sorted(set(sessions["participant_code"])),
         orders=orders_of(material.protocol),
         limbs=sorted(material.limbs, reverse=True),
+        bodies=list(material.bodies),
         first_day=None if sessions.empty else days.min(),
         last_day=None if sessions.empty else days.max(),
     )

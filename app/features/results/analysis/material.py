@@ -6,7 +6,7 @@ page need few of them.
 """
 
 from collections import OrderedDict
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 
 import pandas as pd
@@ -14,7 +14,7 @@ from sqlalchemy import URL, select
 from sqlalchemy.orm import Session
 
 from app.features.design.instruments import instrument_of
-from app.features.design.studies import newest_version, protocol_of, study_by_key
+from app.features.design.studies import newest_version, protocol_of, study_by_key, versions_of
 from app.features.results.analysis.schemas import DashboardKind, FigureFilter
 from app.features.results.analysis.tables import (
     alarms_table,
@@ -33,6 +33,8 @@ from app.platform.access import hidden_sessions
 from app.protocol import StudyProtocol
 from app.science.instruments import Instrument
 
+OWN_BODY = "configuration"
+"""What the body of the avatar's configuration is called where a body has to be chosen."""
 MAX_CACHED = 3
 """Number of studies and kinds whose tables are cached; a thousand sessions take about 200 MB."""
 READ: Mapping[str, Callable[[Session, str, DashboardKind], pd.DataFrame]] = {
@@ -67,7 +69,11 @@ class Material:
     """The tables of a study's sessions of one kind, with every row, valid or not.
 
     `instruments` by (key, version). `tables` by the names in `READ`. `hidden`: sessions whose
-    condition must stay blinded, whichever version of the study they ran.
+    condition must stay blinded, whichever version of the study they ran. `worn`: the body of each
+    condition of each version (number, key).
+
+    Figures and tests are over latency. If conditions share a latency and differ in their bodies,
+    they are made of one body at a time (`of_body`), so that no two conditions are ever mixed.
     """
 
     protocol: StudyProtocol
@@ -75,6 +81,14 @@ class Material:
     tables: Tables
     instruments: Mapping[tuple[str, int], Instrument]
     hidden: frozenset[str] = frozenset()
+    worn: Mapping[tuple[int, str], str] = field(default_factory=dict)
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """Return the bodies to look at one at a time; none if latencies tell conditions apart."""
+        if self.protocol.has_latencies_apart:
+            return ()
+        return tuple(dict.fromkeys(one.body or OWN_BODY for one in self.protocol.conditions))
 
     @property
     def sessions(self) -> pd.DataFrame:
@@ -143,7 +157,20 @@ class Material:
         candidates = self.visible if chosen.order is not None else self.sessions
         sessions = _sessions(candidates, chosen)
         ids = set(sessions["session_id"])
-        return self._of(sessions, ids, chosen.limb)
+        found = self._of(sessions, ids, chosen.limb)
+        return found if chosen.body is None else found.of_body(chosen.body)
+
+    def with_body(self, chosen: FigureFilter) -> FigureFilter:
+        """Return a filter that chooses a body where one has to be chosen."""
+        if chosen.body is not None or not self.bodies:
+            return chosen
+        return chosen.model_copy(update={"body": self.bodies[0]})
+
+    def of_body(self, body: str) -> "Material":
+        """Return the rows of phases in which a body was worn, and those outside of the blocks."""
+        conditions = {place for place, worn in self.worn.items() if worn == body}
+        tables = Tables(lambda name: _rows_of(self.tables[name], conditions))
+        return replace(self, tables=tables)
 
     def of_sessions(self, ids: set[str]) -> "Material":
         """Return the rows that belong to these sessions."""
@@ -190,7 +217,12 @@ class _Reader:
         study = study_by_key(self.db, self.study_key)
         protocol = protocol_of(newest_version(self.db, study))
         instruments, hidden = _instruments(self.db), hidden_sessions(self.db, study)
-        return Material(protocol, self.kind, Tables(self._read), instruments, hidden)
+        worn = {
+            (version.number, one.key): one.body or OWN_BODY
+            for version in versions_of(self.db, study)
+            for one in protocol_of(version).conditions
+        }
+        return Material(protocol, self.kind, Tables(self._read), instruments, hidden, worn)
 
     def _read(self, name: str) -> pd.DataFrame:
         with shared_contexts(self.contexts):
@@ -242,6 +274,14 @@ def _sessions(sessions: pd.DataFrame, chosen: FigureFilter) -> pd.DataFrame:
     if chosen.until is not None:
         mask &= days <= chosen.until
     return sessions[mask]
+
+
+def _rows_of(rows: pd.DataFrame, conditions: Collection[tuple[int, str]]) -> pd.DataFrame:
+    """Return the rows of these conditions (version, key), and those of no condition."""
+    if "condition" not in rows.columns:
+        return rows
+    places = zip(rows["study_version"], rows["condition"], strict=True)
+    return rows[[key is None or (version, key) in conditions for version, key in places]]
 
 
 def _rows(rows: pd.DataFrame, ids: set[str], limb: str | None) -> pd.DataFrame:

@@ -21,7 +21,9 @@ class FigureFilter(BaseModel):
     `rows`: "valid" leaves out what does not count (sessions that were broken off or are not valid
     by the study's rules, superseded and skipped steps), "all" draws it too. `since` and `until`:
     the first and last day, in UTC, on which a session was created. `order`: added latencies in ms
-    in the order of the blocks, as in "0 125 350".
+    in the order of the blocks, as in "0 125 350". `body`: only phases in which this body was worn;
+    in a study whose conditions share latencies the first body if it is left out, because figures
+    are drawn over latency.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -32,6 +34,7 @@ class FigureFilter(BaseModel):
     since: date | None = None
     until: date | None = None
     limb: LimbChoice | None = None
+    body: Annotated[str | None, Field(max_length=80)] = None
 
     @property
     def is_all(self) -> bool:
@@ -43,6 +46,8 @@ class FigureFilter(BaseModel):
         parts = [*self._participant_parts(), *self._period_parts()]
         if self.limb is not None:
             parts.append(f"the {self.limb} task")
+        if self.body is not None:
+            parts.append(f"the body {self.body}")
         chosen = f"Only {', '.join(parts)}." if parts else ""
         everything = "Invalid rows are included, too (broken off, not valid, superseded, skipped)."
         return f"{chosen} {everything if self.rows == 'all' else ''}".strip()
@@ -54,7 +59,8 @@ class FigureFilter(BaseModel):
             more = len(self.participant) - _SHOWN
             parts.append(f"participants {shown}{f' and {more} more' if more > 0 else ''}")
         if self.order is not None:
-            parts.append(f"order {self.order.replace(' ', ' → ')} ms")
+            unit = " ms" if self.order.replace(" ", "").replace(".", "").isdigit() else ""
+            parts.append(f"order {self.order.replace(' ', ' → ')}{unit}")
         return parts
 
     def _period_parts(self) -> list[str]:
@@ -104,12 +110,14 @@ class FigureView(BaseModel):
 class FilterChoices(BaseModel):
     """The values that the filter can take.
 
-    They are participant codes, orders as "0 125 350", limbs, and the first and last day in UTC.
+    They are participant codes, orders as "0 125 350", limbs, bodies, and the first and last day in
+    UTC. There are bodies if conditions share latencies and differ in their bodies.
     """
 
     participants: list[str]
     orders: list[str]
     limbs: list[str]
+    bodies: list[str]
     first_day: date | None
     last_day: date | None
 

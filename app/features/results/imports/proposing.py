@@ -90,7 +90,8 @@ def study_conditions(words: Iterable[str], protocol: StudyProtocol) -> dict[str,
         for one in protocol.conditions:
             number = re.fullmatch(r"(\d+(?:\.\d+)?)\s*(?:ms)?", word.strip().lower())
             labels = {_bare(text) for text in dict(one.label).values()}
-            latency = number is not None and float(number[1]) == one.latency_ms
+            same = number is not None and float(number[1]) == one.latency_ms
+            latency = same and protocol.has_latencies_apart
             if latency or _bare(word) in {_bare(one.key), *labels}:
                 found[word] = one.key
                 break

@@ -188,6 +188,6 @@ def placed_movement(database: Database, session_id: str, phase_id: int, *, full:
             clock.duration_s,
             build_skeleton(stature_of(db, session) or USUAL_STATURE_M),
             full=full,
-            hinges=hinges_of(db, session_id) if full else None,
+            hinges=hinges_of(db, session_id, phase_id) if full else None,
         )
         return encode(movement_of(db, recording))

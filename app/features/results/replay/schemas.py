@@ -123,6 +123,7 @@ class Replay(BaseModel):
     status: PhaseStatus
     view: View
     latency_ms: float | None
+    body: str | None
     duration_s: float
     active_s: float
     time_scale: float

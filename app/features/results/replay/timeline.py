@@ -53,6 +53,7 @@ def replay_of(db: Session, phase_view: Replayable) -> Replay:
         status=phase.status,
         view=phase_view.view,
         latency_ms=phase.latency_ms if phase_view.full else None,
+        body=phase.body if phase_view.full else None,
         duration_s=clock.duration_s,
         active_s=phase.active_s,
         time_scale=session.time_scale,

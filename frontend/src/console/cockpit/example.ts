@@ -8,6 +8,7 @@ const step = (index: number, kind: Step["kind"], more: Partial<Step> = {}): Step
   title: kind,
   block: null,
   latency_ms: null,
+  body: null,
   limb: null,
   preparation_s: null,
   duration_s: null,

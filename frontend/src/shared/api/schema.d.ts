@@ -634,7 +634,7 @@ export interface paths {
         };
         /**
          * Get Humanoid
-         * @description Return one humanoid model: the body parts it has and lacks, its lengths and convex pieces.
+         * @description Return one body: the parts it has and lacks, its lengths, convex pieces, licence, checks.
          */
         readonly get: operations["get_humanoid_api_humanoids__content_hash__get"];
         readonly put?: never;
@@ -642,7 +642,11 @@ export interface paths {
         readonly delete?: never;
         readonly options?: never;
         readonly head?: never;
-        readonly patch?: never;
+        /**
+         * Patch Humanoid
+         * @description Name a body, which is possible once, give it a title, or confirm terms of its licence.
+         */
+        readonly patch: operations["patch_humanoid_api_humanoids__content_hash__patch"];
         readonly trace?: never;
     };
     readonly "/api/humanoids/{content_hash}/binding": {
@@ -677,6 +681,46 @@ export interface paths {
          * @description Download the model's file as it was uploaded.
          */
         readonly get: operations["get_humanoid_file_api_humanoids__content_hash__file_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/humanoids/{content_hash}/measure": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Measure
+         * @description Read the stored file again for its licence and counts, which older releases did not read.
+         */
+        readonly post: operations["post_measure_api_humanoids__content_hash__measure_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/humanoids/{content_hash}/use": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Humanoid Use
+         * @description Return the configurations and studies that wear a body.
+         */
+        readonly get: operations["get_humanoid_use_api_humanoids__content_hash__use_get"];
         readonly put?: never;
         readonly post?: never;
         readonly delete?: never;
@@ -3227,9 +3271,12 @@ export interface components {
          * @description A request for a physics avatar: the participant's stature and any other lengths measured.
          *
          *     `segments_m`: lengths by the names of docs/avatar-configuration.md; lengths left out follow from
-         *     the stature.
+         *     the stature. `body`: the body to wear, one of those that the study's conditions name; left out,
+         *     that of the avatar's configuration.
          */
         readonly AvatarWish: {
+            /** Body */
+            readonly body?: string | null;
             /**
              * Segments M
              * @default {}
@@ -3296,6 +3343,64 @@ export interface components {
             readonly parts: readonly string[];
             /** Stature M */
             readonly stature_m: number;
+        };
+        /**
+         * BodyChange
+         * @description A change of a body: its name, which can be given only once, its title, confirmed terms.
+         */
+        readonly BodyChange: {
+            /**
+             * Confirmed
+             * @default []
+             */
+            readonly confirmed: readonly ("only_author" | "only_licensed_people")[];
+            /** Name */
+            readonly name?: string | null;
+            /** Title */
+            readonly title?: string | null;
+        };
+        /**
+         * BodyCheck
+         * @description One thing that was checked about a body.
+         *
+         *     `parts`: the body parts it is about. `value` and `limit`: what was measured, and what it is
+         *     compared with. `notes` are sentences.
+         */
+        readonly BodyCheck: {
+            /**
+             * Key
+             * @enum {string}
+             */
+            readonly key: "parts" | "fingers" | "rest_pose" | "proportions" | "triangles" | "hulls" | "licence" | "wearing";
+            /** Limit */
+            readonly limit?: number | null;
+            /**
+             * Notes
+             * @default []
+             */
+            readonly notes: readonly string[];
+            /**
+             * Parts
+             * @default []
+             */
+            readonly parts: readonly string[];
+            /**
+             * Status
+             * @enum {string}
+             */
+            readonly status: "good" | "note" | "warn" | "unknown";
+            /** Value */
+            readonly value?: number | null;
+        };
+        /**
+         * BodyUse
+         * @description Who wears a body: configurations of avatars, and studies that the reader may see.
+         */
+        readonly BodyUse: {
+            /** Configurations */
+            readonly configurations: readonly components["schemas"]["ConfigurationUse"][];
+            /** Studies */
+            readonly studies: readonly components["schemas"]["WornBy"][];
         };
         /**
          * CableView
@@ -3834,6 +3939,36 @@ export interface components {
             readonly n: number;
             /** Sd */
             readonly sd: number | null;
+        };
+        /**
+         * ConfigurationUse
+         * @description A version of an avatar's configuration that has the body.
+         */
+        readonly ConfigurationUse: {
+            /** Key */
+            readonly key: string;
+            /** Title */
+            readonly title: string;
+            /** Version */
+            readonly version: number;
+        };
+        /**
+         * ConfirmationView
+         * @description A term of a body's licence that somebody has confirmed to be met.
+         */
+        readonly ConfirmationView: {
+            /**
+             * At
+             * Format: date-time
+             */
+            readonly at: string;
+            /** By */
+            readonly by: string;
+            /**
+             * Term
+             * @enum {string}
+             */
+            readonly term: "only_author" | "only_licensed_people";
         };
         /**
          * ConsentForm
@@ -4533,9 +4668,13 @@ export interface components {
          *     `rows`: "valid" leaves out what does not count (sessions that were broken off or are not valid
          *     by the study's rules, superseded and skipped steps), "all" draws it too. `since` and `until`:
          *     the first and last day, in UTC, on which a session was created. `order`: added latencies in ms
-         *     in the order of the blocks, as in "0 125 350".
+         *     in the order of the blocks, as in "0 125 350". `body`: only phases in which this body was worn;
+         *     in a study whose conditions share latencies the first body if it is left out, because figures
+         *     are drawn over latency.
          */
         readonly FigureFilter: {
+            /** Body */
+            readonly body?: string | null;
             /** Limb */
             readonly limb?: ("hand" | "foot") | null;
             /** Order */
@@ -4605,9 +4744,12 @@ export interface components {
          * FilterChoices
          * @description The values that the filter can take.
          *
-         *     They are participant codes, orders as "0 125 350", limbs, and the first and last day in UTC.
+         *     They are participant codes, orders as "0 125 350", limbs, bodies, and the first and last day in
+         *     UTC. There are bodies if conditions share latencies and differ in their bodies.
          */
         readonly FilterChoices: {
+            /** Bodies */
+            readonly bodies: readonly string[];
             /** First Day */
             readonly first_day: string | null;
             /** Last Day */
@@ -4848,12 +4990,13 @@ export interface components {
         };
         /**
          * HumanoidListed
-         * @description A humanoid model in a list.
+         * @description A body in a list.
          *
-         *     `content_hash` is the SHA-256 of its file, by which configurations refer to it. `stature_m` is
-         *     its own; an avatar has that of its participant. `bones_by`: whether bones were identified by
-         *     VRM's map or by their names. Counts are of body parts that the model has, and of those with a
-         *     convex piece.
+         *     `content_hash` is the SHA-256 of its file, by which configurations refer to it, `name` what
+         *     studies call it, null until it is given. `stature_m` is its own; an avatar has that of its
+         *     participant. `bones_by`: whether bones were identified by VRM's map or by their names. Counts
+         *     are of body parts that the model has, and of those with a convex piece; those of triangles,
+         *     vertices and textures are null if an earlier release has measured it.
          */
         readonly HumanoidListed: {
             /**
@@ -4874,6 +5017,14 @@ export interface components {
             readonly file_name: string;
             /** Left Fingers */
             readonly left_fingers: number;
+            readonly licence: components["schemas"]["LicenceView"] | null;
+            /** Name */
+            readonly name: string | null;
+            /**
+             * Origin
+             * @enum {string}
+             */
+            readonly origin: "shipped" | "uploaded";
             /** Parts */
             readonly parts: number;
             /** Pieces */
@@ -4884,10 +5035,18 @@ export interface components {
             readonly size_bytes: number;
             /** Stature M */
             readonly stature_m: number;
+            /** Textures */
+            readonly textures: number | null;
+            /** Title */
+            readonly title: string | null;
+            /** Triangles */
+            readonly triangles: number | null;
+            /** Vertices */
+            readonly vertices: number | null;
         };
         /**
          * HumanoidPage
-         * @description A page of humanoid models, newest first, and the total number of models.
+         * @description A page of bodies, newest first, and the total number of bodies.
          */
         readonly HumanoidPage: {
             /** Humanoids */
@@ -4897,15 +5056,18 @@ export interface components {
         };
         /**
          * HumanoidView
-         * @description A humanoid model in full.
+         * @description A body in full.
          *
          *     `present` and `absent` are the body parts it has and lacks; those in `simple` have too little
          *     skin for a convex piece and keep capsules and boxes. `segments_m` are its lengths. `notes` are
-         *     sentences on anything unusual in the file.
+         *     sentences on anything unusual in the file. `asked`: the terms of its licence that must be
+         *     confirmed before it is worn, `confirmations` those that were.
          */
         readonly HumanoidView: {
             /** Absent */
             readonly absent: readonly string[];
+            /** Asked */
+            readonly asked: readonly ("only_author" | "only_licensed_people")[];
             /**
              * At
              * Format: date-time
@@ -4918,6 +5080,10 @@ export interface components {
             readonly bones_by: "vrm" | "names";
             /** By */
             readonly by: string;
+            /** Checks */
+            readonly checks: readonly components["schemas"]["BodyCheck"][];
+            /** Confirmations */
+            readonly confirmations: readonly components["schemas"]["ConfirmationView"][];
             /** Content Hash */
             readonly content_hash: string;
             /** Convex Pieces */
@@ -4926,8 +5092,16 @@ export interface components {
             readonly file_name: string;
             /** Left Fingers */
             readonly left_fingers: number;
+            readonly licence: components["schemas"]["LicenceView"] | null;
+            /** Name */
+            readonly name: string | null;
             /** Notes */
             readonly notes: readonly string[];
+            /**
+             * Origin
+             * @enum {string}
+             */
+            readonly origin: "shipped" | "uploaded";
             /** Parts */
             readonly parts: number;
             /** Pieces */
@@ -4946,6 +5120,14 @@ export interface components {
             readonly size_bytes: number;
             /** Stature M */
             readonly stature_m: number;
+            /** Textures */
+            readonly textures: number | null;
+            /** Title */
+            readonly title: string | null;
+            /** Triangles */
+            readonly triangles: number | null;
+            /** Vertices */
+            readonly vertices: number | null;
         };
         /**
          * ImportDetail
@@ -5448,6 +5630,26 @@ export interface components {
              * @enum {string}
              */
             readonly side: "left" | "right";
+        };
+        /**
+         * LicenceView
+         * @description What the file of a body says of its author and terms; empty or null where it says nothing.
+         *
+         *     `permissions`: what its author allows, by kind of use.
+         */
+        readonly LicenceView: {
+            /** Authors */
+            readonly authors: readonly string[];
+            /** Name */
+            readonly name: string | null;
+            /** Permissions */
+            readonly permissions: {
+                readonly [key: string]: "allowed" | "forbidden" | "unknown";
+            };
+            /** Title */
+            readonly title: string | null;
+            /** Url */
+            readonly url: string | null;
         };
         /**
          * LookRequest
@@ -6234,6 +6436,8 @@ export interface components {
             readonly active_s: number;
             /** Attempt */
             readonly attempt: number;
+            /** Body */
+            readonly body: string | null;
             /** Completions */
             readonly completions: number;
             /** Ended At */
@@ -6778,6 +6982,8 @@ export interface components {
             readonly administrations: readonly string[];
             /** Attempt */
             readonly attempt: number;
+            /** Body */
+            readonly body: string | null;
             /** Completions */
             readonly completions: readonly components["schemas"]["ReplayCompletion"][];
             /** Contacts */
@@ -7127,15 +7333,20 @@ export interface components {
          *
          *     `mjcf` is the MuJoCo model with the boxes of all tasks, each named after its surface; the client
          *     shows those of the current phase. `model_hash` is the SHA-256 of its bytes and
-         *     `configuration_hash` that of the configuration, both as recorded. Added latency is set while the
-         *     simulation runs, up to `longest_delay_s`. `standing_hips_m`: the height of the model's hips when
-         *     it stands; since a model may have other leg lengths than the participant, the participant's hip
-         *     height is scaled to it.
+         *     `configuration_hash` that of the session's configuration, both as recorded. `body` is the
+         *     requested body and `humanoid` the hash of its model; `configuration` is the session's with that
+         *     model. Added latency is set while the simulation runs, up to `longest_delay_s`.
+         *     `standing_hips_m`: the height of the model's hips when it stands; since a model may have other
+         *     leg lengths than the participant, the participant's hip height is scaled to it.
          */
         readonly SessionAvatar: {
+            /** Body */
+            readonly body?: string | null;
             readonly configuration: components["schemas"]["AvatarFile"];
             /** Configuration Hash */
             readonly configuration_hash: string;
+            /** Humanoid */
+            readonly humanoid?: string | null;
             /** Longest Delay S */
             readonly longest_delay_s: number;
             /** Mjcf */
@@ -7524,6 +7735,8 @@ export interface components {
             readonly attempt: number;
             /** Block */
             readonly block: number | null;
+            /** Body */
+            readonly body: string | null;
             readonly consent?: components["schemas"]["ConsentForm"] | null;
             /** Duration S */
             readonly duration_s: number | null;
@@ -8434,6 +8647,18 @@ export interface components {
          */
         readonly WhoView: {
             readonly account: components["schemas"]["AccountView"] | null;
+        };
+        /**
+         * WornBy
+         * @description A study whose newest version wears a body in its conditions or in its configuration.
+         */
+        readonly WornBy: {
+            /** Key */
+            readonly key: string;
+            /** Title */
+            readonly title: string;
+            /** Version */
+            readonly version: number;
         };
     };
     responses: never;
@@ -10080,6 +10305,50 @@ export interface operations {
             };
         };
     };
+    readonly patch_humanoid_api_humanoids__content_hash__patch: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly content_hash: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["BodyChange"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["HumanoidView"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
     readonly get_humanoid_binding_api_humanoids__content_hash__binding_get: {
         readonly parameters: {
             readonly query?: never;
@@ -10147,6 +10416,86 @@ export interface operations {
                 };
                 content: {
                     readonly "application/octet-stream": string;
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_measure_api_humanoids__content_hash__measure_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly content_hash: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["HumanoidView"];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_humanoid_use_api_humanoids__content_hash__use_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly content_hash: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["BodyUse"];
                 };
             };
             /** @description Cannot be stored now; nothing was stored. */
@@ -11878,6 +12227,7 @@ export interface operations {
     readonly get_dashboard_api_studies__key__dashboard_get: {
         readonly parameters: {
             readonly query?: {
+                readonly body?: string | null;
                 readonly group?: ("progress" | "embodiment" | "answers" | "tasks" | "movement" | "quality") | null;
                 readonly kind?: "people" | "simulated" | "test";
                 readonly limb?: ("hand" | "foot") | null;
@@ -11927,6 +12277,7 @@ export interface operations {
     readonly get_figure_rows_api_studies__key__dashboard__figure__rows_get: {
         readonly parameters: {
             readonly query?: {
+                readonly body?: string | null;
                 readonly kind?: "people" | "simulated" | "test";
                 readonly limb?: ("hand" | "foot") | null;
                 readonly order?: string | null;

@@ -20,6 +20,7 @@ from app.features.design.studies.schemas import (
 )
 from app.features.design.studies.service import check_study
 from app.features.movement.avatar import newest_numbers
+from app.features.movement.humanoids import named_bodies
 from app.platform.config_problems import invalid_config, problem_views
 from app.protocol import (
     BY_HAND_S,
@@ -90,7 +91,9 @@ def check(db: Session, text: str) -> CheckResult:
     instruments = parsed_instruments(db)
     tree, lines = _tree(text)
     try:
-        loaded = load_study(text, instruments=instruments, avatars=newest_numbers(db))
+        loaded = load_study(
+            text, instruments=instruments, avatars=newest_numbers(db), bodies=named_bodies(db)
+        )
     except ConfigError as error:
         return CheckResult(ok=False, problems=problem_views(error), tree=tree, lines=lines)
     protocol = loaded.protocol

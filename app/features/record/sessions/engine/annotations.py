@@ -26,8 +26,9 @@ def decide_annotation(state: SessionState, command: c.Command) -> list[e.Event] 
             return [e.NoteAdded(**_ref(content))]
         case c.LiftBlinding(content=content):
             return [e.BlindingLifted(**_ref(content))]
-        case c.RecordAvatar(configuration_hash=configuration_hash, content=content):
-            return [e.AvatarBuilt(configuration_hash=configuration_hash, **_ref(content))]
+        case c.RecordAvatar(configuration_hash=configuration_hash, content=content, body=body):
+            built = e.AvatarBuilt(configuration_hash=configuration_hash, body=body, **_ref(content))
+            return [built]
         case c.OverrideCheck(check=check, content=content):
             return [e.CheckOverridden(check=check, **_ref(content))]
         case c.KeepRefusedForm(submission_id=submission_id, content=content):

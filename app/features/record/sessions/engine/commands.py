@@ -156,10 +156,14 @@ class AddNote(Command):
 
 @dataclass(frozen=True, kw_only=True)
 class RecordAvatar(Command):
-    """Record that the headset uses a physics avatar; `content` contains its model."""
+    """Record that the headset uses a physics avatar; `content` contains its model.
+
+    `body`: the body it has, by name; None for that of the configuration.
+    """
 
     configuration_hash: str
     content: ContentRef
+    body: str | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -161,6 +161,7 @@ def _begin(step: Step, state: SessionState, command: c.BeginPhase) -> list[e.Eve
             phase_id=state.next_phase_id,
             attempt=state.steps[step.index].attempt,
             latency_ms=step.latency_ms or 0.0,
+            body=step.body,
         )
     ]
 

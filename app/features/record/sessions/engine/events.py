@@ -77,13 +77,17 @@ class StepReopened(Event):
 
 @dataclass(frozen=True, kw_only=True)
 class PhasePrepared(Event):
-    """A timed phase was prepared; the headset counts down its preparation time."""
+    """A timed phase was prepared; the headset counts down its preparation time.
+
+    `body`: the body that the condition prescribes; None for that of the avatar's configuration.
+    """
 
     type = "phase_prepared"
     step: int
     phase_id: int
     attempt: int
     latency_ms: float
+    body: str | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -219,13 +223,15 @@ class NoteAdded(Event):
 class AvatarBuilt(Event):
     """The headset uses a physics avatar, identified by the hash of its configuration.
 
-    The content contains the stature it was built for and the model itself.
+    The content contains the stature it was built for and the model itself. `body`: the body it has,
+    by name; None for that of the configuration.
     """
 
     type = "avatar_built"
     configuration_hash: str
     content_id: str
     content_hash: str
+    body: str | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -371,7 +377,11 @@ _ADAPTERS = {name: TypeAdapter(cls) for name, cls in EVENT_TYPES.items()}
 
 def event_to_json(event: Event) -> dict[str, Any]:
     """Return the payload of an event; its type is stored separately."""
-    return asdict(event)
+    payload = asdict(event)
+    # Left out if not set, so that the logs of studies without bodies stay as they were.
+    if payload.get("body") is None:
+        payload.pop("body", None)
+    return payload
 
 
 def event_from_json(event_type: str, payload: dict[str, Any]) -> Event:

@@ -32,7 +32,11 @@ SESSIONS: tuple[Column, ...] = (
     ),
     _S.text("status", "Where it stands.", "planned, active, completed, aborted, withdrawn"),
     _S.text("language", "Language of the participant's texts.", "ISO 639-1 code"),
-    _S.text("order", "Added latencies in the order of the blocks, ms, separated by spaces."),
+    _S.text(
+        "order",
+        "Added latencies in the order of the blocks, ms, separated by spaces; the keys of the "
+        "conditions in a study whose conditions share latencies.",
+    ),
     _S.integer("slot_index", "Row of the counterbalancing ledger.", levels="0 and up"),
     _S.integer(
         "slot_block", "Block of the ledger: each holds every order once.", levels="0 and up"
@@ -65,6 +69,11 @@ PHASES: tuple[Column, ...] = (
     *phase_columns("phases"),
     _P.integer("step_index", "Step of the procedure.", levels="0 and up"),
     _P.text("step_key", "Name of the step in the procedure."),
+    _P.text(
+        "body",
+        "Body that the condition prescribes, by the name that it was given in the lab; empty if "
+        "the participant wore that of the avatar's configuration.",
+    ),
     _P.text(
         "status",
         "How far the phase came.",

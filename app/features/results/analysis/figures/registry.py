@@ -87,9 +87,10 @@ class Figure:
 
 def orders_of(protocol: StudyProtocol) -> list[str]:
     """Return every order of latencies in the design, as "0 125 350"."""
-    latencies = {condition.key: condition.latency_ms for condition in protocol.conditions}
-    slots = planned_slots(protocol)
-    return sorted({" ".join(f"{latencies[name]:g}" for name in order) for order, _ in slots})
+    levels = protocol.levels
+    return sorted(
+        {" ".join(levels[name] for name in order) for order, _ in planned_slots(protocol)}
+    )
 
 
 FIGURES: tuple[Figure, ...] = (

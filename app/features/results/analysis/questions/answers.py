@@ -32,6 +32,10 @@ DECLARED = (
     "The study's preregistered test is on the page Preregistration, with its exclusions. "
     "The tests on this page were not preregistered and are exploratory."
 )
+BODIES = (
+    "Conditions of this study share latencies and differ in their bodies: each test is made for "
+    "one body. A preregistered primary test compares all conditions."
+)
 OPEN = "Tests use valid completed sessions; open sessions may still change and are left out."
 SIMULATED = "These are simulated data: they test the analysis and say nothing about people."
 TEST = "These are test sessions; their results mean nothing."
@@ -51,15 +55,27 @@ def answers_of(material: Material) -> StatisticsResults:
         alpha=alpha,
         declared=declared is not None,
         notes=_notes(material),
-        measures=list(_measures(material, alpha)),
+        measures=list(_measures_by_body(material, alpha)),
     )
+
+
+def _measures_by_body(material: Material, alpha: float) -> Iterator[MeasureView]:
+    """Yield the results of each body on its own where conditions share latencies."""
+    if not material.bodies:
+        yield from _measures(material, alpha)
+    for body in material.bodies:
+        for one in _measures(material.of_body(body), alpha):
+            named = {"key": f"{one.key}_{body}", "title": f"{one.title}, body {body}"}
+            yield one.model_copy(update=named)
 
 
 def _notes(material: Material) -> list[str]:
     own = {"simulated": SIMULATED, "test": TEST}.get(material.kind, "")
     declared = "" if material.protocol.preregistration is None else DECLARED
     done = completed(material)
-    return [one for one in (declared, own, OPEN, limb_note(done.counting(done.phases))) if one]
+    bodies = BODIES if material.bodies else ""
+    notes = (declared, own, OPEN, bodies, limb_note(done.counting(done.phases)))
+    return [one for one in notes if one]
 
 
 def _measures(material: Material, alpha: float) -> Iterator[MeasureView]:

@@ -52,6 +52,7 @@ def _details(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
             Phase.session_id,
             Phase.phase_id,
             Phase.step_key,
+            Phase.body,
             Phase.active_s,
             Phase.paused_count,
             Phase.walk_back_count,
@@ -64,7 +65,7 @@ def _details(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
         .join(StudySession, StudySession.id == Phase.session_id)
         .where(of_kind(study, kind))
     )
-    names = ("step_key", "active_s", "paused_count", "walk_back_count", "client_started_s")
+    names = ("step_key", "body", "active_s", "paused_count", "walk_back_count", "client_started_s")
     times = ("client_ended_s", "prepared_at_utc", "started_at_utc", "ended_at_utc")
     return read(db, query, (*_KEYS, *names, *times))
 

@@ -41,9 +41,9 @@ def sessions_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
     frame = frame.merge(_details(db, study, kind), on="session_id")
     frame = frame.merge(_heights(db, study, kind), on="session_id", how="left")
     frame = frame.merge(_consents(db, study, kind), on="session_id", how="left")
-    latencies = _latencies(db, study)
+    levels = _levels(db, study)
     frame["order"] = [
-        " ".join(f"{latencies[version, key]:g}" for key in sequence or ())
+        " ".join(levels[version, key] for key in sequence or ())
         for version, sequence in zip(frame["study_version"], frame["sequence"], strict=True)
     ]
     frame["valid"] = frame["session_counts"]
@@ -138,12 +138,12 @@ def _consents(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=columns, dtype=object)
 
 
-def _latencies(db: Session, study: Study) -> dict[tuple[int, str], float]:
-    """Return the added latency in ms by study version and condition."""
+def _levels(db: Session, study: Study) -> dict[tuple[int, str], str]:
+    """Return what orders call each condition, by study version and key."""
     return {
-        (version.number, condition.key): condition.latency_ms
+        (version.number, key): level
         for version in versions_of(db, study)
-        for condition in protocol_of(version).conditions
+        for key, level in protocol_of(version).levels.items()
     }
 
 

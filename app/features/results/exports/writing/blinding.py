@@ -22,6 +22,7 @@ EMPTIED = frozenset(
         "slot_index",
         "condition",
         "latency_ms",
+        "body",
         "achieved_latency_ms",
         "achieved_latency_low_ms",
         "achieved_latency_high_ms",

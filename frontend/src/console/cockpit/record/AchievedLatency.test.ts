@@ -9,6 +9,7 @@ const phase = (more: Partial<PhaseSummary>): PhaseSummary => ({
   kind: "task",
   limb: "hand",
   latency_ms: 125,
+  body: null,
   status: "done",
   active_s: 60,
   completions: 3,

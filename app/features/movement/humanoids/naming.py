@@ -1,0 +1,103 @@
+"""Name bodies, and confirm what their licences ask for.
+
+A name is given once: studies and records refer to bodies by it, so it never comes to mean another
+body. The hash of the model's file stands beside it on every record.
+"""
+
+from datetime import datetime
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.errors import Conflict
+from app.features.movement.humanoids.licences import asked_terms, confirmed_with
+from app.features.movement.humanoids.schemas import BodyChange, BodyTitle, Term
+from app.features.movement.humanoids.service import humanoid_by_hash
+from app.features.people.audit import record
+from app.models import HumanoidRow
+
+_TERMS: dict[Term, str] = {
+    "only_author": "only its author may wear it",
+    "only_licensed_people": "only people to whom its author has given permission may wear it",
+}
+
+
+def change_body(
+    db: Session, actor: str, content_hash: str, change: BodyChange, now: datetime
+) -> None:
+    """Name a body, retitle it, or confirm terms of its licence; everything or nothing.
+
+    Raises NotFound, and Conflict if it has another name, if the name is another body's, or if a
+    term of its licence must be confirmed first.
+    """
+    row = humanoid_by_hash(db, content_hash, lock=True)
+    _confirm(db, actor, row, change.confirmed, now)
+    if change.name is not None and change.name != row.name:
+        _give_name(db, actor, row, change.name, now)
+    if change.title is not None and change.title != row.title:
+        _give_title(db, actor, row, change.title, now)
+
+
+def require_confirmed(row: HumanoidRow) -> None:
+    """Raise Conflict if a term of the body's licence must be confirmed before it is worn."""
+    asked = asked_terms(row)
+    if asked:
+        raise Conflict(
+            f"the licence of {row.name or row.file_name!r} says that {_TERMS[asked[0]]}",
+            value=row.hash,
+            valid=list(asked),
+            remedy="Open the body on the page Bodies and confirm that this is so.",
+        )
+
+
+def _confirm(db: Session, actor: str, row: HumanoidRow, terms: list[Term], now: datetime) -> None:
+    asked = asked_terms(row)
+    new = tuple(term for term in asked if term in terms)
+    if not new:
+        return
+    row.confirmed = confirmed_with(row, new, actor, now.isoformat())
+    _record(db, actor, "humanoid.confirmed", row, {"terms": list(new)}, now)
+
+
+def _give_name(db: Session, actor: str, row: HumanoidRow, name: str, now: datetime) -> None:
+    if row.name is not None:
+        raise Conflict(
+            f"this body is called {row.name!r}, and names of bodies never change",
+            value=name,
+            valid=row.name,
+            remedy="Records refer to the body by its name. Give it another title instead.",
+        )
+    other = db.scalar(select(HumanoidRow.hash).where(HumanoidRow.name == name))
+    if other is not None:
+        raise Conflict(
+            f"another body is called {name!r}",
+            value=name,
+            valid="a name that no other body has",
+            remedy="Choose another name; names of bodies are never given twice.",
+        )
+    require_confirmed(row)
+    row.name = name
+    _record(db, actor, "humanoid.named", row, {"name": name}, now)
+
+
+def _give_title(db: Session, actor: str, row: HumanoidRow, title: BodyTitle, now: datetime) -> None:
+    row.title = title
+    _record(db, actor, "humanoid.titled", row, {}, now)
+
+
+def _record(
+    db: Session,
+    actor: str,
+    action: str,
+    row: HumanoidRow,
+    details: dict[str, object],
+    now: datetime,
+) -> None:
+    record(
+        db,
+        actor=actor,
+        action=action,
+        subject=f"humanoid:{row.hash[:12]}",
+        details={"content": row.hash[:12], **details},
+        now=now,
+    )

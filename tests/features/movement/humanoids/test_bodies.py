@@ -1,0 +1,139 @@
+"""Tests of bodies: named once, confirmed where their licence asks for it, checked, and worn."""
+
+from dataclasses import replace
+
+import pytest
+from sqlalchemy import update
+
+from app.models import HumanoidRow
+from tests.api.people import sign_in
+from tests.features.lab import Json, Lab, error, ok
+from tests.features.movement.avatar.test_avatars import PATH as AVATARS
+from tests.features.movement.avatar.test_avatars import SHIPPED, as_json, new
+from tests.features.movement.avatar.test_studies import KEY, study
+from tests.features.movement.humanoids.test_humanoids import FOUR, HASH, PATH, upload
+
+STRICT = {
+    "title": "Strict",
+    "authors": ["A. Author"],
+    "name": None,
+    "url": None,
+    "permissions": {"wear_by_everybody": "forbidden", "wear_by_licensed_people": "forbidden"},
+}
+
+
+def change(lab: Lab, content_hash: str = HASH, **fields: object) -> Json:
+    """Change a body and return it."""
+    view: Json = ok(lab.operator.patch(f"{PATH}/{content_hash}", json=fields))
+    return view
+
+
+def set_columns(lab: Lab, content_hash: str = HASH, **values: object) -> None:
+    """Set columns of a body, as another release or another file would have."""
+    with lab.database.writing() as db:
+        db.execute(update(HumanoidRow).where(HumanoidRow.hash == content_hash).values(**values))
+
+
+def test_a_body_gets_its_name_once(fresh_lab: Lab) -> None:
+    """A name is given once, to one body only, and is on record with its file's hash."""
+    upload(fresh_lab)
+    other = upload(fresh_lab, FOUR, "four.vrm").json()["content_hash"]
+    assert change(fresh_lab, name="tall", title="The tall one")["name"] == "tall"
+    entries = ok(fresh_lab.operator.get("/api/audit"))["entries"]
+    assert [one["action"] for one in entries[:2]] == ["humanoid.titled", "humanoid.named"]
+    assert entries[1]["details"] == {"content": HASH[:12], "name": "tall"}
+    again = fresh_lab.operator.patch(f"{PATH}/{HASH}", json={"name": "short"})
+    assert error(again, 409, "conflict")["valid"] == "tall"
+    taken = fresh_lab.operator.patch(f"{PATH}/{other}", json={"name": "tall", "title": "Mine"})
+    assert "another body is called 'tall'" in error(taken, 409, "conflict")["message"]
+    listed = {one["content_hash"]: one for one in ok(fresh_lab.operator.get(PATH))["humanoids"]}
+    assert (listed[HASH]["name"], listed[HASH]["title"]) == ("tall", "The tall one")
+    assert (listed[other]["name"], listed[other]["title"]) == (None, None)
+    assert change(fresh_lab, name="tall", title="Tall")["title"] == "Tall"
+
+
+@pytest.mark.one_engine
+def test_names_of_bodies_are_keys(fresh_lab: Lab) -> None:
+    """A name with capitals, spaces or too many letters is refused; unknown bodies have no name."""
+    upload(fresh_lab)
+    for name in ("Tall", "a b", "", "1st", "x" * 81):
+        answer = fresh_lab.operator.patch(f"{PATH}/{HASH}", json={"name": name})
+        error(answer, 422, "invalid_input")
+    error(fresh_lab.operator.patch(f"{PATH}/{'0' * 64}", json={"name": "tall"}), 404, "not_found")
+
+
+@pytest.mark.one_engine
+def test_a_licence_that_restricts_wearing_must_be_confirmed(fresh_lab: Lab) -> None:
+    """A body that only its author may wear is named and configured after that is confirmed.
+
+    Who confirmed it, and when, is with the body and in the audit trail.
+    """
+    upload(fresh_lab)
+    set_columns(fresh_lab, licence=STRICT)
+    assert ok(fresh_lab.operator.get(f"{PATH}/{HASH}"))["asked"] == ["only_author"]
+    refusal = error(
+        fresh_lab.operator.patch(f"{PATH}/{HASH}", json={"name": "strict"}), 409, "conflict"
+    )
+    assert refusal["valid"] == ["only_author"]
+    body = {
+        "key": "skinned",
+        "title": "Skinned",
+        "origin": "by_hand",
+        "configuration": as_json(replace(SHIPPED, humanoid=HASH)),
+    }
+    worn = error(fresh_lab.operator.post(AVATARS, json=body), 422, "invalid_config")
+    assert worn["details"][0]["path"] == "configuration.humanoid"
+    view = change(fresh_lab, name="strict", confirmed=["only_author"])
+    assert (view["name"], view["asked"]) == ("strict", [])
+    assert [one["term"] for one in view["confirmations"]] == ["only_author"]
+    assert view["confirmations"][0]["by"] == "account:admin"
+    entries = ok(fresh_lab.operator.get("/api/audit"))["entries"]
+    assert [one["action"] for one in entries[:2]] == ["humanoid.named", "humanoid.confirmed"]
+    assert entries[1]["details"]["terms"] == ["only_author"]
+    assert fresh_lab.operator.post(AVATARS, json=body).status_code == 201
+
+
+@pytest.mark.one_engine
+def test_a_body_is_checked(fresh_lab: Lab) -> None:
+    """The checks name absent fingers, and say of old measurements that triangles are unknown."""
+    four = upload(fresh_lab, FOUR, "four.vrm").json()["content_hash"]
+    set_columns(fresh_lab, four, triangles=None, licence=None)
+    checks = {one["key"]: one for one in ok(fresh_lab.operator.get(f"{PATH}/{four}"))["checks"]}
+    assert (checks["fingers"]["status"], checks["fingers"]["value"]) == ("note", 8.0)
+    assert "LeftLittleProximal" in checks["fingers"]["parts"]
+    assert checks["triangles"] == {**checks["triangles"], "status": "unknown", "value": None}
+    assert (checks["parts"]["status"], checks["licence"]["status"]) == ("good", "unknown")
+    set_columns(fresh_lab, four, triangles=20_001)
+    checks = {one["key"]: one for one in ok(fresh_lab.operator.get(f"{PATH}/{four}"))["checks"]}
+    assert (checks["triangles"]["status"], checks["triangles"]["value"]) == ("warn", 20_001.0)
+
+
+@pytest.mark.one_engine
+def test_who_wears_a_body(fresh_lab: Lab) -> None:
+    """Configurations and studies that wear a body are listed; blinded ones not for operators."""
+    upload(fresh_lab)
+    change(fresh_lab, name="tall")
+    new(fresh_lab, "skinned", replace(SHIPPED, humanoid=HASH))
+    text = study("{key: standard, version: 1}")
+    text = text.replace("key: latency_125\n", "key: latency_125\n    body: tall\n")
+    text = text.replace("operator: false", "operator: true")
+    ok(fresh_lab.operator.post("/api/studies", json={"yaml": text}))
+    worn = ok(fresh_lab.operator.get(f"{PATH}/{HASH}/use"))
+    assert worn["configurations"] == [{"key": "skinned", "title": "Soft neck", "version": 1}]
+    assert [(one["key"], one["version"]) for one in worn["studies"]] == [(KEY, 1)]
+    assert ok(sign_in(fresh_lab, "operator").get(f"{PATH}/{HASH}/use"))["studies"] == []
+    unknown = text.replace("body: tall", "body: small").replace(f"key: {KEY}", "key: other")
+    refusal = error(
+        fresh_lab.operator.post("/api/studies", json={"yaml": unknown}), 422, "invalid_config"
+    )
+    assert refusal["details"][0]["valid"] == ["tall"]
+
+
+@pytest.mark.one_engine
+def test_a_body_is_measured_again(fresh_lab: Lab) -> None:
+    """A body that an earlier release has measured gets its counts; its figure does not change."""
+    before = upload(fresh_lab).json()
+    set_columns(fresh_lab, triangles=None, vertices=None, textures=None, licence=None)
+    after = ok(fresh_lab.operator.post(f"{PATH}/{HASH}/measure"))
+    assert after == before
+    error(fresh_lab.operator.post(f"{PATH}/{'0' * 64}/measure"), 404, "not_found")
