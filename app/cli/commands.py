@@ -151,6 +151,10 @@ def rehearse(
         bool,
         typer.Option("--physics", help="Use a physics avatar even if the study does not."),
     ] = False,
+    fingers: Annotated[
+        bool,
+        typer.Option("--fingers", help="Record fingers, too; their movement is generated."),
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the reports as JSON.")] = False,
 ) -> None:
     """Take simulated participants through whole sessions.
@@ -171,6 +175,7 @@ def rehearse(
         capture=capture,
         token=token,
         physics=physics,
+        fingers=fingers,
         redo=redo,
         withdraw_during=withdraw_during,
     )

@@ -139,7 +139,7 @@ class TelemetryClient:
             await client.drained()  # everything is on the server's disk
 
     `url`: ws://HOST/api/vr/stream. `monotonic_s`: the client's own clock. `avatars`: the kinds of
-    avatar that it can show.
+    avatar that it can show. `fingers`: it sends the streams of fingers with every frame.
     """
 
     url: str
@@ -147,6 +147,7 @@ class TelemetryClient:
     name: str
     monotonic_s: Callable[[], float]
     avatars: tuple[str, ...] = ("delayed_copy",)
+    fingers: bool = False
     probe_every_s: float = 1.0
     journal: Journal = field(default_factory=Journal)
     welcome: Welcome | None = None
@@ -270,9 +271,15 @@ class TelemetryClient:
         """Say hello, then send the journal and read messages until the socket closes."""
         epoch = None if self.welcome is None else self.welcome.epoch
         hello = Hello(
-            protocol=PROTOCOL_VERSION, client=self.name, epoch=epoch, avatars=self.avatars
+            protocol=PROTOCOL_VERSION,
+            client=self.name,
+            epoch=epoch,
+            avatars=self.avatars,
+            fingers=self.fingers,
         )
-        await socket.send(hello.model_dump_json())
+        # A server of an older version does not know the field.
+        left_out = None if self.fingers else {"fingers"}
+        await socket.send(hello.model_dump_json(exclude=left_out))
         first = SERVER_MESSAGE.validate_json(await socket.recv())
         if isinstance(first, Failure):
             self.failure = first

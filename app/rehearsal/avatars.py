@@ -1,6 +1,7 @@
 """The remote avatar of the scripted headset: a delayed copy, or a body that follows by forces."""
 
 import asyncio
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -12,9 +13,13 @@ from app.client import Json, call_with_retry
 from app.protocol.avatar import AvatarFile, configuration_of
 from app.science.avatar.configuration import Configuration
 from app.science.avatar.simulation import Follower, PhysicsAvatar, SurfaceTouches
-from app.science.avatar.targets import TargetAngles
+from app.science.avatar.targets import TargetAngles, finger_rotations
 from app.science.delay import DelayBuffer
+from app.science.simulation import FingerCapsules
 from app.science.skeleton import (
+    FINGER_PARTS,
+    JOINT_COUNT,
+    JOINT_NAMES,
     Pose,
     Skeleton,
     body_part_segments,
@@ -30,7 +35,17 @@ RELEASE_MARGIN_M = 0.005
 
 
 class RemoteAvatar(Protocol):
-    """The body that the participant sees as their own."""
+    """The body that the participant sees as their own.
+
+    It has fingers of its own once it is given those of the participant. `fingers` are then the
+    local rotations (30, 4) of the last frame, and their touches are reported finger by finger.
+    """
+
+    fingers: FloatArray | None
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """Return the P parts whose touches are reported."""
 
     def set_latency(self, latency_s: float) -> None:
         """Set the latency with which the avatar follows from now on."""
@@ -38,24 +53,33 @@ class RemoteAvatar(Protocol):
     def show_boxes(self, layout: TaskLayout | None) -> None:
         """Place the boxes of a task in the room, or remove all."""
 
-    def frame(self, t_s: float, pose: Pose) -> Pose:
-        """Return the avatar's pose for the participant's pose; called for every frame."""
+    def frame(self, t_s: float, pose: Pose, fingers: FloatArray | None = None) -> Pose:
+        """Return the avatar's pose for the participant's pose; called for every frame.
+
+        `fingers`: the participant's finger parts (30, 4), given with every frame or with none.
+        """
 
     def touches(self) -> tuple[Bools, Bools]:
         """Return the avatar's touches at the last frame, and what is near enough to keep a touch.
 
-        Two bool arrays (S, 22), surfaces of the task by joints of the skeleton; (0, 22) without
-        boxes.
+        Two bool arrays (S, P), surfaces of the task by parts; (0, P) without boxes.
         """
 
 
 class DelayedCopy:
     """A copy of the participant's own movement, with every joint except the hips delayed."""
 
-    def __init__(self, skeleton: Skeleton) -> None:
+    def __init__(self, skeleton: Skeleton, *, with_fingers: bool = False) -> None:
         self._skeleton, self._delay = skeleton, DelayBuffer(0.0)
         self._surfaces: SurfaceArrays | None = None
         self._pose: Pose | None = None
+        self.fingers: FloatArray | None = None
+        self._hands = FingerCapsules(skeleton) if with_fingers else None
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """Return the joints of the skeleton and, if it has any, the parts of its fingers."""
+        return JOINT_NAMES if self._hands is None else (*JOINT_NAMES, *FINGER_PARTS)
 
     def set_latency(self, latency_s: float) -> None:
         """Set the delay of the joints from now on."""
@@ -65,23 +89,29 @@ class DelayedCopy:
         """Set the surfaces whose touches are detected; a copy passes through everything."""
         self._surfaces = None if layout is None else SurfaceArrays.of(layout)
 
-    def frame(self, t_s: float, pose: Pose) -> Pose:
+    def frame(self, t_s: float, pose: Pose, fingers: FloatArray | None = None) -> Pose:
         """Return the current position of the hips with the delayed rotations of the joints."""
-        self._pose = Pose(pose.root_position_m, self._delay.push(t_s, pose.rotations))
+        whole = pose.rotations if fingers is None else np.concatenate((pose.rotations, fingers))
+        delayed = self._delay.push(t_s, whole)
+        self._pose = Pose(pose.root_position_m, delayed[:JOINT_COUNT])
+        self.fingers = None if fingers is None else delayed[JOINT_COUNT:]
         return self._pose
 
     def touches(self) -> tuple[Bools, Bools]:
         """Return touches, determined by the distances between the body's capsules and the boxes."""
         if self._surfaces is None or self._pose is None:
-            return no_touches()
+            return no_touches(self.parts)
         world = forward_kinematics(self._skeleton, self._pose.root_position_m, self._pose.rotations)
-        parts = body_part_segments(self._skeleton, world)
-        return touching_and_near(self._surfaces, parts.axes_m, parts.radii_m, RELEASE_MARGIN_M)
+        body = body_part_segments(self._skeleton, world)
+        axes_m, radii_m = body.axes_m, body.radii_m
+        if self._hands is not None and self.fingers is not None:
+            axes_m, radii_m = self._hands.added_to(body, world, self.fingers)
+        return touching_and_near(self._surfaces, axes_m, radii_m, RELEASE_MARGIN_M)
 
 
-def no_touches() -> tuple[Bools, Bools]:
-    """Return empty touches, as when there are no boxes."""
-    nothing = np.zeros((0, 22), dtype=np.bool_)
+def no_touches(parts: Sequence[str]) -> tuple[Bools, Bools]:
+    """Return empty touches of these parts, as when there are no boxes."""
+    nothing = np.zeros((0, len(parts)), dtype=np.bool_)
     return nothing, nothing
 
 
@@ -96,10 +126,11 @@ class AvatarSource(Protocol):
 class FromServer:
     """The avatar that the server builds and records.
 
-    `http` sends as the session's paired headset.
+    `http` sends as the session's paired headset. `with_fingers`: the participant's are given.
     """
 
     http: AsyncClient
+    with_fingers: bool = False
 
     async def request_avatar(self, stature_m: float) -> "PhysicsBody":
         """Return the avatar for a participant of this stature.
@@ -113,7 +144,9 @@ class FromServer:
         # Loading the model and the compiled code takes a second or two.
         own_m = build_skeleton(stature_m).standing_hips_m
         scale = answer["standing_hips_m"] / own_m
-        return await asyncio.to_thread(PhysicsBody, answer["mjcf"], configuration, scale)
+        return await asyncio.to_thread(
+            PhysicsBody, answer["mjcf"], configuration, scale, with_fingers=self.with_fingers
+        )
 
 
 class PhysicsBody:
@@ -123,9 +156,17 @@ class PhysicsBody:
         mjcf: the model, with the boxes of all tasks.
         configuration: the one that the model was built from.
         hips_scale: the height of its hips when standing, as a share of the participant's.
+        with_fingers: whether it is given the participant's fingers with every frame.
     """
 
-    def __init__(self, mjcf: str, configuration: Configuration, hips_scale: float = 1.0) -> None:
+    def __init__(
+        self,
+        mjcf: str,
+        configuration: Configuration,
+        hips_scale: float = 1.0,
+        *,
+        with_fingers: bool = False,
+    ) -> None:
         self._hips_scale = np.array([1.0, hips_scale, 1.0])
         self.avatar = PhysicsAvatar(mjcf)
         self.avatar.boxes.show(())
@@ -133,6 +174,13 @@ class PhysicsBody:
         self._follower = Follower(self.avatar, angles, target_space=configuration.target_space)
         self._touches: SurfaceTouches | None = None
         self._began_s: float | None = None
+        self.fingers: FloatArray | None = None
+        self._with_fingers = with_fingers
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """Return the joints of the skeleton and, if it has any, the parts of its fingers."""
+        return (*JOINT_NAMES, *FINGER_PARTS) if self._with_fingers else JOINT_NAMES
 
     def set_latency(self, latency_s: float) -> None:
         """Set the delay of the motors' targets from now on."""
@@ -142,17 +190,23 @@ class PhysicsBody:
         """Place the boxes of a task in the room, or remove all."""
         names = () if layout is None else tuple(surface.key for surface in layout.surfaces)
         self.avatar.boxes.show(names)
-        self._touches = SurfaceTouches(self.avatar, names, RELEASE_MARGIN_M) if names else None
+        self._touches = (
+            SurfaceTouches(self.avatar, names, RELEASE_MARGIN_M, self.parts) if names else None
+        )
 
-    def frame(self, t_s: float, pose: Pose) -> Pose:
+    def frame(self, t_s: float, pose: Pose, fingers: FloatArray | None = None) -> Pose:
         """Simulate up to this frame and return the body's pose."""
         hips_m = self._hips_scale * pose.root_position_m
+        given = None if fingers is None else dict(zip(FINGER_PARTS, fingers, strict=True))
         if self._began_s is None:
             self._began_s = t_s
-            self._follower.start(hips_m, pose.rotations)
-        followed = self._follower.frame(t_s - self._began_s, hips_m, pose.rotations)
+            self._follower.start(hips_m, pose.rotations, given)
+        followed = self._follower.frame(t_s - self._began_s, hips_m, pose.rotations, given)
+        if given is not None:
+            # A part without a hinge keeps its place on the part above it.
+            self.fingers = finger_rotations(np.nan_to_num(followed.state.angles_rad))
         return Pose(followed.state.root_position_m, followed.state.rotations)
 
     def touches(self) -> tuple[Bools, Bools]:
         """Return touches, determined from the contacts of the simulation."""
-        return no_touches() if self._touches is None else self._touches.read()
+        return no_touches(self.parts) if self._touches is None else self._touches.read()

@@ -1,6 +1,6 @@
 """The simulated participant's body and movement, either synthetic or from a capture."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +9,12 @@ from app.adapters.captures import CaptureError, read_capture_file
 from app.errors import file_problem
 from app.science.retargeting import movement_in_place, propose_joint_map
 from app.science.rig import RigError, RigMotion
-from app.science.simulation import SimulatedParticipant, idle_movement
+from app.science.simulation import (
+    SimulatedFingers,
+    SimulatedParticipant,
+    idle_movement,
+    pointing,
+)
 from app.science.skeleton import Movement, Skeleton, SkeletonError, build_skeleton, loop, resample
 
 FRAME_RATE_HZ = 90.0
@@ -60,7 +65,10 @@ def skeleton_motion(path: Path) -> RigMotion:
 
 @dataclass(frozen=True)
 class Person:
-    """The simulated participant of a rehearsal, with properties drawn from the seed."""
+    """The simulated participant of a rehearsal, with properties drawn from the seed.
+
+    `fingers`: their generated movement; None if fingers are not recorded.
+    """
 
     stature_m: float
     handedness: str
@@ -68,21 +76,32 @@ class Person:
     age: int
     skeleton: Skeleton
     participant: SimulatedParticipant
+    fingers: SimulatedFingers | None = None
 
 
-def make_person(rng: np.random.Generator, capture: Path | None) -> Person:
-    """Make a participant that moves like `capture`, or synthetically; raise UnusableCapture."""
+def make_person(
+    rng: np.random.Generator, capture: Path | None, *, with_fingers: bool = False
+) -> Person:
+    """Make a participant that moves like `capture`, or synthetically; raise UnusableCapture.
+
+    `with_fingers`: with generated movement of the fingers, and an index finger that points.
+    """
     stature_m = float(np.clip(rng.normal(1.72, 0.09), 1.52, 1.95))
     skeleton = build_skeleton(stature_m)
     movement = idle_movement(skeleton, rng) if capture is None else _looped(capture, skeleton)
-    return Person(
+    person = Person(
         stature_m=stature_m,
         handedness="left" if rng.random() < 0.1 else "right",
         footedness=str(rng.choice(["right", "left", "both"], p=[0.8, 0.1, 0.1])),
         age=int(rng.integers(19, 45)),
         skeleton=skeleton,
-        participant=SimulatedParticipant(skeleton, movement, rng),
+        participant=SimulatedParticipant(
+            pointing(skeleton) if with_fingers else skeleton, movement, rng
+        ),
     )
+    # Fingers have randomness of their own, so that a person moves the same with and without them.
+    own = np.random.default_rng(rng.bit_generator.random_raw() if with_fingers else 0)
+    return replace(person, fingers=SimulatedFingers(own)) if with_fingers else person
 
 
 def _looped(capture: Path, skeleton: Skeleton) -> Movement:

@@ -20,11 +20,14 @@ from app.rehearsal.body import FRAME_RATE_HZ, Person
 from app.rehearsal.goals import goal_of
 from app.rehearsal.task_run import BoxRun
 from app.rehearsal.timed_run import FreeRun, TimedRun
+from app.science.rotations import FloatArray
+from app.science.simulation import GoalKind
 from app.science.skeleton import JOINT_NAMES, Pose
 from app.science.tasks import Laterality, Limb, TaskLayout, TaskRules
 from app.wire import (
     ACTIVE,
-    VALUES_PER_FRAME,
+    BODY_STREAMS,
+    FINGER_STREAMS,
     HeadsetState,
     MaterialisedReport,
     PhaseOrder,
@@ -89,11 +92,11 @@ class Buffers:
     flags: NDArray[np.uint8] = field(
         default_factory=lambda: np.zeros(FRAMES_PER_BATCH, dtype=np.uint8)
     )
-    target: NDArray[np.float32] = field(
-        default_factory=lambda: np.zeros((FRAMES_PER_BATCH, VALUES_PER_FRAME), dtype=np.float32)
-    )
-    actual: NDArray[np.float32] = field(
-        default_factory=lambda: np.zeros((FRAMES_PER_BATCH, VALUES_PER_FRAME), dtype=np.float32)
+    values: dict[StreamName, NDArray[np.float32]] = field(
+        default_factory=lambda: {
+            stream: np.zeros((FRAMES_PER_BATCH, stream.values_per_frame), dtype=np.float32)
+            for stream in StreamName
+        }
     )
     count: int = 0
 
@@ -114,13 +117,16 @@ class Headset:
         physics: AvatarSource | None = None,
     ) -> None:
         self.client = client
-        self.frames_sent: dict[str, int] = {name.value: 0 for name in StreamName}
+        self._streams = (*BODY_STREAMS, *(() if person.fingers is None else FINGER_STREAMS))
+        self.frames_sent: dict[str, int] = {name.value: 0 for name in self._streams}
         self.completions = 0
         self.contacts = 0
         self._person, self._clock = person, clock
         self._layouts = tasks.layouts()
         self._physics = physics
-        self._avatar: RemoteAvatar | None = None if physics else DelayedCopy(person.skeleton)
+        self._avatar: RemoteAvatar | None = None
+        if physics is None:
+            self._avatar = DelayedCopy(person.skeleton, with_fingers=person.fingers is not None)
         self._run: TimedRun | None = None
         self._phase_id = 0
         self._buffers = Buffers()
@@ -230,7 +236,8 @@ class Headset:
         else:
             hand = Laterality(self._person.handedness)
             rules = TaskRules(self._layouts[Limb(order.limb)], hand)
-            self._run = BoxRun(order, rules, JOINT_NAMES, self.t_s)
+            parts = JOINT_NAMES if self._avatar is None else self._avatar.parts
+            self._run = BoxRun(order, rules, parts, self.t_s)
 
     async def _leave_phase(self) -> None:
         await self._flush()
@@ -260,9 +267,11 @@ class Headset:
         avatar = self._avatar
         if avatar is None:
             return
-        shown = avatar.frame(t_s, pose)
+        reaching = None if goal is None or goal.kind is not GoalKind.REACH else goal.effector
+        fingers = None if self._person.fingers is None else self._person.fingers.pose(t_s, reaching)
+        shown = avatar.frame(t_s, pose, fingers)
         if recording:
-            self._record(t_s, pose, shown)
+            self._record(t_s, pose, shown, (fingers, avatar.fingers))
         if run is not None:
             connected = self.client.connected or self._goes_on_alone
             await self._report(run.frame(t_s, avatar.touches, connected=connected))
@@ -271,13 +280,22 @@ class Headset:
         if self._buffers.count == FRAMES_PER_BATCH:
             await self._flush()
 
-    def _record(self, t_s: float, pose: Pose, shown: Pose) -> None:
+    def _record(
+        self,
+        t_s: float,
+        pose: Pose,
+        shown: Pose,
+        fingers: tuple[FloatArray | None, FloatArray | None],
+    ) -> None:
         buffers, at = self._buffers, self._buffers.count
         buffers.times_s[at] = t_s
         buffers.flags[at] = ACTIVE if self._run is not None and self._run.clock_runs else 0
-        for values, of in ((buffers.target, pose), (buffers.actual, shown)):
-            values[at, :3] = of.root_position_m
-            values[at, 3:] = of.rotations.ravel()
+        for stream, of in zip(BODY_STREAMS, (pose, shown), strict=True):
+            buffers.values[stream][at, :3] = of.root_position_m
+            buffers.values[stream][at, 3:] = of.rotations.ravel()
+        for stream, rotations in zip(FINGER_STREAMS, fingers, strict=True):
+            if rotations is not None:
+                buffers.values[stream][at] = rotations.ravel()
         buffers.count += 1
 
     async def _flush(self) -> None:
@@ -286,10 +304,7 @@ class Headset:
         if count == 0:
             return
         seq_first = self.frames_sent[StreamName.TARGET]
-        for stream, values in (
-            (StreamName.TARGET, buffers.target),
-            (StreamName.ACTUAL, buffers.actual),
-        ):
+        for stream in self._streams:
             message = encode_batch(
                 stream,
                 epoch=self.client.epoch,
@@ -297,7 +312,7 @@ class Headset:
                 seq_first=seq_first,
                 times_s=buffers.times_s[:count],
                 flags=buffers.flags[:count],
-                values=values[:count],
+                values=buffers.values[stream][:count],
                 active_s=0.0 if self._run is None else self._run.active_s(self.t_s),
                 closed_at_s=self.t_s,
             )

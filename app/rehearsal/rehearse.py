@@ -45,7 +45,8 @@ _MOVED = re.compile(r"^avatar: delayed_copy[ \t]*$", re.MULTILINE)
 class RehearsalPlan:
     """The plan of a rehearsal. `token` None logs in with `password`. `speed` 1 is real time.
 
-    `physics`: use a physics avatar, in a copy of the study if that has another one. `redo`: the
+    `physics`: use a physics avatar, in a copy of the study if that has another one. `fingers`: the
+    participant's fingers are recorded; their movement is generated. `redo`: the
     phase that is repeated half-way through; `withdraw_during`: the one in which the participant
     withdraws. Phases count from 1, in the order of the visit.
     """
@@ -60,6 +61,7 @@ class RehearsalPlan:
     language: str = "en"
     participant_code: str | None = None
     physics: bool = False
+    fingers: bool = False
     redo: int | None = None
     withdraw_during: int | None = None
 
@@ -167,7 +169,7 @@ async def assembled(
     """
     clock = FrameClock(plan.speed)
     rng = np.random.default_rng(plan.seed)
-    person = make_person(rng, plan.capture)
+    person = make_person(rng, plan.capture, with_fingers=plan.fingers)
     async with AsyncExitStack() as stack:
         http = await stack.enter_async_context(_client(plan))
         await _sign_in(http, plan)
@@ -183,11 +185,16 @@ async def assembled(
             token=paired["token"],
             name="reembody rehearsal",
             avatars=AVATARS,
+            fingers=plan.fingers,
             monotonic_s=clock.now_s,
             journal=journal if journal is not None else Journal(),
         )
         await stack.enter_async_context(socket)
-        physics = FromServer(headset_http) if session["avatar"] == "physics" else None
+        physics = (
+            FromServer(headset_http, with_fingers=plan.fingers)
+            if session["avatar"] == "physics"
+            else None
+        )
         headset = Headset(socket, person, tasks_of(socket), clock, physics)
         tablet = Tablet(tablet_http)
         yield Cast(

@@ -6,21 +6,28 @@ from app.science.simulation.answers import (
     agreement,
     simulated_answers,
 )
+from app.science.simulation.finger_capsules import FingerCapsules, pointing
+from app.science.simulation.fingers import GESTURES_DEG, SimulatedFingers, gesture_angles
 from app.science.simulation.goal import Goal, GoalKind, SimulationError
 from app.science.simulation.idle import idle_movement, relaxed_pose
 from app.science.simulation.participant import SimulatedParticipant
 from app.science.simulation.traits import MovementTraits
 
 __all__ = [
+    "GESTURES_DEG",
     "Aspect",
+    "FingerCapsules",
     "Goal",
     "GoalKind",
     "MovementTraits",
+    "SimulatedFingers",
     "SimulatedItem",
     "SimulatedParticipant",
     "SimulationError",
     "agreement",
+    "gesture_angles",
     "idle_movement",
+    "pointing",
     "relaxed_pose",
     "simulated_answers",
 ]

@@ -1,8 +1,8 @@
 """Stream live poses to a console over a WebSocket.
 
 The console answers every pose of a body that it has drawn, with any message. At most `MAX_UNDRAWN`
-poses are in flight: a slow console gets fewer poses but always the latest, regardless of how much the network
-and the browser would buffer.
+poses are in flight: a slow console gets fewer poses but always the latest, regardless of how much
+the network and the browser would buffer.
 """
 
 import asyncio

@@ -10,6 +10,7 @@ from app.science.avatar.body.binding import Binding, bind
 from app.science.avatar.body.body import REQUIRED_PARTS, Body, BodyPart, build_body
 from app.science.avatar.body.deleva import Population, mass_fractions, segments_of
 from app.science.avatar.body.figure import Figure, figure_of
+from app.science.avatar.body.fingers import finger_bones
 from app.science.avatar.body.hulls import Piece
 from app.science.avatar.body.humanoid import Humanoid, HumanoidError
 from app.science.avatar.body.humanoid_pose import RiggedMesh, TPosed, humanoid_of
@@ -84,6 +85,7 @@ __all__ = [
     "combined",
     "excluded_pairs",
     "figure_of",
+    "finger_bones",
     "humanoid_of",
     "mass_fractions",
     "mirrored_name",

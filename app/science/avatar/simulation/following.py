@@ -103,10 +103,15 @@ class Follower:
         else:
             self._poses.set_delay(delay_s)
 
-    def start(self, position_m: FloatArray, rotations: FloatArray) -> None:
-        """Put the avatar into a pose immediately: hips (3,), local rotations (22, 4)."""
+    def start(
+        self,
+        position_m: FloatArray,
+        rotations: FloatArray,
+        fingers: Mapping[str, FloatArray] | None = None,
+    ) -> None:
+        """Put the avatar into a pose immediately: hips (3,), local rotations (22, 4), fingers."""
         self._angles.forget()
-        angles = self._angles.follow(rotations).angles_rad
+        angles = self._angles.follow(rotations, fingers).angles_rad
         self._avatar.start_at(position_m, rotations[0], angles)
         self._deviation = identity()
 
@@ -128,9 +133,9 @@ class Follower:
         Raises:
             SimulationError, TargetError, DelayError: an invalid time or shape.
         """
-        pose = rotations if self._poses is None else self._poses.push(time_s, rotations)
+        pose = rotations
         if self._poses is not None:
-            pose = pose.copy()
+            pose, fingers = self._delayed(self._poses, time_s, rotations, fingers)
             pose[_LIMBS] = multiply(conjugate(self._deviation), pose[_LIMBS])
         elapsed_s = max(time_s - self._avatar.time_s, 0.0)
         targets = self._angles.follow(pose, fingers)
@@ -142,6 +147,20 @@ class Follower:
             now = _deviation(targets.angles_rad, state.angles_rad)
             self._deviation = slerp(self._deviation, now, 1.0 - math.exp(-elapsed_s / YIELD_S))
         return FollowedFrame(targets, state)
+
+    @staticmethod
+    def _delayed(
+        poses: DelayBuffer,
+        time_s: float,
+        rotations: FloatArray,
+        fingers: Mapping[str, FloatArray] | None,
+    ) -> tuple[FloatArray, Mapping[str, FloatArray] | None]:
+        """Return delayed copies of a body and its fingers, if these are given with every frame."""
+        names = tuple(fingers or ())
+        given = [rotations, *(q[np.newaxis] for q in (fingers or {}).values())]
+        delayed = poses.push(time_s, np.concatenate(given)).copy()
+        count = len(rotations)
+        return delayed[:count], dict(zip(names, delayed[count:], strict=True))
 
 
 def _deviation(target_rad: FloatArray, actual_rad: FloatArray) -> FloatArray:

@@ -2,8 +2,8 @@
 
 A box is touched if the simulation found a contact in its last step: the hand rests against the
 panel because the panel stops it. A mark on the floor stops nothing; it is touched by parts whose
-shapes overlap it. Fingers count as the hand they belong to, and any other part without its own
-joint as the part above it.
+shapes overlap it. A part that is not among those to be reported counts as the part above it: so
+fingers count as the hand they belong to, unless they are reported themselves.
 
 A touch continues until the part is farther away than a margin (hysteresis, as in `tasks.contacts`);
 so for parts that no longer touch, the distance is computed.
@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.science.avatar.body import PARENT_OF
-from app.science.skeleton import JOINT_INDEX
+from app.science.skeleton import JOINT_NAMES
 
 if TYPE_CHECKING:
     import mujoco
@@ -33,9 +33,16 @@ class SurfaceTouches:
         avatar: the avatar, in a scene with the surfaces (`scene.scene_of`).
         surfaces: the names of the surfaces.
         margin_m: distance at which a touch ends.
+        parts: the P parts to report, by default the 22 joints of the skeleton.
     """
 
-    def __init__(self, avatar: "PhysicsAvatar", surfaces: Sequence[str], margin_m: float) -> None:
+    def __init__(
+        self,
+        avatar: "PhysicsAvatar",
+        surfaces: Sequence[str],
+        margin_m: float,
+        parts: Sequence[str] = JOINT_NAMES,
+    ) -> None:
         import mujoco
 
         self._mujoco, self._model, self._data = mujoco, avatar.model, avatar.data
@@ -45,13 +52,13 @@ class SurfaceTouches:
         self._marks = [row for row, name in enumerate(surfaces) if not boxes.solid(name)]
         self._surface_of = np.full(avatar.model.ngeom, -1)
         self._surface_of[self._surface_geoms] = np.arange(len(surfaces))
-        self._joint_of = _joints_of_geoms(avatar.model)
-        self._continuing: Bools = np.zeros((len(surfaces), len(JOINT_INDEX)), dtype=np.bool_)
+        self._joint_of = _parts_of_geoms(avatar.model, parts)
+        self._continuing: Bools = np.zeros((len(surfaces), len(parts)), dtype=np.bool_)
 
     def read(self) -> tuple[Bools, Bools]:
         """Return which parts touch which surfaces, and which are near enough to continue a touch.
 
-        Both are bool (S, 22), after the simulation's last step.
+        Both are bool (S, P), after the simulation's last step.
         """
         touched = np.zeros_like(self._continuing)
         if self._data.ncon:
@@ -94,14 +101,15 @@ class SurfaceTouches:
         return float(min(distances, default=farthest))
 
 
-def _joints_of_geoms(model: "mujoco.MjModel") -> npt.NDArray[np.int64]:
-    """Return the joint of the skeleton that each geom counts as, (n,); -1 for the scene's geoms."""
+def _parts_of_geoms(model: "mujoco.MjModel", parts: Sequence[str]) -> npt.NDArray[np.int64]:
+    """Return the reported part that each geom counts as, (n,); -1 for the scene's geoms."""
+    index = {part: row for row, part in enumerate(parts)}
     joints = np.full(model.ngeom, -1, dtype=np.int64)
     for geom in range(model.ngeom):
         part: str | None = str(model.body(int(model.geom_bodyid[geom])).name)
         if part not in PARENT_OF:
             continue
-        while part is not None and part not in JOINT_INDEX:
+        while part is not None and part not in index:
             part = PARENT_OF[part]
-        joints[geom] = -1 if part is None else JOINT_INDEX[part]
+        joints[geom] = -1 if part is None else index[part]
     return joints

@@ -6,11 +6,17 @@ the motors of an avatar aimed at, the reference of joint errors.
 """
 
 from app.science.avatar.targets.hinge_reference import HingeReference
-from app.science.avatar.targets.targets import TargetAngles, Targets, joint_rotations
+from app.science.avatar.targets.targets import (
+    TargetAngles,
+    Targets,
+    finger_rotations,
+    joint_rotations,
+)
 
 __all__ = [
     "HingeReference",
     "TargetAngles",
     "Targets",
+    "finger_rotations",
     "joint_rotations",
 ]

@@ -31,7 +31,7 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-from app.science.avatar.body import AXES, PART_NAMES
+from app.science.avatar.body import AXES, AXES_OF, PART_NAMES
 from app.science.avatar.targets.target_plan import plan_targets
 from app.science.rotations import FloatArray, from_rotation_vector, identity, multiply
 from app.science.skeleton import FINGER_PARTS, JOINT_COUNT, JOINT_INDEX
@@ -45,6 +45,10 @@ _CHUNK_FRAMES = 512
 """Frames of a recording per call of the compiled code, which does not let other threads run."""
 _JOINT_ROWS = np.array([PART_NAMES.index(name) for name in JOINT_INDEX])
 _DIRECTIONS: FloatArray = np.array([axis.direction for axis in AXES])
+# Every finger part has one axis; those at the knuckles have a second one.
+_FIRST_AXES = np.array([AXES.index(AXES_OF[part][0]) for part in FINGER_PARTS])
+_TWO_AXES = np.array([row for row, part in enumerate(FINGER_PARTS) if len(AXES_OF[part]) == 2])
+_SECOND_AXES = _FIRST_AXES[_TWO_AXES] + 1
 
 
 class TargetError(ValueError):
@@ -230,8 +234,14 @@ def rotations_of(
 
 def finger_rotations(angles_rad: FloatArray) -> FloatArray:
     """Return the local rotations of the fingers (..., 30, 4) at angles (..., 91)."""
-    parts = rotations_of(angles_rad, FINGER_PARTS)
-    return np.stack([parts[part] for part in FINGER_PARTS], axis=-2)
+    turns = _turns(angles_rad, _FIRST_AXES)
+    second = _turns(angles_rad, _SECOND_AXES)
+    turns[..., _TWO_AXES, :] = multiply(turns[..., _TWO_AXES, :], second)
+    return turns
+
+
+def _turns(angles_rad: FloatArray, columns: npt.NDArray[np.int64]) -> FloatArray:
+    return from_rotation_vector(angles_rad[..., columns, np.newaxis] * _DIRECTIONS[columns])
 
 
 def joint_rotations(angles_rad: FloatArray, hips: FloatArray) -> FloatArray:
