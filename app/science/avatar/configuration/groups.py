@@ -5,7 +5,6 @@ the driven axes of its parts, so the hips and the shoulders, which have none, on
 colliders. An arm excludes its fingers, as in the thesis: with an arm in a cast, the fingers still
 move.
 
-
 Source: Karas (2020), section 6.4.2 and figure 6.2.
 """
 
