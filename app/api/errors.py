@@ -230,7 +230,7 @@ class _Bounded:
     left: int = MOST_CHARACTERS
 
     def jsonable(self, value: Any, depth: int = 0) -> Any:
-        """Return the value, cut if it is too long or too deeply nested."""
+        """Return the value as JSON types, cut where it is too long or too deeply nested."""
         if value is None or isinstance(value, bool):
             return value
         if isinstance(value, int) and abs(value) < 2**63:

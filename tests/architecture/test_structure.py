@@ -97,7 +97,7 @@ def test_a_module_is_not_its_package(build: Build) -> None:
 
 
 def test_pages_import_each_other_in_every_form(build: Build) -> None:
-    """Types, re-exports, `import()`, aliases and folders count as imports of the pages.
+    """Type imports, re-exports, `import()`, aliases and folders count as imports between pages.
 
     Tests and comments do not.
     """

@@ -16,6 +16,7 @@ from app.clock import Clock
 from app.database import Base, Database, open_database
 from app.features.care.opening import bring_up_to_date
 from app.features.design.studies import add_shipped, newest_version, protocol_of, study_by_key
+from app.features.movement.avatar import add_shipped_avatar
 from app.features.record.ledger import open_attempt, take_slot
 from app.models import (
     Answer,
@@ -52,13 +53,15 @@ OF_A_SUBMISSION = (Answer, ScoreValue)
 
 
 def shipped_database(data_dir: Path) -> Database:
-    """Open a new SQLite database in `data_dir`, with the shipped studies in it."""
+    """Open a new SQLite database in `data_dir`, with the shipped avatar and studies in it."""
     settings = Settings(data_dir=data_dir)
     data_dir.mkdir(parents=True, exist_ok=True)
     bring_up_to_date(settings, Clock())
     database = open_database(settings.resolved_database_url)
     with database.writing() as db:
-        add_shipped(db, Clock().utc_now())
+        now = Clock().utc_now()
+        add_shipped_avatar(db, now)
+        add_shipped(db, now)
     return database
 
 

@@ -50,7 +50,7 @@ def test_message_and_remedy_each_end_with_one_full_stop(
 
 
 def test_an_expected_error_is_reported_by_its_message(capsys: pytest.CaptureFixture[str]) -> None:
-    """An expected error of the system is reported by its own message."""
+    """An expected error of the operating system is reported by its own message."""
     assert _said(capsys, FileNotFoundError("no such file")) == "reembody: no such file\n"
 
 

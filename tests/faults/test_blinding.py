@@ -143,7 +143,7 @@ def _moment(cast: Cast) -> tuple[object, ...]:
 
 
 async def _watched(cast: Cast, spies: list[Spy]) -> None:
-    """Record the streams and request everything once per kind of moment in a rehearsal."""
+    """Record a rehearsal's streams; request everything once per kind of step, limb and latency."""
     session_id = cast.operator.session_id
     seen: set[tuple[object, ...]] = set()
     async with asyncio.TaskGroup() as group:

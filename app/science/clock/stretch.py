@@ -89,7 +89,7 @@ def make_stretch(
     limits: ClockLimits,
     slack_s: float,
 ) -> Stretch:
-    """Join adjacent windows without a jump between them to a stretch.
+    """Join adjacent windows that have no jump between them into a stretch.
 
     `probes` and `bounds` are those of the whole client run; the windows refer to them by index.
     """

@@ -53,7 +53,7 @@ def idle_movement(
 
 
 def relaxed_pose() -> FloatArray:
-    """Return local rotations (22, 4) of a person who stands with hanging arms."""
+    """Return local rotations (22, 4) of a person who stands with the arms hanging down."""
     vectors = np.zeros((JOINT_COUNT, 3))
     for name, side in (("Left", 1.0), ("Right", -1.0)):
         vectors[JOINT_INDEX[f"{name}UpperArm"], 2] = side * np.radians(78.0)

@@ -73,7 +73,7 @@ def recorded(target: FloatArray, actual: FloatArray, reference: HingeReference |
 
 
 def clamped(target: FloatArray, delay_frames: int) -> FloatArray:
-    """Return what massless hinges would do this many frames later, within their limits."""
+    """Return the rotations of hinges that follow exactly, within limits, some frames later."""
     angles = TargetAngles(ANATOMIC).batch(target).angles_rad
     late = np.maximum(np.arange(FRAMES) - delay_frames, 0)
     return joint_rotations(angles[late], target[:, 0])

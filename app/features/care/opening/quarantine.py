@@ -1,8 +1,8 @@
 """Move a damaged database into quarantine, never deleting it.
 
-Each database gets its own folder, `quarantine/UTC/`, with its log and a note. The note's name is
-the state: `moving` while files are moved (the next start continues if interrupted), `unresolved`
-until somebody has decided what to use instead, `resolved` from then on.
+Each database gets its own folder, `quarantine/<UTC time>/`, with its log and a note. The note's
+name is the state: `moving` while files are moved (the next start continues if interrupted),
+`unresolved` until somebody has decided what to use instead, `resolved` from then on.
 """
 
 import os

@@ -55,7 +55,7 @@ class FitFolder:
         part.replace(self._stage_file)
 
     def progress(self) -> Progress:
-        """Return the progress from the last stage written and the size of the file of maps."""
+        """Return the progress, computed from the last stage written and the maps file's size."""
         try:
             stage_text, total, nodes = self._stage_file.read_text(encoding="utf-8").split()
             size = self.maps.stat().st_size if self.maps.exists() else 0

@@ -1,8 +1,9 @@
 """Define groups of body parts, for finding joints, editing them together, and locking them.
 
-A group names some body parts; every body part is also a group of its own. Its axes are the driven
-axes of its parts, so the hips and the shoulders, which have none, only matter for colliders. An arm
-excludes its fingers, as in the thesis: with an arm in a cast, the fingers still move.
+A group names some body parts; every body part is also a group of its own. The axes of a group are
+the driven axes of its parts, so the hips and the shoulders, which have none, only matter for
+colliders. An arm excludes its fingers, as in the thesis: with an arm in a cast, the fingers still
+move.
 
 Source: Karas (2020), section 6.4.2 and figure 6.2.
 """

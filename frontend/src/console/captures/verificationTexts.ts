@@ -46,7 +46,7 @@ export const verificationEn = {
   "verify.export": "{{avatar}} as {{format}}",
   "verify.angles": "Leg angles of the source",
   "verify.angles.caption":
-    "Forward and bent angles are positive; 0° is a straight hip, a straight knee and an ankle at a right angle.",
+    "Positive angles: thigh forward, knee bent, toes up. 0° is a straight hip, a straight knee and an ankle at a right angle.",
   "verify.angle.hip": "Hip (deg)",
   "verify.angle.knee": "Knee (deg)",
   "verify.angle.ankle": "Ankle (deg)",
@@ -111,7 +111,7 @@ export const verificationDe: Readonly<Record<keyof typeof verificationEn, string
   "verify.export": "{{avatar}} als {{format}}",
   "verify.angles": "Beinwinkel der Quelle",
   "verify.angles.caption":
-    "Winkel nach vorn und beim Beugen sind positiv; 0° ist eine gestreckte Hüfte, ein gestrecktes Knie und ein Knöchel im rechten Winkel.",
+    "Positive Winkel: Oberschenkel nach vorn, Knie gebeugt, Zehen nach oben. 0° ist eine gestreckte Hüfte, ein gestrecktes Knie und ein Knöchel im rechten Winkel.",
   "verify.angle.hip": "Hüfte (Grad)",
   "verify.angle.knee": "Knie (Grad)",
   "verify.angle.ankle": "Knöchel (Grad)",

@@ -46,7 +46,7 @@ export const tourEn = {
     "Whether both are connected. The current step shows how much of a form is filled in; participants can also call you from the tablet. To pair a device, press T or H and show the code.",
   "tour.alarms.title": "What is wrong",
   "tour.alarms.body":
-    "This bar is always in the same place. It turns coloured as soon as something is wrong, from lost frames to a call for help, and says what to do. The numbers beside it show how good the data are.",
+    "This bar is always in the same place. It changes colour as soon as something is wrong, from lost frames to a call for help, and says what to do. The numbers beside it show how good the data are.",
   "tour.replay.title": "Replay",
   "tour.replay.body":
     "After each task, a replay shows the movement together with contacts, answers and notes. During a session, Replay is up here; afterwards it is beside every phase.",

@@ -57,7 +57,8 @@ export const walkSetEn = {
     "Ten readings are compared by how well they predict people they were not fitted on.",
   "walking.reading.paper.hint":
     "Suitability is one minus the deviation as a share of the largest deviation.",
-  "walking.reading.time-aware.hint": "As in the paper, but late arrivals are unsuitable.",
+  "walking.reading.time-aware.hint":
+    "As in the paper, but the further the arrival time is from the person's, the lower the suitability.",
   "walking.option.steps": "Values of each parameter",
   "walking.option.k": "Neighbours",
   "walking.option.entries": "Entries after blending",
@@ -129,7 +130,7 @@ export const walkSetDe: Readonly<Record<keyof typeof walkSetEn, string>> = {
   "walking.reading.paper.hint":
     "Eignung ist eins minus die Abweichung als Anteil der größten Abweichung.",
   "walking.reading.time-aware.hint":
-    "Wie in der Veröffentlichung, aber spätes Ankommen ist ungeeignet.",
+    "Wie in der Veröffentlichung, aber je weiter die Ankunftszeit von der der Person abweicht, desto geringer die Eignung.",
   "walking.option.steps": "Werte jeder Steuergröße",
   "walking.option.k": "Nachbarn",
   "walking.option.entries": "Einträge nach dem Mischen",

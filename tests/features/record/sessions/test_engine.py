@@ -176,7 +176,7 @@ def test_a_lost_headsets_pause_stays_within_the_duration(claimed: float) -> None
 
 
 def test_the_headset_corrects_an_assumed_pause_when_it_is_back() -> None:
-    """A reconnected headset corrects the active time of the pause that was assumed for it."""
+    """A headset that is back corrects the active time at which the server assumed it to pause."""
     run = Run().begin(HAND)
     run.do(c.HeadsetLost(active_s=17.0, cause="headset_lost"))
     run.report("paused", 17.4)

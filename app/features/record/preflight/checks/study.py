@@ -56,7 +56,10 @@ INSTRUMENTS = StateCheck(
         Finding(
             "damaged",
             "fail",
-            Words(en="{{value}} changed since stored", de="{{value}} seit dem Speichern verändert"),
+            Words(
+                en="{{value}} changed since they were saved",
+                de="{{value}} seit dem Speichern verändert",
+            ),
             remedy=_RESTORE,
         ),
         Finding("none", "ok", Words(en="The study has none", de="Die Studie hat keine")),
@@ -97,7 +100,7 @@ CONFIGURATION = StateCheck(
         Finding(
             "differs",
             "fail",
-            Words(en="Changed since stored", de="Seit dem Speichern verändert"),
+            Words(en="Changed since it was saved", de="Seit dem Speichern verändert"),
             remedy=_RESTORE,
         ),
         Finding("ok", "ok", Words(en="Unchanged", de="Unverändert")),

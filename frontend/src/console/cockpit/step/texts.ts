@@ -50,7 +50,7 @@ export const sessionEn = {
   "step.waitingHeadset": "Waiting for the headset",
   "clock.label": "Active time",
   "clock.of": "of {{time}} active time",
-  "clock.progress": "Share of the active time",
+  "clock.progress": "Share of the active time that has passed",
   "clock.noHeadset": "No headset is connected, so the clock is paused.",
   "clock.holding":
     "The headset has not reported for a few seconds. The clock stopped at its last report.",
@@ -135,7 +135,7 @@ export const sessionDe: Readonly<Record<keyof typeof sessionEn, string>> = {
   "step.waitingHeadset": "Wartet auf das Headset",
   "clock.label": "Aktive Zeit",
   "clock.of": "von {{time}} aktiver Zeit",
-  "clock.progress": "Anteil der aktiven Zeit",
+  "clock.progress": "Verstrichener Anteil der aktiven Zeit",
   "clock.noHeadset": "Kein Headset ist verbunden, darum ist die Uhr angehalten.",
   "clock.holding":
     "Das Headset hat sich seit einigen Sekunden nicht gemeldet. Die Uhr steht bei seiner letzten Meldung.",

@@ -6,7 +6,7 @@ export const equipmentEn = {
   "equipment.add": "Add a measurement",
   "equipment.empty": "Nothing has been measured yet",
   "equipment.empty.body":
-    "Measure the delay of each headset with its tracking and computer once, and again after any change to them.",
+    "Measure the delay of each combination of headset, tracking and computer once, and again after any change to it.",
   "equipment.current": "Newest",
   "equipment.older": "Older",
   "equipment.retired": "Retired",
@@ -38,7 +38,7 @@ export const equipmentDe: Readonly<Record<keyof typeof equipmentEn, string>> = {
   "equipment.add": "Messung eintragen",
   "equipment.empty": "Es wurde noch nichts gemessen",
   "equipment.empty.body":
-    "Messen Sie die Verzögerung jedes Headsets mit Tracking und Rechner einmal und nach jeder Änderung erneut.",
+    "Messen Sie die Verzögerung jeder Kombination aus Headset, Tracking und Rechner einmal und nach jeder Änderung daran erneut.",
   "equipment.current": "Neueste",
   "equipment.older": "Ältere",
   "equipment.retired": "Verworfen",

@@ -19,7 +19,7 @@ export const peopleEn = {
     "People and audit trail. In a blinded study: a condition before its order is known, unless a reason is on record.",
   "role.operator.not":
     "Dashboards, exports, protocols. In a blinded study: any condition, even afterwards.",
-  "role.analyst.not": "Changes of any kind: no commands, no studies, no people.",
+  "role.analyst.not": "Change anything: send commands, edit studies, manage people.",
   "role.label": "Role",
   "role.may": "May",
   "role.mayNot": "May not see or do",
@@ -136,7 +136,7 @@ export const peopleDe: Readonly<Record<keyof typeof peopleEn, string>> = {
     "Personen und Prüfpfad. In einer verblindeten Studie: eine Bedingung, bevor ihre Reihenfolge bekannt ist, außer mit festgehaltener Begründung.",
   "role.operator.not":
     "Auswertungen, Exporte, Studienprotokolle. In einer verblindeten Studie: jede Bedingung, auch im Nachhinein.",
-  "role.analyst.not": "Änderungen jeder Art: keine Befehle, keine Studien, keine Personen.",
+  "role.analyst.not": "Etwas ändern: Befehle geben, Studien bearbeiten, Personen verwalten.",
   "role.label": "Rolle",
   "role.may": "Darf",
   "role.mayNot": "Darf nicht sehen oder tun",

@@ -77,7 +77,7 @@ export const analysisDe: Readonly<Record<keyof typeof analysisEn, string>> = {
   "figures.limb.hand": "Hand",
   "figures.limb.foot": "Fuß",
   "figures.clear": "Zurücksetzen",
-  "figures.group.progress": "Fortschritt und Balance",
+  "figures.group.progress": "Fortschritt und Ausbalancierung",
   "figures.group.embodiment": "Körpererleben",
   "figures.group.answers": "Antworten je Frage",
   "figures.group.tasks": "Aufgaben und Kontakte",

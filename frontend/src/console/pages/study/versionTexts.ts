@@ -54,10 +54,10 @@ export const versionsDe: Readonly<Record<keyof typeof versionsEn, string>> = {
   "diff.identical": "Es gibt keine Unterschiede.",
   "diff.layout":
     "Nur Kommentare oder Anordnung unterscheiden sich; Speichern ergibt keine neue Version.",
-  "diff.newLedger": "Die Balance ist betroffen: Neue Sitzungen beginnen einen neuen Plan",
+  "diff.newLedger": "Die Ausbalancierung ist betroffen: Neue Sitzungen beginnen einen neuen Plan",
   "diff.newLedger.body":
     "Bedingungen oder Reihenfolgen unterscheiden sich. Belegte Plätze bleiben beim alten Plan und zählen im neuen nicht.",
-  "diff.sameLedger": "Die Balance ist nicht betroffen: Der Plan geht weiter",
+  "diff.sameLedger": "Die Ausbalancierung ist nicht betroffen: Der Plan geht weiter",
   "diff.sameLedger.body": "Bedingungen und Reihenfolgen sind dieselben.",
   "diff.underWay_one":
     "Eine Sitzung ist geplant oder läuft; sie behält die Version, mit der sie angelegt wurde.",
