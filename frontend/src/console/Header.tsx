@@ -44,6 +44,7 @@ interface Place {
 const PLACES: readonly Place[] = [
   { href: "/instruments", icon: "form", name: "instruments.title" },
   { href: "/captures", icon: "walk", name: "captures.title" },
+  { href: "/bodies", icon: "body", name: "bodies.title" },
   { href: "/walking", icon: "foot", name: "walking.title" },
   { href: "/equipment", icon: "headset", name: "equipment.title" },
   { href: "/network", icon: "link", name: "network.title", permission: "network" },

@@ -24,6 +24,12 @@ const CapturePage = lazy(async () => ({
 const CapturesPage = lazy(async () => ({
   default: (await import("./captures/CapturesPage")).CapturesPage,
 }));
+const BodiesPage = lazy(async () => ({
+  default: (await import("./bodies/BodiesPage")).BodiesPage,
+}));
+const BodyPage = lazy(async () => ({
+  default: (await import("./bodies/BodyPage")).BodyPage,
+}));
 const WalkingPage = lazy(async () => ({
   default: (await import("./walking/WalkingPage")).WalkingPage,
 }));
@@ -86,6 +92,18 @@ export function Routes({ account }: { readonly account: Account }): JSX.Element 
         {({ id, tab }) => (
           <div className={classes.main}>
             <CapturePage key={id} id={id} tab={tab} />
+          </div>
+        )}
+      </Route>
+      <Route path="/bodies">
+        <div className={classes.main}>
+          <BodiesPage />
+        </div>
+      </Route>
+      <Route path="/bodies/:hash">
+        {({ hash }) => (
+          <div className={classes.main}>
+            <BodyPage key={hash} hash={hash} />
           </div>
         )}
       </Route>

@@ -61,6 +61,16 @@ export const RULES = {
       "DELETE /api/captures/{capture_id}/joint-map",
     ],
   },
+  body: {
+    roles: DESIGNERS,
+    routes: [
+      "POST /api/humanoids",
+      "PATCH /api/humanoids/{content_hash}",
+      "POST /api/humanoids/{content_hash}/measure",
+      "POST /api/avatars",
+      "POST /api/avatars/{key}/versions",
+    ],
+  },
   walking: {
     roles: DESIGNERS,
     routes: [

@@ -5,6 +5,7 @@ import {
   type Texts,
   useTranslations,
 } from "@shared/i18n/i18n";
+import { bodiesDe, bodiesEn } from "../bodies/texts";
 import { bodyViewDe, bodyViewEn } from "../bodyView/texts";
 import { jointMapDe, jointMapEn } from "../captures/jointMapTexts";
 import { capturesDe, capturesEn } from "../captures/texts";
@@ -61,6 +62,7 @@ const allEn = {
   ...equipmentEn,
   ...capturesEn,
   ...captureViewEn,
+  ...bodiesEn,
   ...bodyViewEn,
   ...walkingEn,
   ...walkingModelEn,
@@ -98,6 +100,7 @@ const allDe = {
   ...equipmentDe,
   ...capturesDe,
   ...captureViewDe,
+  ...bodiesDe,
   ...bodyViewDe,
   ...walkingDe,
   ...walkingModelDe,

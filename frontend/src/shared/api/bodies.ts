@@ -1,6 +1,17 @@
 /** Requests for bodies: humanoid models by the hash of their content. */
 import type { BodyBinding } from "../stage/skin/pose";
-import { errorFromBody, Unreachable } from "./request";
+import { answer, errorFromBody, server, Unreachable } from "./request";
+import type { components } from "./schema";
+import { upload } from "./upload";
+
+type Schemas = components["schemas"];
+export type BodyListed = Schemas["HumanoidListed"];
+export type BodyView = Schemas["HumanoidView"];
+export type BodyPage = Schemas["HumanoidPage"];
+export type BodyUse = Schemas["BodyUse"];
+export type BodyCheck = Schemas["BodyCheck"];
+export type BodyChange = Schemas["BodyChange"];
+export type LicenceTerm = BodyView["asked"][number];
 
 const fetched = async (path: string): Promise<Response> => {
   const response = await fetch(path, { credentials: "same-origin" }).catch((cause: unknown) => {
@@ -10,9 +21,26 @@ const fetched = async (path: string): Promise<Response> => {
   return response;
 };
 
+const at = (hash: string) => ({ params: { path: { content_hash: hash } } });
 const address = (hash: string) => `/api/humanoids/${encodeURIComponent(hash)}`;
 
 export const bodies = {
+  list: () =>
+    answer<BodyPage>(server.GET("/api/humanoids", { params: { query: { limit: 1000 } } })),
+  get: (hash: string) => answer<BodyView>(server.GET("/api/humanoids/{content_hash}", at(hash))),
+  use: (hash: string) => answer<BodyUse>(server.GET("/api/humanoids/{content_hash}/use", at(hash))),
+  change: (hash: string, change: Partial<BodyChange>) =>
+    answer<BodyView>(
+      server.PATCH("/api/humanoids/{content_hash}", {
+        ...at(hash),
+        body: { confirmed: [], ...change },
+      }),
+    ),
+  measure: (hash: string) =>
+    answer<BodyView>(server.POST("/api/humanoids/{content_hash}/measure", at(hash))),
+  upload: (file: File, onSent: (share: number) => void) =>
+    upload<BodyView>(`/api/humanoids?${new URLSearchParams({ name: file.name })}`, file, onSent),
+  fileUrl: (hash: string) => `${address(hash)}/file`,
   /** The model's file as it was uploaded. */
   file: async (hash: string): Promise<ArrayBuffer> =>
     (await fetched(`${address(hash)}/file`)).arrayBuffer(),

@@ -2,6 +2,7 @@
 import { decodeMotion, type PointMotion } from "../stage/motion";
 import { answer, errorFromBody, server, Unreachable } from "./request";
 import type { components, operations } from "./schema";
+import { upload } from "./upload";
 
 type Schemas = components["schemas"];
 export type CaptureListed = Schemas["CaptureListed"];
@@ -94,28 +95,12 @@ export function uploadUrl({ file, companion }: CaptureFiles): string {
   return `/api/captures?${query}`;
 }
 
-/**
- * Upload a capture; `onSent` is called with the fraction of bytes sent so far.
- *
- * Uses XMLHttpRequest because `fetch` does not report the progress of an upload.
- */
-export function uploadCapture(
+/** Upload a capture; `onSent` is called with the fraction of bytes sent so far. */
+export async function uploadCapture(
   files: CaptureFiles,
   onSent: (share: number) => void,
 ): Promise<Uploaded> {
-  return new Promise((resolve, reject) => {
-    const request = new XMLHttpRequest();
-    request.open("POST", uploadUrl(files));
-    request.responseType = "json";
-    request.upload.onprogress = (event) => {
-      if (event.lengthComputable) onSent(event.loaded / event.total);
-    };
-    request.onload = () => {
-      if (request.status >= 200 && request.status < 300) {
-        resolve({ capture: request.response as Capture, isNew: request.status === 201 });
-      } else reject(errorFromBody(request.status, request.response));
-    };
-    request.onerror = () => reject(new Unreachable("The server cannot be reached."));
-    request.send(new Blob([files.file, ...(files.companion === null ? [] : [files.companion])]));
-  });
+  const whole = new Blob([files.file, ...(files.companion === null ? [] : [files.companion])]);
+  const { stored, isNew } = await upload<Capture>(uploadUrl(files), whole, onSent);
+  return { capture: stored, isNew };
 }

@@ -1,0 +1,113 @@
+/**
+ * One body in the three statures of Degen et al. 2022, and beside it how a recorded walk changes on
+ * them: what the paper prints, and what was computed for a capture of the lab.
+ */
+import { Select, Table, Title } from "@mantine/core";
+import type { CaptureListed } from "@shared/api/captures";
+import { captures } from "@shared/api/captures";
+import { decimals } from "@shared/format";
+import { useQuery } from "@tanstack/react-query";
+import { type JSX, useState } from "react";
+import { Link } from "wouter";
+import { BodyViewer } from "../bodyView/BodyViewer";
+import { PAPER_AVATARS, statureOf } from "../captures/avatars";
+import { capturesQuery } from "../captures/queries";
+import { useTexts } from "../i18n";
+import { Loaded } from "../ui/Loaded";
+import classes from "./Bodies.module.css";
+
+const STATURES_M = PAPER_AVATARS.map((avatar) => statureOf(avatar) / 100);
+/** Step lengths and lifts that the paper prints for them (its figure 9), centimetres. */
+const PRINTED = [
+  { length: 110, height: 16 },
+  { length: 150, height: 20 },
+  { length: 165, height: 22 },
+] as const;
+
+export function StatureCard({ hash }: { readonly hash: string }): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <section className={classes.section} aria-labelledby="three-statures">
+      <Title order={2} id="three-statures">
+        {t("bodies.statures")}
+      </Title>
+      <p className={classes.soft}>{t("bodies.statures.lead")}</p>
+      <div className={classes.beside}>
+        <BodyViewer hash={hash} name={t("bodies.statures")} staturesM={STATURES_M} />
+        <Loaded query={useQuery(capturesQuery)}>
+          {(page) => <Steps usable={page.captures.filter((one) => one.has_skeleton)} />}
+        </Loaded>
+      </div>
+    </section>
+  );
+}
+
+function Steps({ usable }: { readonly usable: readonly CaptureListed[] }): JSX.Element {
+  const { t } = useTexts();
+  const [chosen, setChosen] = useState<string | null>(null);
+  const capture = usable.find(({ id }) => id === chosen) ?? usable[0];
+  return (
+    <div className={classes.steps}>
+      {usable.length > 0 && (
+        <Select
+          label={t("bodies.statures.capture")}
+          data={usable.map(({ id, title }) => ({ value: id, label: title }))}
+          value={capture?.id ?? null}
+          allowDeselect={false}
+          onChange={setChosen}
+        />
+      )}
+      <StepTable id={capture?.id ?? null} />
+      {capture === undefined ? (
+        <p className={classes.soft}>{t("bodies.statures.none")}</p>
+      ) : (
+        <Link href={`/captures/${capture.id}/verification`}>{t("bodies.statures.all")}</Link>
+      )}
+    </div>
+  );
+}
+
+function StepTable({ id }: { readonly id: string | null }): JSX.Element {
+  const { t, language } = useTexts();
+  const query = useQuery({
+    queryKey: ["captures", id, "three-statures"],
+    queryFn: () => captures.verification(id ?? "", PAPER_AVATARS, false),
+    enabled: id !== null,
+  });
+  const cm = (metres: number | null | undefined) =>
+    metres == null ? "–" : decimals(100 * metres, language, 1);
+  return (
+    <Table verticalSpacing="xs">
+      <Table.Caption>{t("bodies.statures.caption")}</Table.Caption>
+      <Table.Thead>
+        <Table.Tr>
+          <Table.Th rowSpan={2}>{t("bodies.statures.stature")}</Table.Th>
+          <Table.Th colSpan={2}>{t("bodies.statures.length")}</Table.Th>
+          <Table.Th colSpan={2}>{t("bodies.statures.height")}</Table.Th>
+        </Table.Tr>
+        <Table.Tr>
+          <Table.Th>{t("bodies.statures.here")}</Table.Th>
+          <Table.Th>{t("bodies.statures.printed")}</Table.Th>
+          <Table.Th>{t("bodies.statures.here")}</Table.Th>
+          <Table.Th>{t("bodies.statures.printed")}</Table.Th>
+        </Table.Tr>
+      </Table.Thead>
+      <Table.Tbody className="numbers">
+        {PAPER_AVATARS.map((avatar, index) => {
+          const own = query.data?.avatars.find(({ name }) => name === avatar);
+          return (
+            <Table.Tr key={avatar}>
+              <Table.Th scope="row">
+                {t("capture.avatar.cm", { value: statureOf(avatar) })}
+              </Table.Th>
+              <Table.Td>{cm(own?.mean_step_length_m)}</Table.Td>
+              <Table.Td>{PRINTED[index]?.length}</Table.Td>
+              <Table.Td>{cm(own?.mean_step_height_m)}</Table.Td>
+              <Table.Td>{PRINTED[index]?.height}</Table.Td>
+            </Table.Tr>
+          );
+        })}
+      </Table.Tbody>
+    </Table>
+  );
+}

@@ -1,0 +1,35 @@
+/** Upload a file and follow how much of it was sent. */
+import { errorFromBody, Unreachable } from "./request";
+
+export interface Stored<Answer> {
+  readonly stored: Answer;
+  /** False if the same content had been uploaded before. */
+  readonly isNew: boolean;
+}
+
+/**
+ * Post a file; `onSent` is called with the fraction of bytes sent so far.
+ *
+ * Uses XMLHttpRequest because `fetch` does not report the progress of an upload.
+ */
+export function upload<Answer>(
+  url: string,
+  file: Blob,
+  onSent: (share: number) => void,
+): Promise<Stored<Answer>> {
+  return new Promise((resolve, reject) => {
+    const request = new XMLHttpRequest();
+    request.open("POST", url);
+    request.responseType = "json";
+    request.upload.onprogress = (event) => {
+      if (event.lengthComputable) onSent(event.loaded / event.total);
+    };
+    request.onload = () => {
+      if (request.status >= 200 && request.status < 300) {
+        resolve({ stored: request.response as Answer, isNew: request.status === 201 });
+      } else reject(errorFromBody(request.status, request.response));
+    };
+    request.onerror = () => reject(new Unreachable("The server cannot be reached."));
+    request.send(file);
+  });
+}
