@@ -36,7 +36,7 @@ def store_chunks(
     phase_id: int = 1,
     per_chunk: int = RATE_HZ,
 ) -> None:
-    """Store frames `values` (n, 91) at increasing `seqs` (n); a gap starts a new chunk."""
+    """Store frames `values` (n, w) at increasing `seqs` (n); a gap starts a new chunk."""
     _stream(db, session_id, stream, epoch, int(seqs[-1]) + 1, len(seqs))
     for begin, end in _runs(seqs, per_chunk):
         times_s = np.asarray(seqs[begin:end], np.float64) / RATE_HZ
@@ -48,7 +48,7 @@ def store_chunks(
                 seq_first=int(seqs[begin]),
                 frame_count=end - begin,
                 phase_id=phase_id,
-                values_per_frame=VALUES_PER_FRAME,
+                values_per_frame=values.shape[1],
                 t_first_s=float(times_s[0]),
                 t_last_s=float(times_s[-1]),
                 encoding=ENCODING,

@@ -3,9 +3,9 @@
 Each hand goes through gestures in random order: fist, pinch, thumb opposition, an open and a
 relaxed hand. A gesture is a set of joint angles within the limits of a human hand, the same on both
 sides; a hand takes 0.35 to 0.7 s to the next one along a minimum-jerk path (Flash and Hogan 1985),
-and holds it for a while. A hand that reaches for something points with its index finger instead. A tremor of
-about 9 Hz and a few tenths of a degree (physiological tremor: Lakie 2010) lies on top, so that no
-finger is ever completely still.
+and holds it for a while. A hand that reaches for something points with its index finger instead. A
+tremor of about 9 Hz and a tenth of a degree lies on top, so that no finger is ever completely
+still.
 
 The angles, times and tremor are estimates: the movement serves to exercise storage, contacts and
 statistics, and says nothing about people.

@@ -20,6 +20,11 @@ def samples_path(participant_code: str, session_id: str) -> str:
     return f"samples/{safe_name(participant_code)}_{safe_name(session_id)}.csv"
 
 
+def fingers_path(participant_code: str, session_id: str) -> str:
+    """Return the path, in an export, of the frames of a session's fingers."""
+    return f"fingers/{safe_name(participant_code)}_{safe_name(session_id)}.csv"
+
+
 def receipt_path(participant_code: str, session_id: str) -> str:
     """Return the path, in an export, of the receipt of a session."""
     return f"receipts/{safe_name(participant_code)}_{safe_name(session_id)}.json"

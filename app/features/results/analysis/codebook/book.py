@@ -14,6 +14,7 @@ from app.features.results.analysis.codebook.equipment import (
 from app.features.results.analysis.codebook.movement import (
     COMPLETIONS,
     CONTACTS,
+    FINGER_SAMPLES,
     JOINT_ERROR_COURSE,
     JOINT_ERRORS,
     SAMPLES,
@@ -22,7 +23,7 @@ from app.features.results.analysis.codebook.movement import (
 from app.features.results.analysis.codebook.quality import ALARMS, DOUBTS, QUALITY
 from app.features.results.analysis.codebook.questionnaires import ANSWERS, CORRECTIONS, SCORES
 from app.features.results.analysis.codebook.sessions import EVENTS, PHASES, SESSIONS
-from app.science.skeleton import JOINT_NAMES
+from app.science.skeleton import FINGER_PARTS, JOINT_NAMES
 
 _B = Describe("codebook")
 TABLES: dict[str, str] = {
@@ -44,6 +45,7 @@ TABLES: dict[str, str] = {
     "calibrations": "One row per measurement of the equipment's own delay; of no one session.",
     "codebook": "One row per column of the other files.",
     "samples": "One file per session, one row per frame: target and actual body side by side.",
+    "fingers": "One file per session that recorded fingers, one row per frame, as in samples.",
 }
 """The description of each table's rows, in the order of the export."""
 
@@ -64,13 +66,17 @@ CODEBOOK: tuple[Column, ...] = (
     *CLOCK_MAPPING,
     *EVENTS,
     *CALIBRATIONS,
-    _B.text("table", "The file the column is in; samples stands for all files in samples/."),
+    _B.text(
+        "table",
+        "The file the column is in; samples and fingers stand for all files in these folders.",
+    ),
     _B.text("column", "Name of the column."),
     _B.text("meaning", "What it holds."),
     _B.text("unit", "Its unit, if it has one."),
     _B.text("type", "How to read it.", "text, integer, number, boolean, time"),
     _B.text("levels", "Its range, or the words it can hold."),
     *SAMPLES,
+    *FINGER_SAMPLES,
 )
 PREFACE = """\
 # Data dictionary
@@ -81,6 +87,10 @@ Every column of an export (`./run export`, `codebook.csv`). Generated from the c
 Missing values are empty cells. Booleans are `true` and `false`, times are UTC in ISO 8601, angles
 in degrees, lengths in metres, durations in seconds. Data of people, simulations and
 tests are never summarised together: every table of data has the column `simulated`."""
+_PER_PART = {
+    "samples": (JOINT_NAMES, "Each of the 22 joints", "Joint"),
+    "fingers": (FINGER_PARTS, "Each of the 30 finger parts", "Part"),
+}
 _BY_TABLE = {
     table: tuple(column for column in CODEBOOK if column.table == table) for table in TABLES
 }
@@ -137,14 +147,15 @@ def _folded(columns: Sequence[Column]) -> list[Column]:
 
 
 def _folded_column(column: Column) -> Column:
-    if column.table != "samples":
+    if column.table not in _PER_PART:
         return column
+    parts, every, short = _PER_PART[column.table]
     for stream in STREAMS:
-        for joint in JOINT_NAMES:
-            if column.name.startswith(f"{stream}_{joint}_q"):
-                meaning = column.meaning.replace(f"{joint} of", "Each of the 22 joints of", 1)
+        for part in parts:
+            if column.name.startswith(f"{stream}_{part}_q"):
+                meaning = column.meaning.replace(f"{part} of", f"{every} of", 1)
                 meaning = meaning.replace(f"part {column.name[-1]} ", "part w, x, y or z ", 1)
-                return replace(column, name=f"{stream}_<Joint>_q<w|x|y|z>", meaning=meaning)
+                return replace(column, name=f"{stream}_<{short}>_q<w|x|y|z>", meaning=meaning)
     return column
 
 

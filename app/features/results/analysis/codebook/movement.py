@@ -7,13 +7,14 @@ from app.features.results.analysis.codebook.column import (
     session_columns,
 )
 from app.features.results.analysis.codebook.equipment import epoch_column, mapped_columns
-from app.science.skeleton import JOINT_NAMES
+from app.science.skeleton import FINGER_PARTS, JOINT_NAMES
 
 _C = Describe("contacts")
 _T = Describe("completions")
 _J = Describe("joint_errors")
 _K = Describe("joint_error_course")
 _M = Describe("samples")
+_F = Describe("fingers")
 STREAMS = ("target", "actual")
 
 CONTACTS: tuple[Column, ...] = (
@@ -23,7 +24,11 @@ CONTACTS: tuple[Column, ...] = (
     _C.text("surface_kind", "What touching it means.", "panel, side, target, start"),
     _C.integer("box", "The box, as numbered above it.", levels="1 to 4"),
     _C.text("side", "Side of the box.", "left, right, top, bottom, front_rim, front, back"),
-    _C.text("body_part", "The body part, by its Unity HumanBodyBones name."),
+    _C.text(
+        "body_part",
+        "The body part, by its Unity HumanBodyBones name: a finger part, such as "
+        "RightThumbDistal, in sessions that record fingers; else the hand stands for them.",
+    ),
     _C.text(
         "effect",
         "What the task made of it.",
@@ -74,7 +79,8 @@ JOINT_ERRORS: tuple[Column, ...] = (
     _reference_column("joint_errors"),
     _J.text(
         "joint",
-        "The joint, by its Unity HumanBodyBones name; the hips carry no delay. A joint without a "
+        "The joint, by its Unity HumanBodyBones name; the hips carry no delay. Finger parts follow "
+        "in sessions that record them. A joint without a "
         "hinge, such as a physics avatar's shoulder, is asked for nothing: its figures are empty.",
     ),
     _J.text(
@@ -112,7 +118,8 @@ JOINT_ERROR_COURSE: tuple[Column, ...] = (
     ),
     _K.number(
         "mean_deg",
-        "Mean whole angle over all samples in the bin, a sample being one joint in one frame. "
+        "Mean whole angle over all samples in the bin, a sample being one joint of the body, not "
+        "of its fingers, in one frame. "
         "Weighted by samples, the bins have the mean of the phase: that of the angles in "
         "joint_errors, each joint weighted by its samples.",
         "deg",
@@ -142,19 +149,46 @@ def _stream_columns(stream: str, what: str) -> tuple[Column, ...]:
     return (*root, *rotations)
 
 
+def _frame_columns(describe: Describe) -> tuple[Column, ...]:
+    return (
+        describe.boolean("simulated", "Whether a simulation made the data."),
+        describe.text(
+            "avatar", "How the body that the participant saw was moved.", "delayed_copy, physics"
+        ),
+        describe.integer("epoch", "Run of the client: a restart takes a new one."),
+        describe.integer("seq", "Frame within the epoch; all streams of a moment carry the same."),
+        describe.integer("phase_id", "The phase; 0 outside phases.", levels="0 and up"),
+        describe.number("t_s", "Time of the frame on the client's monotonic clock.", "s"),
+        describe.boolean("active", "Whether the phase's clock ran."),
+        describe.boolean(
+            "flagged",
+            "Whether a stream's frame holds a value that is not a number, or a rotation that is "
+            "not of unit length. It stands as it came and enters no summary.",
+        ),
+    )
+
+
+def _finger_columns(stream: str, what: str) -> tuple[Column, ...]:
+    return tuple(
+        _F.number(
+            f"{stream}_{part}_q{component}",
+            f"{part} of the {what}: quaternion part {component} of the rotation relative to the "
+            "part above it, in the T-pose's axes; NaN for a hand that is not tracked. Single "
+            "precision.",
+            levels="from -1 to 1",
+        )
+        for part in FINGER_PARTS
+        for component in "wxyz"
+    )
+
+
 SAMPLES: tuple[Column, ...] = (
-    _M.boolean("simulated", "Whether a simulation made the data."),
-    _M.text("avatar", "How the body that the participant saw was moved.", "delayed_copy, physics"),
-    _M.integer("epoch", "Run of the client: a restart takes a new one."),
-    _M.integer("seq", "Frame within the epoch; both streams of a moment carry the same."),
-    _M.integer("phase_id", "The phase; 0 outside phases.", levels="0 and up"),
-    _M.number("t_s", "Time of the frame on the client's monotonic clock.", "s"),
-    _M.boolean("active", "Whether the phase's clock ran."),
-    _M.boolean(
-        "flagged",
-        "Whether a stream's frame holds a value that is not a number, or a rotation that is not of "
-        "unit length. It stands as it came and enters no summary.",
-    ),
+    *_frame_columns(_M),
     *_stream_columns("target", "target, what the tracking asks for"),
     *_stream_columns("actual", "actual body, what the participant sees"),
+)
+FINGER_SAMPLES: tuple[Column, ...] = (
+    *_frame_columns(_F),
+    *_finger_columns("target", "target, what the tracking asks for"),
+    *_finger_columns("actual", "actual body, what the participant sees"),
 )

@@ -15,7 +15,12 @@ _D = Describe("doubts")
 QUALITY: tuple[Column, ...] = (
     *session_columns("quality"),
     *phase_columns("quality"),
-    _Q.text("stream", "What the tracking asks for, or the body that is seen.", "target, actual"),
+    _Q.text(
+        "stream",
+        "What the tracking asks for, or the body that is seen; and of their fingers, where these "
+        "are recorded.",
+        "target, actual, target_fingers, actual_fingers",
+    ),
     _Q.integer("frames", "Frames of active time.", levels="0 and up"),
     _Q.number("span_s", "Time between them, gaps included, on the client's clock.", "s"),
     _Q.number("frame_rate_hz", "One over the median interval between two frames.", "1/s"),

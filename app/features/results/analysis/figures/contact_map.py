@@ -14,6 +14,7 @@ from app.features.results.analysis.figures.drawing import (
     participants,
     too_few,
 )
+from app.features.results.analysis.figures.fingers import by_finger
 from app.features.results.analysis.figures.theme import new_figure
 from app.protocol import COUNTED_KINDS
 
@@ -45,7 +46,7 @@ def contact_map_drawing(phases: pd.DataFrame, contacts: pd.DataFrame) -> Drawing
 
 def _means(tasks: pd.DataFrame, sides: pd.DataFrame) -> pd.DataFrame:
     """Return limb, latency_ms, body_part, side, mean_s_per_phase, for each existing combination."""
-    times = part_side_times(sides)
+    times = part_side_times(by_finger(sides))
     times["what"] = times["body_part"] + _APART + times["side"]
     found = []
     for limb in [limb for limb in LIMBS if (tasks["limb"] == limb).any()]:

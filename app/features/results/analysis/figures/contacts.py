@@ -16,6 +16,7 @@ from app.features.results.analysis.figures.drawing import (
     participants,
     too_few,
 )
+from app.features.results.analysis.figures.fingers import by_finger
 from app.features.results.analysis.figures.theme import COLOURS, PATTERNS, hatched, new_figure
 from app.features.results.analysis.tables.tasks import red_spans, total_s
 from app.protocol import COUNTED_KINDS
@@ -74,7 +75,7 @@ def _side_times(sides: pd.DataFrame) -> pd.DataFrame:
 def _part_times(sides: pd.DataFrame) -> pd.DataFrame:
     """Return the contact time by phase and body part: the union of its contacts per side."""
     rows = []
-    for key, contacts in _grouped(sides, "session_id", "phase_id", "body_part").items():
+    for key, contacts in _grouped(by_finger(sides), "session_id", "phase_id", "body_part").items():
         rows.append((*key, sum(total_s(red) for red in red_spans(contacts).values())))
     return _times(rows)
 

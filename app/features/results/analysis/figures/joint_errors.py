@@ -177,8 +177,12 @@ def _clipped_note(shares: pd.DataFrame) -> str:
 
 
 def task_angles(errors: pd.DataFrame) -> pd.DataFrame:
-    """Return the rows of task phases with the whole angle, relative to the present pose."""
+    """Return the rows of task phases with the whole angle, relative to the present pose.
+
+    Fingers are left out, so that means over joints are comparable with and without them.
+    """
     chosen = errors["axis"].eq("angle") & errors["reference"].eq("present")
+    chosen &= errors["joint"].isin(ERROR_JOINTS)
     return errors[chosen & errors["phase_kind"].isin(COUNTED_KINDS)].dropna(subset=["mean_deg"])
 
 

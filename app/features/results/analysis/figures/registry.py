@@ -19,6 +19,7 @@ from app.features.results.analysis.figures.contacts import contacts_drawing
 from app.features.results.analysis.figures.drawing import Drawing, Group
 from app.features.results.analysis.figures.embodiment import embodiment_drawings
 from app.features.results.analysis.figures.exclusions import exclusions_drawing
+from app.features.results.analysis.figures.fingers import joint_error_fingers_drawings
 from app.features.results.analysis.figures.joint_error_blocks import joint_error_blocks_drawing
 from app.features.results.analysis.figures.joint_error_course import joint_error_course_drawing
 from app.features.results.analysis.figures.joint_errors import (
@@ -113,6 +114,7 @@ FIGURES: tuple[Figure, ...] = (
         "movement", lambda rows: joint_error_course_drawing(rows.counting(rows.filtered.courses))
     ),
     Figure.one("movement", lambda rows: joint_error_map_drawing(rows.errors), wide=True),
+    Figure("movement", lambda rows: joint_error_fingers_drawings(rows.errors)),
     Figure.one("quality", lambda rows: quality_drawing(rows.counting(rows.filtered.quality))),
     Figure.one(
         "quality",

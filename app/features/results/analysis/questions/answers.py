@@ -5,6 +5,7 @@ not declare alpha, the usual 5 % is used, and the results say that it was not de
 """
 
 from collections.abc import Iterator, Sequence
+from itertools import chain
 
 from app.features.results.analysis.figures.drawing import limb_note
 from app.features.results.analysis.material import Material, n_not_valid
@@ -18,6 +19,7 @@ from app.features.results.analysis.questions.measures import (
 )
 from app.features.results.analysis.questions.models import carry_over_result, model_results
 from app.features.results.analysis.questions.relations import (
+    contact_finger_results,
     contact_share_results,
     demographics,
     subjective_objective,
@@ -133,7 +135,11 @@ def _explored(
     if not found:
         return
     sections = (
-        ("contact_shares", "Contact by body part", contact_share_results(material)),
+        (
+            "contact_shares",
+            "Contact by body part",
+            chain(contact_share_results(material), contact_finger_results(material)),
+        ),
         ("reliability", "Consistency of the questionnaires", reliability(material)),
         ("relations", "Subjective and objective measures", subjective_objective(found)),
         ("demographics", "Scores by demographics", demographics(material, found)),

@@ -5,11 +5,12 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import pandas as pd
 
-from app.features.results.analysis.figures.contacts import part_side_times
+from app.features.results.analysis.figures.contacts import mean_times, part_side_times
 from app.features.results.analysis.material import Material
 from app.features.results.analysis.questions.measures import Measure, completed
 from app.features.results.analysis.questions.words import TestReport, bounded, p_cell
 from app.protocol import COUNTED_KINDS
+from app.science.skeleton import FINGER_PARTS, FINGERS, finger_of
 from app.science.statistics import (
     Spearman,
     StatisticsError,
@@ -18,9 +19,9 @@ from app.science.statistics import (
     holm,
     spearman,
 )
+from app.science.tasks import Side
 
 OBJECTIVE = ("contact_time", "completions", "joint_error")
-_FINGERS = ("Thumb", "Index", "Middle", "Ring", "Little")
 _GROUPS = {
     "Hand": "hand",
     "LowerArm": "arm",
@@ -32,13 +33,15 @@ _GROUPS = {
     "UpperLeg": "leg",
 }
 _ORDER = ("finger", "hand", "arm", "toes", "foot", "leg", "trunk and head")
+_PALM = "Palm"
+_SIDES = tuple(str(side) for side in Side)
 _NUMBERS = ("integer", "number", "likert")
 _CATEGORIES = ("choice", "boolean")
 
 
 def group_of(part: str) -> str:
     """Return the group of a body part: finger, hand, arm, toes, foot, leg, or trunk and head."""
-    if any(finger in part for finger in _FINGERS):
+    if finger_of(part) is not None:
         return "finger"
     return next((group for word, group in _GROUPS.items() if part.endswith(word)), _ORDER[-1])
 
@@ -59,6 +62,62 @@ def contact_share_results(material: Material) -> Iterator[TestReport]:
             rows += _share_rows(f"{latency:g}", cell, times)
         if rows:
             yield _shares_report(str(limb), rows)
+
+
+def contact_finger_results(material: Material) -> Iterator[TestReport]:
+    """Yield, for each hand task, the contact time of every finger with every side.
+
+    Nothing is yielded if no contact names a finger.
+    """
+    tested = completed(material)
+    phases, contacts = tested.counting(tested.phases), tested.counting(tested.contacts)
+    tasks = phases[phases["phase_kind"].isin(COUNTED_KINDS)]
+    sides = contacts[contacts["surface_kind"] == "side"]
+    fingers = sides[sides["body_part"].isin(FINGER_PARTS)]
+    for limb, own in tasks.dropna(subset=["limb"]).groupby("limb", sort=False):
+        used = fingers[fingers["limb"] == limb]
+        if used.empty:
+            continue
+        named = used.assign(body_part=used["body_part"].map(finger_of))
+        hand = sides[(sides["limb"] == limb) & sides["body_part"].str.endswith("Hand")]
+        times = part_side_times(pd.concat((named, hand.assign(body_part=_PALM))))
+        yield _fingers_report(str(limb), own, times)
+
+
+def _fingers_report(limb: str, tasks: pd.DataFrame, times: pd.DataFrame) -> TestReport:
+    """Return mean seconds per phase by latency, finger and side, of both hands together."""
+    shown = [side for side in _SIDES if side in set(times["side"])]
+    parts = [part for part in (*FINGERS, _PALM) if part in set(times["body_part"])]
+    means = mean_times(tasks, times.assign(what=times["body_part"] + "/" + times["side"]))
+    rows = []
+    for latency, mean_s in means.iterrows():
+        for part in parts:
+            own_s = [float(mean_s.get(f"{part}/{side}", 0.0)) for side in shown]
+            seconds = (f"{one_s:.2f}" for one_s in (*own_s, sum(own_s)))
+            rows.append((f"{latency:g}", part.lower(), *seconds))
+    n = int(tasks["participant_code"].nunique())
+    return TestReport(
+        key=f"contact_fingers_{limb}",
+        title=f"{limb.capitalize()}: Which finger touched which side?",
+        sentence=(
+            "Mean seconds of contact per phase over participants, of both hands; a phase without a "
+            f"contact counts as 0. {n} participants."
+        ),
+        apa="",
+        columns=(
+            "latency (ms)",
+            "finger",
+            *(f"{side.replace('_', ' ')} (s)" for side in shown),
+            "all sides (s)",
+        ),
+        rows=rows,
+        method=(
+            "The time of a finger at a side is the union over its three parts. Fingers may touch "
+            "at the same time, so their times must not be added. The palm is the hand without its "
+            "fingers."
+        ),
+        source="Karas 2020, section 7.1.3.",
+    )
 
 
 def _share_rows(latency: str, cell: pd.DataFrame, times: pd.DataFrame) -> list[tuple[str, ...]]:

@@ -12,7 +12,7 @@ from app.features.design.studies import study_by_key
 from app.features.results.analysis.schemas import Kind
 from app.features.results.analysis.tables.context import finished, of_kind, phases_context, read
 from app.models import JointErrorCourseRow, JointErrorRow, StudySession
-from app.science.joint_error import ERROR_AXES, ERROR_JOINTS
+from app.science.joint_error import ERROR_AXES, ERROR_JOINTS_WITH_FINGERS
 
 _KEYS = ["session_id", "phase_id"]
 _FIGURES = ("mean", "rms", "p95", "max")
@@ -32,7 +32,7 @@ def joint_angles_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
 
 
 def joint_errors_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
-    """Return one row per phase, reference, joint and axis, in the order of the body's joints."""
+    """Return one row per phase, reference, joint and axis, in the order of joints and fingers."""
     return _errors(db, study_key, kind, true())
 
 
@@ -74,7 +74,7 @@ def _places() -> dict[tuple[str, str, str], int]:
     ordered = [
         (reference, joint, axis)
         for reference in _REFERENCES
-        for joint in ERROR_JOINTS
+        for joint in ERROR_JOINTS_WITH_FINGERS
         for axis in ERROR_AXES
     ]
     return {key: place for place, key in enumerate(ordered)}

@@ -7,7 +7,7 @@ read from the database while it is written; the README is written last, because 
 import hashlib
 import json
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 
 import pandas as pd
@@ -17,6 +17,7 @@ from sqlalchemy.orm import Session
 from app.features.design.studies import study_by_key
 from app.features.people.audit import TrailHead, head_of
 from app.features.record.receipts import receipt_of
+from app.features.record.telemetry import epochs_of
 from app.features.results.analysis.codebook import codebook_frame
 from app.features.results.analysis.tables import (
     Kind,
@@ -38,7 +39,7 @@ from app.features.results.analysis.tables import (
     scores_table,
     sessions_table,
 )
-from app.features.results.exports.names import receipt_path, samples_path
+from app.features.results.exports.names import fingers_path, receipt_path, samples_path
 from app.features.results.exports.writing.blinding import without_conditions
 from app.features.results.exports.writing.cells import csv_pieces
 from app.features.results.exports.writing.readme import FileCount, Origin, readme_text
@@ -46,6 +47,7 @@ from app.features.results.exports.writing.samples import SampleFile
 from app.features.results.imports import import_files
 from app.models import Study, StudyVersion
 from app.platform.access import hidden_sessions, revealed_sessions
+from app.wire import FINGER_STREAMS
 
 TABLE_FILES: dict[str, Callable[[Session, str, Kind], pd.DataFrame]] = {
     "sessions": sessions_table,
@@ -65,7 +67,7 @@ TABLE_FILES: dict[str, Callable[[Session, str, Kind], pd.DataFrame]] = {
     "clock_mapping": clock_mapping_table,
 }
 README = "README.txt"
-FOLDERS = {"samples": ".csv", "receipts": ".json", "imported": ".csv"}
+FOLDERS = {"samples": ".csv", "fingers": ".csv", "receipts": ".json", "imported": ".csv"}
 """The folders of an export, and the suffixes of their files."""
 TOP_LEVEL = frozenset(
     {*(f"{name}.csv" for name in (*TABLE_FILES, "calibrations", "codebook")), README}
@@ -125,6 +127,9 @@ class Contents:
                 *(self.db, session_id, bool(simulated), avatar), blinded=session_id in self.hidden
             )
             yield self._member(samples_path(code, session_id), samples.pieces())
+            if self._has_fingers(session_id):
+                fingers = replace(samples, fingers=True)
+                yield self._member(fingers_path(code, session_id), fingers.pieces())
             yield self._member(receipt_path(code, session_id), self._receipt(session_id))
         # Imported answers stay apart from the tables; a participant's own copy has only sessions.
         if self.kind in ("people", "all") and self.only is None:
@@ -138,6 +143,9 @@ class Contents:
         frame = table(self.db, self.study_key, self.kind)
         own = frame if self.only is None else frame[frame["session_id"].isin(list(self.only))]
         return without_conditions(name, own, self.hidden)
+
+    def _has_fingers(self, session_id: str) -> bool:
+        return any(epochs_of(self.db, session_id, stream) for stream in FINGER_STREAMS)
 
     def _receipt(self, session_id: str) -> Iterator[bytes]:
         """Yield the receipt of a session as JSON, computed in the transaction of this export."""

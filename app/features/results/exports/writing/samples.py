@@ -16,13 +16,12 @@ from sqlalchemy.orm import Session
 from app.features.record.telemetry import epochs_of, iter_frames
 from app.features.results.analysis.codebook import columns_of
 from app.features.results.exports.writing.pairing import Rows, Side, paired_rows
-from app.wire import VALUES_PER_FRAME, StreamName, flag_frames
+from app.wire import BODY_STREAMS, FINGER_STREAMS, StreamName, flag_frames
 
 _POWERS = 10.0 ** np.arange(23)
 """Powers of ten, exact in double precision up to 10^22, so a quotient is rounded only once."""
 _MIN_DIGITS, _MAX_DIGITS = 6, 9
 ACTIVE_BIT = 1
-_MISSING: list[float | None] = [None] * VALUES_PER_FRAME
 
 
 def shortest_doubles(values: NDArray[np.float32]) -> NDArray[np.float64]:
@@ -60,6 +59,7 @@ class SampleFile:
     """The samples file of a session, read from the database while it is written.
 
     `blinded`: without the avatar's frames, which lag behind the participant's by the latency.
+    `fingers`: of the fingers instead of the body.
     """
 
     db: Session
@@ -67,32 +67,42 @@ class SampleFile:
     simulated: bool
     avatar: str
     blinded: bool = False
+    fingers: bool = False
 
     def pieces(self) -> Iterator[bytes]:
         """Yield the file in pieces of about a second of movement."""
-        yield (",".join(column.name for column in columns_of("samples")) + "\n").encode()
+        table = "fingers" if self.fingers else "samples"
+        yield (",".join(column.name for column in columns_of(table)) + "\n").encode()
         start = f"{'true' if self.simulated else 'false'},{self.avatar},"
         for epoch in self._epochs():
-            target = iter_frames(self.db, self.session_id, StreamName.TARGET, epoch)
-            actual = iter_frames(self.db, self.session_id, StreamName.ACTUAL, epoch)
+            target, actual = (
+                iter_frames(self.db, self.session_id, stream, epoch) for stream in self._streams
+            )
             if self.blinded:
                 actual = iter(())
             for rows in paired_rows(target, actual):
-                yield _csv(rows, f"{start}{epoch},".encode())
+                yield _csv(rows, f"{start}{epoch},".encode(), self._missing)
+
+    @property
+    def _streams(self) -> tuple[StreamName, StreamName]:
+        return FINGER_STREAMS if self.fingers else BODY_STREAMS
+
+    @property
+    def _missing(self) -> list[float | None]:
+        return [None] * self._streams[0].values_per_frame
 
     def _epochs(self) -> list[int]:
-        streams = (StreamName.TARGET, StreamName.ACTUAL)
         return sorted(
-            {e for stream in streams for e in epochs_of(self.db, self.session_id, stream)}
+            {e for stream in self._streams for e in epochs_of(self.db, self.session_id, stream)}
         )
 
 
-def _csv(rows: Rows, start: bytes) -> bytes:
+def _csv(rows: Rows, start: bytes, missing: list[float | None]) -> bytes:
     head = _head(rows)
     table = [
         [*own, *target, *actual]
         for own, target, actual in zip(
-            head, _values(rows.target), _values(rows.actual), strict=True
+            head, _values(rows.target, missing), _values(rows.actual, missing), strict=True
         )
     ]
     text = to_json(table, inf_nan_mode="constants")[2:-2]
@@ -116,9 +126,9 @@ def _head(rows: Rows) -> list[tuple[int, int, float, bool, bool]]:
     return list(zip(*(column.tolist() for column in columns), strict=True))
 
 
-def _values(side: Side) -> list[list[float | None]]:
+def _values(side: Side, missing: list[float | None]) -> list[list[float | None]]:
     """Return the numbers of each row; the cells are empty where the stream has no frame."""
     if not len(side.values):
-        return [_MISSING] * len(side.present)
+        return [missing] * len(side.present)
     own = iter(shortest_doubles(side.values).tolist())
-    return [next(own) if present else _MISSING for present in side.present.tolist()]
+    return [next(own) if present else missing for present in side.present.tolist()]

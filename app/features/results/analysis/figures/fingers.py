@@ -1,0 +1,86 @@
+"""Figures of fingers, for studies whose headset recorded them: joint error by finger.
+
+Contact times by finger are in the figures of contacts, whose rows name fingers then (`by_finger`).
+"""
+
+from collections.abc import Iterator
+
+import pandas as pd
+import plotly.graph_objects as go
+
+from app.features.results.analysis.figures.drawing import Drawing, count_note, drawn, participants
+from app.features.results.analysis.figures.joint_errors import error_definition
+from app.features.results.analysis.figures.theme import new_figure
+from app.protocol import COUNTED_KINDS
+from app.science.skeleton import FINGER_PARTS, FINGERS, finger_of
+
+KEY, TITLE = "joint_error_fingers", "Joint error by added latency and finger"
+HOW = "Each value is the mean over the three joints of a finger, then over participants."
+_SIDES = ("Left", "Right")
+HAND_FINGERS: tuple[str, ...] = tuple(f"{side}{finger}" for side in _SIDES for finger in FINGERS)
+
+
+def hand_finger_of(part: str) -> str | None:
+    """Return hand and finger of a finger part, such as "LeftThumb"; None for any other part."""
+    finger = finger_of(part)
+    if finger is None:
+        return None
+    return f"Left{finger}" if part.startswith("Left") else f"Right{finger}"
+
+
+def by_finger(contacts: pd.DataFrame) -> pd.DataFrame:
+    """Return contacts in which the three parts of a finger have the finger's name.
+
+    Their union is the time of the finger. Contacts of other parts stay as they are.
+    """
+    names = {part: hand_finger_of(part) for part in FINGER_PARTS}
+    own = contacts["body_part"]
+    return contacts.assign(body_part=own.map(names).where(own.isin(list(names)), own))
+
+
+def joint_error_fingers_drawings(errors: pd.DataFrame) -> Iterator[Drawing]:
+    """Draw a heat map of the mean angle of every finger, from valid rows of the joint errors.
+
+    Nothing is drawn for a study without fingers.
+    """
+    rows = finger_angles(errors)
+    if rows.empty:
+        return
+    keys = ["finger", "latency_ms"]
+    each = rows.groupby([*keys, "participant_code"])["mean_deg"].mean()
+    found = each.groupby(level=keys).agg(["mean", "count"]).reset_index()
+    found = found.rename(columns={"mean": "mean_deg", "count": "n"})
+    table = found.pivot(index="finger", columns="latency_ms", values="mean_deg")
+    table = table.loc[[name for name in HAND_FINGERS if name in table.index]]
+    figure = new_figure()
+    figure.add_trace(
+        go.Heatmap(
+            x=[str(finger) for finger in table.index],
+            y=[f"{latency:g}" for latency in table.columns],
+            z=table.T.to_numpy(),
+            texttemplate="%{z:.1f}",
+            colorscale="Cividis",
+            zmin=0.0,
+            xgap=1,
+            ygap=1,
+            colorbar={"title": {"text": "deg"}},
+            hovertemplate="%{x} at %{y} ms: %{z:.2f} deg<extra></extra>",
+        )
+    )
+    figure.update_xaxes(title_text="finger", tickangle=-40)
+    figure.update_yaxes(title_text="added latency (ms)", type="category", autorange="reversed")
+    figure.update_layout(height=200 + 44 * len(table.columns))
+    n = participants(rows)
+    caption = f"{error_definition(rows)} {HOW} {count_note(n)}"
+    yield drawn(KEY, TITLE, caption, n, figure, found).of_group("movement", wide=True)
+
+
+def finger_angles(errors: pd.DataFrame) -> pd.DataFrame:
+    """Return the rows of finger parts in task phases with the whole angle to the present pose.
+
+    The column `finger` has hand and finger.
+    """
+    chosen = errors["axis"].eq("angle") & errors["reference"].eq("present")
+    chosen &= errors["phase_kind"].isin(COUNTED_KINDS) & errors["joint"].isin(FINGER_PARTS)
+    rows = errors[chosen].dropna(subset=["mean_deg"])
+    return rows.assign(finger=rows["joint"].map(hand_finger_of))
