@@ -140,6 +140,7 @@ class TelemetryClient:
 
     `url`: ws://HOST/api/vr/stream. `monotonic_s`: the client's own clock. `avatars`: the kinds of
     avatar that it can show. `fingers`: it sends the streams of fingers with every frame.
+    `changes_avatar`: whether it can change a physics avatar that runs.
     """
 
     url: str
@@ -148,6 +149,7 @@ class TelemetryClient:
     monotonic_s: Callable[[], float]
     avatars: tuple[str, ...] = ("delayed_copy",)
     fingers: bool = False
+    changes_avatar: bool = False
     probe_every_s: float = 1.0
     journal: Journal = field(default_factory=Journal)
     welcome: Welcome | None = None
@@ -276,6 +278,7 @@ class TelemetryClient:
             epoch=epoch,
             avatars=self.avatars,
             fingers=self.fingers,
+            changes_avatar=self.changes_avatar,
         )
         # A server of an older version does not know the field.
         left_out = None if self.fingers else {"fingers"}

@@ -59,6 +59,7 @@ class Hub:
 
     _subscribers: dict[str, set[Subscription]] = field(default_factory=dict)
     _headsets: dict[str, int] = field(default_factory=dict)
+    _changing: dict[str, bool] = field(default_factory=dict)
     _heard_s: dict[str, float] = field(default_factory=dict)
     _seen: dict[str, datetime] = field(default_factory=dict)
     _signals: dict[str, Mapping[str, Any]] = field(default_factory=dict)
@@ -121,9 +122,13 @@ class Hub:
         for reader in readers:
             reader.offer("access", None)
 
-    def headset_joined(self, session_id: str) -> None:
-        """Record that a headset's socket was opened."""
+    def headset_joined(self, session_id: str, *, changes_avatar: bool = False) -> None:
+        """Record that a headset's socket was opened.
+
+        `changes_avatar`: whether its program can change the avatar while it runs.
+        """
         with self._lock:
+            self._changing[session_id] = changes_avatar
             self._headsets[session_id] = self._headsets.get(session_id, 0) + 1
 
     def headset_left(self, session_id: str) -> None:
@@ -134,6 +139,7 @@ class Hub:
                 self._headsets[session_id] = left
             else:
                 self._headsets.pop(session_id, None)
+                self._changing.pop(session_id, None)
                 self._heard_s.pop(session_id, None)
                 self._signals.pop(session_id, None)
 
@@ -165,6 +171,11 @@ class Hub:
         """Return the sessions with an open headset socket."""
         with self._lock:
             return tuple(self._headsets)
+
+    def headset_changes_avatar(self, session_id: str) -> bool | None:
+        """Return whether a session's headset can change the avatar; None if none is connected."""
+        with self._lock:
+            return self._changing.get(session_id)
 
     def headset_connected(self, session_id: str) -> bool:
         """Return whether the session has an open headset socket."""

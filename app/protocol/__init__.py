@@ -1,5 +1,12 @@
 """Study and instrument files: strict parsing, frozen values, content hashes, plans and orders."""
 
+from app.protocol.avatar_changes import (
+    MAX_FACTOR,
+    AvatarChanges,
+    change_problems,
+    driven_axes_of,
+    settings_in_force,
+)
 from app.protocol.common import Text, canonical_json, sha256_of
 from app.protocol.conditions import BodyName, Condition
 from app.protocol.difference import differences
@@ -58,12 +65,14 @@ __all__ = [
     "COUNTED_KINDS",
     "FORM_KINDS",
     "ITEM_S",
+    "MAX_FACTOR",
     "OPENING_S",
     "PHASES",
     "READING_WORDS_PER_S",
     "STEP_KINDS",
     "TIMED_KINDS",
     "UNCOUNTED_KINDS",
+    "AvatarChanges",
     "BodyName",
     "Condition",
     "ConfigError",
@@ -91,8 +100,10 @@ __all__ = [
     "ValidWhen",
     "VisitTime",
     "canonical_json",
+    "change_problems",
     "compile_plan",
     "differences",
+    "driven_axes_of",
     "explain",
     "form_s",
     "instrument_as_json",
@@ -106,6 +117,7 @@ __all__ = [
     "planned_s",
     "read_source",
     "sequences",
+    "settings_in_force",
     "sha256_of",
     "step_kind_texts",
     "step_kinds_for_pages",

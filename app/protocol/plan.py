@@ -8,6 +8,7 @@ never changes during a session.
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
+from app.protocol.avatar_changes import AvatarChanges
 from app.protocol.common import Text
 from app.protocol.conditions import Condition
 from app.protocol.errors import PlanError
@@ -16,7 +17,9 @@ from app.protocol.step_kinds import STEP_KINDS, StepKind, StepKindSpec
 from app.protocol.study import StudyProtocol
 from app.science.tasks import Limb
 
-_OF_TIMED_STEPS = ("latency_ms", "limb", "preparation_s", "duration_s", "freeze_s")
+_OF_TIMED_STEPS = (
+    "latency_ms", "limb", "preparation_s", "duration_s", "freeze_s", "avatar_changes"
+)  # fmt: skip
 """Fields that a step of the plan copies from a timed step of the study, if that has them."""
 
 
@@ -29,7 +32,8 @@ class Step:
     outside the blocks. `latency_ms` is also set for free movement and practice. `body`: the body
     that the condition prescribes, None for that of the avatar's configuration. `text` is the key
     of a text of the study. `until_completions`: a practice ends early after this many tasks.
-    `consent`: the requirements of a consent step in addition to its text.
+    `consent`: the requirements of a consent step in addition to its text. `avatar_changes`: how a
+    timed step changes the physics avatar while it lasts.
     """
 
     index: int
@@ -48,6 +52,7 @@ class Step:
     text: str | None = None
     until_completions: int | None = None
     consent: ConsentStep | None = None
+    avatar_changes: AvatarChanges | None = None
 
     @property
     def spec(self) -> StepKindSpec:
@@ -141,6 +146,7 @@ def _block(block: int, condition: Condition, phases: Sequence[TaskPhase]) -> Ite
             duration_s=phase.duration_s,
             freeze_s=phase.freeze_s,
             text=phase.text,
+            avatar_changes=phase.avatar_changes,
         )
         yield task
         yield replace(
@@ -153,6 +159,7 @@ def _block(block: int, condition: Condition, phases: Sequence[TaskPhase]) -> Ite
             freeze_s=None,
             instrument=phase.questionnaire,
             text=None,
+            avatar_changes=None,
         )
 
 

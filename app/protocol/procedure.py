@@ -9,9 +9,16 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field
 
+from app.protocol.avatar_changes import AvatarChanges
 from app.protocol.common import Duration, Key, Pause, Strict, Text, refusal
 from app.protocol.conditions import LatencyMs
 from app.science.tasks import Limb
+
+OfThePhase = Annotated[AvatarChanges | None, Field(exclude_if=lambda value: value is None)]
+"""Changes to the physics avatar from the phase's preparation to its end.
+
+Left out of the content if not set, so that the hashes of other studies stay the same.
+"""
 
 
 class Statement(Strict):
@@ -87,6 +94,7 @@ class FreeRoamStep(Strict):
     latency_ms: LatencyMs
     text: Key | None = None
     title: Text | None = None
+    avatar_changes: OfThePhase = None
 
 
 class PracticeStep(Strict):
@@ -107,6 +115,7 @@ class PracticeStep(Strict):
     ] = None
     text: Key | None = None
     title: Text | None = None
+    avatar_changes: OfThePhase = None
 
 
 class DebriefStep(Strict):
@@ -144,6 +153,7 @@ class TaskPhase(Strict):
     text: Key | None = None
     title: Text | None = None
     questionnaire_title: Text | None = None
+    avatar_changes: OfThePhase = None
 
 
 def _each_limb_once(phases: tuple[TaskPhase, ...]) -> tuple[TaskPhase, ...]:

@@ -2,7 +2,7 @@
 
 import asyncio
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from app.client import Json, call_with_retry
 from app.protocol.avatar import AvatarFile, configuration_of
-from app.science.avatar.configuration import Configuration
+from app.science.avatar.configuration import Configuration, RunningSettings, as_configured
+from app.science.avatar.mjcf import SimulationError
 from app.science.avatar.simulation import Follower, PhysicsAvatar, SurfaceTouches
 from app.science.avatar.targets import TargetAngles, finger_rotations
 from app.science.delay import DelayBuffer
@@ -27,11 +28,16 @@ from app.science.skeleton import (
     forward_kinematics,
 )
 from app.science.tasks import SurfaceArrays, TaskLayout, touching_and_near
+from app.wire import AvatarOrder
 
 FloatArray = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 RELEASE_MARGIN_M = 0.005
 """How far a part may move away from a surface before its touch ends."""
+
+
+class CannotChange(ValueError):
+    """An avatar cannot be changed while it runs; the message says why."""
 
 
 class RemoteAvatar(Protocol):
@@ -52,6 +58,12 @@ class RemoteAvatar(Protocol):
 
     def show_boxes(self, layout: TaskLayout | None) -> None:
         """Place the boxes of a task in the room, or remove all."""
+
+    def change(self, order: AvatarOrder) -> dict[str, float]:
+        """Bring the avatar to the changes of an order; return the angle of each held axis.
+
+        Raises CannotChange if the avatar has nothing to change.
+        """
 
     def frame(self, t_s: float, pose: Pose, fingers: FloatArray | None = None) -> Pose:
         """Return the avatar's pose for the participant's pose; called for every frame.
@@ -88,6 +100,10 @@ class DelayedCopy:
     def show_boxes(self, layout: TaskLayout | None) -> None:
         """Set the surfaces whose touches are detected; a copy passes through everything."""
         self._surfaces = None if layout is None else SurfaceArrays.of(layout)
+
+    def change(self, order: AvatarOrder) -> dict[str, float]:
+        """Refuse: a copy has no motors and no colliders."""
+        raise CannotChange(f"a delayed copy cannot be changed (revision {order.revision})")
 
     def frame(self, t_s: float, pose: Pose, fingers: FloatArray | None = None) -> Pose:
         """Return the current position of the hips with the delayed rotations of the joints."""
@@ -173,6 +189,7 @@ class PhysicsBody:
         angles = TargetAngles(configuration.in_force, self.avatar.parts)
         self._follower = Follower(self.avatar, angles, target_space=configuration.target_space)
         self._touches: SurfaceTouches | None = None
+        self._configured = as_configured(configuration)
         self._began_s: float | None = None
         self.fingers: FloatArray | None = None
         self._with_fingers = with_fingers
@@ -194,6 +211,14 @@ class PhysicsBody:
             SurfaceTouches(self.avatar, names, RELEASE_MARGIN_M, self.parts) if names else None
         )
 
+    def change(self, order: AvatarOrder) -> dict[str, float]:
+        """Bring the body to the changes of an order; return the angle of each held axis."""
+        try:
+            self.avatar.switches.apply(ordered_settings(self._configured, order))
+        except SimulationError as error:
+            raise CannotChange(str(error)) from error
+        return self.avatar.switches.held_rad
+
     def frame(self, t_s: float, pose: Pose, fingers: FloatArray | None = None) -> Pose:
         """Simulate up to this frame and return the body's pose."""
         hips_m = self._hips_scale * pose.root_position_m
@@ -210,3 +235,30 @@ class PhysicsBody:
     def touches(self) -> tuple[Bools, Bools]:
         """Return touches, determined from the contacts of the simulation."""
         return no_touches(self.parts) if self._touches is None else self._touches.read()
+
+
+def ordered_settings(configured: RunningSettings, order: AvatarOrder) -> RunningSettings:
+    """Return the settings that an order asks for, with those of the configuration otherwise."""
+    layers = set(configured.layers)
+    for pair in order.layers:
+        (layers.add if pair.collide else layers.discard)(frozenset(pair.layers))
+    motors = {
+        axis: replace(
+            configured.axes[axis],
+            kp=motor.kp_nm_per_rad,
+            kd=motor.kd_nm_s_per_rad,
+            max_torque_nm=motor.max_torque_nm,
+        )
+        for axis, motor in order.motors.items()
+        if axis in configured.axes
+    }
+    return RunningSettings(
+        gravity=configured.gravity if order.gravity is None else order.gravity,
+        self_collision=(
+            configured.self_collision if order.self_collision is None else order.self_collision
+        ),
+        colliders={**configured.colliders, **order.colliders},
+        layers=frozenset(layers),
+        held_rad=order.held_rad,
+        axes={**configured.axes, **motors},
+    )

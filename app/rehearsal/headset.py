@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from app.client import TelemetryClient, TelemetryError
 from app.protocol import Tasks
-from app.rehearsal.avatars import AvatarSource, DelayedCopy, RemoteAvatar
+from app.rehearsal.avatars import AvatarSource, CannotChange, DelayedCopy, RemoteAvatar
 from app.rehearsal.body import FRAME_RATE_HZ, Person
 from app.rehearsal.goals import goal_of
 from app.rehearsal.task_run import BoxRun
@@ -28,6 +28,7 @@ from app.wire import (
     ACTIVE,
     BODY_STREAMS,
     FINGER_STREAMS,
+    AvatarChangeReport,
     HeadsetState,
     MaterialisedReport,
     PhaseOrder,
@@ -132,6 +133,7 @@ class Headset:
         self._buffers = Buffers()
         self._t_pose_since_s: float | None = None
         self._materialised = False
+        self._revision = 0
 
     @property
     def _goes_on_alone(self) -> bool:
@@ -194,6 +196,7 @@ class Headset:
             await self._request_avatar(state)
         if state.step_kind == "materialise" and not state.materialised:
             await self._materialise(state)
+        await self._change_avatar(state)
         order = state.phase
         if self._run is not None and order is not None:
             if self._run.order.phase_id == order.phase_id:
@@ -225,6 +228,27 @@ class Headset:
         if self._physics is not None:
             stature_m = state.participant.stature_m or self._person.stature_m
             self._avatar = await self._physics.request_avatar(stature_m)
+
+    async def _change_avatar(self, state: HeadsetState) -> None:
+        """Bring the avatar to the changes in force, and report when they took effect."""
+        order = state.avatar_changes
+        if order is None or self._avatar is None or order.revision == self._revision:
+            return
+        self._revision = order.revision
+        try:
+            held_rad, problem = self._avatar.change(order), None
+        except CannotChange as error:
+            held_rad, problem = {}, str(error)[:300]
+        await self._flush()
+        await self.client.report(
+            AvatarChangeReport(
+                revision=order.revision,
+                t_s=self.t_s,
+                applied=problem is None,
+                problem=problem,
+                held_rad=held_rad,
+            )
+        )
 
     async def _enter_phase(self, order: PhaseOrder) -> None:
         await self._flush()

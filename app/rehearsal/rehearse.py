@@ -186,6 +186,7 @@ async def assembled(
             name="reembody rehearsal",
             avatars=AVATARS,
             fingers=plan.fingers,
+            changes_avatar=True,
             monotonic_s=clock.now_s,
             journal=journal if journal is not None else Journal(),
         )

@@ -19,6 +19,7 @@ MAX_EPOCH = 2**31 - 1
 Seconds = Annotated[float, Field(allow_inf_nan=False, ge=0.0, le=1e9)]
 Seq = Annotated[int, Field(ge=0, lt=MAX_SEQ)]
 Epoch = Annotated[int, Field(ge=1, le=MAX_EPOCH)]
+Angle = Annotated[float, Field(allow_inf_nan=False, ge=-7.0, le=7.0)]
 Count = Annotated[int, Field(ge=0, lt=2**31)]
 Nanoseconds = Annotated[int, Field(ge=0, lt=2**63)]
 # PostgreSQL stores no NUL in a text.
@@ -37,7 +38,8 @@ class Hello(Message):
     `avatars`: the kinds of avatar that the client can show. A client that cannot show the session's
     avatar is refused: the record would name an avatar that the participant did not see. `fingers`:
     this run sends the streams of fingers, too, with every frame from its first one on; phases
-    without them are then reported as incomplete.
+    without them are then reported as incomplete. `changes_avatar`: whether it can carry out an
+    `AvatarOrder`, that is, change a physics avatar while it runs.
     """
 
     type: Literal["hello"] = "hello"
@@ -48,6 +50,7 @@ class Hello(Message):
         default=("delayed_copy",), max_length=10
     )
     fingers: bool = False
+    changes_avatar: bool = Field(default=False, exclude_if=lambda value: not value)
 
 
 PhaseEvent = Literal[
@@ -110,8 +113,24 @@ class CompletionReport(Message):
     out_of_order_touches: Count
 
 
+class AvatarChangeReport(Message):
+    """Reports that the avatar follows the `AvatarOrder` of this revision, or why it does not.
+
+    `t_s`: when it took effect. `held_rad`: for each axis in a cast, the angle at which it is held.
+    """
+
+    kind: Literal["avatar_changes"] = "avatar_changes"
+    revision: Count
+    t_s: Seconds
+    applied: bool
+    problem: Name | None = Field(default=None, max_length=300)
+    held_rad: dict[Annotated[Name, Field(max_length=40)], Angle] = Field(
+        default_factory=dict, max_length=200
+    )
+
+
 ReportBody = Annotated[
-    PhaseReport | MaterialisedReport | ContactReport | CompletionReport,
+    PhaseReport | MaterialisedReport | ContactReport | CompletionReport | AvatarChangeReport,
     Field(discriminator="kind"),
 ]
 
@@ -201,6 +220,39 @@ class PhaseOrder(Message):
     body: str | None = Field(default=None, exclude_if=lambda value: value is None)
 
 
+class LayerOrder(Message):
+    """Whether the parts of two collision layers collide."""
+
+    layers: tuple[str, str]
+    collide: bool
+
+
+class MotorOrder(Message):
+    """The gains and greatest torque of one axis."""
+
+    kp_nm_per_rad: float
+    kd_nm_s_per_rad: float
+    max_torque_nm: float
+
+
+class AvatarOrder(Message):
+    """How the avatar differs from its configuration now; what is left out is as configured.
+
+    It is always the whole: a client brings its body to it and reports `revision`, which rises with
+    every change. `colliders`: body part -> simple, mesh or none. `layers`: pairs that collide, or
+    no longer do. `held_rad`: axes in a cast -> angle, or null for the angle at which the axis is
+    when the client first learns of it. `motors`: axes with other gains.
+    """
+
+    revision: int
+    gravity: bool | None = None
+    self_collision: bool | None = None
+    colliders: dict[str, Literal["simple", "mesh", "none"]] = Field(default_factory=dict)
+    layers: tuple[LayerOrder, ...] = ()
+    held_rad: dict[str, float | None] = Field(default_factory=dict)
+    motors: dict[str, MotorOrder] = Field(default_factory=dict)
+
+
 class ParticipantInfo(Message):
     """The facts about the participant that the task needs; null until they are known."""
 
@@ -221,6 +273,8 @@ class HeadsetState(Message):
     recording: bool
     phase: PhaseOrder | None
     participant: ParticipantInfo
+    # Only sent once something was changed, so that older clients notice nothing.
+    avatar_changes: AvatarOrder | None = Field(default=None, exclude_if=lambda value: value is None)
 
 
 class Welcome(Message):

@@ -11,14 +11,21 @@ import pytest
 from httpx2 import AsyncClient
 from sqlalchemy import select
 
-from app.client.http import call
+from app.client.http import ServerRefusedError, call
 from app.client.telemetry import TelemetryClient
 from app.database import open_database
 from app.models import JointErrorRow
 from app.rehearsal.avatars import PhysicsBody
 from app.rehearsal.body import make_person
+from app.rehearsal.cast import Cast, perform
 from app.rehearsal.headset import FrameClock, Headset
-from app.rehearsal.rehearse import RehearsalPlan, RehearsalReport, physics_variant, rehearse
+from app.rehearsal.rehearse import (
+    RehearsalPlan,
+    RehearsalReport,
+    assembled,
+    physics_variant,
+    report_of,
+)
 from app.science.avatar.mjcf import avatar_model, default_configuration, scene_of
 from app.science.rotations import identity
 from app.science.skeleton import Pose, build_skeleton
@@ -31,6 +38,8 @@ from tests.support.server import ADMIN_PASSWORD, LiveServer
 
 KEY = "short-study"
 SPEED = 5.0
+FEET = "      - limb: foot\n"
+CAST = "        avatar_changes: {casts: [{group: left_arm}]}\n"
 SUMMARIES_WITHIN_S = 60.0
 
 
@@ -95,21 +104,32 @@ def test_an_avatar_with_longer_legs_stands_on_the_same_floor() -> None:
 
 
 def test_a_whole_session_is_rehearsed_in_a_physics_avatar(tmp_path: Path) -> None:
-    """A session with a physics avatar completes and records configuration and joint errors."""
+    """A session with a physics avatar completes and records configuration and joint errors.
+
+    Its study puts the left arm in a cast in every phase of the feet, and the operator switches
+    gravity off: the headset reports when each change took effect, and when it ended.
+    """
     with LiveServer(tmp_path) as server, server.client() as api:
         ok(api.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
         ok(api.post("/api/studies", json={"yaml": short()}))
+        assert again(server, KEY) == again(server, f"{KEY}-physics") == f"{KEY}-physics"
+        (version,) = ok(api.get(f"/api/studies/{KEY}-physics"))["versions"]
+        assert version["number"] == 1
+        yaml = ok(api.get(f"/api/studies/{KEY}-physics"))["yaml"].replace(FEET, FEET + CAST)
+        ok(api.post(f"/api/studies/{KEY}-physics/versions", json={"yaml": yaml}))
         plan = RehearsalPlan(
-            url=server.url, study=KEY, speed=SPEED, seed=3, password=ADMIN_PASSWORD, physics=True
+            url=server.url,
+            study=f"{KEY}-physics",
+            speed=SPEED,
+            seed=3,
+            password=ADMIN_PASSWORD,
+            physics=True,
         )
-        report: RehearsalReport = asyncio.run(rehearse(plan))
+        report: RehearsalReport = asyncio.run(rehearsed_with_a_change(plan))
         session = f"/api/sessions/{report.session_id}"
         view, events = ok(api.get(session)), ok(api.get(f"{session}/events"))
         standard: Json = ok(api.get("/api/avatars/standard"))
-        assert again(server, f"{KEY}-physics") == again(server, KEY) == f"{KEY}-physics"
-        (version,) = ok(api.get(f"/api/studies/{KEY}-physics"))["versions"]
         errors = summarised(f"sqlite:///{server.data_dir / 'reembody.sqlite'}", report)
-    assert version["number"] == 1
     assert (view["status"], view["avatar"], report.avatar) == ("completed", "physics", "physics")
     assert view["avatar_configuration_hash"] == standard["newest"]["content_hash"]
     (built,) = (one["data"] for one in events if one["type"] == "avatar_built")
@@ -119,6 +139,50 @@ def test_a_whole_session_is_rehearsed_in_a_physics_avatar(tmp_path: Path) -> Non
     # The delayed command is followed to a few degrees if nothing is in the way.
     assert 0.0 < np.median(errors["command"]) < np.radians(5.0)
     assert np.median(errors["present"]) >= np.median(errors["command"])
+    changed = [one for one in events if one["type"] == "avatar_changed"]
+    feet = [one["phase_id"] for one in report.phases if one["limb"] == "foot"]
+    by_study = [one["data"]["phase_id"] for one in changed if one["data"]["by"] == "study"]
+    assert by_study == feet
+    assert [one["data"]["changes"] for one in changed if one["data"]["by"] == "operator"] == [
+        {"gravity": False}
+    ]
+    ends = [one["seq"] for one in events if one["type"] == "phase_ended"]
+    revisions = {one["seq"] for one in changed} | {
+        next(end for end in ends if end > one["seq"])
+        for one in changed
+        if one["data"]["by"] == "study"
+    }
+    reported = [one["data"] for one in events if one["type"] == "avatar_change_reported"]
+    assert all(one["applied"] for one in reported)
+    # The last phase ends the session's movement soon after, perhaps before the headset has reacted.
+    assert revisions - {one["revision"] for one in reported} <= {max(revisions)}
+    times_s = [one["client_t_s"] for one in reported]
+    assert times_s == sorted(times_s)
+
+
+async def rehearsed_with_a_change(plan: RehearsalPlan) -> RehearsalReport:
+    """Rehearse a session, in which the operator switches gravity off once the body appears."""
+    async with assembled(plan) as cast:
+        async with asyncio.TaskGroup() as group:
+            group.create_task(perform(cast))
+            group.create_task(switch_gravity_off(cast))
+        return await report_of(cast, plan, 0.0)
+
+
+async def switch_gravity_off(cast: Cast) -> None:
+    """Change the avatar as soon as the session allows it, whatever else changes meanwhile."""
+    while True:
+        view = await cast.operator.view()
+        if "change_avatar" in view["allowed"]:
+            try:
+                await cast.operator.command(
+                    view, "change_avatar", avatar_changes={"gravity": False}
+                )
+                return
+            except ServerRefusedError as error:
+                if error.code != "stale":
+                    raise
+        await asyncio.sleep(0.05)
 
 
 def again(server: LiveServer, study_key: str) -> str:

@@ -3,6 +3,7 @@
 from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput
+from app.features.movement.avatar import configuration_by_hash
 from app.features.record.cockpit.schemas import CommandRequest
 from app.features.record.sessions import (
     Command,
@@ -15,7 +16,8 @@ from app.features.record.sessions import (
 from app.features.record.sessions import commands as c
 from app.models import StudySession
 from app.platform.context import AppContext
-from app.protocol import Step
+from app.protocol import AvatarChanges, Step, settings_in_force
+from app.science.avatar.configuration import AvatarSettingsError
 
 _NEEDS_REASON = ("redo", "skip", "abort", "withdraw", "override_stop", "reopen_consent")
 _STARTS = ("start", "begin_phase")
@@ -54,6 +56,8 @@ def command_of(
             return c.Pause(content=store.put("reason", reason) if new else None)
         case "resume":
             return c.Resume(headset_connected=connected)
+        case "change_avatar":
+            return _avatar_change(db, context, session, request, store)
         case "note":
             return c.AddNote(content=store.put("note", _note_text(request)))
         case _:
@@ -93,6 +97,43 @@ def _with_reason(request: CommandRequest, reason: ContentRef) -> Command:
             return c.Stop(status="aborted", content=reason)
         case _:
             return c.Stop(status="withdrawn", content=reason)
+
+
+def _avatar_change(
+    db: Session,
+    context: AppContext,
+    session: StudySession,
+    request: CommandRequest,
+    store: "_Store",
+) -> Command:
+    """Return the command that changes the avatar; raises InvalidInput if it has no such settings.
+
+    They must fit the configuration, and what the study changes in the current phase.
+    """
+    changes = request.avatar_changes or AvatarChanges()
+    physics = session.avatar_configuration_hash
+    before = state_of(session).avatar_changes
+    if physics is not None:
+        try:
+            settings_in_force(configuration_by_hash(db, physics), changes)
+        except AvatarSettingsError as error:
+            first = error.problems[0]
+            raise InvalidInput(
+                f"avatar_changes.{first.path}: {first.message}",
+                value=first.value,
+                valid=first.valid,
+                remedy=first.remedy,
+                details=[vars(one) for one in error.problems],
+            ) from error
+    wanted = changes.as_json()
+    reason = (request.reason or "").strip()
+    is_new = wanted != ((before and before.operator) or {})
+    return c.ChangeAvatar(
+        changes=wanted,
+        is_physics=physics is not None,
+        headset_can=context.hub.headset_changes_avatar(session.id),
+        content=store.put("reason", reason) if reason and is_new else None,
+    )
 
 
 def _completion_content(store: "_Store", request: CommandRequest) -> ContentRef | None:

@@ -9,7 +9,7 @@ from app.features.record.alarms import AlarmView
 from app.features.record.ledger import Kind, Shortfall
 from app.features.record.questionnaires import StoredScores
 from app.features.record.sessions import ConsentForm, PaperConsent
-from app.protocol import StepKind
+from app.protocol import AvatarChanges, StepKind
 
 Status = Literal["planned", "active", "completed", "aborted", "withdrawn"]
 StepStatus = Literal["pending", "current", "done", "skipped"]
@@ -29,6 +29,7 @@ CommandType = Literal[
     "withdraw",
     "override_stop",
     "reopen_consent",
+    "change_avatar",
     "note",
 ]
 
@@ -66,6 +67,7 @@ class CommandRequest(BaseModel):
     """An operator's command, with the version of the session that their page showed.
 
     Commands in `NEVER_STALE` apply to any version and may omit `expected_version`.
+    `avatar_changes` replaces the operator's earlier changes; left out, they are taken back.
     """
 
     model_config = ConfigDict(extra="forbid")
@@ -78,6 +80,7 @@ class CommandRequest(BaseModel):
     step_index: int | None = Field(default=None, ge=0, lt=1000)
     height_m: Height | None = None
     paper_consent: PaperConsent | None = None
+    avatar_changes: AvatarChanges | None = None
 
     @model_validator(mode="after")
     def _on_a_version(self) -> Self:

@@ -70,7 +70,9 @@ def session_view(
         current=_current(plan, state),
         held=held_view(db, version, protocol, state),
         refusal=_refusal(state, alarms),
-        allowed=allowed_commands(plan, state),
+        allowed=allowed_commands(
+            plan, state, is_physics=session.avatar_configuration_hash is not None
+        ),
         devices=_devices(db, context, session),
         alarms=alarms,
         phases=phase_views(db, session, blinded=blinded),

@@ -77,6 +77,7 @@ class HeadsetConnection:
     _loop: asyncio.AbstractEventLoop = field(default_factory=asyncio.get_running_loop)
     _outbox: asyncio.Queue[Message] = field(default_factory=asyncio.Queue)
     _in_flight: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(MAX_IN_FLIGHT))
+    _changes_avatar: bool = False
     _unanswered: int = 0
     _answers: deque[ProbeAnswer] = field(default_factory=lambda: deque(maxlen=MAX_PROBE_ANSWERS))
 
@@ -95,7 +96,7 @@ class HeadsetConnection:
         """Serve the socket until it closes."""
         await self._handshake()
         with self.context.hub.subscribe(self.session_id) as subscription:
-            self.context.hub.headset_joined(self.session_id)
+            self.context.hub.headset_joined(self.session_id, changes_avatar=self._changes_avatar)
             self.context.hub.publish(self.session_id, "session")
             tasks = [
                 asyncio.create_task(self._read()),
@@ -135,6 +136,7 @@ class HeadsetConnection:
                 valid={"type": "hello", "protocol": PROTOCOL_VERSION},
                 remedy="Update the client.",
             )
+        self._changes_avatar = hello.changes_avatar
         answer, live = await asyncio.to_thread(self._welcome, hello)
         self.epoch = answer.epoch
         self.monitor = HeadsetMonitor(self.context, self.session_id, self._submit, answer, live)

@@ -15,7 +15,9 @@ from app.features.record.alarms import Change, Condition, store_change
 from app.features.record.doubts import OBSERVED
 from app.features.record.questionnaires import answers_of
 from app.features.record.sessions import (
+    AvatarInForce,
     SessionState,
+    avatar_in_force,
     content_body,
     contents_of,
     plan_of,
@@ -31,10 +33,14 @@ from app.features.record.telemetry import (
 from app.models import Completion, StudySession, StudyVersion, Submission
 from app.platform.access import session_by_id
 from app.protocol import Step
+from app.science.avatar.configuration import RunningSettings
 from app.wire import (
     PROTOCOL_VERSION,
+    AvatarOrder,
     HeadsetState,
     Hello,
+    LayerOrder,
+    MotorOrder,
     ParticipantInfo,
     PhaseOrder,
     Welcome,
@@ -46,11 +52,13 @@ CENTIMETRES_PER_METRE = 100.0
 def welcome(db: Session, session_id: str, hello: Hello, now: datetime) -> Welcome:
     """Return the answer to a hello message; a client without an epoch is assigned the next one.
 
-    Raises Conflict if the client cannot show the session's avatar.
+    Raises Conflict if the client cannot show the session's avatar, or cannot change it although the
+    study does.
     """
     session = session_by_id(db, session_id, lock=True)
     require_capture(db, session_id)
     _require_avatar(session, hello)
+    _require_changes(db, session, hello)
     protocol = protocol_of(referenced_row(db, StudyVersion, session.study_version_id))
     if hello.epoch is not None and not is_assigned_epoch(db, session_id, hello.epoch):
         message = f"a headset claims epoch {hello.epoch}, which the server did not assign"
@@ -90,6 +98,21 @@ def _require_avatar(session: StudySession, hello: Hello) -> None:
         )
 
 
+def _require_changes(db: Session, session: StudySession, hello: Hello) -> None:
+    """Raise Conflict if the study changes the avatar in a phase and the client could not."""
+    if hello.changes_avatar or session.avatar_configuration_hash is None:
+        return
+    changing = [step.key for step in plan_of(db, session) if step.avatar_changes is not None]
+    if changing:
+        raise Conflict(
+            f"{hello.client} cannot change the avatar while it runs, as this study does in "
+            f"{changing[0]}",
+            value={"changes_avatar": False},
+            valid={"changes_avatar": True},
+            remedy="Use a client that can, or a version of the study without avatar_changes.",
+        )
+
+
 def headset_state(db: Session, session: StudySession) -> HeadsetState:
     """Return the state of a session as sent to its headset."""
     state, plan = state_of(session), plan_of(db, session)
@@ -104,6 +127,55 @@ def headset_state(db: Session, session: StudySession) -> HeadsetState:
         recording=active and _is_recording(state, step),
         phase=_phase_order(db, session, state, plan),
         participant=participant_info(db, session),
+        avatar_changes=_avatar_order(avatar_in_force(db, session)) if active else None,
+    )
+
+
+def _avatar_order(in_force: AvatarInForce | None) -> AvatarOrder | None:
+    """Return how the avatar differs from its configuration, as sent to the headset.
+
+    An axis in a cast that was put on where it was is sent with the angle that the headset has
+    reported since, so that a headset that starts anew holds it there, too.
+    """
+    if in_force is None:
+        return None
+    configured, settings = in_force.configured, in_force.settings
+    reported = {} if in_force.report is None else in_force.report.held_rad
+    return AvatarOrder(
+        revision=in_force.revision,
+        gravity=_if_changed(configured.gravity, settings.gravity),
+        self_collision=_if_changed(configured.self_collision, settings.self_collision),
+        colliders={
+            part: kind
+            for part, kind in settings.colliders.items()
+            if kind != configured.colliders[part]
+        },
+        layers=_layer_orders(configured, settings),
+        held_rad={
+            axis: reported.get(axis) if angle is None else angle
+            for axis, angle in settings.held_rad.items()
+        },
+        motors={
+            axis: MotorOrder(
+                kp_nm_per_rad=motor.kp,
+                kd_nm_s_per_rad=motor.kd,
+                max_torque_nm=motor.max_torque_nm,
+            )
+            for axis, motor in settings.axes.items()
+            if motor != configured.axes[axis]
+        },
+    )
+
+
+def _if_changed(configured: bool, now: bool) -> bool | None:  # noqa: FBT001 - two of a kind
+    return None if configured == now else now
+
+
+def _layer_orders(configured: RunningSettings, settings: RunningSettings) -> tuple[LayerOrder, ...]:
+    pairs = sorted(sorted(pair) for pair in configured.layers ^ settings.layers)
+    return tuple(
+        LayerOrder(layers=(first, second), collide=frozenset((first, second)) in settings.layers)
+        for first, second in pairs
     )
 
 

@@ -1,5 +1,11 @@
 """Sessions: their event log, their state, and the commands that change it."""
 
+from app.features.record.sessions.avatar_changes import (
+    AVATAR_CHANGE,
+    AvatarInForce,
+    avatar_in_force,
+    changes_from,
+)
 from app.features.record.sessions.closed_sessions import (
     closed_sessions,
     erased_session,
@@ -27,6 +33,7 @@ from app.features.record.sessions.engine import (
 )
 from app.features.record.sessions.engine.commands import (
     AskQuestion,
+    ChangeAvatar,
     CloseQuestion,
     CompleteStep,
     CorrectAnswers,
@@ -39,6 +46,7 @@ from app.features.record.sessions.engine.commands import (
     RecordAvatar,
     RefuseConsent,
     Report,
+    ReportAvatarChange,
     RetractRefusal,
     SubmitForm,
 )
@@ -63,9 +71,12 @@ from app.features.record.sessions.service import (
 )
 
 __all__ = [
+    "AVATAR_CHANGE",
     "MAX_TIME_SCALE",
     "AskQuestion",
+    "AvatarInForce",
     "ChainCheck",
+    "ChangeAvatar",
     "CloseQuestion",
     "Command",
     "CompleteStep",
@@ -86,13 +97,16 @@ __all__ = [
     "RecordAvatar",
     "RefuseConsent",
     "Report",
+    "ReportAvatarChange",
     "RetractRefusal",
     "SessionState",
     "SessionStatus",
     "SubmitForm",
     "allowed_commands",
     "apply_command",
+    "avatar_in_force",
     "canonical",
+    "changes_from",
     "closed_sessions",
     "commands",
     "consent_form",

@@ -7,7 +7,15 @@ from sqlalchemy import Table, func, select
 from sqlalchemy.orm import Session
 
 from app.errors import ReembodyError
-from app.features.record.sessions import Materialise, Report, apply_command
+from app.features.record.sessions import (
+    AVATAR_CHANGE,
+    ContentRef,
+    Materialise,
+    Report,
+    ReportAvatarChange,
+    apply_command,
+    store_content,
+)
 from app.features.record.telemetry.ingest import Intake
 from app.features.record.telemetry.positions import Outcome
 from app.models import ClientReport, Completion, Contact, new_id
@@ -15,6 +23,7 @@ from app.platform.access import session_by_id
 from app.platform.context import AppContext
 from app.wire import (
     REPORT_STREAM,
+    AvatarChangeReport,
     CompletionReport,
     ContactReport,
     MaterialisedReport,
@@ -101,9 +110,31 @@ def _act(intake: Intake, session_id: str, message: ReportMessage, outcome: Outco
             # journal.
             command = Materialise(by="headset", client_t_s=body.t_s, headset_connected=True)
             apply_command(db, intake.context, session, command, actor="headset")
+        case AvatarChangeReport():
+            _act_on_avatar_change(db, intake.context, session_id, body)
         case CompletionReport():
             _require_new(db, session_id, body)
             db.add(_completion(session_id, message.epoch, body))
+
+
+def _act_on_avatar_change(
+    db: Session, context: AppContext, session_id: str, body: AvatarChangeReport
+) -> None:
+    session = session_by_id(db, session_id, lock=True)
+    content: ContentRef | None = None
+    if body.held_rad or body.problem:
+        content = store_content(
+            db,
+            session_id=session_id,
+            kind=AVATAR_CHANGE,
+            body={"held_rad": body.held_rad, "problem": body.problem},
+            by="headset",
+            now=context.clock.utc_now(),
+        )
+    command = ReportAvatarChange(
+        revision=body.revision, applied=body.applied, client_t_s=body.t_s, content=content
+    )
+    apply_command(db, context, session, command, actor="headset")
 
 
 def _act_on_phase(

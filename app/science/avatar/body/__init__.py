@@ -16,9 +16,12 @@ from app.science.avatar.body.humanoid import Humanoid, HumanoidError
 from app.science.avatar.body.humanoid_pose import RiggedMesh, TPosed, humanoid_of
 from app.science.avatar.body.inertial import Inertial, combined
 from app.science.avatar.body.layers import (
+    COLLIDING,
+    LAYERS,
     NO_COLLISION,
     SCENE,
     SCENE_BIT,
+    SWITCHABLE_LAYERS,
     CollisionBits,
     collision_bits,
     excluded_pairs,
@@ -46,8 +49,10 @@ __all__ = [
     "AXES",
     "AXES_OF",
     "AXIS_NAMES",
+    "COLLIDING",
     "FINGERS",
     "FINGER_PARTS",
+    "LAYERS",
     "NO_COLLISION",
     "PARENT_OF",
     "PART_NAMES",
@@ -57,6 +62,7 @@ __all__ = [
     "SEGMENTS",
     "SEGMENT_NAMES",
     "SIDES",
+    "SWITCHABLE_LAYERS",
     "Axis",
     "Binding",
     "Body",

@@ -18,6 +18,7 @@ parent and child, but not those of a hand and its fingers with their own forearm
 
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
+from itertools import combinations
 from types import MappingProxyType
 
 from app.science.avatar.body.parts import FINGERS, PART_NAMES, SIDES
@@ -59,7 +60,17 @@ def _colliding() -> Iterator[frozenset[str]]:
 
 
 COLLIDING: frozenset[frozenset[str]] = frozenset(_colliding())
-"""The pairs of layers that collide."""
+"""The pairs of layers that collide, unless a running model is told otherwise."""
+
+SWITCHABLE_LAYERS: frozenset[frozenset[str]] = frozenset(
+    frozenset(pair)
+    for pair in combinations(LAYERS, 2)
+    if not ("torso" in pair and pair[1].endswith("_leg"))
+)
+"""The pairs of layers whose collisions can be switched while a model runs.
+
+The thighs overlap the trunk when somebody sits or bends down, so they cannot be made to collide.
+"""
 
 
 @dataclass(frozen=True)
@@ -74,12 +85,20 @@ NO_COLLISION = CollisionBits(0, 0)
 SCENE = CollisionBits(0, SCENE_BIT)
 
 
-def collision_bits(part: str, *, self_collision: bool) -> CollisionBits:
-    """Return the masks of a body part's shapes; they can also be set in a running model."""
+def collision_bits(
+    part: str, *, self_collision: bool, colliding: Collection[frozenset[str]] = COLLIDING
+) -> CollisionBits:
+    """Return the masks of a body part's shapes; they can also be set in a running model.
+
+    Args:
+        part: the body part.
+        self_collision: whether it collides with other body parts.
+        colliding: the pairs of layers that collide.
+    """
     layer = LAYER_OF[part]
     if not self_collision:
         return CollisionBits(SCENE_BIT, 0)
-    partners = sum(_bit(other) for other in LAYERS if frozenset((layer, other)) in COLLIDING)
+    partners = sum(_bit(other) for other in LAYERS if frozenset((layer, other)) in colliding)
     return CollisionBits(SCENE_BIT | _bit(layer), partners)
 
 

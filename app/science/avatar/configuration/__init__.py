@@ -5,6 +5,7 @@ A `Configuration` is always consistent: invalid values are rejected with a list 
 """
 
 from app.science.avatar.configuration.axis_settings import (
+    MAX_TORQUE_NM,
     AvatarProblem,
     AvatarSettingsError,
     AxisSettings,
@@ -18,6 +19,7 @@ from app.science.avatar.configuration.configuration import (
     piece_problems,
 )
 from app.science.avatar.configuration.editing import lock, with_axis, with_global, without_parts
+from app.science.avatar.configuration.groups import GROUP_NAMES, GROUPS, axes_of, parts_of
 from app.science.avatar.configuration.limits import ANATOMIC, Preset, limits_of
 from app.science.avatar.configuration.model_options import (
     DEFAULT_OPTIONS,
@@ -34,14 +36,18 @@ from app.science.avatar.configuration.model_options import (
     Colliders,
     ModelOptions,
 )
+from app.science.avatar.configuration.running import RunningSettings, as_configured
 
 __all__ = [
     "ANATOMIC",
     "DEFAULT_MASS_KG",
     "DEFAULT_OPTIONS",
     "FRICTION",
+    "GROUPS",
+    "GROUP_NAMES",
     "HIPS_TARGET",
     "LIMIT_SOLREF",
+    "MAX_TORQUE_NM",
     "SIMPLE",
     "TIMESTEP_S",
     "WALL_SOLIMP",
@@ -57,10 +63,14 @@ __all__ = [
     "Hips",
     "ModelOptions",
     "Preset",
+    "RunningSettings",
     "TargetSpace",
+    "as_configured",
+    "axes_of",
     "degrees_of",
     "limits_of",
     "lock",
+    "parts_of",
     "piece_problems",
     "with_axis",
     "with_global",

@@ -8,7 +8,7 @@ loaded model.
 from app.science.avatar.mjcf.gains import NATURAL_HZ, default_configuration
 from app.science.avatar.mjcf.hinge_table import HingeTable, IndexArray, SimulationError, hinge_table
 from app.science.avatar.mjcf.hinges import Hinge, hinges_of
-from app.science.avatar.mjcf.mjcf import build_mjcf, driven_axes
+from app.science.avatar.mjcf.mjcf import NO_TORQUE_NM, build_mjcf, driven_axes
 from app.science.avatar.mjcf.model import AvatarModel, avatar_model
 from app.science.avatar.mjcf.scene import FLOOR, FLOOR_ONLY, Scene, scene_of
 
@@ -16,6 +16,7 @@ __all__ = [
     "FLOOR",
     "FLOOR_ONLY",
     "NATURAL_HZ",
+    "NO_TORQUE_NM",
     "AvatarModel",
     "Hinge",
     "HingeTable",

@@ -117,7 +117,8 @@ def _text(value: Value) -> str:
 
 PIECE = "mesh"
 """Name of the geom of a convex piece, after its part and a slash."""
-_NO_TORQUE_NM = 1e-9
+NO_TORQUE_NM = 1e-9
+"""Force range of a motor without torque: MuJoCo reads a range of zero as unlimited."""
 
 
 def driven_axes(body: Body, settings: Mapping[str, AxisSettings]) -> tuple[Axis, ...]:
@@ -270,8 +271,7 @@ class _Model:
 
     def _add_motor(self, actuator: Element, axis: Axis) -> None:
         settings = self._settings[axis.name]
-        # MuJoCo reads a force range of zero as unlimited.
-        torque = max(settings.max_torque_nm, _NO_TORQUE_NM)
+        torque = max(settings.max_torque_nm, NO_TORQUE_NM)
         delay = self._options.longest_delay_s
         samples = round(delay / TIMESTEP_S) + 1 if delay > 0.0 else None
         actuator.add(

@@ -237,6 +237,7 @@ class PhysicsAvatar:
 
     def _simulate(self, count: int, step_s: float) -> None:
         """Simulate the steps of one frame while targets and hips move to their new values."""
+        self.switches.move_casts(count * step_s)
         slots = self._table.position_targets
         controls = np.empty((count, self._ctrl.shape[0]))
         last_command, limited = self._kernels.ramp(

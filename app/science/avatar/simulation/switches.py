@@ -1,32 +1,43 @@
-"""Change a running avatar: gravity, collisions, latency, casts, boxes.
+"""Change a running avatar: gravity, collisions, latency, casts, gains, boxes.
+
+`apply` brings a model to the settings in force, whatever was changed before, and with the settings
+of its configuration back to the model as it was built. The other methods change one thing.
 
 A part may have both its simple shapes and a convex piece in the model, of which one collides;
 `use_collider` chooses which one, and `set_collider` whether the part collides at all.
 
 A body group is put in a cast by holding its axes: each hinge gets one angle as both limits, which
-is as stiff as a joint's limit. A model built from a configuration with the group locked has no
-hinge there at all; holding is for a cast that is put on while the body runs.
+is as stiff as a joint's limit. A cast holds an axis where it is, or at a given angle, to which the
+limits move at `CAST_SPEED_RAD_S`: a limit that jumped would hit the limb like a hammer. A model
+built from a configuration with the group locked has no hinge there at all; holding is for a cast
+that is put on while the body runs.
+
+A motor's gains are the parameters of its actuator. They are those of the model exactly, whether it
+was built with them or given them later.
 
 The boxes of a scene can be shown and hidden (`Boxes`). A study has boxes for the hands and boxes
 for the feet, and only those of the current phase are in the room. The body passes through hidden
 boxes. A part that is where a box appears is pushed out gently.
 """
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
-from app.science.avatar.body import NO_COLLISION, SCENE_BIT, collision_bits
-from app.science.avatar.configuration import ColliderKind
-from app.science.avatar.mjcf import FLOOR, HingeTable, SimulationError
+from app.science.avatar.body import COLLIDING, NO_COLLISION, SCENE_BIT, collision_bits
+from app.science.avatar.configuration import AxisSettings, ColliderKind, RunningSettings
+from app.science.avatar.mjcf import FLOOR, NO_TORQUE_NM, HingeTable, SimulationError
 from app.science.rotations import FloatArray
 
 if TYPE_CHECKING:
     import mujoco
 
 _GRAVITY = 9.81
+CAST_SPEED_RAD_S = 1.5
+"""Speed at which a cast moves an axis to the angle at which it holds it."""
+_ROUNDING_RAD = 1e-9
 
 
 class Switches:
@@ -39,6 +50,8 @@ class Switches:
         self._limits: FloatArray = model.jnt_range[table.joints].copy()
         self.ranges_rad = self._limits.copy()
         self._held: dict[str, float] = {}
+        self._goals: dict[str, float] = {}
+        self._layers: frozenset[frozenset[str]] = COLLIDING
         shapes = model.geom_contype[model.geom_bodyid > 0]
         self._self_collision = bool(np.any(shapes > SCENE_BIT))
         self._touching = dict.fromkeys(table.bodies, True)
@@ -62,6 +75,62 @@ class Switches:
     def held(self) -> frozenset[str]:
         """Return the axes that are held, as in a cast."""
         return frozenset(self._held)
+
+    @property
+    def held_rad(self) -> dict[str, float]:
+        """Return the angle of each held axis, at which it is or to which its cast moves it."""
+        return {**self._held, **self._goals}
+
+    def apply(
+        self, settings: RunningSettings, held_before_rad: Mapping[str, float] | None = None
+    ) -> None:
+        """Bring the model to these settings; those of parts and axes that it lacks have no effect.
+
+        Args:
+            settings: the settings in force.
+            held_before_rad: the angle of axes that are held without a given angle, if an earlier
+                run of the model held them; else an axis stays where it is, and one that is in a
+                cast already stays in it.
+        """
+        self.set_gravity(on=settings.gravity)
+        self._self_collision, self._layers = settings.self_collision, settings.layers
+        for part in self._table.bodies:
+            kind = settings.colliders.get(part, self._kinds[part])
+            has_piece = kind != "mesh" or bool(self._shapes(part, "mesh").any())
+            self._kinds[part] = kind if has_piece else "simple"
+            self._touching[part] = True
+            self._set_masks(part)
+        self.set_gains(
+            {name: settings.axes[name] for name in self._table.names if name in settings.axes}
+        )
+        before = held_before_rad or {}
+        hinges = [name for name in settings.held_rad if name in self._table.names]
+        self.release([name for name in self._held if name not in hinges])
+        for name in hinges:
+            angle = settings.held_rad[name]
+            if angle is None:
+                angle = before.get(name)
+            if angle is not None:
+                self.hold_at({name: angle})
+            elif name not in self._held:
+                self.hold([name])
+
+    def set_gains(self, axes: Mapping[str, AxisSettings]) -> None:
+        """Set gains and greatest torque of axes; raises SimulationError for one without a hinge."""
+        self._check_hinges(axes)
+        model = self._model
+        for name, settings in axes.items():
+            row = int(model.actuator(name).id)
+            # The parameters of a `pid` actuator without an integral: 0, -kp, -kd.
+            model.actuator_biasprm[row, 1:3] = (-settings.kp, -settings.kd)
+            torque = max(settings.max_torque_nm, NO_TORQUE_NM)
+            model.actuator_forcerange[row] = (-torque, torque)
+
+    def set_layers(self, colliding: frozenset[frozenset[str]]) -> None:
+        """Let these pairs of layers collide, and no others."""
+        self._layers = colliding
+        for part in self._table.bodies:
+            self._set_masks(part)
 
     def set_delay(self, delay_s: float) -> None:
         """Add this latency to all hinges from now on; zero bypasses the buffer.
@@ -113,19 +182,52 @@ class Switches:
         self._set_masks(part)
 
     def hold(self, axes: Collection[str]) -> None:
-        """Hold axes at their current angles; raises SimulationError for one without a hinge."""
-        unknown = [name for name in axes if name not in self._table.names]
-        if unknown:
-            raise SimulationError(f"The axis {unknown[0]} has no hinge, so it cannot be held.")
+        """Hold axes where they are; raises SimulationError for one without a hinge."""
+        self._check_hinges(axes)
         for name in axes:
-            angle = self._data.qpos[self._table.angles[self._table.names.index(name)]]
-            self._held[name] = float(angle)
+            row = self._table.names.index(name)
+            angle = float(self._data.qpos[self._table.angles[row]])
+            # A body that is pushed against a limit is a little beyond it.
+            self._held[name] = float(np.clip(angle, *self._limits[row]))
+            self._goals.pop(name, None)
+        self._set_ranges()
+
+    def hold_at(self, angles_rad: Mapping[str, float]) -> None:
+        """Hold axes at these angles, to which `move_casts` moves them at `CAST_SPEED_RAD_S`.
+
+        Raises:
+            SimulationError: an axis has no hinge, or its angle is beyond its limits.
+        """
+        self._check_hinges(angles_rad)
+        for name, angle in angles_rad.items():
+            low, high = self._limits[self._table.names.index(name)]
+            if not low - _ROUNDING_RAD <= angle <= high + _ROUNDING_RAD:
+                raise SimulationError(
+                    f"{name} cannot be held at {angle:g} rad: give {low:g} to {high:g} rad."
+                )
+        self.hold([name for name in angles_rad if name not in self._held])
+        for name, angle in angles_rad.items():
+            low, high = self._limits[self._table.names.index(name)]
+            self._goals[name] = float(np.clip(angle, low, high))
+
+    def move_casts(self, elapsed_s: float) -> None:
+        """Move casts that are not yet at their angle; called for every frame."""
+        if not self._goals:
+            return
+        way = CAST_SPEED_RAD_S * elapsed_s
+        for name, goal in tuple(self._goals.items()):
+            left = goal - self._held[name]
+            if abs(left) <= way:
+                self._held[name] = self._goals.pop(name)
+            else:
+                self._held[name] += way if left > 0.0 else -way
         self._set_ranges()
 
     def release(self, axes: Collection[str] | None = None) -> None:
         """Release held axes; all of them if none are named."""
         for name in tuple(self._held) if axes is None else axes:
             self._held.pop(name, None)
+            self._goals.pop(name, None)
         self._set_ranges()
 
     def _set_ranges(self) -> None:
@@ -133,6 +235,13 @@ class Switches:
         for name, angle in self._held.items():
             self.ranges_rad[self._table.names.index(name)] = angle
         self._model.jnt_range[self._table.joints] = self.ranges_rad
+
+    def _check_hinges(self, axes: Collection[str]) -> None:
+        unknown = [name for name in axes if name not in self._table.names]
+        if unknown:
+            raise SimulationError(
+                f"The axis {unknown[0]} has no hinge, so it cannot be held and has no motor."
+            )
 
     def _check(self, part: str) -> None:
         if part not in self._touching:
@@ -155,7 +264,7 @@ class Switches:
         return next((kind for kind in kinds if masks[self._shapes(part, kind)].any()), "none")
 
     def _set_masks(self, part: str) -> None:
-        bits = collision_bits(part, self_collision=self._self_collision)
+        bits = collision_bits(part, self_collision=self._self_collision, colliding=self._layers)
         if not self._touching[part] or self._kinds[part] == "none":
             bits = NO_COLLISION
         model, body = self._model, self._table.bodies[part]

@@ -211,7 +211,13 @@ TestAnySession.settings = settings(
 
 def events(kind: type[Event]) -> st.SearchStrategy[Event]:
     """Return a strategy for events of a type."""
-    values = {"str": st.text(), "int": st.integers(0), "float": st.floats(0, 1e6)}
+    values: dict[str, st.SearchStrategy[object]] = {
+        "str": st.text(),
+        "int": st.integers(0),
+        "float": st.floats(0, 1e6),
+        "bool": st.booleans(),
+        "dict[str, typing.Any]": st.dictionaries(st.text(), st.text() | st.booleans()),
+    }
     strategies = {}
     for one in fields(kind):
         base, _, optional = str(one.type).partition(" |")

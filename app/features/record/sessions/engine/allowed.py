@@ -6,8 +6,19 @@ from app.features.record.sessions.engine.state import PhaseStatus, SessionState,
 from app.protocol import TIMED_KINDS, Step
 
 
-def allowed_commands(plan: Sequence[Step], state: SessionState) -> list[str]:
-    """Return the allowed command types in display order, the next action first."""
+def allowed_commands(
+    plan: Sequence[Step], state: SessionState, *, is_physics: bool = False
+) -> list[str]:
+    """Return the allowed command types in display order, the next action first.
+
+    `is_physics`: whether the session has a physics avatar, which can be changed while it runs.
+    """
+    allowed = _of_the_session(plan, state)
+    changeable = is_physics and state.materialised and state.status is SessionStatus.ACTIVE
+    return [*allowed, "change_avatar"] if changeable and not state.erased else allowed
+
+
+def _of_the_session(plan: Sequence[Step], state: SessionState) -> list[str]:
     if state.erased:
         return []
     if state.status is SessionStatus.PLANNED:

@@ -1,6 +1,8 @@
 """The commands of a session, issued by the operator, the tablet, the headset, or the server."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 
 @dataclass(frozen=True)
@@ -164,6 +166,34 @@ class RecordAvatar(Command):
     configuration_hash: str
     content: ContentRef
     body: str | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class ChangeAvatar(Command):
+    """Change the physics avatar while it runs.
+
+    `changes`: the content of an `AvatarChanges`, which replaces the operator's earlier changes; if
+    it is empty, they are taken back. `is_physics`: whether the session has a physics avatar.
+    `headset_can`: whether the connected headset can change it; None if none is connected.
+    """
+
+    changes: Mapping[str, Any]
+    is_physics: bool
+    headset_can: bool | None
+    content: ContentRef | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReportAvatarChange(Command):
+    """Record that the headset has changed the avatar, or that it could not.
+
+    `revision` is that of the order; the content has the angles of casts, or the headset's problem.
+    """
+
+    revision: int
+    applied: bool
+    client_t_s: float
+    content: ContentRef | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,6 +5,10 @@ from collections.abc import Sequence
 from app.features.record.sessions.engine import commands as c
 from app.features.record.sessions.engine import events as e
 from app.features.record.sessions.engine.annotations import decide_annotation
+from app.features.record.sessions.engine.avatar_changes import (
+    changes_of_study,
+    decide_avatar,
+)
 from app.features.record.sessions.engine.commands import Refused
 from app.features.record.sessions.engine.phases import decide_headset_lost, decide_report
 from app.features.record.sessions.engine.state import (
@@ -42,12 +46,12 @@ def decide(plan: Sequence[Step], state: SessionState, command: c.Command) -> lis
         )
     require_not_held(state, command)
     match command:
-        case c.RefuseConsent() | c.RetractRefusal():
-            return _decide_refusal(plan, state, command)
-        case c.OverrideStop():
-            return decide_override(state, command)
+        case c.RefuseConsent() | c.RetractRefusal() | c.OverrideStop():
+            return _decide_hold(plan, state, command)
         case c.Report():
             return _then_end(plan, state, _report(plan, state, command))
+        case c.ChangeAvatar() | c.ReportAvatarChange():
+            return decide_avatar(state, command)
         case c.HeadsetLost():
             return decide_headset_lost(plan, state, command)
         case c.Redo():
@@ -155,15 +159,14 @@ def _begin(step: Step, state: SessionState, command: c.BeginPhase) -> list[e.Eve
             remedy="Somebody else may have started it.",
         )
     _require_headset("no headset could run the phase", connected=command.headset_connected)
-    return [
-        e.PhasePrepared(
-            step=step.index,
-            phase_id=state.next_phase_id,
-            attempt=state.steps[step.index].attempt,
-            latency_ms=step.latency_ms or 0.0,
-            body=step.body,
-        )
-    ]
+    prepared = e.PhasePrepared(
+        step=step.index,
+        phase_id=state.next_phase_id,
+        attempt=state.steps[step.index].attempt,
+        latency_ms=step.latency_ms or 0.0,
+        body=step.body,
+    )
+    return [prepared, *changes_of_study(step, state)]
 
 
 def _pause(state: SessionState, command: c.Pause) -> list[e.Event]:
@@ -255,6 +258,17 @@ def _require_headset(consequence: str, *, connected: bool) -> None:
 
 def _ref(content: c.ContentRef) -> dict[str, str]:
     return {"content_id": content.content_id, "content_hash": content.content_hash}
+
+
+def _decide_hold(
+    plan: Sequence[Step],
+    state: SessionState,
+    command: c.RefuseConsent | c.RetractRefusal | c.OverrideStop,
+) -> list[e.Event]:
+    """Decide what holds a session, or lets it continue."""
+    if isinstance(command, c.OverrideStop):
+        return decide_override(state, command)
+    return _decide_refusal(plan, state, command)
 
 
 def _decide_refusal(

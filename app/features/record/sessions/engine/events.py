@@ -235,6 +235,40 @@ class AvatarBuilt(Event):
 
 
 @dataclass(frozen=True, kw_only=True)
+class AvatarChanged(Event):
+    """The settings of the running avatar were changed, by the `operator` or by the `study`.
+
+    `changes`: the content of an `AvatarChanges`. Those of the operator hold until the next such
+    event, and if empty, were taken back; those of the study hold until its phase ends. `deviation`:
+    the operator changed something while the phase was in progress.
+    """
+
+    type = "avatar_changed"
+    by: str
+    changes: dict[str, Any]
+    phase_id: int | None = None
+    deviation: bool = False
+    content_id: str | None = None
+    content_hash: str | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class AvatarChangeReported(Event):
+    """The headset reported that changes took effect on the avatar, or that it could not apply them.
+
+    `revision`: the `seq` of the event since which they were in force. The content has the angles of
+    casts, which reveal how the participant stood, or the headset's reason.
+    """
+
+    type = "avatar_change_reported"
+    revision: int
+    applied: bool
+    client_t_s: float
+    content_id: str | None = None
+    content_hash: str | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
 class CheckOverridden(Event):
     """Somebody proceeded although the pre-flight check `check` was not green.
 
@@ -363,6 +397,8 @@ EVENT_TYPES: dict[str, type[Event]] = {
         PhaseEnded,
         PhaseVoided,
         AvatarBuilt,
+        AvatarChanged,
+        AvatarChangeReported,
         BlindingLifted,
         CheckOverridden,
         NoteAdded,

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from app.features.record.sessions.engine import events as e
 from app.features.record.sessions.engine.state import (
+    AvatarChangesState,
     Hold,
     PhaseState,
     PhaseStatus,
@@ -51,6 +52,7 @@ def _applied(state: SessionState, event: e.Event) -> SessionState:
                 current=None,
                 held=None,
                 question_open=False,
+                avatar_changes=None,
             )
         case _ if isinstance(event, MARKS):
             return _marked(state, event)
@@ -65,12 +67,14 @@ MARKS = (
     e.RefusalRetracted,
     e.QuestionAsked,
     e.QuestionClosed,
+    e.AvatarChanged,
+    e.AvatarChangeReported,
     e.DataErased,
 )
 
 
 def _marked(state: SessionState, event: e.Event) -> SessionState:
-    """Apply an event that does not advance the session: a hold, its end, a question, an erasure."""
+    """Apply an event that does not advance the session, such as a hold, a question, an erasure."""
     match event:
         case e.StopRuleMet(rule=rule, submission_id=submission_id):
             # If one form meets several rules, the first one holds the session.
@@ -83,8 +87,36 @@ def _marked(state: SessionState, event: e.Event) -> SessionState:
             return replace(state, refused_consent=None)
         case e.QuestionAsked() | e.QuestionClosed():
             return replace(state, question_open=isinstance(event, e.QuestionAsked))
+        case e.AvatarChanged() | e.AvatarChangeReported():
+            return replace(state, avatar_changes=_avatar_changed(state, event))
         case _:
             return replace(state, erased=True)
+
+
+def _avatar_changed(
+    state: SessionState, event: e.AvatarChanged | e.AvatarChangeReported
+) -> AvatarChangesState | None:
+    """Apply a change of the avatar, or the headset's report on one."""
+    before = state.avatar_changes
+    if isinstance(event, e.AvatarChanged):
+        new = replace(before or AvatarChangesState(0), revision=state.version + 1)
+        if event.by == "study":
+            return replace(new, study=event.changes or None)
+        return replace(new, operator=event.changes or None)
+    if before is None or event.revision != before.revision:
+        return before
+    return replace(
+        before, reported=event.revision, applied=event.applied, content_id=event.content_id
+    )
+
+
+def _without_study_changes(state: SessionState) -> SessionState:
+    """End the changes that the study makes for a phase, which has ended or was voided."""
+    changes = state.avatar_changes
+    if changes is None or changes.study is None:
+        return state
+    ended = replace(changes, study=None, revision=state.version + 1)
+    return replace(state, avatar_changes=ended)
 
 
 def _clocked(phase: PhaseState | None, event: e.Event) -> PhaseState | None:
@@ -139,14 +171,15 @@ def _end_phase(state: SessionState, event: e.PhaseEnded) -> SessionState:
     if phase is None:
         return state
     ended = replace(phase, status=PhaseStatus.DONE, active_s=event.active_s)
-    left = _leave(state, phase.step, StepStatus.DONE)
+    left = _leave(_without_study_changes(state), phase.step, StepStatus.DONE)
     return replace(left, phase=None, ended_phases=(*state.ended_phases, ended))
 
 
 def _void_phase(state: SessionState, event: e.PhaseVoided) -> SessionState:
     if state.phase is not None and state.phase.phase_id == event.phase_id:
         voided = replace(state.phase, status=PhaseStatus.VOIDED, pausing=False, resuming=False)
-        return replace(state, phase=None, ended_phases=(*state.ended_phases, voided))
+        left = _without_study_changes(state)
+        return replace(left, phase=None, ended_phases=(*state.ended_phases, voided))
     return replace(
         state,
         ended_phases=tuple(

@@ -78,6 +78,22 @@ class Hold:
 
 
 @dataclass(frozen=True)
+class AvatarChangesState:
+    """How the running avatar was changed, by the study for a phase and by the operator.
+
+    `revision`: the number of the event since which the two are in force. `reported`: the revision
+    that the headset reported last, and whether it `applied` it; `content_id` is that of the report.
+    """
+
+    revision: int
+    study: dict[str, Any] | None = None
+    operator: dict[str, Any] | None = None
+    reported: int | None = None
+    applied: bool | None = None
+    content_id: str | None = None
+
+
+@dataclass(frozen=True)
 class SessionState:
     """The state of a session. `version` is the number of events folded so far.
 
@@ -85,7 +101,8 @@ class SessionState:
     `refused_consent`: the consent step at which the participant refused to take part; set until
     they change their mind, and also after the session has ended because of it. `question_open`: the
     participant has asked a question that has not been answered yet. `erased`: the participant's
-    data were erased, and nothing more can be added.
+    data were erased, and nothing more can be added. `avatar_changes`: None until the running avatar
+    is changed, and after the session has ended.
     """
 
     version: int
@@ -99,6 +116,7 @@ class SessionState:
     refused_consent: int | None = None
     question_open: bool = False
     erased: bool = False
+    avatar_changes: AvatarChangesState | None = None
 
     @property
     def next_phase_id(self) -> int:
