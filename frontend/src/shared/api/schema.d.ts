@@ -3017,6 +3017,43 @@ export interface components {
             readonly subject: string;
         };
         /**
+         * AvatarChanges
+         * @description Changes to an avatar that runs, compared with its configuration.
+         *
+         *     `released`: body groups without a cast, such as one that the study has put on.
+         */
+        readonly AvatarChanges: {
+            /**
+             * Casts
+             * @default []
+             */
+            readonly casts: readonly components["schemas"]["Cast"][];
+            /**
+             * Colliders
+             * @default []
+             */
+            readonly colliders: readonly components["schemas"]["ColliderChange"][];
+            /**
+             * Gains
+             * @default []
+             */
+            readonly gains: readonly components["schemas"]["GainChange"][];
+            /** Gravity */
+            readonly gravity?: boolean | null;
+            /**
+             * Layers
+             * @default []
+             */
+            readonly layers: readonly components["schemas"]["LayerChange"][];
+            /**
+             * Released
+             * @default []
+             */
+            readonly released: readonly string[];
+            /** Self Collision */
+            readonly self_collision?: boolean | null;
+        };
+        /**
          * AvatarCheck
          * @description Whether a file can be used; `known` lists each (key, version) with the same content.
          */
@@ -3607,6 +3644,24 @@ export interface components {
             readonly tracks: number;
         };
         /**
+         * Cast
+         * @description A cast around a body group, which holds its axes.
+         *
+         *     `held_deg`: axis -> angle at which it is held, to which it is moved first. Axes without an angle
+         *     are held where they are when the cast is put on.
+         */
+        readonly Cast: {
+            /**
+             * Group
+             * @description a body group or part, as in left_arm
+             */
+            readonly group: string;
+            /** Held Deg */
+            readonly held_deg?: {
+                readonly [key: string]: number;
+            };
+        };
+        /**
          * CellProblem
          * @description A problem that prevents a cell of the file from being imported.
          */
@@ -3837,6 +3892,22 @@ export interface components {
             readonly uncertainty_ms: number | null;
         };
         /**
+         * ColliderChange
+         * @description The collider of the parts of a body group; `none` lets them pass through everything.
+         */
+        readonly ColliderChange: {
+            /**
+             * Group
+             * @description a body group or part, as in left_arm
+             */
+            readonly group: string;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            readonly kind: "simple" | "mesh" | "none";
+        };
+        /**
          * ColumnSet
          * @description The columns of one form, item -> column; `condition`: that of all forms in these columns.
          */
@@ -3871,8 +3942,10 @@ export interface components {
          * @description An operator's command, with the version of the session that their page showed.
          *
          *     Commands in `NEVER_STALE` apply to any version and may omit `expected_version`.
+         *     `avatar_changes` replaces the operator's earlier changes; left out, they are taken back.
          */
         readonly CommandRequest: {
+            readonly avatar_changes?: components["schemas"]["AvatarChanges"] | null;
             /** Command Id */
             readonly command_id: string;
             /** Expected Version */
@@ -3889,7 +3962,7 @@ export interface components {
              * Type
              * @enum {string}
              */
-            readonly type: "start" | "complete_step" | "begin_phase" | "materialise" | "pause" | "resume" | "redo" | "skip" | "abort" | "withdraw" | "override_stop" | "reopen_consent" | "note";
+            readonly type: "start" | "complete_step" | "begin_phase" | "materialise" | "pause" | "resume" | "redo" | "skip" | "abort" | "withdraw" | "override_stop" | "reopen_consent" | "change_avatar" | "note";
         };
         /**
          * CompletionReceipt
@@ -4869,6 +4942,49 @@ export interface components {
             readonly note: string | null;
         };
         /**
+         * GainChange
+         * @description The gains and greatest torque of the motors of a group, part or axis.
+         *
+         *     Each is a factor of the configuration's value, or a value for every axis that is meant.
+         */
+        readonly GainChange: {
+            /**
+             * Kd Factor
+             * @description times the configuration's value
+             */
+            readonly kd_factor?: number | null;
+            /**
+             * Kd Nm S Per Rad
+             * @description 0 to 1e6
+             */
+            readonly kd_nm_s_per_rad?: number | null;
+            /**
+             * Kp Factor
+             * @description times the configuration's value
+             */
+            readonly kp_factor?: number | null;
+            /**
+             * Kp Nm Per Rad
+             * @description 0 to 1e6
+             */
+            readonly kp_nm_per_rad?: number | null;
+            /**
+             * Max Torque Factor
+             * @description times the configuration's value
+             */
+            readonly max_torque_factor?: number | null;
+            /**
+             * Max Torque Nm
+             * @description 0 to 1e6
+             */
+            readonly max_torque_nm?: number | null;
+            /**
+             * Motors
+             * @description a body group, part or axis
+             */
+            readonly motors: string;
+        };
+        /**
          * GlanceView
          * @description The results of one limb in brief, each null if it could not be tested.
          *
@@ -5569,6 +5685,19 @@ export interface components {
             readonly phase_id: number;
             /** Reason */
             readonly reason: string | null;
+        };
+        /**
+         * LayerChange
+         * @description Whether the parts of two collision layers collide with each other.
+         */
+        readonly LayerChange: {
+            /** Collide */
+            readonly collide: boolean;
+            /** Layers */
+            readonly layers: readonly [
+                string,
+                string
+            ];
         };
         /**
          * LedgerView
@@ -7469,7 +7598,7 @@ export interface components {
             /** Alarms */
             readonly alarms: readonly components["schemas"]["AlarmView"][];
             /** Allowed */
-            readonly allowed: readonly (("start" | "complete_step" | "begin_phase" | "materialise" | "pause" | "resume" | "redo" | "skip" | "abort" | "withdraw" | "override_stop" | "reopen_consent" | "note") | "enter_answers")[];
+            readonly allowed: readonly (("start" | "complete_step" | "begin_phase" | "materialise" | "pause" | "resume" | "redo" | "skip" | "abort" | "withdraw" | "override_stop" | "reopen_consent" | "change_avatar" | "note") | "enter_answers")[];
             /** Avatar */
             readonly avatar: string;
             /** Avatar Configuration Hash */
