@@ -261,13 +261,13 @@ def _collider_problems(
     configuration: Configuration, colliders: Iterable[ColliderChange]
 ) -> Iterator[AvatarProblem]:
     for at, one in enumerate(colliders):
-        if one.kind == "mesh" and configuration.humanoid is None:
+        if one.kind == "mesh" and not configuration.uses_pieces:
             yield AvatarProblem(
                 f"colliders[{at}].kind",
-                "The avatar has no mesh colliders, because its configuration names no model.",
+                "The avatar has no mesh colliders: its configuration names no model with them.",
                 value="mesh",
                 valid=["simple", "none"],
-                remedy="Choose 'simple', or name a humanoid model in the configuration.",
+                remedy="Choose 'simple', or a configuration with a model and mesh colliders.",
             )
 
 
