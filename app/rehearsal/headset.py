@@ -134,6 +134,7 @@ class Headset:
         self._t_pose_since_s: float | None = None
         self._materialised = False
         self._revision = 0
+        self._has_avatar_moved = False
 
     @property
     def _goes_on_alone(self) -> bool:
@@ -232,7 +233,10 @@ class Headset:
     async def _change_avatar(self, state: HeadsetState) -> None:
         """Bring the avatar to the changes in force, and report when they took effect."""
         order = state.avatar_changes
-        if order is None or self._avatar is None or order.revision == self._revision:
+        if order is None or order.revision == self._revision:
+            return
+        if self._avatar is None or not self._has_avatar_moved:
+            # A cast is put on a body that has taken the participant's pose.
             return
         self._revision = order.revision
         try:
@@ -294,6 +298,7 @@ class Headset:
         reaching = None if goal is None or goal.kind is not GoalKind.REACH else goal.effector
         fingers = None if self._person.fingers is None else self._person.fingers.pose(t_s, reaching)
         shown = avatar.frame(t_s, pose, fingers)
+        self._has_avatar_moved = True
         if recording:
             self._record(t_s, pose, shown, (fingers, avatar.fingers))
         if run is not None:

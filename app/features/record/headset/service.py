@@ -140,7 +140,6 @@ def _avatar_order(in_force: AvatarInForce | None) -> AvatarOrder | None:
     if in_force is None:
         return None
     configured, settings = in_force.configured, in_force.settings
-    reported = {} if in_force.report is None else in_force.report.held_rad
     return AvatarOrder(
         revision=in_force.revision,
         gravity=_if_changed(configured.gravity, settings.gravity),
@@ -152,7 +151,7 @@ def _avatar_order(in_force: AvatarInForce | None) -> AvatarOrder | None:
         },
         layers=_layer_orders(configured, settings),
         held_rad={
-            axis: reported.get(axis) if angle is None else angle
+            axis: in_force.held_rad.get(axis) if angle is None else angle
             for axis, angle in settings.held_rad.items()
         },
         motors={

@@ -8,7 +8,6 @@ from sqlalchemy.orm import Session
 
 from app.features.movement.avatar import configuration_by_hash
 from app.features.record.sessions.contents import content_body
-from app.features.record.sessions.engine import SessionState
 from app.features.record.sessions.service import state_of
 from app.models import SessionContent, StudySession
 from app.protocol import AvatarChanges, settings_in_force
@@ -20,13 +19,9 @@ AVATAR_CHANGE = "avatar_change"
 
 @dataclass(frozen=True)
 class AvatarReport:
-    """What the headset reported on the changes in force.
-
-    `held_rad`: the angle of each axis in a cast. `problem`: why they could not be applied.
-    """
+    """What the headset reported on the changes in force; `problem`: why it could not apply them."""
 
     applied: bool
-    held_rad: Mapping[str, float]
     problem: str | None
 
 
@@ -35,7 +30,8 @@ class AvatarInForce:
     """The changes in force of a session, and the settings that follow from them.
 
     `revision`: the number of the event since which they are in force. `report`: None until the
-    headset has reported on this revision.
+    headset has reported on this revision. `held_rad`: the angles of axes in a cast, as last
+    reported.
     """
 
     revision: int
@@ -44,23 +40,26 @@ class AvatarInForce:
     configured: RunningSettings
     settings: RunningSettings
     report: AvatarReport | None
+    held_rad: Mapping[str, float]
 
 
 def avatar_in_force(db: Session, session: StudySession) -> AvatarInForce | None:
     """Return the changes in force; None if nothing was ever changed, or the session has ended."""
-    state = state_of(session)
-    changes = state.avatar_changes
+    changes = state_of(session).avatar_changes
     if changes is None or session.avatar_configuration_hash is None:
         return None
     configuration = configuration_by_hash(db, session.avatar_configuration_hash)
     study, operator = changes_from(changes.study), changes_from(changes.operator)
+    said = _content(db, changes.content_id)
+    is_current = changes.reported == changes.revision
     return AvatarInForce(
         revision=changes.revision,
         study=study,
         operator=operator,
         configured=as_configured(configuration),
         settings=settings_in_force(configuration, study, operator),
-        report=_report(db, state),
+        report=AvatarReport(changes.applied is True, said.get("problem")) if is_current else None,
+        held_rad=said.get("held_rad", {}),
     )
 
 
@@ -69,15 +68,8 @@ def changes_from(content: Mapping[str, Any] | None) -> AvatarChanges | None:
     return AvatarChanges.model_validate(content) if content else None
 
 
-def _report(db: Session, state: SessionState) -> AvatarReport | None:
-    changes = state.avatar_changes
-    if changes is None or changes.reported != changes.revision:
-        return None
-    row = None if changes.content_id is None else db.get(SessionContent, changes.content_id)
+def _content(db: Session, content_id: str | None) -> dict[str, Any]:
+    """Return what a headset reported; empty if that was nothing, or was erased."""
+    row = None if content_id is None else db.get(SessionContent, content_id)
     body = None if row is None else content_body(row)
-    content = body if isinstance(body, dict) else {}
-    return AvatarReport(
-        applied=changes.applied is True,
-        held_rad={str(name): float(angle) for name, angle in content.get("held_rad", {}).items()},
-        problem=content.get("problem"),
-    )
+    return body if isinstance(body, dict) else {}
