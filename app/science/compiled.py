@@ -7,7 +7,10 @@ interpreter's lock, so several threads can run compiled code in parallel.
 `compiled_fused` allows fused multiply-add, for code that runs at every frame. Sums keep their order
 here too, so that equal frames give equal results.
 
-Either compiles at the first call, or loads what an earlier process compiled. Applying a decorator
+`compiled_checked` checks every index, for code that reads what a stranger sent: an IndexError takes
+the place of a read beside the array.
+
+Each compiles at the first call, or loads what an earlier process compiled. Applying a decorator
 loads the compiler (half a second), so kernels are kept in modules of their own, imported when first
 needed.
 """
@@ -28,11 +31,28 @@ def compiled_fused(function: _F) -> _F:
     return _cached(function, fastmath={"contract"})
 
 
-def _cached(function: _F, *, nogil: bool = False, fastmath: bool | set[str] = False) -> _F:
+def compiled_checked(function: _F) -> _F:
+    """Compile with a check of every index; it raises IndexError."""
+    return _cached(function, boundscheck=True)
+
+
+def _cached(
+    function: _F,
+    *,
+    nogil: bool = False,
+    fastmath: bool | set[str] = False,
+    boundscheck: bool = False,
+) -> _F:
     import numba
 
     def compile_function(*, cache: bool) -> _F:
-        compile_ = numba.njit(cache=cache, nogil=nogil, error_model="numpy", fastmath=fastmath)
+        compile_ = numba.njit(
+            cache=cache,
+            nogil=nogil,
+            error_model="numpy",
+            fastmath=fastmath,
+            boundscheck=boundscheck,
+        )
         return cast("_F", compile_(function))
 
     try:

@@ -5,6 +5,7 @@ only the command that makes figures needs it.
 """
 
 from app.adapters.humanoids.container import HumanoidFileError
+from app.adapters.humanoids.contents import Contents, Texture
 from app.adapters.humanoids.reader import (
     Limits,
     ReadHumanoid,
@@ -12,5 +13,18 @@ from app.adapters.humanoids.reader import (
     read_humanoid,
     read_skin,
 )
+from app.adapters.humanoids.rights import ModelRights, Permission, Wearers
 
-__all__ = ["HumanoidFileError", "Limits", "ReadHumanoid", "ReadSkin", "read_humanoid", "read_skin"]
+__all__ = [
+    "Contents",
+    "HumanoidFileError",
+    "Limits",
+    "ModelRights",
+    "Permission",
+    "ReadHumanoid",
+    "ReadSkin",
+    "Texture",
+    "Wearers",
+    "read_humanoid",
+    "read_skin",
+]

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.adapters.humanoids.container import HumanoidFileError, embedded
-from app.adapters.humanoids.document import Accessor, Document
+from app.adapters.humanoids.document import Accessor, Document, Draco, Image, Meshopt
 from app.science.rotations import FloatArray
 
 _TYPES: Final[dict[int, np.dtype[Any]]] = {
@@ -17,7 +17,6 @@ _TYPES: Final[dict[int, np.dtype[Any]]] = {
     5125: np.dtype("<u4"), 5126: np.dtype("<f4"),
 }  # fmt: skip
 _WIDTHS: Final = {"SCALAR": 1, "VEC3": 3, "VEC4": 4, "MAT4": 16}
-_FLOAT = 5126
 IndexArray = npt.NDArray[np.int64]
 
 
@@ -33,6 +32,7 @@ class Tables:
     def __init__(self, document: Document, binary: bytes | None, most_values: int) -> None:
         self._document, self._binary, self._left = document, binary, most_values
         self._buffers: dict[int, bytes] = {}
+        self._plain: dict[int, bytes] = {}
 
     def floats(self, number: int, kind: str) -> FloatArray:
         """Return (N, width) numbers; normalised integers are scaled to -1 or 0 to 1.
@@ -42,9 +42,13 @@ class Tables:
                 buffer, or contains non-finite numbers.
         """
         accessor, place = self._accessor(number)
-        table = self._table(accessor, kind, place)
+        return self.scaled(number, self._table(accessor, kind, place))
+
+    def scaled(self, number: int, table: npt.NDArray[Any]) -> FloatArray:
+        """Return the numbers of a table as an accessor says; raises the same errors as `floats`."""
+        accessor, place = self._accessor(number)
         values = table.astype(np.float64)
-        if accessor.normalized and accessor.componentType != _FLOAT:
+        if accessor.normalized and table.dtype.kind in "iu":
             values = np.maximum(values / float(np.iinfo(table.dtype).max), -1.0)
         if not np.isfinite(values).all():
             raise HumanoidFileError("It has numbers that are not finite.", place)
@@ -79,17 +83,12 @@ class Tables:
             )
         if accessor.bufferView is None or accessor.sparse is not None:
             raise HumanoidFileError(
-                "It has no plain data: the mesh is sparse or compressed, which is not read. Export"
-                " the model without compression.",
+                "It has no data of its own: the table is sparse, or compressed in a way that is not"
+                " read. Export the model without sparse tables, or compressed by meshopt or Draco.",
                 place,
             )
         width = _WIDTHS[kind]
-        self._left -= accessor.count * width
-        if self._left < 0:
-            raise HumanoidFileError(
-                "The file has more numbers than are read. Export the model with fewer vertices.",
-                place,
-            )
+        self.take(accessor.count * width, place)
         view, stride = self._view(accessor.bufferView, place)
         dtype = _TYPES[accessor.componentType]
         size = width * dtype.itemsize
@@ -105,18 +104,78 @@ class Tables:
             (accessor.count, width), dtype, view, accessor.byteOffset, (stride, dtype.itemsize)
         )
 
+    def draco(self, draco: Draco, place: str) -> bytes:
+        """Return the Draco stream of a primitive; raises HumanoidFileError."""
+        return bytes(self._view(draco.bufferView, place)[0])
+
+    def image(self, image: Image, place: str) -> bytes:
+        """Return the bytes of an image in the file; raises HumanoidFileError."""
+        if image.bufferView is not None:
+            return bytes(self._view(image.bufferView, place)[0])
+        return embedded(image.uri or "", place)
+
+    def accessor(self, number: int) -> Accessor:
+        """Return an accessor's description; raises HumanoidFileError if there is none."""
+        return self._accessor(number)[0]
+
+    def take(self, values: int, place: str) -> None:
+        """Count values that are about to be read; raises HumanoidFileError if they are too many."""
+        self._left -= values
+        if self._left < 0:
+            raise HumanoidFileError(
+                "The file has more numbers than are read. Export the model with fewer vertices.",
+                place,
+            )
+
     def _view(self, number: int, place: str) -> tuple[memoryview, int | None]:
         views = self._document.bufferViews
         if number >= len(views):
             raise HumanoidFileError(f"There is no buffer view {number} of {len(views)}.", place)
-        view = views[number]
-        data = self._buffer(view.buffer, f"bufferViews.{number}")
-        end = view.byteOffset + view.byteLength
+        view, at = views[number], f"bufferViews.{number}"
+        if view.compressed is not None:
+            return memoryview(self._decompressed(number, view.compressed)), view.byteStride
+        data = self._slice(view.buffer, view.byteOffset, view.byteLength, at)
+        return data, view.byteStride
+
+    def _slice(self, buffer: int, start: int, length: int, place: str) -> memoryview:
+        data = self._buffer(buffer, place)
+        end = start + length
         if end > len(data):
+            raise HumanoidFileError(f"It ends at byte {end} of a buffer of {len(data)}.", place)
+        return memoryview(data)[start:end]
+
+    def _decompressed(self, number: int, packed: Meshopt) -> bytes:
+        """Decompress a view once; its size is checked before memory is taken for it."""
+        place = f"bufferViews.{number}"
+        if number in self._plain:
+            return self._plain[number]
+        if packed.filter not in ("NONE", "EXPONENTIAL"):
             raise HumanoidFileError(
-                f"It ends at byte {end} of a buffer of {len(data)}.", f"bufferViews.{number}"
+                f"Its filter is {packed.filter!r}; for positions, bones and weights only NONE and"
+                " EXPONENTIAL are valid.",
+                place,
             )
-        return memoryview(data)[view.byteOffset : end], view.byteStride
+        valid = packed.byteStride % 4 == 0 if packed.mode == "ATTRIBUTES" else packed.byteStride < 5
+        if not valid or packed.byteStride == 3:
+            raise HumanoidFileError(
+                f"Its elements cannot have {packed.byteStride} bytes; valid are 2 or 4 for indices"
+                " and multiples of 4 for others.",
+                place,
+            )
+        # Bytes that nobody asks for count as well: a view is decompressed as a whole.
+        self.take(packed.count * packed.byteStride // 4, place)
+        stream = self._slice(packed.buffer, packed.byteOffset, packed.byteLength, place)
+        # Imported here because it loads a compiler, which few files need.
+        from app.adapters.humanoids.meshopt import StreamError, decoded
+
+        try:
+            plain = decoded(
+                packed.mode, bytes(stream), packed.count, packed.byteStride, packed.filter
+            )
+        except StreamError as error:
+            raise HumanoidFileError(f"It cannot be decompressed: {error}.", place) from None
+        self._plain[number] = plain
+        return plain
 
     def _buffer(self, number: int, place: str) -> bytes:
         if number in self._buffers:

@@ -4,11 +4,21 @@ Source: Khronos, glTF 2.0 specification, section 5; VRM consortium, VRM 0.0 (`VR
 (`VRMC_vrm`), humanoid. Everything else in a file is ignored.
 """
 
-from typing import Annotated
+from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    TypeAdapter,
+    ValidationError,
+    ValidationInfo,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
+)
 
 from app.adapters.humanoids.container import HumanoidFileError
+from app.adapters.humanoids.rights import Asset, Vrm0Meta, Vrm1Meta
 
 MOST_NODES = 5_000
 _MOST = 20_000
@@ -23,6 +33,20 @@ Sixteen = Annotated[list[Number], Field(min_length=16, max_length=16)]
 
 class _Part(BaseModel):
     model_config = ConfigDict(strict=True, allow_inf_nan=False)
+
+
+def _or_default(value: object, read: ValidatorFunctionWrapHandler, info: ValidationInfo) -> object:
+    """Return the field's default in place of what is not of its form.
+
+    What a file says of its author must not hinder reading the body.
+    """
+    try:
+        return read(value)
+    except ValidationError:
+        return Asset() if info.field_name == "asset" else None
+
+
+_LENIENT = WrapValidator(_or_default)
 
 
 class Node(_Part):
@@ -45,6 +69,25 @@ class Buffer(_Part):
     uri: str | None = None
 
 
+class Meshopt(_Part):
+    """The compressed form of a view: `EXT_meshopt_compression` or `KHR_meshopt_compression`."""
+
+    buffer: Index
+    byteLength: Index  # noqa: N815
+    byteOffset: Index = 0  # noqa: N815
+    byteStride: Annotated[int, Field(ge=2, le=256)]  # noqa: N815
+    count: Annotated[int, Field(ge=1, lt=_MOST_NUMBER)]
+    mode: Literal["ATTRIBUTES", "TRIANGLES", "INDICES"]
+    filter: Annotated[str, Field(max_length=20)] = "NONE"
+
+
+class ViewExtensions(_Part):
+    """The extensions of a view; a file may have either name of the same compression."""
+
+    ext_meshopt: Meshopt | None = Field(None, alias="EXT_meshopt_compression")
+    khr_meshopt: Meshopt | None = Field(None, alias="KHR_meshopt_compression")
+
+
 class BufferView(_Part):
     """A part of a buffer."""
 
@@ -52,6 +95,13 @@ class BufferView(_Part):
     byteLength: Index  # noqa: N815
     byteOffset: Index = 0  # noqa: N815
     byteStride: Annotated[int, Field(ge=1, le=252)] | None = None  # noqa: N815
+    extensions: ViewExtensions | None = None
+
+    @property
+    def compressed(self) -> Meshopt | None:
+        """Return the compressed form, if the view has one."""
+        own = self.extensions
+        return None if own is None else own.ext_meshopt or own.khr_meshopt
 
 
 class Accessor(_Part):
@@ -66,9 +116,26 @@ class Accessor(_Part):
     sparse: object = None
 
 
+class Draco(_Part):
+    """The compressed form of a primitive, `KHR_draco_mesh_compression`.
+
+    It is a view with the stream, and the number that each attribute has in it.
+    """
+
+    bufferView: Index  # noqa: N815
+    attributes: Annotated[dict[Name, Index], Field(max_length=100)]
+
+
+class PrimitiveExtensions(_Part):
+    """The extensions of a primitive."""
+
+    draco: Draco | None = Field(None, alias="KHR_draco_mesh_compression")
+
+
 class Primitive(_Part):
     """The triangles of a mesh with one material."""
 
+    extensions: PrimitiveExtensions | None = None
     attributes: Annotated[dict[Name, Index], Field(max_length=100)]
     indices: Index | None = None
     mode: Annotated[int, Field(ge=0, le=6)] = 4
@@ -104,6 +171,7 @@ class Vrm0(_Part):
     """The glTF extension `VRM` (VRM 0)."""
 
     humanoid: Vrm0Humanoid | None = None
+    meta: Annotated[Vrm0Meta | None, _LENIENT] = None
 
 
 class Vrm1Bone(_Part):
@@ -122,6 +190,7 @@ class Vrm1(_Part):
     """The glTF extension `VRMC_vrm` (VRM 1.0)."""
 
     humanoid: Vrm1Humanoid
+    meta: Annotated[Vrm1Meta | None, _LENIENT] = None
 
 
 class Extensions(_Part):
@@ -131,8 +200,18 @@ class Extensions(_Part):
     vrm1: Vrm1 | None = Field(None, alias="VRMC_vrm")
 
 
+class Image(_Part):
+    """A texture's image, in a view or embedded in the JSON."""
+
+    bufferView: Index | None = None  # noqa: N815
+    uri: str | None = None
+
+
 class Document(_Part):
     """The JSON of a glTF file."""
+
+    asset: Annotated[Asset, _LENIENT] = Asset()
+    images: Annotated[list[Image], Field(max_length=_MOST)] = []
 
     extensionsRequired: Annotated[list[Name], Field(max_length=200)] = []  # noqa: N815
     nodes: Annotated[list[Node], Field(max_length=MOST_NODES)] = []
@@ -145,23 +224,14 @@ class Document(_Part):
 
 
 _ADAPTER = TypeAdapter(Document)
-_COMPRESSED = {"KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"}
 
 
 def read_document(text: bytes) -> Document:
     """Parse the file's JSON; raise HumanoidFileError with the first problem."""
     try:
-        document = _ADAPTER.validate_json(text)
+        return _ADAPTER.validate_json(text)
     except ValidationError as error:
         first = error.errors(include_url=False, include_context=False)[0]
         more = f" ({error.error_count() - 1} more)" if error.error_count() > 1 else ""
         place = ".".join(str(step) for step in first["loc"])
         raise HumanoidFileError(f"{first['msg']}{more}.", place) from None
-    packed = sorted(_COMPRESSED & set(document.extensionsRequired))
-    if packed:
-        raise HumanoidFileError(
-            f"The mesh is compressed ({packed[0]}), which is not read. Export the model without"
-            " mesh compression.",
-            "extensionsRequired",
-        )
-    return document

@@ -13,8 +13,10 @@ import numpy as np
 from app.adapters.humanoids.accessors import Tables
 from app.adapters.humanoids.bone_names import named_bones, vrm_nodes
 from app.adapters.humanoids.container import HumanoidFileError, open_container
+from app.adapters.humanoids.contents import Contents, contents_of
 from app.adapters.humanoids.document import Document, read_document
 from app.adapters.humanoids.nodes import Tree, rig_of, tree_of
+from app.adapters.humanoids.rights import ModelRights, rights_of
 from app.adapters.humanoids.skin import skin_at_rest, skin_pieces
 from app.science.avatar.body import (
     Binding,
@@ -45,12 +47,15 @@ class Limits:
 class ReadHumanoid:
     """A model in the T-pose, and how the nodes of its file follow its parts.
 
-    `bones_by` is how its bones were identified.
+    `bones_by` is how its bones were identified. `rights` are what the file says about its author
+    and its use, `contents` what it costs to draw.
     """
 
     humanoid: Humanoid
     bones_by: MapSource
     binding: Binding
+    rights: ModelRights
+    contents: Contents
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +84,13 @@ def read_humanoid(data: bytes, limits: Limits | None = None) -> ReadHumanoid:
         binding = bind(posed, mesh.bones, nodes, tree.world)
     except (HumanoidError, RigError) as error:
         raise HumanoidFileError(str(error)) from error
-    return ReadHumanoid(posed.humanoid, "names" if mapped is None else "vrm", binding)
+    return ReadHumanoid(
+        posed.humanoid,
+        "names" if mapped is None else "vrm",
+        binding,
+        _rights(document),
+        contents_of(document, tables),
+    )
 
 
 def read_skin(data: bytes, limits: Limits | None = None) -> ReadSkin:
@@ -87,6 +98,18 @@ def read_skin(data: bytes, limits: Limits | None = None) -> ReadSkin:
     most = Limits() if limits is None else limits
     document, tables = _opened(data, most)
     return ReadSkin(tree_of(document), tuple(skin_pieces(document, tables, most.vertices)))
+
+
+def _rights(document: Document) -> ModelRights:
+    extensions = document.extensions
+    if extensions is None:
+        return rights_of(document.asset, None, None)
+    # A VRM without a `meta` says nothing: the specification's defaults are those of a `meta`.
+    return rights_of(
+        document.asset,
+        None if extensions.vrm0 is None else extensions.vrm0.meta,
+        None if extensions.vrm1 is None else extensions.vrm1.meta,
+    )
 
 
 def _opened(data: bytes, most: Limits) -> tuple[Document, Tables]:

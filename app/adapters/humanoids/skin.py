@@ -14,6 +14,7 @@ import numpy as np
 from app.adapters.humanoids.accessors import IndexArray, Tables
 from app.adapters.humanoids.container import HumanoidFileError
 from app.adapters.humanoids.document import Document, Primitive, Skin
+from app.adapters.humanoids.draco import PrimitiveTables
 from app.adapters.humanoids.nodes import Tree
 from app.science.avatar.body import SkinPiece, posed_vertices
 from app.science.rotations import FloatArray
@@ -61,8 +62,9 @@ class _Reader:
         self._primitives += 1
         if self._primitives > _MOST_PRIMITIVES:
             raise HumanoidFileError(f"It has more than {_MOST_PRIMITIVES} meshes.", place)
-        points = self._tables.floats(primitive.attributes["POSITION"], "VEC3")
-        used = self._used(primitive, len(points), place)
+        attributes = PrimitiveTables(self._tables, primitive, place)
+        points = attributes.floats("POSITION", "VEC3")
+        used = _used(attributes.corners(), len(points), place)
         self._left -= len(used)
         if self._left < 0:
             raise HumanoidFileError(
@@ -75,22 +77,13 @@ class _Reader:
             return SkinPiece(node, row, points, used, own, alone, joints, weights)
         bones = self._document.skins[skin]
         matrices = self._inverse_bind(bones, f"skins.{skin}")
-        joints, weights = self._influences(primitive, len(points), place)
+        joints, weights = _influences(attributes, primitive, len(points), place)
         if len(joints) and joints.max() >= len(bones.joints):
             raise HumanoidFileError(
                 f"A vertex refers to bone {joints.max()} of {len(bones.joints)}.", place
             )
         nodes = np.array(bones.joints)
         return SkinPiece(node, row, points, used, nodes, matrices, joints, weights)
-
-    def _used(self, primitive: Primitive, count: int, place: str) -> IndexArray:
-        """Return the vertices that belong to any triangle, in ascending order."""
-        if primitive.indices is None:
-            return np.arange(count)
-        used = np.unique(self._tables.whole(primitive.indices, "SCALAR"))
-        if used[-1] >= count:
-            raise HumanoidFileError(f"A triangle wants vertex {used[-1]} of {count}.", place)
-        return used
 
     def _inverse_bind(self, skin: Skin, place: str) -> FloatArray:
         joints = np.array(skin.joints)
@@ -105,23 +98,34 @@ class _Reader:
             )
         return inverse[: len(joints)].reshape(-1, 4, 4).swapaxes(1, 2)
 
-    def _influences(
-        self, primitive: Primitive, count: int, place: str
-    ) -> tuple[IndexArray, FloatArray]:
-        """Return (N, 4 or 8) bones of the skin, and weights, which add up to 1 or are all 0."""
-        joints, weights = [], []
-        for more in range(2):
-            if f"JOINTS_{more}" not in primitive.attributes:
-                continue
-            if f"WEIGHTS_{more}" not in primitive.attributes:
-                raise HumanoidFileError(f"It has JOINTS_{more} but no WEIGHTS_{more}.", place)
-            joints.append(self._tables.whole(primitive.attributes[f"JOINTS_{more}"], "VEC4"))
-            weights.append(self._tables.floats(primitive.attributes[f"WEIGHTS_{more}"], "VEC4"))
-        if any(len(table) != count for table in (*joints, *weights)):
-            raise HumanoidFileError(f"{count} vertices need as many bones and weights.", place)
-        shares = np.maximum(np.concatenate(weights, axis=1), 0.0)
-        total = shares.sum(axis=1, keepdims=True)
-        return np.concatenate(joints, axis=1), shares / np.where(total > 0.0, total, 1.0)
+
+def _used(corners: IndexArray | None, count: int, place: str) -> IndexArray:
+    """Return the vertices that belong to any triangle, in ascending order."""
+    if corners is None:
+        return np.arange(count)
+    used = np.unique(corners)
+    if len(used) and used[-1] >= count:
+        raise HumanoidFileError(f"A triangle wants vertex {used[-1]} of {count}.", place)
+    return used
+
+
+def _influences(
+    attributes: PrimitiveTables, primitive: Primitive, count: int, place: str
+) -> tuple[IndexArray, FloatArray]:
+    """Return (N, 4 or 8) bones of the skin, and weights, which add up to 1 or are all 0."""
+    joints, weights = [], []
+    for more in range(2):
+        if f"JOINTS_{more}" not in primitive.attributes:
+            continue
+        if f"WEIGHTS_{more}" not in primitive.attributes:
+            raise HumanoidFileError(f"It has JOINTS_{more} but no WEIGHTS_{more}.", place)
+        joints.append(attributes.whole(f"JOINTS_{more}", "VEC4"))
+        weights.append(attributes.floats(f"WEIGHTS_{more}", "VEC4"))
+    if any(len(table) != count for table in (*joints, *weights)):
+        raise HumanoidFileError(f"{count} vertices need as many bones and weights.", place)
+    shares = np.maximum(np.concatenate(weights, axis=1), 0.0)
+    total = shares.sum(axis=1, keepdims=True)
+    return np.concatenate(joints, axis=1), shares / np.where(total > 0.0, total, 1.0)
 
 
 def skin_pieces(document: Document, tables: Tables, most: int) -> Iterator[SkinPiece]:

@@ -164,7 +164,7 @@ def _set(*path: str | int, to: object) -> Edit:
         (_set("nodes", -1, "mesh", to=7), "nodes.53"),
         (_set("skins", 0, "joints", to=[1, 2]), "meshes.0.primitives.0"),
         (_set("skins", 0, "joints", to=[999]), "skins.0"),
-        (_set("extensionsRequired", to=["KHR_draco_mesh_compression"]), "extensionsRequired"),
+        (_set("extensionsRequired", to="EXT_meshopt_compression"), "extensionsRequired"),
         (_set("meshes", 0, "primitives", 0, "attributes", "JOINTS_0", to=0), "accessors.0"),
         (_set("meshes", 0, "primitives", 0, "attributes", "POSITION", to=99), "accessors.99"),
         (_set("meshes", 0, "primitives", 0, "attributes", to="all"), "meshes.0.primitives.0"),

@@ -1,0 +1,257 @@
+"""Decode the compressed buffer views of `EXT_meshopt_compression`.
+
+Three codecs: columns of bytes for vertices, a pair of queues for triangles, and differences for
+other indices. They are written here, because the only package for Python has no wheels and is an
+alpha version. Every read is checked against the data, and loops are bounded by the number of
+elements, so a damaged stream gives an error or wrong numbers, and nothing else.
+
+Version 0 of the vertex codec is read, which is the only one of `EXT_meshopt_compression`;
+`KHR_meshopt_compression` may use version 1.
+
+Source: Khronos, EXT_meshopt_compression, sections "Bitstream" and "Filters".
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from app.science.compiled import compiled_checked
+
+Bytes = npt.NDArray[np.uint8]
+_TAIL_BYTES, _GROUP, _CODES = 32, 16, 16
+_LARGEST = 0xFFFFFFFF
+_TRIANGLES, _ATTRIBUTES, _INDICES = 0xE1, 0xA0, 0xD1
+
+
+class StreamError(ValueError):
+    """A compressed stream is damaged, or of an unknown version."""
+
+
+def decoded(mode: str, stream: bytes, count: int, stride: int, filter_: str) -> bytes:
+    """Return the `count` elements of `stride` bytes that a stream contains.
+
+    Args:
+        mode: ATTRIBUTES, TRIANGLES or INDICES.
+        stream: the compressed bytes.
+        count: how many elements; for TRIANGLES a multiple of 3.
+        stride: 2 or 4 for indices, a multiple of 4 up to 256 for attributes.
+        filter_: NONE or EXPONENTIAL. Others are for normals and rotations.
+
+    Raises:
+        StreamError: the stream ends too early, is not of this mode, or refers to what is not there.
+    """
+    try:
+        if mode == "ATTRIBUTES":
+            data = np.frombuffer(stream, dtype=np.uint8)
+            return _filtered(_attributes(data, count, stride), filter_)
+        found = (_triangles if mode == "TRIANGLES" else _indices)(stream, count)
+    except IndexError as error:
+        raise StreamError("the compressed data end too early") from error
+    except StreamError:
+        raise
+    except ValueError as error:
+        raise StreamError(str(error)) from error
+    words = np.array(found, dtype=np.int64)
+    if stride == 2 and words.max(initial=0) > np.iinfo(np.uint16).max:
+        raise StreamError("an index does not fit into its 2 bytes")
+    return words.astype("<u2" if stride == 2 else "<u4").tobytes()
+
+
+def _filtered(elements: Bytes, filter_: str) -> bytes:
+    if filter_ == "NONE":
+        return bytes(elements.tobytes())
+    words = elements.reshape(-1).view("<i4")
+    # An eight-bit exponent above a twenty-four-bit mantissa, both with a sign.
+    exponent, mantissa = words >> 24, (words << 8) >> 8
+    with np.errstate(over="ignore"):
+        return bytes(np.ldexp(mantissa.astype(np.float64), exponent).astype("<f4").tobytes())
+
+
+@compiled_checked
+def _column(data: Bytes, at: int, groups: int, deltas: Bytes) -> int:
+    """Decode the differences of a block's column, in groups of 16; return where the next begins.
+
+    Two bits say for each group how many bits a difference has: 0, 2, 4 or 8. One of 2 or 4 bits
+    that are all set stands for a byte after the group.
+    """
+    header = at
+    at += (groups + 3) // 4
+    for group in range(groups):
+        bits = 2 * ((data[header + group // 4] >> (2 * (group % 4))) & 3)
+        start = group * _GROUP
+        if bits == 0:
+            deltas[start : start + _GROUP] = 0
+        elif bits == 6:
+            for k in range(_GROUP):
+                deltas[start + k] = data[at + k]
+            at += _GROUP
+        else:
+            full, per_byte = (1 << bits) - 1, 8 // bits
+            extra = at + _GROUP // per_byte
+            for k in range(_GROUP):
+                shift = 8 - bits * (k % per_byte + 1)
+                value = (data[at + k // per_byte] >> shift) & full
+                if value == full:
+                    value = data[extra]
+                    extra += 1
+                deltas[start + k] = value
+            at = extra
+    return at
+
+
+@compiled_checked
+def _attributes(data: Bytes, count: int, stride: int) -> Bytes:
+    """Decode `count` elements of `stride` bytes, (count, stride).
+
+    They are in blocks; a block has one column after the other, each as differences from one element
+    to the next. The first element's are to the last bytes of the stream.
+    """
+    if len(data) < 1 + max(_TAIL_BYTES, stride):
+        raise ValueError("the compressed vertices are shorter than their beginning and end")
+    if data[0] != _ATTRIBUTES:
+        raise ValueError("the compressed vertices are of an unknown version")
+    elements = np.zeros((count, stride), dtype=np.uint8)
+    last = data[len(data) - stride :].copy()
+    end = len(data) - max(_TAIL_BYTES, stride)
+    most = min((8192 // stride) & ~15, 256)
+    deltas = np.zeros(256, dtype=np.uint8)
+    at = 1
+    for first in range(0, count, most):
+        size = min(most, count - first)
+        for column in range(stride):
+            at = _column(data, at, (size + _GROUP - 1) // _GROUP, deltas)
+            value = last[column]
+            for k in range(size):
+                delta = deltas[k]
+                value = np.uint8((value + ((delta >> 1) ^ (0 - (delta & 1)))) & 255)
+                elements[first + k, column] = value
+            last[column] = value
+        if at > end:
+            raise ValueError("the compressed vertices end too early")
+    return elements
+
+
+def _indices(data: bytes, count: int) -> list[int]:
+    """Decode a sequence of indices, each the difference to one of two earlier ones."""
+    if len(data) < 1 + count + 4:
+        raise StreamError("the compressed indices are shorter than their number")
+    if data[0] != _INDICES:
+        raise StreamError("the compressed indices are of an unknown version")
+    found = []
+    last = [0, 0]
+    at = 1
+    for _ in range(count):
+        value, at = _number(data, at)
+        which = value & 1
+        last[which] = _changed(last[which], value >> 1)
+        found.append(last[which])
+    return found
+
+
+def _triangles(data: bytes, count: int) -> list[int]:
+    """Decode triangles: each continues at one of the last 16 edges, or begins anew."""
+    if count % 3 or len(data) < 1 + count // 3 + _CODES:
+        raise StreamError("the compressed triangles are shorter than their number")
+    if data[0] != _TRIANGLES:
+        raise StreamError("the compressed triangles are of an unknown version")
+    return _TriangleDecoder(data, 1 + count // 3).decoded(count // 3)
+
+
+class _TriangleDecoder:
+    """The state of the triangle codec: its two queues, and the next and the last vertex."""
+
+    def __init__(self, data: bytes, at: int) -> None:
+        self._data, self._at = data, at
+        self._table = len(data) - _CODES
+        self._edges = [(0, 0)] * _CODES
+        self._corners = [0] * _CODES
+        self._edge = self._corner = 0
+        self._next = self._last = 0
+
+    def decoded(self, triangles: int) -> list[int]:
+        found: list[int] = []
+        for code in self._data[1 : 1 + triangles]:
+            a, b, c = self._continued(code) if code < 0xF0 else self._anew(code)
+            found += (a, b, c)
+            self._push_edge(c, b)
+            self._push_edge(a, c)
+            if self._at > self._table:
+                raise StreamError("the compressed triangles end too early")
+        return found
+
+    def _continued(self, code: int) -> tuple[int, int, int]:
+        """Return the triangle beyond an earlier edge."""
+        a, b = self._edges[(self._edge - 1 - (code >> 4)) & 15]
+        which = code & 15
+        if 0 < which < 13:
+            return a, b, self._corners[(self._corner - 1 - which) & 15]
+        if which == 0:
+            c = self._following()
+        elif which == 15:
+            c = self._spelled()
+        else:
+            c = self._last = (self._last + (1 if which == 14 else -1)) & _LARGEST
+        self._push_corner(c)
+        return a, b, c
+
+    def _anew(self, code: int) -> tuple[int, int, int]:
+        """Return a triangle of its own.
+
+        Below 0xFE its corners are in the table of codes at the end, where 15 is an earlier corner
+        as any other. Otherwise they follow here, and 15 is a corner that is spelled out.
+        """
+        here = code >= 0xFE
+        if here:
+            pair = self._data[self._at]
+            self._at += 1
+            if pair == 0:
+                self._next = 0
+        else:
+            pair = self._data[self._table + (code & 15)]
+        which = (15 if code == 0xFF else 0, pair >> 4, pair & 15)
+        # All that are taken from what came before, and only then all that are spelled out.
+        corners = [
+            self._following() if one == 0 else self._corners[(self._corner - one) & 15]
+            for one in which
+        ]
+        for row, one in enumerate(which):
+            if here and one == 15:
+                corners[row] = self._spelled()
+        for corner, one in zip(corners, which, strict=True):
+            if one == 0 or (here and one == 15):
+                self._push_corner(corner)
+        a, b, c = corners
+        self._push_edge(b, a)
+        return a, b, c
+
+    def _following(self) -> int:
+        self._next += 1
+        return self._next - 1
+
+    def _spelled(self) -> int:
+        value, self._at = _number(self._data, self._at)
+        self._last = _changed(self._last, value)
+        return self._last
+
+    def _push_corner(self, corner: int) -> None:
+        self._corners[self._corner & 15] = corner
+        self._corner += 1
+
+    def _push_edge(self, start: int, end: int) -> None:
+        self._edges[self._edge & 15] = (start, end)
+        self._edge += 1
+
+
+def _number(data: bytes, at: int) -> tuple[int, int]:
+    """Return a number of 7 bits a byte, lowest first, and where the next one begins."""
+    value = 0
+    for k in range(5):
+        byte = data[at + k]
+        value |= (byte & 127) << (7 * k)
+        if byte < 128:
+            return value & _LARGEST, at + k + 1
+    return value & _LARGEST, at + 5
+
+
+def _changed(last: int, value: int) -> int:
+    """Return a number that a zigzag-coded difference leads to, as 32 bits."""
+    return (last + ((value >> 1) ^ -(value & 1))) & _LARGEST

@@ -1,0 +1,225 @@
+"""Read who made a model, and what they allow others to do with it.
+
+VRM files say so in their `meta`, in a form of its own for each version. Other glTF files have at
+most `asset.copyright`, and what programs and sites write into `asset.extras` (Sketchfab: author,
+licence and source). What a file does not say is unknown, except in VRM 1.0, whose specification
+forbids what is not allowed.
+
+Where two statements of a file disagree, as those of a licence without commercial use and of a
+permission for it, the stricter one counts.
+
+Source: VRM consortium, VRM 0.0 `meta`; VRM 1.0 `VRMC_vrm` `meta`; Creative Commons 4.0 licences.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any, Final, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Permission = Literal["allowed", "forbidden", "unknown"]
+Wearers = Literal["author", "licensed", "everyone", "unknown"]
+"""Who may wear a model: its author, people with a permission of their own, or everyone."""
+_LONGEST: Final = 1_000
+_Text = Annotated[str, Field(max_length=10_000)]
+
+
+@dataclass(frozen=True)
+class ModelRights:
+    """Who made a model, and what may be done with it; texts are as in the file, empty if absent.
+
+    Attributes:
+        title, authors, contact: of the model; `authors` is empty if they are not named.
+        copyright: a notice for those who show the model.
+        licence: its name, such as `CC_BY`.
+        licence_url, other_url: where its terms are, and further ones.
+        wearers: who may wear it.
+        violent, sexual, political, antisocial: acts with it in excess, or in political or religious
+            contexts.
+        commercial: commercial use.
+        redistribution: passing on the file.
+        modification: changing the file.
+        credit_needed: whether the authors must be named; None if unknown.
+    """
+
+    title: str = ""
+    authors: tuple[str, ...] = ()
+    contact: str = ""
+    copyright: str = ""
+    licence: str = ""
+    licence_url: str = ""
+    other_url: str = ""
+    wearers: Wearers = "unknown"
+    violent: Permission = "unknown"
+    sexual: Permission = "unknown"
+    political: Permission = "unknown"
+    antisocial: Permission = "unknown"
+    commercial: Permission = "unknown"
+    redistribution: Permission = "unknown"
+    modification: Permission = "unknown"
+    credit_needed: bool | None = None
+
+    @property
+    def wearing_needs_permission(self) -> bool:
+        """Return whether people other than the author may wear it only with a permission.
+
+        A laboratory that uses such a model has to confirm that it is the author or has the
+        permission; the product asks before participants wear it.
+        """
+        return self.wearers in ("author", "licensed")
+
+
+class _Meta(BaseModel):
+    # Statements of an unknown kind must not hinder reading the body, so all are optional texts.
+    model_config = ConfigDict(strict=True)
+
+
+class Vrm0Meta(_Meta):
+    """The `meta` of VRM 0."""
+
+    title: _Text = ""
+    author: _Text = ""
+    contactInformation: _Text = ""  # noqa: N815 - as in the file
+    reference: _Text = ""
+    allowedUserName: _Text = ""  # noqa: N815
+    violentUssageName: _Text = ""  # noqa: N815
+    sexualUssageName: _Text = ""  # noqa: N815
+    commercialUssageName: _Text = ""  # noqa: N815
+    licenseName: _Text = ""  # noqa: N815
+    otherPermissionUrl: _Text = ""  # noqa: N815
+    otherLicenseUrl: _Text = ""  # noqa: N815
+
+
+class Vrm1Meta(_Meta):
+    """The `meta` of VRM 1.0, with the specification's defaults, which forbid."""
+
+    name: _Text = ""
+    authors: Annotated[list[_Text], Field(max_length=1_000)] = []
+    copyrightInformation: _Text = ""  # noqa: N815
+    contactInformation: _Text = ""  # noqa: N815
+    licenseUrl: _Text = ""  # noqa: N815
+    otherLicenseUrl: _Text = ""  # noqa: N815
+    avatarPermission: _Text = "onlyAuthor"  # noqa: N815
+    allowExcessivelyViolentUsage: bool = False  # noqa: N815
+    allowExcessivelySexualUsage: bool = False  # noqa: N815
+    allowPoliticalOrReligiousUsage: bool = False  # noqa: N815
+    allowAntisocialOrHateUsage: bool = False  # noqa: N815
+    commercialUsage: _Text = "personalNonProfit"  # noqa: N815
+    allowRedistribution: bool = False  # noqa: N815
+    modification: _Text = "prohibited"
+    creditNotation: _Text = "required"  # noqa: N815
+
+
+class Asset(_Meta):
+    """The `asset` of any glTF file."""
+
+    copyright: _Text = ""
+    extras: dict[str, Any] | None = None
+
+
+_WEARERS_0: Final[Mapping[str, Wearers]] = {
+    "OnlyAuthor": "author", "ExplicitlyLicensedPerson": "licensed", "Everyone": "everyone",
+}  # fmt: skip
+_WEARERS_1: Final[Mapping[str, Wearers]] = {
+    "onlyAuthor": "author", "onlySeparatelyLicensedPerson": "licensed", "everyone": "everyone",
+}  # fmt: skip
+_USES: Final[Mapping[str, Permission]] = {"Allow": "allowed", "Disallow": "forbidden"}
+_CC_URLS: Final[Mapping[str, str]] = {
+    "CC0": "https://creativecommons.org/publicdomain/zero/1.0/",
+    **{
+        f"CC_{name.upper().replace('-', '_')}": f"https://creativecommons.org/licenses/{name}/4.0/"
+        for name in ("by", "by-nc", "by-sa", "by-nc-sa", "by-nd", "by-nc-nd")
+    },
+}
+
+
+def rights_of(asset: Asset, vrm0: Vrm0Meta | None, vrm1: Vrm1Meta | None) -> ModelRights:
+    """Return what a file says about its author and the use of the model."""
+    if vrm1 is not None:
+        return _of_vrm1(vrm1, asset)
+    return _of_gltf(asset) if vrm0 is None else _of_vrm0(vrm0, asset)
+
+
+def _of_vrm0(meta: Vrm0Meta, asset: Asset) -> ModelRights:
+    licence = meta.licenseName
+    terms = set(licence.split("_")) if licence in _CC_URLS else set()
+    forbids_passing_on = licence == "Redistribution_Prohibited"
+    commercial = _USES.get(meta.commercialUssageName, "unknown")
+    return ModelRights(
+        title=_short(meta.title),
+        authors=_authors(meta.author),
+        contact=_short(meta.contactInformation),
+        copyright=_short(asset.copyright),
+        licence=_short(licence),
+        licence_url=_short(meta.otherLicenseUrl) or _CC_URLS.get(licence, ""),
+        other_url=_short(meta.otherPermissionUrl),
+        wearers=_WEARERS_0.get(meta.allowedUserName, "unknown"),
+        violent=_USES.get(meta.violentUssageName, "unknown"),
+        sexual=_USES.get(meta.sexualUssageName, "unknown"),
+        commercial="forbidden" if "NC" in terms else commercial,
+        redistribution="forbidden" if forbids_passing_on else "allowed" if terms else "unknown",
+        modification="forbidden" if "ND" in terms else "allowed" if terms else "unknown",
+        credit_needed="BY" in terms if terms else None,
+    )
+
+
+def _of_vrm1(meta: Vrm1Meta, asset: Asset) -> ModelRights:
+    changing: Mapping[str, Permission] = {
+        "prohibited": "forbidden",
+        "allowModification": "allowed",
+        "allowModificationRedistribution": "allowed",
+    }
+    selling: Mapping[str, Permission] = {
+        "personalNonProfit": "forbidden",
+        "personalProfit": "allowed",
+        "corporation": "allowed",
+    }
+    return ModelRights(
+        title=_short(meta.name),
+        authors=_authors(*meta.authors),
+        contact=_short(meta.contactInformation),
+        copyright=_short(meta.copyrightInformation or asset.copyright),
+        licence="VRM Public License 1.0" if "vrm.dev/licenses/1.0" in meta.licenseUrl else "",
+        licence_url=_short(meta.licenseUrl),
+        other_url=_short(meta.otherLicenseUrl),
+        wearers=_WEARERS_1.get(meta.avatarPermission, "unknown"),
+        violent=_allowed(meta.allowExcessivelyViolentUsage),
+        sexual=_allowed(meta.allowExcessivelySexualUsage),
+        political=_allowed(meta.allowPoliticalOrReligiousUsage),
+        antisocial=_allowed(meta.allowAntisocialOrHateUsage),
+        commercial=selling.get(meta.commercialUsage, "unknown"),
+        redistribution=_allowed(meta.allowRedistribution),
+        modification=changing.get(meta.modification, "unknown"),
+        credit_needed={"required": True, "unnecessary": False}.get(meta.creditNotation),
+    )
+
+
+def _of_gltf(asset: Asset) -> ModelRights:
+    said = {
+        name: _short(value)
+        for name, value in (asset.extras or {}).items()
+        if isinstance(value, str)
+    }
+    licence = said.get("license") or said.get("licence") or ""
+    return ModelRights(
+        title=said.get("title", ""),
+        authors=_authors(said.get("author", "")),
+        contact=said.get("source", ""),
+        copyright=_short(asset.copyright),
+        licence=licence,
+        # Sketchfab's form: `CC-BY-4.0 (http://creativecommons.org/licenses/by/4.0/)`.
+        licence_url=licence.partition("(")[2].rstrip(")") if "(http" in licence else "",
+    )
+
+
+def _allowed(value: bool) -> Permission:  # noqa: FBT001 - a statement of the file
+    return "allowed" if value else "forbidden"
+
+
+def _authors(*names: str) -> tuple[str, ...]:
+    return tuple(short for name in names if (short := _short(name)))
+
+
+def _short(text: str) -> str:
+    """Return a text without control characters, cut to a length that a page can show."""
+    return "".join(one if one.isprintable() else " " for one in text).strip()[:_LONGEST]
