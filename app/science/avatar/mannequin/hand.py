@@ -31,7 +31,7 @@ _PALM = (
 )  # fmt: skip
 # Half the thickness of each finger, millimetres, and how far the web lies beyond the knuckle, as a
 # share of the first segment.
-_FINGERS = {"Index": (8.2, 0.40), "Middle": (8.3, 0.44), "Ring": (7.9, 0.44), "Little": (7.0, 0.42)}
+_FINGERS = {"Index": (8.7, 0.38), "Middle": (8.5, 0.42), "Ring": (8.0, 0.42), "Little": (7.4, 0.40)}
 _THUMB_MM = 10.2
 REGIONS: Mapping[str, Region] = {
     "Thumb": "Thumb", "Index": "Index", "Middle": "Middle", "Ring": "Ring", "Little": "Little",

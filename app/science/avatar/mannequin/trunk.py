@@ -98,7 +98,12 @@ def sew_head(work: Patchwork, body: Proportions, form: Form, neck: IndexArray) -
     table = np.concatenate((form.head, np.zeros((len(form.head), 2))), axis=1)
     control = np.arange(len(table), dtype=np.float64)
     steps = np.concatenate(
-        ((0.0, 1.0, 2.0, 2.5, 3.0), np.arange(3.5, 9.01, 0.5), np.arange(10.0, 15.0))
+        (
+            (0.0, 1.0, 2.0, 2.5, 3.0, 3.4, 3.7),
+            np.arange(4.0, 5.01, 0.33),
+            np.arange(5.4, 9.01, 0.45),
+            np.arange(10.0, 15.0),
+        )
     )
     sections = PchipInterpolator(control, table, axis=0)(steps)
     points = np.array([_section(row, turns, unit) for row in sections])
@@ -117,7 +122,7 @@ def sew_head(work: Patchwork, body: Proportions, form: Form, neck: IndexArray) -
         below = loop
     top = np.array([[0.0, places["Head"][1] + body.ends_m["Head"][1], 0.0]])
     pole = work.add(top)
-    half = work.add(points[-1][::2] * (0.5, 1.0, 0.5))
+    half = work.add(0.5 * points[-1][::2] + 0.5 * top + (0.0, 0.25, 0.0) * (top - points[-1][::2]))
     work.strip(below, half, closed=False)
     work.close(half, int(pole[0]), closed=False)
     return np.concatenate((*numbers, half, pole))
@@ -159,11 +164,13 @@ def _shape_chest(points: FloatArray, form: Form, unit: float, heights: Heights) 
 
 # The face: middle of each form (x, y), how far it stands out, how wide and how high it is.
 _FACE = (
-    (0.0, 1530.0, 6.0, 20.0, 11.0),  # chin
-    (0.0, 1546.0, -2.5, 26.0, 6.0),  # below the lip
-    (0.0, 1558.0, 4.0, 22.0, 8.0),  # lips
-    (33.0, 1629.0, -8.0, 15.0, 11.0),  # eye sockets
-    (44.0, 1597.0, 3.0, 18.0, 15.0),  # cheek bones
+    (0.0, 1529.0, 5.0, 21.0, 12.0),  # chin
+    (0.0, 1545.5, -2.5, 26.0, 5.5),  # below the lip
+    (0.0, 1554.0, 4.5, 23.0, 5.0),  # lower lip
+    (0.0, 1563.5, 4.5, 24.0, 5.0),  # upper lip
+    (31.0, 1627.0, -8.5, 15.0, 11.0),  # eye sockets
+    (31.0, 1626.0, 3.5, 9.0, 7.0),  # eyes
+    (46.0, 1596.0, 3.5, 19.0, 16.0),  # cheek bones
     (0.0, 1634.0, -2.0, 12.0, 10.0),  # root of the nose
 )
 
@@ -178,7 +185,7 @@ def _shape_face(points: FloatArray, form: Form, unit: float) -> None:
     out += form.brow_m / unit * np.exp(-((x / 46.0) ** 4) - ((y - 1648.0) / 10.0) ** 2)
     # The nose becomes wider and higher from its root to its tip.
     down = np.clip((1640.0 - y) / (1640.0 - 1584.0), 0.0, 1.0)
-    tip = np.where(y < 1584.0, np.exp(-(((1584.0 - y) / 8.0) ** 2)), 1.0)
+    tip = np.where(y < 1584.0, np.exp(-(((1584.0 - y) / 6.5) ** 2)), 1.0)
     out += (3.0 + 19.0 * down**1.3) * tip * (down > 0.0) * np.exp(-((x / (7.0 + 5.0 * down)) ** 2))
     points[..., 2] -= np.where(front, out, 0.0) * unit
     # An ear: a shell behind the jaw, highest at its rear edge.

@@ -89,14 +89,14 @@ class _Shares:
         shoulder, elbow, wrist = (
             self._places[f"Right{part}"][0] for part in ("UpperArm", "LowerArm", "Hand")
         )
-        inwards = (x - 0.35 * shoulder) / (0.50 * shoulder)
-        upwards = (y / stature - 0.757) / 0.045
+        inwards = (x - 0.25 * shoulder) / (0.40 * shoulder)
+        upwards = (y / stature - 0.765) / 0.04
         below_neck = 1.0 - _rise((level - heights[3]) / (0.03 * stature))
         lateral = np.maximum(arm, _rise(inwards) * _rise(upwards) * below_neck)
         arms = _chain(
             x,
-            (shoulder - 0.004 * stature, elbow, wrist),
-            [share * stature for share in (0.034, 0.024, 0.014)],
+            (shoulder + 0.002 * stature, elbow, wrist),
+            [share * stature for share in (0.026, 0.024, 0.014)],
         )
         thigh = self._thigh(x, y) * (1.0 - lateral)
         self._put(rows, trunk, along * (1.0 - lateral - thigh)[:, np.newaxis])
@@ -108,11 +108,12 @@ class _Shares:
         self._put(rows, ("RightUpperLeg",), thigh[:, np.newaxis])
 
     def _thigh(self, x: FloatArray, y: FloatArray) -> FloatArray:
-        """Return the share of the thigh, which ends above the crotch and at the seam."""
+        """Return the share of the thigh: all below the crotch, none at the seam above it."""
         hip = self._places["RightUpperLeg"][1]
         down = (hip - 0.012 * self._stature - y) / (0.09 * self._stature) + 0.5
-        outwards = x / (0.038 * self._stature)
-        share: FloatArray = _rise(down) * _rise(outwards)
+        outwards = _rise(x / (0.038 * self._stature))
+        below = _rise((hip - 0.058 * self._stature - y) / (0.028 * self._stature))
+        share: FloatArray = _rise(down) * np.maximum(outwards, below)
         return share
 
     def _leg(self) -> None:
