@@ -21,6 +21,7 @@ from app.features.care.storage import StorageMeter, StorageRecovery
 from app.features.design.studies import add_shipped
 from app.features.movement.avatar import add_shipped_avatar
 from app.features.movement.captures import CaptureQueue
+from app.features.movement.humanoids import add_shipped_bodies
 from app.features.movement.walking import FitQueue, PredictionQueue
 from app.features.people.accounts import RefusedSignIns, ensure_admin
 from app.features.record.telemetry import Folder, Summariser, TelemetryWriter, stop_running_clocks
@@ -160,6 +161,7 @@ def _prepare(context: AppContext, on_first_password: Callable[[str], None] | Non
     now = context.clock.utc_now()
     with context.database.writing() as db:
         made = ensure_admin(db, password=secret.get_secret_value() if secret else None, now=now)
+        add_shipped_bodies(db, now)
         add_shipped_avatar(db, now)
         add_shipped(db, now)
     if made is not None and on_first_password is not None:

@@ -22,7 +22,7 @@ SHIPPED = (CONFIGS / "reembodiment-latency.yaml").read_text(encoding="utf-8")
 
 def as_delayed_copy(text: str) -> str:
     """Return a study with a delayed-copy avatar, which needs no headset that simulates."""
-    moved = "avatar: physics\navatar_configuration: {key: standard, version: 1}\n"
+    moved = "avatar: physics\navatar_configuration: {key: standard, version: 2}\n"
     assert moved in text
     return text.replace(moved, "avatar: delayed_copy\n", 1)
 

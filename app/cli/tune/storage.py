@@ -23,7 +23,7 @@ from app.features.movement.avatar import (
     newest_version,
     typed,
 )
-from app.features.movement.humanoids import figure_by_hash
+from app.features.movement.humanoids import add_shipped_bodies, figure_by_hash
 from app.features.people.audit import COMMAND_LINE
 from app.models import AvatarVersion
 from app.protocol.avatar import file_of
@@ -63,6 +63,7 @@ def stored_avatar(database: Database, key: str) -> tuple[Configuration, Figure |
     with database.writing() as db:
         # Before the first start of a server, the shipped avatar is not yet stored.
         if SHIPPED not in newest_numbers(db):
+            add_shipped_bodies(db, Clock().utc_now())
             add_shipped_avatar(db, Clock().utc_now())
         configuration = typed(newest_version(db, avatar_by_key(db, key)))
         figure = figure_by_hash(db, configuration.humanoid)

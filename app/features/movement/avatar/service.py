@@ -26,6 +26,7 @@ from app.protocol.avatar import (
     loaded,
     parse_avatar_json,
 )
+from app.resources import bodies_dir
 from app.science.avatar.configuration import AvatarProblem, AvatarSettingsError, Configuration
 from app.science.avatar.mjcf import default_configuration
 
@@ -94,14 +95,30 @@ def add_avatar_version(
     return row
 
 
+def shipped_configurations() -> tuple[Configuration, ...]:
+    """Return all versions of the standard avatar that releases have shipped, oldest first.
+
+    The first has simple colliders and no model; the second is the neutral body with mesh colliders
+    and gains that were tuned for it.
+    """
+    text = (bodies_dir() / "standard.json").read_text(encoding="utf-8")
+    return default_configuration(), parse_avatar_json(text)
+
+
 def add_shipped_avatar(db: Session, now: datetime) -> None:
-    """Store the shipped configuration, unless the lab has saved its own version under its key."""
-    content = loaded(default_configuration())
+    """Store the shipped configuration, unless the lab has saved its own version under its key.
+
+    A new installation gets the versions of earlier releases as well, because studies name them. The
+    body must have been stored before (`add_shipped_bodies`).
+    """
+    contents = [loaded(configuration) for configuration in shipped_configurations()]
+    content = contents[-1]
     avatar = db.get(Avatar, SHIPPED)
     if avatar is None:
         db.add(Avatar(key=SHIPPED, title=_SHIPPED_TITLE, by=_PRODUCT, at=now))
         db.flush()
-        _append(db, SHIPPED, 1, content, "shipped", "", _PRODUCT, now)
+        for number, one in enumerate(contents, start=1):
+            _append(db, SHIPPED, number, one, "shipped", "", _PRODUCT, now)
         return
     newest = newest_version(db, avatar)
     if newest.origin == "shipped" and newest.content_hash != content.content_hash:

@@ -10,6 +10,7 @@ from app.features.movement.files.contents import (
     plain_pieces,
     size_of,
     store,
+    store_bytes,
     stored_files,
 )
 from app.features.movement.files.transfer import (
@@ -40,6 +41,7 @@ __all__ = [
     "sent",
     "size_of",
     "store",
+    "store_bytes",
     "stored_files",
     "streamed",
     "uploaded",

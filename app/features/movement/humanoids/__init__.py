@@ -9,8 +9,10 @@ from app.features.movement.humanoids.service import (
     named_bodies,
     parsed_figure,
 )
+from app.features.movement.humanoids.shipped import add_shipped_bodies
 
 __all__ = [
+    "add_shipped_bodies",
     "asked_terms",
     "body_by_name",
     "figure_by_hash",

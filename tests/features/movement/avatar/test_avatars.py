@@ -10,6 +10,7 @@ from app.features.movement.avatar.service import (
     add_avatar_version,
     add_shipped_avatar,
     configuration_by_hash,
+    shipped_configurations,
 )
 from app.models import AvatarVersion, StudySession
 from app.protocol.avatar import avatar_text, file_of, load_avatar, loaded
@@ -19,6 +20,7 @@ from tests.api.people import sign_in
 from tests.features.lab import Json, Lab, error, ok
 
 SHIPPED = default_configuration()
+STANDARD = shipped_configurations()[-1]
 SOFT = with_global(SHIPPED, group="head", kp=5.0)
 CAST = lock(SHIPPED, "left_fingers")
 PATH = "/api/avatars"
@@ -64,12 +66,17 @@ def save(
 def test_a_new_installation_has_the_standard_avatar(fresh_lab: Lab) -> None:
     """A new installation has the shipped standard avatar, which no session has used."""
     (listed,) = ok(fresh_lab.operator.get(PATH))
-    assert (listed["key"], listed["versions"], listed["axes"]) == ("standard", 1, 91)
+    assert (listed["key"], listed["versions"], listed["axes"]) == ("standard", 2, 91)
     assert (listed["newest"]["origin"], listed["newest"]["by"]) == ("shipped", "system")
     assert listed["sessions"] == 0
-    assert listed["newest"]["content_hash"] == loaded(SHIPPED).content_hash
+    assert listed["newest"]["content_hash"] == loaded(STANDARD).content_hash
     view = ok(fresh_lab.operator.get(f"{PATH}/standard"))
-    assert view["newest"]["configuration"] == as_json(SHIPPED)
+    assert view["newest"]["configuration"] == as_json(STANDARD)
+    bodies = ok(fresh_lab.operator.get("/api/humanoids"))["humanoids"]
+    neutral = next(one for one in bodies if one["name"] == "neutral")
+    assert (STANDARD.colliders, STANDARD.humanoid) == ("mesh", neutral["content_hash"])
+    first = ok(fresh_lab.operator.get(f"{PATH}/standard/versions/1"))
+    assert first["configuration"] == as_json(SHIPPED)
 
 
 def test_versions_are_appended_and_kept(fresh_lab: Lab) -> None:
@@ -216,6 +223,7 @@ def test_a_release_updates_the_standard_avatar_unless_the_lab_changed_it(fresh_l
     now = Clock().utc_now()
     with fresh_lab.database.writing() as db:
         row = db.get_one(AvatarVersion, ("standard", 1))
+        db.delete(db.get_one(AvatarVersion, ("standard", 2)))
         older = loaded(SOFT)
         row.content_hash, row.canonical_json = older.content_hash, older.canonical_json
     for _ in range(2):
@@ -223,7 +231,7 @@ def test_a_release_updates_the_standard_avatar_unless_the_lab_changed_it(fresh_l
             add_shipped_avatar(db, now)
     view = ok(fresh_lab.operator.get(f"{PATH}/standard"))
     assert [one["number"] for one in view["versions"]] == [2, 1]
-    assert view["newest"]["configuration"] == as_json(SHIPPED)
+    assert view["newest"]["configuration"] == as_json(STANDARD)
     save(fresh_lab, "standard", CAST, 2)
     with fresh_lab.database.writing() as db:
         add_shipped_avatar(db, now)
@@ -243,11 +251,11 @@ def test_the_canonical_form_is_what_is_stored(fresh_lab: Lab) -> None:
 def test_a_tuning_report_is_stored_with_its_version(fresh_lab: Lab) -> None:
     """The report of a tuning is stored with its version; other versions have none."""
     report = {"heuristic": "pd", "axes": [{"name": "HeadX", "overshoot_percent": 2.5}]}
-    request = NewAvatarVersion(based_on=1, origin="tuned", configuration=file_of(SOFT))
+    request = NewAvatarVersion(based_on=2, origin="tuned", configuration=file_of(SOFT))
     with fresh_lab.database.writing() as db:
         add_avatar_version(db, "system", "standard", request, Clock().utc_now(), report=report)
     view = ok(fresh_lab.operator.get(f"{PATH}/standard"))
     assert (view["newest"]["report"], view["newest"]["origin"]) == (report, "tuned")
     assert ok(fresh_lab.operator.get(f"{PATH}/standard/versions/1"))["report"] is None
     with fresh_lab.database.reading() as db:
-        assert db.query(AvatarVersion).filter(AvatarVersion.report.is_(None)).count() == 1
+        assert db.query(AvatarVersion).filter(AvatarVersion.report.is_(None)).count() == 2

@@ -18,7 +18,7 @@ pytestmark = pytest.mark.one_engine
 
 def test_a_models_etag_is_its_hash(fresh_lab: Lab) -> None:
     """A model's ETag is the hash of its text, and a client that has it gets 304."""
-    path = f"{PATH}/standard/model?stature_m=1.7001"
+    path = f"{PATH}/standard/model?stature_m=1.7001&version=1"
     answer = fresh_lab.operator.get(path)
     assert answer.headers["content-type"] == "application/xml"
     assert answer.text == avatar_model(SHIPPED, 1.7).mjcf

@@ -126,7 +126,7 @@ def test_who_wears_a_body(fresh_lab: Lab) -> None:
     refusal = error(
         fresh_lab.operator.post("/api/studies", json={"yaml": unknown}), 422, "invalid_config"
     )
-    assert refusal["details"][0]["valid"] == ["tall"]
+    assert refusal["details"][0]["valid"] == ["female", "male", "neutral", "tall"]
 
 
 @pytest.mark.one_engine
