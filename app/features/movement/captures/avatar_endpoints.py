@@ -125,13 +125,22 @@ async def get_retargeted(
     responses={200: binary("Positions of the avatar's joints, in the form of `motion`.")},
 )
 async def get_retargeted_motion(
-    capture_id: str, context: Context, _: SignedIn, *, avatar: Avatar, lock_feet: bool = False
+    capture_id: str,
+    context: Context,
+    _: SignedIn,
+    *,
+    avatar: Avatar,
+    lock_feet: bool = False,
+    rotations: bool = False,
 ) -> Response:
-    """Return the positions of an avatar's joints over time, for a preview."""
+    """Return the positions of an avatar's joints over time, for a preview.
+
+    `rotations`: with the joints' rotations, which a body with skin is drawn by.
+    """
     mapped = await run_in_threadpool(mapped_capture, context, capture_id)
     return Response(
         await context.part(CaptureQueue).run_cached(
-            retargeted_positions, mapped, avatar, lock_feet=lock_feet
+            retargeted_positions, mapped, avatar, lock_feet=lock_feet, rotations=rotations
         ),
         media_type=BYTES,
     )

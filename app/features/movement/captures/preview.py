@@ -4,6 +4,8 @@
   bytes 4-     header: JSON in UTF-8, padded with spaces so that 4 + L is a multiple of 4
   then         float32, little-endian: x, y, z in metres of every point of every frame,
                [frame][point][axis]; y is up, the world right-handed; NaN where nothing was seen
+  then         only for avatars, on request: float32, w, x, y, z of every joint's rotation in its
+               parent's frame, [frame][joint][wxyz]; the header then has `rotations`: true
 
 The header has `kind` ("skeleton", "markers" or "bodies"), `names` and `parents` of the J points
 (-1 for no parent), `frames` N, `rate_hz` of these frames, `recorded_rate_hz`, and `start_s`, the
@@ -33,7 +35,8 @@ GAP_STEPS = 3.0
 class Points:
     """Positions (N, J, 3) in metres at a constant rate, starting `start_s` into the recording.
 
-    `parents` are indices as in a rig, -1 for none.
+    `parents` are indices as in a rig, -1 for none. `rotations`: (N, J, 4) parent_from_joint of the
+    joints of an avatar, whose T-pose is not rotated; None where they are not wanted.
     """
 
     kind: str
@@ -42,6 +45,7 @@ class Points:
     rate_hz: float
     positions_m: FloatArray
     start_s: float = 0.0
+    rotations: FloatArray | None = None
 
 
 def points_of(motion: RigMotion | MarkerMotion | BodyMotion) -> Points:
@@ -65,8 +69,12 @@ def skeleton_points(motion: RigMotion, *, start_s: float = 0.0) -> Points:
 
 def encode(points: Points) -> bytes:
     """Return the points in the binary form of this module."""
-    step = step_for(points.positions_m.shape[0], points.rate_hz, 3 * len(points.names))
+    numbers = 3 if points.rotations is None else 7
+    step = step_for(points.positions_m.shape[0], points.rate_hz, numbers * len(points.names))
     kept = np.ascontiguousarray(points.positions_m[::step], dtype="<f4")
+    turns = b""
+    if points.rotations is not None:
+        turns = np.ascontiguousarray(points.rotations[::step], dtype="<f4").tobytes()
     header = json.dumps(
         {
             "kind": points.kind,
@@ -76,10 +84,11 @@ def encode(points: Points) -> bytes:
             "rate_hz": points.rate_hz / step,
             "recorded_rate_hz": points.rate_hz,
             "start_s": points.start_s,
+            **({"rotations": True} if turns else {}),
         }
     ).encode()
     header += b" " * (-len(header) % 4)
-    return struct.pack("<I", len(header)) + header + kept.tobytes()
+    return struct.pack("<I", len(header)) + header + kept.tobytes() + turns
 
 
 def step_for(

@@ -4,6 +4,7 @@ Everything that a task needs is in its arguments, which are hashable: the same c
 bytes. The verification of a walk is JSON, thinned for drawing.
 """
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -160,9 +161,16 @@ def recorded_positions(store: Store, source: Source, shown: Shown) -> bytes:
     return encode(skeleton_points(opened.moving, start_s=opened.start_s))
 
 
-def retargeted_positions(mapped: Mapped, avatar: str, *, lock_feet: bool) -> bytes:
-    """Return positions of an avatar's joints for a preview; raise Cannot."""
-    return encode(skeleton_points(on_avatar(mapped, avatar, lock_feet=lock_feet).motion))
+def retargeted_positions(
+    mapped: Mapped, avatar: str, *, lock_feet: bool, rotations: bool = False
+) -> bytes:
+    """Return positions, and rotations if asked, of an avatar's joints for a preview.
+
+    Raises Cannot.
+    """
+    motion = on_avatar(mapped, avatar, lock_feet=lock_feet).motion
+    points = skeleton_points(motion)
+    return encode(replace(points, rotations=motion.rotations) if rotations else points)
 
 
 def write_retargeted(

@@ -11,6 +11,8 @@ from sqlalchemy.orm import Session
 from app.database import referenced_row
 from app.errors import Conflict
 from app.features.design.studies import protocol_of
+from app.features.movement.avatar import configuration_by_hash
+from app.features.movement.humanoids import named_bodies
 from app.features.record.alarms import Change, Condition, store_change
 from app.features.record.doubts import OBSERVED
 from app.features.record.questionnaires import answers_of
@@ -47,6 +49,18 @@ from app.wire import (
 )
 
 CENTIMETRES_PER_METRE = 100.0
+
+
+def worn_humanoid(db: Session, session: StudySession, body: str | None) -> str | None:
+    """Return the hash of the model that an avatar wears, None if it has none.
+
+    `body` is the name that the condition prescribes; for None the avatar's configuration decides.
+    """
+    if body is not None:
+        return named_bodies(db).get(body)
+    if session.avatar_configuration_hash is None:
+        return None
+    return configuration_by_hash(db, session.avatar_configuration_hash).humanoid
 
 
 def welcome(db: Session, session_id: str, hello: Hello, now: datetime) -> Welcome:

@@ -5,9 +5,8 @@ from typing import Literal
 from pydantic import BaseModel
 from sqlalchemy.orm import Session
 
-from app.features.record.headset import Touch, headset_state, participant_info
+from app.features.record.headset import Touch, headset_state, participant_info, worn_humanoid
 from app.features.record.sessions import plan_of, protocol_of_session
-from app.models import StudySession
 from app.platform.access import Caller, is_blind, session_by_id
 from app.protocol import StudyProtocol
 from app.science.skeleton import JOINT_NAMES, PARENTS, SkeletonError, build_skeleton
@@ -36,13 +35,19 @@ class SurfaceView(BaseModel):
     half_size_m: Vector
 
 
+class WornBody(BaseModel):
+    """The body that the avatar wears; `hash` is that of its model's file."""
+
+    hash: str
+
+
 class Setup(BaseModel):
     """The data that a console needs to draw poses; sent first, and again whenever they change.
 
     Joint j is at `offsets_m[j]` in its parent's frame (-1: the world); the rest pose is the T-pose
     facing -z, y up. `surfaces` are those of the current step's task. A `blinded` reader gets only
     the participant's figure and no touches, because both would reveal how far the avatar lags
-    behind.
+    behind, and no `body`, because conditions may differ by it.
     """
 
     type: Literal["setup"] = "setup"
@@ -56,6 +61,7 @@ class Setup(BaseModel):
     parents: tuple[int, ...]
     offsets_m: tuple[Vector, ...]
     surfaces: tuple[SurfaceView, ...]
+    body: WornBody | None = None
 
 
 def setup_of(db: Session, caller: Caller, session_id: str) -> Setup:
@@ -64,9 +70,13 @@ def setup_of(db: Session, caller: Caller, session_id: str) -> Setup:
     protocol = protocol_of_session(db, session)
     state = headset_state(db, session)
     stature_m = participant_info(db, session).stature_m
-    limb = _limb(db, session, state.step_index)
+    step = None if state.step_index is None else plan_of(db, session)[state.step_index]
+    limb = None if step is None or step.limb is None else str(step.limb)
+    blinded = is_blind(db, caller, protocol, session)
+    named = None if step is None else step.body
+    humanoid = None if blinded else worn_humanoid(db, session, named)
     return Setup(
-        blinded=is_blind(db, caller, protocol, session),
+        blinded=blinded,
         simulated=session.kind == "simulated",
         recording=state.recording,
         limb=limb,
@@ -76,14 +86,8 @@ def setup_of(db: Session, caller: Caller, session_id: str) -> Setup:
         parents=PARENTS,
         offsets_m=_offsets_m(stature_m or DEFAULT_STATURE_M),
         surfaces=_surfaces(protocol, limb),
+        body=None if humanoid is None else WornBody(hash=humanoid),
     )
-
-
-def _limb(db: Session, session: StudySession, step_index: int | None) -> Limb:
-    if step_index is None:
-        return None
-    limb = plan_of(db, session)[step_index].limb
-    return None if limb is None else str(limb)
 
 
 def _offsets_m(stature_m: float) -> tuple[Vector, ...]:

@@ -34,9 +34,14 @@ def get_movement(
     phase_id: PhaseId,
     context: Context,
     caller: SignedIn,
+    *,
+    rotations: bool = False,
     if_none_match: Annotated[str | None, Header(max_length=400)] = None,
 ) -> Response:
-    """Return the positions of the joints of participant and avatar over time."""
+    """Return the positions of the joints of participant and avatar over time.
+
+    `rotations`: with the joints' rotations, which a body with skin is drawn by.
+    """
     with context.database.reading() as db:
         phase_view = replayable(db, caller, session_id, phase_id)
         tag = movement_tag(db, phase_view)
@@ -44,5 +49,7 @@ def get_movement(
     headers = {"etag": tag, "cache-control": "private, no-cache"}
     if if_none_match is not None and tag in if_none_match:
         return Response(status_code=304, headers=headers)
-    body = context.part(ReplayQueue).movement(session_id, phase_id, full=phase_view.full)
+    body = context.part(ReplayQueue).movement(
+        session_id, phase_id, full=phase_view.full, rotations=rotations
+    )
     return Response(body, media_type=BYTES, headers=headers)

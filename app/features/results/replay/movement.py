@@ -4,11 +4,13 @@
   bytes 4-     header: JSON in UTF-8, padded with spaces so that 4 + L is a multiple of 4
   then         float32, little-endian: x, y, z in m of every joint, [body][frame][joint][axis]
   then         float32: joint errors in radians, [frame][joint]
+  then         int16, only on request: 32767 times w, x, y, z of every joint's rotation in its
+               parent's frame, [body][frame][joint][wxyz]; zeros where it is unknown
 
 The header has `names` and `parents` of the J joints, `bodies` ("target", the participant, and
 "actual", the avatar), the number of `frames` N and their `rate_hz`, from the phase's time 0,
 `error_joints`, `error_frames` and `error_rate_hz`, and `gaps`: spans (begin, end) of the phase's
-time in which nothing was recorded.
+time in which nothing was recorded. `rotations` is true if they follow.
 
 Positions are computed by forward kinematics from the stored frame nearest to each moment, without
 smoothing or interpolation. In gaps, and for invalid rotations, they are NaN. Errors are the angles
@@ -51,7 +53,10 @@ MAX_HZ = 30.0
 ERROR_HZ = 10.0
 MAX_NUMBERS = 4_000_000
 """16 MB: a quarter of an hour of two bodies at 30 Hz; longer phases have a lower rate."""
+ROTATION_SCALE = 32767.0
+"""What stored components of rotations are multiplied by: they are exact to 0.004 degrees."""
 Places = NDArray[np.float32]
+Rotations = NDArray[np.int16]
 
 
 @dataclass(frozen=True)
@@ -59,7 +64,8 @@ class Recording:
     """The frames of a phase to read, and the skeleton to compute positions with.
 
     `offsets_s`: by epoch, the difference from the run's clock to the phase's time. `full`: with the
-    avatar and its errors. `hinges`: those of a physics avatar.
+    avatar and its errors. `hinges`: those of a physics avatar. `rotations`: with those of the
+    joints, for bodies with skin.
     """
 
     session_id: str
@@ -69,6 +75,7 @@ class Recording:
     skeleton: Skeleton
     full: bool = True
     hinges: HingeReference | None = None
+    rotations: bool = False
 
 
 @dataclass
@@ -79,6 +86,7 @@ class Movement:
         positions_m: By body, (N, 22, 3).
         errors_rad: (M, 21); no rows if there is only one body.
         gaps: Spans of the phase's time without a frame of the participant.
+        rotations: By body, (N, 22, 4) local rotations times `ROTATION_SCALE`; empty unless asked.
     """
 
     grid: Grid
@@ -86,12 +94,13 @@ class Movement:
     positions_m: dict[StreamName, Places]
     errors_rad: NDArray[np.float32]
     gaps: list[tuple[float, float]] = field(default_factory=list)
+    rotations: dict[StreamName, Rotations] = field(default_factory=dict)
 
 
 def movement_of(db: Session, recording: Recording) -> Movement:
     """Read a phase's frames and compute the positions of its bodies."""
     bodies = 2 if recording.full else 1
-    grid = Grid.over(recording.duration_s, _rate_hz(recording.duration_s, bodies))
+    grid = Grid.over(recording.duration_s, _rate_hz(recording, bodies))
     error_grid = Grid.over(recording.duration_s, ERROR_HZ if recording.full else 0.0)
     movement = Movement(grid, error_grid, {}, no_errors(error_grid))
     tracks = {
@@ -100,10 +109,8 @@ def movement_of(db: Session, recording: Recording) -> Movement:
     }
     if recording.full:
         # The avatar first: its frames decide which frames of the participant are needed.
-        body = _body(db, recording, StreamName.ACTUAL, grid, tracks)
-        movement.positions_m[StreamName.ACTUAL], _ = body
-    body = _body(db, recording, StreamName.TARGET, grid, tracks)
-    movement.positions_m[StreamName.TARGET], movement.gaps = body
+        _fill(db, recording, StreamName.ACTUAL, movement, tracks)
+    movement.gaps = _fill(db, recording, StreamName.TARGET, movement, tracks)
     if recording.full:
         for track in tracks.values():
             track.fill(movement.errors_rad, recording.hinges)
@@ -112,15 +119,17 @@ def movement_of(db: Session, recording: Recording) -> Movement:
     return movement
 
 
-def _body(
+def _fill(
     db: Session,
     recording: Recording,
     stream: StreamName,
-    grid: Grid,
+    movement: Movement,
     tracks: Mapping[int, RunErrors],
-) -> tuple[Places, list[tuple[float, float]]]:
-    """Return the positions of one body, and the gaps of its stream."""
+) -> list[tuple[float, float]]:
+    """Add one body to the movement; return the gaps of its stream."""
+    grid = movement.grid
     places = np.full((grid.count, JOINT_COUNT, 3), np.nan, np.float32)
+    turns = np.zeros((grid.count if recording.rotations else 0, JOINT_COUNT, 4), np.int16)
     runs = []
     for epoch, offset_s in recording.offsets_s.items():
         sampling = Sampling(grid, offset_s)
@@ -128,10 +137,15 @@ def _body(
             at, frames = sampling.take(piece)
             if len(at):
                 places[at] = _placed(recording.skeleton, frames)
+                if recording.rotations:
+                    turns[at] = _in_16_bits(frames)
             track = tracks[epoch]
             track.actual(piece) if stream is StreamName.ACTUAL else track.target(piece)
         runs.append(sampling)
-    return places, uncovered(runs, recording.duration_s)
+    movement.positions_m[stream] = places
+    if recording.rotations:
+        movement.rotations[stream] = turns
+    return uncovered(runs, recording.duration_s)
 
 
 def _pieces(db: Session, recording: Recording, stream: StreamName, epoch: int) -> Iterator[Frames]:
@@ -145,6 +159,14 @@ def _placed(skeleton: Skeleton, frames: Frames) -> Places:
     usable = np.where(is_unit(rotations)[..., np.newaxis], rotations, np.nan)
     roots_m = frames.values[:, :3].astype(np.float64)
     return forward_kinematics(skeleton, roots_m, usable).positions_m.astype(np.float32)
+
+
+def _in_16_bits(frames: Frames) -> Rotations:
+    """Return local rotations (n, 22, 4) times `ROTATION_SCALE`, zeros for an invalid one."""
+    usable = np.where(is_unit(frames.rotations)[..., np.newaxis], frames.rotations, 0.0)
+    length = np.linalg.norm(usable, axis=-1, keepdims=True)
+    scaled: Rotations = np.rint(usable / np.maximum(length, 1.0) * ROTATION_SCALE).astype(np.int16)
+    return scaled
 
 
 def encode(movement: Movement) -> bytes:
@@ -162,20 +184,29 @@ def encode(movement: Movement) -> bytes:
             "error_frames": errors.shape[0],
             "error_rate_hz": movement.error_grid.rate_hz,
             "gaps": [[round(a, 4), round(b, 4)] for a, b in movement.gaps],
+            **({"rotations": True} if movement.rotations else {}),
         }
     ).encode()
     header += b" " * (-len(header) % 4)
     places = [np.ascontiguousarray(movement.positions_m[body], dtype="<f4") for body in bodies]
     parts = (place.tobytes() for place in places)
-    return b"".join((struct.pack("<I", len(header)), header, *parts, errors.tobytes()))
+    turns = (
+        movement.rotations[body].astype("<i2").tobytes()
+        for body in bodies[: len(movement.rotations)]
+    )
+    return b"".join((struct.pack("<I", len(header)), header, *parts, errors.tobytes(), *turns))
 
 
-def _rate_hz(duration_s: float, bodies: int) -> float:
-    numbers_a_second = 3 * JOINT_COUNT * bodies * max(duration_s, 1e-3)
+def _rate_hz(recording: Recording, bodies: int) -> float:
+    # Four components of 16 bits take as much as two numbers.
+    numbers_a_joint = 5 if recording.rotations else 3
+    numbers_a_second = numbers_a_joint * JOINT_COUNT * bodies * max(recording.duration_s, 1e-3)
     return min(MAX_HZ, MAX_NUMBERS / numbers_a_second)
 
 
-def placed_movement(database: Database, session_id: str, phase_id: int, *, full: bool) -> bytes:
+def placed_movement(
+    database: Database, session_id: str, phase_id: int, *, full: bool, rotations: bool = False
+) -> bytes:
     """Read and encode the movement of a phase (see `encode`); `full`: with the avatar."""
     with database.reading() as db:
         session = session_by_id(db, session_id)
@@ -189,5 +220,6 @@ def placed_movement(database: Database, session_id: str, phase_id: int, *, full:
             build_skeleton(stature_of(db, session) or USUAL_STATURE_M),
             full=full,
             hinges=hinges_of(db, session_id, phase_id) if full else None,
+            rotations=rotations,
         )
         return encode(movement_of(db, recording))

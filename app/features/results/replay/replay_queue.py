@@ -26,12 +26,16 @@ class ReplayQueue(Part):
         """Create the replay queue of a server."""
         return cls(context.database)
 
-    def movement(self, session_id: str, phase_id: int, *, full: bool) -> bytes:
+    def movement(
+        self, session_id: str, phase_id: int, *, full: bool, rotations: bool = False
+    ) -> bytes:
         """Return the movement of a phase as bytes (`app.features.results.replay.movement`)."""
         # Imported here because it loads scientific libraries, which would slow down the start.
         from app.features.results.replay.movement import placed_movement
 
-        placing = self._pool.submit(placed_movement, self.database, session_id, phase_id, full=full)
+        placing = self._pool.submit(
+            placed_movement, self.database, session_id, phase_id, full=full, rotations=rotations
+        )
         return placing.result()
 
     def stop(self) -> None:

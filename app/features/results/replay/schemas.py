@@ -110,8 +110,9 @@ class Replay(BaseModel):
 
     `forms`: scores of the forms filled in after this phase and before the next, in order;
     `administrations` names all of them, with or without scores. `stature_m` is that of the body
-    drawn; if it is unknown, a default is used. `time_scale`: seconds of the headset's clock per
-    second of the server's.
+    drawn; if it is unknown, a default is used. `humanoid`: hash of the model that the avatar wore,
+    null for none and for blinded readers, to whom it could reveal the condition. `time_scale`:
+    seconds of the headset's clock per second of the server's.
     """
 
     session_id: str
@@ -129,6 +130,7 @@ class Replay(BaseModel):
     time_scale: float
     stature_m: float
     stature_known: bool
+    humanoid: str | None = None
     has_movement: bool
     runs: list[ClientRun]
     active: list[ActiveStretch]

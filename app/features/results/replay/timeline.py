@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
+from app.features.record.headset import worn_humanoid
 from app.features.record.questionnaires import stored_scores
 from app.features.record.sessions import (
     content_body,
@@ -59,6 +60,7 @@ def replay_of(db: Session, phase_view: Replayable) -> Replay:
         time_scale=session.time_scale,
         stature_m=stature_m or USUAL_STATURE_M,
         stature_known=stature_m is not None,
+        humanoid=worn_humanoid(db, session, phase.body) if phase_view.full else None,
         has_movement=frames_stored(db, phase) > 0,
         runs=[ClientRun(**vars(run)) for run in clock.runs],
         active=[ActiveStretch(**vars(one)) for one in clock.active],

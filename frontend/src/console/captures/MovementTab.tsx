@@ -2,6 +2,8 @@
 import { Center, Checkbox, Loader, SegmentedControl } from "@mantine/core";
 import type { Capture } from "@shared/api/captures";
 import { type JSX, useState } from "react";
+import { type BodyChoice, BodySelect } from "../bodyView/BodyChoice";
+import { BodyNotice } from "../bodyView/BodyNotice";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { AvatarChoice } from "./AvatarChoice";
@@ -16,7 +18,7 @@ const AT_FIRST: StageOptions = { shown: "recorded", avatar: "165cm", lockFeet: f
 
 export function MovementTab({ capture, map }: TabProps): JSX.Element {
   const [options, setOptions] = useState(AT_FIRST);
-  const { figures, error, busy } = useFigures(capture, options, map);
+  const { figures, error, busy, choice, worn } = useFigures(capture, options, map);
   return (
     <div className={classes.movement}>
       <div>
@@ -26,10 +28,13 @@ export function MovementTab({ capture, map }: TabProps): JSX.Element {
           options={options}
           busy={busy}
           onOptions={setOptions}
+          choice={choice}
         />
         {error !== null && <Failure error={error} />}
         {figures.length > 0 ? (
-          <Viewer figures={figures} title={capture.title} />
+          <Viewer figures={figures} title={capture.title}>
+            <BodyNotice body={worn} instead />
+          </Viewer>
         ) : (
           error === null && (
             <Center mih={360}>
@@ -52,9 +57,11 @@ interface ShownBarProps {
   readonly options: StageOptions;
   readonly busy: boolean;
   readonly onOptions: (wish: StageOptions) => void;
+  readonly choice: BodyChoice;
 }
 
-function ShownBar({ capture, map, options, busy, onOptions }: ShownBarProps): JSX.Element {
+function ShownBar(props: ShownBarProps): JSX.Element {
+  const { capture, map, options, busy, onOptions, choice } = props;
   const { t } = useTexts();
   const isFitted = capture.summary.skeleton?.origin === "fitted";
   const shown = [
@@ -82,6 +89,7 @@ function ShownBar({ capture, map, options, busy, onOptions }: ShownBarProps): JS
             avatar={options.avatar}
             onAvatar={(avatar) => onOptions({ ...options, avatar })}
           />
+          <BodySelect choice={choice} />
           <Checkbox
             size="xs"
             label={t("capture.ghost")}

@@ -15,7 +15,7 @@ import { Transport } from "@shared/stage/Transport";
 import { usePlayback } from "@shared/stage/usePlayback";
 import { Icon } from "@shared/ui/Icon";
 import { seconds } from "@shared/units";
-import { type JSX, type RefObject, useMemo, useRef, useState } from "react";
+import { type JSX, type ReactNode, type RefObject, useMemo, useRef, useState } from "react";
 import { useTexts } from "../i18n";
 import { useStageTexts, useTransportTexts } from "./useStageTexts";
 import classes from "./Viewer.module.css";
@@ -23,12 +23,14 @@ import classes from "./Viewer.module.css";
 interface ViewerProps {
   readonly figures: readonly Figure[];
   readonly title: string;
+  /** What is shown over the picture. */
+  readonly children?: ReactNode;
 }
 
 const CAMERAS: readonly CameraMode[] = ["orbit", "follow", "eyes"];
 const CAMERA_SIDES: readonly CameraSide[] = ["corner", "front", "side", "top"];
 
-export function Viewer({ figures, title }: ViewerProps): JSX.Element {
+export function Viewer({ figures, title, children }: ViewerProps): JSX.Element {
   const { t } = useTexts();
   const stageTexts = useStageTexts();
   const transportTexts = useTransportTexts();
@@ -55,6 +57,7 @@ export function Viewer({ figures, title }: ViewerProps): JSX.Element {
           label={t("capture.picture", { title, what })}
           texts={stageTexts}
         />
+        {children}
         <StageLegend figures={figures} />
       </div>
       {motion !== undefined && (
@@ -122,7 +125,10 @@ export function CameraBar({ mode, hasEyes, stage, onMode }: CameraBarProps): JSX
 
 function StageLegend({ figures }: { readonly figures: readonly Figure[] }): JSX.Element | null {
   const { t } = useTexts();
-  const hasSides = figures.some(({ roles }) => roles !== undefined && roles.left.size > 0);
+  const hasSides = figures.some(
+    ({ roles, tone, worn }) =>
+      tone === "solid" && worn === undefined && roles !== undefined && roles.left.size > 0,
+  );
   const unseen = useMemo(() => figures.some(({ motion }) => hasGaps(motion)), [figures]);
   const entries = [
     ...(hasSides

@@ -5,9 +5,14 @@ import type { Capture } from "@shared/api/captures";
 import { type Figure, facingOf } from "@shared/stage/figure";
 import type { PointMotion } from "@shared/stage/motion";
 import { placing } from "@shared/stage/placing";
+import type { BodyModel } from "@shared/stage/skin/bodyModel";
 import { seconds } from "@shared/units";
 import { useQuery } from "@tanstack/react-query";
-import { useMemo } from "react";
+import { useMemo, useState } from "react";
+import { useBodyChoice } from "../bodyView/BodyChoice";
+import { useBody } from "../bodyView/useBody";
+import { wornBy } from "../bodyView/worn";
+import { statureOf } from "./avatars";
 import { AVATAR_MAP, rolesFrom } from "./bodyJoints";
 import { avatarMotionQuery, motionQuery } from "./queries";
 import type { JointMapDraft } from "./useJointMap";
@@ -24,6 +29,8 @@ const OFFSET_M = 1.3;
 
 export function useFigures(capture: Capture, wish: StageOptions, map: JointMapDraft) {
   const isAvatar = wish.shown === "avatar";
+  const choice = useBodyChoice(isAvatar);
+  const worn = useBody(isAvatar ? choice.hash : null);
   const version = map.view?.version ?? 0;
   const source = useQuery({
     ...motionQuery(capture, wish.shown === "recorded" ? "recorded" : "skeleton"),
@@ -33,6 +40,8 @@ export function useFigures(capture: Capture, wish: StageOptions, map: JointMapDr
     ...avatarMotionQuery(capture, wish.avatar, wish.lockFeet, version),
     enabled: isAvatar && map.view !== undefined,
   });
+  // While another avatar is computed, the previous one is shown in its own size.
+  const shownAvatar = useShown(wish.avatar, avatar.isPlaceholderData);
   const jointMap = map.view?.joint_map;
   const sourceFigure = useMemo(
     () => (source.data === undefined ? null : sourceOf(source.data, jointMap)),
@@ -41,12 +50,20 @@ export function useFigures(capture: Capture, wish: StageOptions, map: JointMapDr
   const figures = useMemo((): readonly Figure[] => {
     if (!isAvatar) return sourceFigure === null ? [] : [sourceFigure];
     if (avatar.data === undefined) return [];
-    const body = avatarFigure(avatar.data);
+    const body = avatarFigure(avatar.data, worn.model, statureOf(shownAvatar) / 100);
     const ghost = wish.ghost && sourceFigure !== null ? [ghostOf(sourceFigure, body)] : [];
     return [body, ...ghost];
-  }, [isAvatar, sourceFigure, avatar.data, wish.ghost]);
+  }, [isAvatar, sourceFigure, avatar.data, wish.ghost, worn.model, shownAvatar]);
   const query = isAvatar ? avatar : source;
-  return { figures, query, error: query.error, busy: query.isPlaceholderData || query.isPending };
+  const busy = query.isPlaceholderData || query.isPending;
+  return { figures, query, error: query.error, busy, choice, worn };
+}
+
+/** The last value that was not held back. */
+function useShown<T>(value: T, isHeldBack: boolean): T {
+  const [shown, setShown] = useState(value);
+  if (!isHeldBack && shown !== value) setShown(value);
+  return isHeldBack ? shown : value;
 }
 
 export function sourceOf(
@@ -59,11 +76,12 @@ export function sourceOf(
   return { ...plain, roles: rolesFrom(motion.names, map) };
 }
 
-const avatarFigure = (motion: PointMotion): Figure => ({
+const avatarFigure = (motion: PointMotion, model: BodyModel | null, statureM: number): Figure => ({
   key: "avatar",
   motion,
   tone: "solid",
   roles: rolesFrom(motion.names, AVATAR_MAP),
+  ...wornBy(motion, model, statureM),
 });
 
 /** The source at the avatar's left hand. */

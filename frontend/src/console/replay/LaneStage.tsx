@@ -6,6 +6,9 @@ import { durationOf } from "@shared/stage/motion";
 import { Stage, type StageHandle } from "@shared/stage/Stage";
 import { type Seconds, seconds } from "@shared/units";
 import { type JSX, type Ref, useRef } from "react";
+import { BodyNotice } from "../bodyView/BodyNotice";
+import { useDrawnAs } from "../bodyView/DrawnAs";
+import { useBody } from "../bodyView/useBody";
 import { useStageTexts } from "../captures/useStageTexts";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
@@ -26,14 +29,16 @@ interface LaneStageProps {
 }
 
 const NONE = [] as const;
-const NOBODY = { movement: null } as const;
+const NOBODY = { movement: null, replay: null } as const;
 
 export function LaneStage(props: LaneStageProps): JSX.Element {
   const { lane, other, time, mode, ghost, boxes, handle } = props;
   const { t } = useTexts();
   const texts = useStageTexts();
-  const figures = useFiguresOf(lane, ghost);
-  const otherFigures = useFiguresOf(other ?? NOBODY, false);
+  const [drawn] = useDrawnAs();
+  const body = useBody(drawn === "skin" ? (lane.replay.humanoid ?? null) : null);
+  const figures = useFiguresOf(lane, ghost, body.model);
+  const otherFigures = useFiguresOf(other ?? NOBODY, false, null);
   const blocks = useBlocksOf(lane);
   const tones = useStableMap(tonesAt(lane.replay, time));
   const isGap = lane.movement?.gaps.some(([begin, end]) => begin < time && time < end) ?? false;
@@ -44,7 +49,7 @@ export function LaneStage(props: LaneStageProps): JSX.Element {
       {motion === undefined ? (
         <NoMovement lane={lane} />
       ) : (
-        <div className={classes.stage}>
+        <div className={classes.stage} data-drawn={body.model === null ? "skeleton" : "skin"}>
           <Stage
             {...(handle === undefined ? {} : { handle })}
             figures={figures}
@@ -57,7 +62,8 @@ export function LaneStage(props: LaneStageProps): JSX.Element {
             texts={texts}
           />
           {isGap && <span className={classes.gap}>{t("replay.nothing")}</span>}
-          <StageLegend ghost={figures.length > 1} />
+          <BodyNotice body={body} instead />
+          <StageLegend ghost={figures.length > 1} sides={body.model === null} />
         </div>
       )}
     </section>
@@ -83,11 +89,22 @@ function NoMovement({ lane }: { readonly lane: Lane }): JSX.Element {
   );
 }
 
-function StageLegend({ ghost }: { readonly ghost: boolean }): JSX.Element {
+interface StageLegendProps {
+  readonly ghost: boolean;
+  /** Whether the sides of the figure have colours, as those of a skeleton. */
+  readonly sides: boolean;
+}
+
+function StageLegend({ ghost, sides }: StageLegendProps): JSX.Element | null {
   const { t } = useTexts();
+  if (!ghost && !sides) return null;
   const entries = [
-    { name: t("replay.legend.left"), colour: LEFT_COLOUR },
-    { name: t("replay.legend.right"), colour: RIGHT_COLOUR },
+    ...(sides
+      ? [
+          { name: t("replay.legend.left"), colour: LEFT_COLOUR },
+          { name: t("replay.legend.right"), colour: RIGHT_COLOUR },
+        ]
+      : []),
     ...(ghost ? [{ name: t("replay.legend.participant"), colour: "var(--line-strong)" }] : []),
   ];
   return <Legend entries={entries} />;

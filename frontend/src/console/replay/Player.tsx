@@ -8,6 +8,7 @@ import type { StageHandle } from "@shared/stage/Stage";
 import { usePlayback } from "@shared/stage/usePlayback";
 import { seconds } from "@shared/units";
 import { type JSX, type ReactNode, useMemo, useRef, useState } from "react";
+import { DrawnAs } from "../bodyView/DrawnAs";
 import { CameraBar } from "../captures/Viewer";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
@@ -193,11 +194,13 @@ function Options(props: OptionsProps): JSX.Element {
   const { lanes, ghost, boxes, onGhost, onBoxes, camera } = props;
   const { t } = useTexts();
   const isFull = lanes.some(({ movement }) => movement?.avatar != null);
+  const isWorn = lanes.some(({ replay }) => replay.humanoid != null);
   const hasBoxes = lanes.some(({ replay }) => replay.surfaces.length > 0);
   return (
     <div className={classes.options}>
       {camera}
       <div className={classes.shown}>
+        {isWorn && <DrawnAs />}
         {isFull && (
           <Checkbox
             size="xs"

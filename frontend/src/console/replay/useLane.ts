@@ -3,8 +3,10 @@ import { type Replay, type ReplayMovement, replays } from "@shared/api/replays";
 import type { SessionView } from "@shared/api/types";
 import type { Block, Figure } from "@shared/stage/figure";
 import type { PointMotion } from "@shared/stage/motion";
+import type { BodyModel } from "@shared/stage/skin/bodyModel";
 import { queryOptions, useQuery } from "@tanstack/react-query";
 import { useMemo } from "react";
+import { wornBy } from "../bodyView/worn";
 import { AVATAR_MAP, rolesFrom } from "../captures/bodyJoints";
 import { sessionQuery } from "../queries";
 import { isOver, usePhaseName } from "../steps";
@@ -27,7 +29,7 @@ const NOWHERE: PhaseRef = { session: "", phase: -1 };
 export function useLane(ref: PhaseRef | null, label: string) {
   const replay = useQuery({ ...replayQuery(ref ?? NOWHERE), enabled: ref !== null });
   const movement = useQuery({
-    ...movementQuery(ref ?? NOWHERE, replay.data?.view ?? ""),
+    ...movementQuery(ref ?? NOWHERE, replay.data),
     enabled: ref !== null && replay.data?.has_movement === true,
   });
   const lane = useMemo((): Lane | null => {
@@ -45,25 +47,27 @@ export function useLane(ref: PhaseRef | null, label: string) {
   return { lane, error: replay.error };
 }
 
-const person = (key: string, motion: PointMotion, tone: Figure["tone"]): Figure => ({
-  key,
-  motion,
-  tone,
-  roles: rolesFrom(motion.names, AVATAR_MAP),
-});
-
-/** The avatar with the participant as its ghost, or the participant alone. */
+/** The avatar with the participant as its ghost, or the participant alone; in a body if given. */
 export function useFiguresOf(
-  { movement }: Pick<Lane, "movement">,
+  { movement, replay }: { readonly movement: Lane["movement"]; readonly replay: Replay | null },
   ghost: boolean,
+  model: BodyModel | null,
 ): readonly Figure[] {
+  const statureM = replay?.stature_m ?? null;
   return useMemo(() => {
     if (movement === null) return [];
+    const person = (key: string, motion: PointMotion, tone: Figure["tone"]): Figure => ({
+      key,
+      motion,
+      tone,
+      roles: rolesFrom(motion.names, AVATAR_MAP),
+      ...wornBy(motion, model, statureM),
+    });
     const { participant, avatar } = movement;
     if (avatar === null) return [person("participant", participant, "solid")];
     const body = person("avatar", avatar, "solid");
     return ghost ? [body, person("participant", participant, "ghost")] : [body];
-  }, [movement, ghost]);
+  }, [movement, ghost, model, statureM]);
 }
 
 export function useBlocksOf({ replay }: Lane): readonly Block[] {
@@ -88,10 +92,14 @@ const replayQuery = ({ session, phase }: PhaseRef) =>
     retry: false,
   });
 
-const movementQuery = ({ session, phase }: PhaseRef, view: string) =>
+const movementQuery = ({ session, phase }: PhaseRef, replay: Replay | undefined) =>
   queryOptions({
-    queryKey: ["sessions", session, "replay", phase, "movement", view],
-    queryFn: () => replays.movement(session, phase),
+    queryKey: [
+      ...["sessions", session, "replay", phase, "movement"],
+      ...[replay?.view, replay?.humanoid],
+    ],
+    // Rotations are needed for a body with skin only.
+    queryFn: () => replays.movement(session, phase, replay?.humanoid != null),
     staleTime: Number.POSITIVE_INFINITY,
     // Some megabytes each: the browser caches them too, and revalidates.
     gcTime: 60_000,

@@ -45,6 +45,6 @@ export const bodies = {
   file: async (hash: string): Promise<ArrayBuffer> =>
     (await fetched(`${address(hash)}/file`)).arrayBuffer(),
   /** Which nodes of the file move with which parts of a body. */
-  binding: async (hash: string): Promise<BodyBinding> =>
-    (await fetched(`${address(hash)}/binding`)).json(),
+  binding: (hash: string): Promise<BodyBinding> =>
+    answer<BodyBinding>(server.GET("/api/humanoids/{content_hash}/binding", at(hash))),
 };

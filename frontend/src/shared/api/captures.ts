@@ -45,7 +45,9 @@ export const captures = {
   remove: (id: string) => answer<undefined>(server.DELETE("/api/captures/{capture_id}", at(id))),
   motion: (id: string, shown: MotionView) => motionFrom(`${path(id)}/motion?shown=${shown}`),
   onAvatar: (id: string, avatar: string, lockFeet: boolean) =>
-    motionFrom(`${path(id)}/retargeted-motion?avatar=${avatar}&lock_feet=${lockFeet}`),
+    motionFrom(
+      `${path(id)}/retargeted-motion?avatar=${avatar}&lock_feet=${lockFeet}&rotations=true`,
+    ),
   jointMap: (id: string) =>
     answer<JointMapView>(server.GET("/api/captures/{capture_id}/joint-map", at(id))),
   saveJointMap: (id: string, version: number, map: Readonly<Record<string, string>>) =>

@@ -32,6 +32,8 @@ export interface PoseSetup {
   readonly parents: readonly number[];
   readonly offsets_m: readonly Vector[];
   readonly surfaces: readonly PoseSurface[];
+  /** The body that the avatar wears: its model's hash. Left out or null for none. */
+  readonly body?: { readonly hash: string } | null;
 }
 
 /** A finished contact or a completed task. */

@@ -39,6 +39,7 @@ interface Header {
   readonly error_frames: number;
   readonly error_rate_hz: number;
   readonly gaps: readonly Span[];
+  readonly rotations?: boolean;
 }
 
 export const replays = {
@@ -48,8 +49,10 @@ export const replays = {
         params: { path: { session_id: id, phase_id: phase } },
       }),
     ),
-  movement: async (id: string, phase: number): Promise<ReplayMovement> => {
-    const url = `/api/sessions/${encodeURIComponent(id)}/phases/${phase}/movement`;
+  /** With `rotations` also those of the joints, which a body with skin is drawn by. */
+  movement: async (id: string, phase: number, rotations: boolean): Promise<ReplayMovement> => {
+    const query = rotations ? "?rotations=true" : "";
+    const url = `/api/sessions/${encodeURIComponent(id)}/phases/${phase}/movement${query}`;
     const response = await fetch(url, { credentials: "same-origin" }).catch((cause: unknown) => {
       throw new Unreachable("The server cannot be reached.", { cause });
     });
@@ -63,21 +66,32 @@ const numbersOfBody = ({ frames, names }: Header): number => frames * names.leng
 const countOf = (header: Header): number =>
   header.bodies.length * numbersOfBody(header) + header.error_frames * header.error_joints.length;
 
+const rotationsOfBody = ({ frames, names, rotations }: Header): number =>
+  rotations === true ? 4 * frames * names.length : 0;
+
 /**
  * Decode the server's format: the header's length, the header as JSON, then as little-endian
- * float32 the positions of each body, followed by the joint errors.
+ * float32 the positions of each body, followed by the joint errors, then as integers of 16 bits the
+ * rotations of each body if there are any.
  *
  * Throws MotionError if the bytes do not match the header.
  */
 export function decodeMovement(bytes: ArrayBuffer): ReplayMovement {
-  const { header, numbers: all } = splitMovement(bytes, countOf);
+  const integersOf = (header: Header) => header.bodies.length * rotationsOfBody(header);
+  const { header, numbers: all, integers } = splitMovement(bytes, countOf, integersOf);
   const ofBody = numbersOfBody(header);
   const body = (name: string): PointMotion | null => {
     const at = header.bodies.indexOf(name);
     if (at < 0) return null;
     const positions = all.subarray(at * ofBody, (at + 1) * ofBody);
     const { names, parents, frames, rate_hz: rateHz } = header;
-    return { kind: "skeleton", names, parents, frames, rateHz, recordedRateHz: rateHz, positions };
+    const turned = rotationsOfBody(header);
+    return {
+      ...({ kind: "skeleton", names, parents, frames, rateHz } as const),
+      recordedRateHz: rateHz,
+      positions,
+      ...(turned > 0 ? { rotations: integers.subarray(at * turned, (at + 1) * turned) } : {}),
+    };
   };
   const participant = body("target");
   if (participant === null) throw new MotionError("The participant is missing.");

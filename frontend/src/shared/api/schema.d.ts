@@ -445,6 +445,8 @@ export interface paths {
         /**
          * Get Retargeted Motion
          * @description Return the positions of an avatar's joints over time, for a preview.
+         *
+         *     `rotations`: with the joints' rotations, which a body with skin is drawn by.
          */
         readonly get: operations["get_retargeted_motion_api_captures__capture_id__retargeted_motion_get"];
         readonly put?: never;
@@ -1236,6 +1238,8 @@ export interface paths {
         /**
          * Get Movement
          * @description Return the positions of the joints of participant and avatar over time.
+         *
+         *     `rotations`: with the joints' rotations, which a body with skin is drawn by.
          */
         readonly get: operations["get_movement_api_sessions__session_id__phases__phase_id__movement_get"];
         readonly put?: never;
@@ -7099,8 +7103,9 @@ export interface components {
          *
          *     `forms`: scores of the forms filled in after this phase and before the next, in order;
          *     `administrations` names all of them, with or without scores. `stature_m` is that of the body
-         *     drawn; if it is unknown, a default is used. `time_scale`: seconds of the headset's clock per
-         *     second of the server's.
+         *     drawn; if it is unknown, a default is used. `humanoid`: hash of the model that the avatar wore,
+         *     null for none and for blinded readers, to whom it could reveal the condition. `time_scale`:
+         *     seconds of the headset's clock per second of the server's.
          */
         readonly Replay: {
             /** Active */
@@ -7123,6 +7128,8 @@ export interface components {
             readonly forms: readonly components["schemas"]["StoredScores"][];
             /** Has Movement */
             readonly has_movement: boolean;
+            /** Humanoid */
+            readonly humanoid?: string | null;
             /**
              * Kind
              * @enum {string}
@@ -9943,6 +9950,7 @@ export interface operations {
             readonly query: {
                 readonly avatar: string;
                 readonly lock_feet?: boolean;
+                readonly rotations?: boolean;
             };
             readonly header?: never;
             readonly path: {
@@ -11685,7 +11693,9 @@ export interface operations {
     };
     readonly get_movement_api_sessions__session_id__phases__phase_id__movement_get: {
         readonly parameters: {
-            readonly query?: never;
+            readonly query?: {
+                readonly rotations?: boolean;
+            };
             readonly header?: {
                 readonly "if-none-match"?: string | null;
             };

@@ -18,6 +18,11 @@ export interface PointMotion {
   readonly recordedRateHz: number;
   /** x, y, z in metres: [frame][point][axis]. */
   readonly positions: Float32Array;
+  /**
+   * w, x, y, z of each joint's rotation in its parent's frame, of any length but zero where it is
+   * unknown: [frame][joint][wxyz]. Left out where only positions are known.
+   */
+  readonly rotations?: Float32Array | Int16Array;
 }
 
 /** Thrown if the bytes are not a movement: truncated, or of another format. */
@@ -32,6 +37,7 @@ interface Header {
   readonly frames: number;
   readonly rate_hz: number;
   readonly recorded_rate_hz: number;
+  readonly rotations?: boolean;
 }
 
 /**
@@ -42,6 +48,7 @@ interface Header {
  */
 export function decodeMotion(bytes: ArrayBuffer): PointMotion {
   const { header, numbers } = splitMovement(bytes, countOf);
+  const places = placesOf(header);
   return {
     kind: header.kind,
     names: header.names,
@@ -49,17 +56,25 @@ export function decodeMotion(bytes: ArrayBuffer): PointMotion {
     frames: header.frames,
     rateHz: header.rate_hz,
     recordedRateHz: header.recorded_rate_hz,
-    positions: numbers,
+    positions: numbers.subarray(0, places),
+    ...(header.rotations === true ? { rotations: numbers.subarray(places) } : {}),
   };
 }
 
-const countOf = ({ frames, names }: Header): number => frames * names.length * 3;
+const placesOf = ({ frames, names }: Header): number => frames * names.length * 3;
 
-/** Split a movement in the server's format into its header and the numbers that it announces. */
+const countOf = (header: Header): number =>
+  placesOf(header) + (header.rotations === true ? 4 * header.frames * header.names.length : 0);
+
+/**
+ * Split a movement in the server's format into its header, the numbers that it announces, and the
+ * integers of 16 bits that may follow them.
+ */
 export function splitMovement<Header>(
   bytes: ArrayBuffer,
   countOf: (header: Header) => number,
-): { readonly header: Header; readonly numbers: Float32Array } {
+  integersOf: (header: Header) => number = () => 0,
+): { readonly header: Header; readonly numbers: Float32Array; readonly integers: Int16Array } {
   if (bytes.byteLength < 4) throw new MotionError(`${bytes.byteLength} bytes are not a movement.`);
   const length = new DataView(bytes).getUint32(0, true);
   if (4 + length > bytes.byteLength) {
@@ -67,11 +82,16 @@ export function splitMovement<Header>(
   }
   const header = headerOf<Header>(new Uint8Array(bytes, 4, length));
   const expected = countOf(header);
-  const actual = (bytes.byteLength - 4 - length) / 4;
+  const integers = integersOf(header);
+  const actual = (bytes.byteLength - 4 - length - 2 * integers) / 4;
   if (actual !== expected) {
     throw new MotionError(`Expected ${expected} numbers after the header, got ${actual}.`);
   }
-  return { header, numbers: numbersFrom(bytes, 4 + length, expected) };
+  return {
+    header,
+    numbers: numbersFrom(bytes, 4 + length, expected),
+    integers: integersFrom(bytes, 4 + length + 4 * expected, integers),
+  };
 }
 
 function headerOf<Header>(bytes: Uint8Array): Header {
@@ -86,6 +106,11 @@ function numbersFrom(bytes: ArrayBuffer, from: number, count: number): Float32Ar
   if (from % 4 === 0 && isLittleEndian()) return new Float32Array(bytes, from, count);
   const view = new DataView(bytes, from);
   return Float32Array.from({ length: count }, (_, index) => view.getFloat32(4 * index, true));
+}
+
+function integersFrom(bytes: ArrayBuffer, from: number, count: number): Int16Array {
+  const view = new DataView(bytes, from);
+  return Int16Array.from({ length: count }, (_, index) => view.getInt16(2 * index, true));
 }
 
 const isLittleEndian = (): boolean => new Uint8Array(new Uint16Array([1]).buffer)[0] === 1;

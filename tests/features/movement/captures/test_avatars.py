@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from app.adapters.bvh import parse_bvh
+from app.science.retargeting import reference_avatar
+from app.science.rig import to_world
 from tests.features.lab import Json, Lab, error, ok
 from tests.features.movement.captures.files import (
     LIFT_M,
@@ -69,6 +71,19 @@ def test_a_preview_on_an_avatar_has_its_size(lab: Lab, walk: Json) -> None:
         heights[avatar] = float(positions_m[0, header["names"].index("Head"), 1])
         assert -0.01 < positions_m[0, :, 1].min() < 0.1
     assert heights["130cm"] / heights["190cm"] == pytest.approx(130 / 190, rel=0.02)
+
+
+def test_rotations_follow_on_request(lab: Lab, walk: Json) -> None:
+    """On request a preview has the joints' rotations, which lead to the same positions."""
+    path = f"/api/captures/{walk['id']}/retargeted-motion?avatar=165cm"
+    plain = lab.operator.get(path).content
+    turned = lab.operator.get(f"{path}&rotations=true").content
+    header, positions_m = positions_of(plain)
+    count = header["frames"] * len(header["names"])
+    local = np.frombuffer(turned[-16 * count :], "<f4").reshape(header["frames"], -1, 4)
+    assert turned[-28 * count : -16 * count] == plain[-12 * count :]
+    moved_m, _ = to_world(reference_avatar(1.65), positions_m[:, 0], local.astype(np.float64))
+    np.testing.assert_allclose(moved_m, positions_m, atol=1e-5)
 
 
 def test_an_avatars_movement_can_be_downloaded(lab: Lab, walk: Json) -> None:

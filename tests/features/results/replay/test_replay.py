@@ -13,7 +13,7 @@ from app.features.record.telemetry.frames import phase_frames
 from app.features.results.replay.movement import placed_movement
 from app.models import Phase, StudySession, TelemetryChunk, TelemetryStream
 from app.science.joint_error import joint_errors
-from app.science.skeleton import build_skeleton, forward_kinematics
+from app.science.skeleton import JOINT_COUNT, build_skeleton, forward_kinematics
 from app.wire import BODY_STREAMS, StreamName
 from tests.api.people import sign_in
 from tests.features.builders import SessionSpec, build_session
@@ -99,6 +99,24 @@ def test_positions_are_those_of_the_nearest_stored_frame(lab: Lab, phase: Phase)
             nearest = int(np.argmin(np.abs(times_s - moment / 30.0)))
             assert abs(times_s[nearest] - moment / 30.0) <= NEAREST_S
             np.testing.assert_allclose(place, expected[nearest], atol=1e-6)
+
+
+@pytest.mark.one_engine
+def test_rotations_follow_on_request(lab: Lab, phase: Phase) -> None:
+    """On request the same movement has rotations after it, which lead to the same positions."""
+    plain = lab.operator.get(path(phase, "movement")).content
+    turned = lab.operator.get(f"{path(phase, 'movement')}?rotations=true").content
+    (length,) = struct.unpack_from("<I", turned)
+    assert json.loads(turned[4 : 4 + length])["rotations"] is True
+    shown = decode(plain)
+    rotation_bytes = sum(places.size // 3 * 8 for places in shown.bodies.values())
+    numbers = turned[4 + length : -rotation_bytes]
+    assert numbers == plain[-len(numbers) :]
+    turns = np.frombuffer(turned[-rotation_bytes:], "<i2").reshape(2, -1, JOINT_COUNT, 4) / 32767.0
+    for places, local in zip(shown.bodies.values(), turns, strict=True):
+        skeleton = build_skeleton(STATURE_M)
+        moved = forward_kinematics(skeleton, places[:, 0].astype(np.float64), local)
+        np.testing.assert_allclose(moved.positions_m, places, atol=5e-4)
 
 
 @pytest.mark.one_engine

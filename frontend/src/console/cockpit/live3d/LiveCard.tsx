@@ -5,6 +5,8 @@ import type { PoseTouch } from "@shared/api/poses";
 import type { SessionView } from "@shared/api/types";
 import { Icon } from "@shared/ui/Icon";
 import { type JSX, useEffect, useRef } from "react";
+import { BodyNotice } from "../../bodyView/BodyNotice";
+import { DrawnAs } from "../../bodyView/DrawnAs";
 import { type Key, useTexts } from "../../i18n";
 import cockpit from "../Cockpit.module.css";
 import { isBusy } from "../session/keys";
@@ -82,6 +84,7 @@ function Picture({ session, store, view }: LiveCardProps & { readonly view: View
           aria-label={t(isBlinded ? "live3d.label.blinded" : "live3d.label")}
         />
         <State session={session} live={live} />
+        <BodyNotice body={live.body} instead />
         {!isBlinded && (
           <div className={classes.overlay}>
             <LastTouch touch={live.last} />
@@ -90,10 +93,13 @@ function Picture({ session, store, view }: LiveCardProps & { readonly view: View
         )}
       </div>
       {live.setup !== null && (
-        <p className={classes.foot}>
-          {t(isBlinded ? "live3d.blinded" : "live3d.figures")}
-          {!live.setup.stature_known && ` ${t("live3d.stature")}`}
-        </p>
+        <div className={classes.below}>
+          <p className={classes.foot}>
+            {t(isBlinded ? "live3d.blinded" : "live3d.figures")}
+            {!live.setup.stature_known && ` ${t("live3d.stature")}`}
+          </p>
+          {live.setup.body != null && <DrawnAs />}
+        </div>
       )}
     </>
   );

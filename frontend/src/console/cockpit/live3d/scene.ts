@@ -3,9 +3,10 @@
  * import it lazily.
  */
 import type { PoseSetup, PoseStream } from "@shared/api/poses";
-import { Body3d } from "@shared/stage/body3d";
 import type { BodyRoles, Figure, StagePalette } from "@shared/stage/figure";
-import { Space3d } from "@shared/stage/space3d";
+import type { BodyModel } from "@shared/stage/skin/bodyModel";
+import { type LivePose, livePose } from "@shared/stage/skin/pose";
+import { bodyOf, Space3d, type StageBody } from "@shared/stage/space3d";
 import { seconds } from "@shared/units";
 import { PerspectiveCamera } from "three";
 import { heatColour } from "./heat";
@@ -18,7 +19,8 @@ const NOW = seconds(0);
 const FLOOR = { min: [-2, -3], max: [2, 1], step: 1 } as const;
 
 interface Player {
-  readonly body: Body3d;
+  readonly body: StageBody;
+  readonly pose: LivePose;
   readonly placed: Placed;
   received: boolean;
 }
@@ -35,13 +37,16 @@ export class LiveScene extends Space3d {
     super(new PerspectiveCamera(45, 1, 0.08, 60), { canvas, alpha: true });
   }
 
-  /** Rebuild bodies and boxes; poses already shown stay where they are. */
-  prepare(setup: PoseSetup, palette: StagePalette): void {
+  /**
+   * Rebuild bodies and boxes; poses already shown stay where they are. Without a model the figures
+   * are skeletons.
+   */
+  prepare(setup: PoseSetup, palette: StagePalette, model: BodyModel | null): void {
     this.#setup = setup;
     this.#players = new Map(
       STREAMS.filter((stream) => !(setup.blinded && stream === "actual")).map((stream) => [
         stream,
-        makePlayer(setup, stream, palette, this.#players.get(stream)),
+        makePlayer(setup, stream, { palette, model }, this.#players.get(stream)),
       ]),
     );
     this.standBodies([...this.#players.values()].map(({ body }) => body));
@@ -66,6 +71,7 @@ export class LiveScene extends Space3d {
     }
     player.received = true;
     place(this.#setup, values, player.placed);
+    player.pose.values.set(values);
     player.body.show(NOW);
     this.#moved();
   }
@@ -98,6 +104,10 @@ export class LiveScene extends Space3d {
     for (const [stream, { body, received: is }] of this.#players) {
       // In the first-person view the participant's own figure would block the view.
       body.group.visible = is && !(this.#view === "first" && stream === "target");
+      const isInside = this.#view === "first";
+      if (body.headless === isInside) continue;
+      body.headless = isInside;
+      body.show(NOW);
     }
     // The display shows what the participant's head sees, whatever the avatar does.
     const eyes = this.#players.get(came.includes("target") ? "target" : "actual");
@@ -114,11 +124,14 @@ export class LiveScene extends Space3d {
 function makePlayer(
   setup: PoseSetup,
   stream: PoseStream,
-  palette: StagePalette,
+  { palette, model }: { readonly palette: StagePalette; readonly model: BodyModel | null },
   previous: Player | undefined,
 ): Player {
   const placed = makePlaced(setup.joints.length);
-  place(setup, restValues(setup), placed);
+  const rest = restValues(setup);
+  place(setup, rest, placed);
+  const pose = livePose(setup.joints, setup.parents);
+  pose.values.set(rest);
   const figure: Figure = {
     key: stream,
     motion: {
@@ -132,15 +145,17 @@ function makePlayer(
     },
     tone: stream === "target" && !setup.blinded ? "ghost" : "solid",
     roles: rolesOf(setup.joints),
+    ...(model === null ? {} : { worn: { model, statureM: setup.stature_m, pose } }),
   };
   // Measured in the rest pose, then put back to where it was.
-  const body = new Body3d(figure, palette);
+  const body = bodyOf(figure, palette);
   if (previous !== undefined && previous.placed.positions.length === placed.positions.length) {
     placed.positions.set(previous.placed.positions);
     placed.rotations.set(previous.placed.rotations);
+    pose.values.set(previous.pose.values);
   }
   body.show(NOW);
-  return { body, placed, received: previous?.received ?? false };
+  return { body, pose, placed, received: previous?.received ?? false };
 }
 
 /** Which joints of the product's body are which part of it, by their HumanBodyBones names. */

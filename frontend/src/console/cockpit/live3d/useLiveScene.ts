@@ -10,6 +10,8 @@ import { openPoses, type PoseSetup, type PoseTouch } from "@shared/api/poses";
 import { paletteOf } from "@shared/stage/figure";
 import { type DrawingState, useDrawing } from "@shared/stage/useDrawing";
 import { type RefObject, useEffect, useRef, useState } from "react";
+import { useDrawnAs } from "../../bodyView/DrawnAs";
+import { type BodyState, useBody } from "../../bodyView/useBody";
 import type { TelemetryStore } from "../session/telemetryStore";
 import { DARK, type Lights, nextChange, tonesAt, withTouches } from "./lights";
 import type { View } from "./views";
@@ -23,6 +25,7 @@ export interface Live {
   readonly setup: PoseSetup | null;
   readonly isMoving: boolean;
   readonly last: PoseTouch | null;
+  readonly body: BodyState;
 }
 
 export function useLiveScene(
@@ -38,13 +41,17 @@ export function useLiveScene(
   const [setup, setSetup] = useState<PoseSetup | null>(null);
   const [isMoving, setMoving] = useState(false);
   const [last, setLast] = useState<PoseTouch | null>(null);
+  const [drawn] = useDrawnAs();
+  const body = useBody(drawn === "skin" ? (setup?.body?.hash ?? null) : null);
+  const { model } = body;
   const lights = useRef<Lights>(DARK);
   const relight = useRef<() => void>(() => {});
 
   // Read the colours again when the colour scheme changes.
   useEffect(() => {
     if (scene === null || setup === null || root.current === null || scheme === undefined) return;
-    scene.prepare(setup, paletteOf(root.current));
+    scene.prepare(setup, paletteOf(root.current), model);
+    root.current.dataset.drawn = model === null ? "skeleton" : "skin";
     relight.current();
     const heat = () => {
       const errors = setup.blinded ? undefined : store.latest()?.telemetry.joint_error_deg;
@@ -52,7 +59,7 @@ export function useLiveScene(
     };
     heat();
     return store.subscribe(heat);
-  }, [root, scene, setup, scheme, store]);
+  }, [root, scene, setup, scheme, store, model]);
 
   useEffect(() => scene?.setView(view), [scene, view]);
 
@@ -112,7 +119,7 @@ export function useLiveScene(
     };
   }, [root, scene, isPageVisible, id]);
 
-  return { drawingState: drawingState, feed, setup, isMoving, last };
+  return { drawingState, feed, setup, isMoving, last, body };
 }
 
 async function loadScene() {

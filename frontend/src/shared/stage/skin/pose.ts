@@ -3,6 +3,8 @@
  * body's own joints (`app/science/avatar/body/binding.py` describes the model).
  */
 
+import type { PointMotion } from "../motion";
+
 /**
  * Which nodes of a model's file move with which parts of a body, in the T-pose facing -z, y up, on
  * the floor, in the model's own size.
@@ -56,6 +58,21 @@ export function restPose(
   return values;
 }
 
+/** The pose in a movement with rotations; null if only positions are known. */
+export function poseOf(motion: PointMotion): PoseSource | null {
+  const { names: joints, parents, positions, rotations } = motion;
+  if (rotations === undefined) return null;
+  const read = (frame: number, values: Float32Array): void => {
+    const place = 3 * frame * joints.length;
+    for (let axis = 0; axis < 3; axis++) values[axis] = positions[place + axis] ?? Number.NaN;
+    const from = 4 * frame * joints.length;
+    for (let at = 0; at < 4 * joints.length; at++) {
+      values[3 + at] = rotations[from + at] ?? Number.NaN;
+    }
+  };
+  return { joints, parents, read };
+}
+
 /**
  * The parts of one body, placed in the world without allocating anything.
  *
@@ -98,9 +115,7 @@ export class Parts {
   /** Place the parts; leave them where they are and return false if the pose is not fully known. */
   place(values: Float32Array): boolean {
     const joints = this.#jointRotations.length / 4;
-    for (let at = 0; at < 3 + 4 * joints; at++) {
-      if (!Number.isFinite(values[at] ?? Number.NaN)) return false;
-    }
+    if (!isKnown(values, joints)) return false;
     for (let joint = 0; joint < joints; joint++) {
       const parent = this.#jointParents[joint] ?? -1;
       turn(this.#jointRotations, parent, values, 3 + 4 * joint, this.#jointRotations, joint);
@@ -136,6 +151,20 @@ export class Parts {
     places[3 * part + 1] = (places[3 * parent + 1] ?? 0) + vy + w * cy + z * cx - x * cz;
     places[3 * part + 2] = (places[3 * parent + 2] ?? 0) + vz + w * cz + x * cy - y * cx;
   }
+}
+
+/** Whether every number is known and no rotation is missing. */
+function isKnown(values: Float32Array, joints: number): boolean {
+  for (let axis = 0; axis < 3; axis++) if (!Number.isFinite(values[axis])) return false;
+  for (let at = 3; at < 3 + 4 * joints; at += 4) {
+    const w = values[at] ?? 0;
+    const x = values[at + 1] ?? 0;
+    const y = values[at + 2] ?? 0;
+    const z = values[at + 3] ?? 0;
+    // Neither NaN nor a rotation of zeros passes.
+    if (!(w * w + x * x + y * y + z * z > 0)) return false;
+  }
+  return true;
 }
 
 /** Write the product of a parent's rotation (none: the world's) and a normalised local one. */
