@@ -1,5 +1,6 @@
 """Tests of the laws of a body's binding and of its posed skin."""
 
+import json
 import math
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 from app.adapters.humanoids import ReadHumanoid, ReadSkin, read_humanoid, read_skin
 from app.science.avatar.body import Binding, posed_nodes, posed_vertices
 from app.science.rotations import FloatArray, from_rotation_vector, identity, matrices, rotate
+from tests.adapters.humanoids.vector_files import BODY, VECTORS, vectors
 from tests.support.humanoid_files import humanoid_file
 from tests.support.humanoid_model import Model, mixamo_name, without
 
@@ -140,3 +142,20 @@ def test_a_node_that_is_no_part_keeps_its_place_below_its_parent() -> None:
         if parent == head and node not in binding.nodes
     )
     assert np.abs(world[hair] - world[head] @ tree.local[hair]).max() < 1e-12
+
+
+def test_the_vectors_are_those_of_the_repository() -> None:
+    """Vectors made now are those that the browser's implementation is held to, within 1e-6 m."""
+    stored = json.loads(VECTORS.read_text(encoding="utf-8"))
+    made = vectors(BODY.read_bytes())
+    for case, now in zip(stored["cases"], made["cases"], strict=True):
+        assert case["name"] == now["name"]
+        for piece, other in zip(case["vertices"], now["vertices"], strict=True):
+            assert piece["rows"] == other["rows"]
+            places, there = (np.array(one["places_m"]) for one in (piece, other))
+            assert np.abs(places - there).max() < 1e-6
+    for name, value in stored["binding"].items():
+        if name in ("parts", "parents", "nodes"):
+            assert value == made["binding"][name]
+        else:
+            assert np.abs(np.array(value) - np.array(made["binding"][name])).max() < 1e-6
