@@ -174,6 +174,7 @@ POLICY: dict[str, frozenset[str]] = {
     "GET /api/sessions/{session_id}/consent": RUNNERS,
     "GET /api/sessions/{session_id}/preflight": RUNNERS,
     "POST /api/sessions/{session_id}/preflight/overrides": RUNNERS,
+    "GET /api/sessions/{session_id}/avatar-choices": RUNNERS,
     "POST /api/sessions/{session_id}/commands": RUNNERS,
     "POST /api/sessions/{session_id}/submissions": RUNNERS,
     "POST /api/sessions/{session_id}/pairings": RUNNERS,

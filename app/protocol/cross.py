@@ -8,8 +8,11 @@ named bodies and pictures exist.
 
 import math
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 
+from pydantic import ValidationError
+
+from app.protocol.avatar_changes import AvatarChanges, change_problems
 from app.protocol.common import TEXT_MARK
 from app.protocol.conditions import MAX_PERMUTED
 from app.protocol.preregistration import preregistration_problems
@@ -19,9 +22,12 @@ from app.protocol.source import Path, Plain
 from app.protocol.study import SCREEN_TEXTS
 from app.protocol.validity import validity_problems
 from app.protocol.wording import mark_problems
+from app.science.avatar.configuration import Configuration
 from app.science.instruments import DefinitionProblem, Instrument, text_problems
 from app.texts import LANGUAGES
 
+ConfigurationOf = Callable[[str, int], Configuration | None]
+"""Returns the configuration of an avatar's key and version, or None if there is none."""
 _AVATAR_KEY = "avatar_configuration"
 _AVATAR_AT: Path = (_AVATAR_KEY,)
 _USUAL_AVATAR = "standard"
@@ -37,6 +43,7 @@ def cross_problems(
     instruments: Mapping[str, Instrument],
     avatars: Mapping[str, int] | None = None,
     bodies: Collection[str] | None = None,
+    configured: ConfigurationOf | None = None,
 ) -> Iterator[DefinitionProblem]:
     """Yield every problem between two places of a study file, or between it and the lab's data."""
     if not isinstance(tree, dict):
@@ -54,6 +61,7 @@ def cross_problems(
     yield from validity_problems(tree)
     yield from avatar_problems(tree, avatars)
     yield from worn_body_problems(tree, bodies)
+    yield from changed_avatar_problems(tree, configured)
     yield from preregistration_problems(tree, instruments)
 
 
@@ -290,6 +298,59 @@ def _unknown_avatar(
             f"1 to {avatars[key]}",
             "Name a version that was saved.",
         )
+
+
+def changed_avatar_problems(
+    tree: dict[str, Plain], configured: ConfigurationOf | None
+) -> Iterator[DefinitionProblem]:
+    """Yield a problem for each change to the avatar that would have no effect in its phase.
+
+    Args:
+        tree: the tree of the study file.
+        configured: the configurations of avatars; None if they are unknown.
+    """
+    configuration = _configuration_of(tree, configured)
+    for path, step in _steps(tree):
+        content = step.get("avatar_changes")
+        if content is None:
+            continue
+        here: Path = (*path, "avatar_changes")
+        if tree.get("avatar") == "delayed_copy":
+            yield DefinitionProblem(
+                here,
+                "A delayed copy has no motors and no colliders: there is nothing to change.",
+                None,
+                "left out, or avatar: physics",
+                "Remove it, or write avatar: physics.",
+            )
+        elif configuration is not None:
+            try:
+                changes = AvatarChanges.model_validate(content)
+            except ValidationError:
+                continue  # reported with the other values of an unexpected shape
+            for one in change_problems(configuration, changes):
+                yield DefinitionProblem(
+                    (*here, *_parts_of_path(one.path)),
+                    one.message,
+                    one.value,
+                    one.valid,
+                    one.remedy,
+                )
+
+
+def _configuration_of(
+    tree: dict[str, Plain], configured: ConfigurationOf | None
+) -> Configuration | None:
+    named = _dict(tree.get(_AVATAR_KEY))
+    key, version = named.get("key"), named.get("version")
+    if configured is None or not isinstance(key, str) or not isinstance(version, int):
+        return None
+    return configured(key, version)
+
+
+def _parts_of_path(path: str) -> Path:
+    """Parse a path: `casts[0].group` is ("casts", 0, "group")."""
+    return tuple(int(part) if part.isdigit() else part for part in re.findall(r"[^.\[\]]+", path))
 
 
 def worn_body_problems(

@@ -15,7 +15,7 @@ from typing import Generic, TypeVar, cast
 from pydantic import TypeAdapter, ValidationError
 
 from app.protocol.common import canonical_json, sha256_of
-from app.protocol.cross import cross_problems
+from app.protocol.cross import ConfigurationOf, cross_problems
 from app.protocol.errors import ConfigError, ConfigProblem
 from app.protocol.explanations import UNKNOWN_KEY, explain, locate, remove
 from app.protocol.schema import Schema
@@ -55,6 +55,7 @@ def load_study(
     instruments: Mapping[str, Instrument],
     avatars: Mapping[str, int] | None = None,
     bodies: Collection[str] | None = None,
+    configured: ConfigurationOf | None = None,
 ) -> LoadedStudy:
     """Load a study file (YAML).
 
@@ -64,12 +65,14 @@ def load_study(
         avatars: those that it may refer to: key -> number of the newest version. None skips the
             check.
         bodies: names of bodies that its conditions may refer to. None skips the check.
+        configured: returns the configuration of an avatar's key and version, to check changes to
+            the avatar; None skips this.
 
     Raises:
         ConfigError: the file is invalid; the error lists every problem.
     """
     source = study_source(text)
-    between = cross_problems(source.tree, _STUDY.schema, instruments, avatars, bodies)
+    between = cross_problems(source.tree, _STUDY.schema, instruments, avatars, bodies, configured)
     found = [locate(one, source) for one in between]
     protocol = _validated(_STUDY, source, found)
     canonical = canonical_json(_STUDY.adapter.dump_python(protocol, mode="json"))

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.platform.config_problems import ProblemView
-from app.protocol import StepKind
+from app.protocol import AvatarChanges, StepKind
 
 MAX_YAML_CHARACTERS = 262_144
 MAX_CHANGES = 200
@@ -165,6 +165,7 @@ class TimelineStep(BaseModel):
     length_s: float
     estimated: bool
     text: str | None
+    avatar_changes: AvatarChanges | None = None
 
 
 class EstimateRule(BaseModel):

@@ -10,7 +10,7 @@ from sqlalchemy.orm import Session
 
 from app.errors import Conflict, NotFound, NotNow
 from app.features.design.instruments import newest_instruments, parsed_instruments, save_instrument
-from app.features.movement.avatar import newest_numbers
+from app.features.movement.avatar import configurations, newest_numbers
 from app.features.movement.humanoids import named_bodies
 from app.models import InstrumentVersion, Study, StudySession, StudyVersion
 from app.platform.config_problems import invalid_config, unpacking
@@ -78,6 +78,7 @@ def check_study(db: Session, text: str) -> LoadedStudy:
             instruments=parsed_instruments(db),
             avatars=newest_numbers(db),
             bodies=named_bodies(db),
+            configured=configurations(db),
         )
     except ConfigError as error:
         raise invalid_config("study", error) from error

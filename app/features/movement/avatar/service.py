@@ -4,7 +4,7 @@ Like captures, they belong to the lab, not to a study. A session refers to the c
 used by its hash, so it can be looked up however the avatar is tuned later.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from datetime import datetime
 from functools import lru_cache
 from typing import Any
@@ -178,6 +178,16 @@ def configuration_by_hash(db: Session, content_hash: str) -> Configuration:
     if row is None:
         raise NotFound("no avatar has this content", value=content_hash)
     return typed(row)
+
+
+def configurations(db: Session) -> Callable[[str, int], Configuration | None]:
+    """Return a function from an avatar's key and version to its configuration, or None."""
+
+    def configured(key: str, number: int) -> Configuration | None:
+        row = db.get(AvatarVersion, (key, number))
+        return None if row is None else typed(row)
+
+    return configured
 
 
 def typed(version: AvatarVersion) -> Configuration:

@@ -5,6 +5,7 @@ from sqlalchemy import select
 
 from app.errors import Conflict
 from app.features.design.studies import study_by_key
+from app.features.record.cockpit.avatar_changes import AvatarChoices, avatar_choices
 from app.features.record.cockpit.commands import command_of, require_reason
 from app.features.record.cockpit.schemas import (
     NEVER_STALE,
@@ -99,6 +100,12 @@ def post_command(
     )
     judge_with_doubts(db, session)
     return session_view(db, context, session, caller)
+
+
+@router.get("/sessions/{session_id}/avatar-choices")
+def get_avatar_choices(session_id: str, db: Reading, _: SignedIn) -> AvatarChoices:
+    """Return what an operator can change about a session's avatar while it runs."""
+    return avatar_choices(db, session_by_id(db, session_id))
 
 
 @router.get("/sessions/{session_id}/events")

@@ -125,6 +125,7 @@ class StepView(BaseModel):
     reason: str | None
     consent: ConsentForm | None = None
     until_completions: int | None = None
+    avatar_changes: AvatarChanges | None = None
 
 
 class CurrentView(BaseModel):
@@ -233,11 +234,30 @@ class SessionSummary(BaseModel):
     shortfalls: list[Shortfall] | None
 
 
+class AvatarChangesView(BaseModel):
+    """The changes to the avatar that are in force: those of the study, and those of the operator.
+
+    `applied`: whether the headset has carried them out, or null while it has not answered;
+    `problem`: why it could not. `gravity`, `self_collision`, parts in a cast (`held_parts`) and
+    parts without collider (`passing_parts`) are those that result, with the avatar's configuration.
+    """
+
+    revision: int
+    study: AvatarChanges | None
+    operator: AvatarChanges | None
+    applied: bool | None
+    problem: str | None
+    gravity: bool
+    self_collision: bool
+    held_parts: list[str]
+    passing_parts: list[str]
+
+
 class SessionView(SessionSummary):
     """Everything the cockpit shows of a session.
 
     `sequence` and latencies are null if the reader is `blinded`. `alarms`: the open alarms, oldest
-    first.
+    first. `avatar_changes`: null until the running avatar is changed.
     """
 
     blinded: bool
@@ -259,6 +279,7 @@ class SessionView(SessionSummary):
     phases: list[PhaseView]
     notes: list[NoteView]
     scores: list[StoredScores]
+    avatar_changes: AvatarChangesView | None = None
 
 
 class EventView(BaseModel):

@@ -10,6 +10,7 @@ from app.database import referenced_row
 from app.features.design.instruments import instrument_of
 from app.features.design.studies import instrument_for, protocol_of, versions_of
 from app.features.record.alarms import AlarmView, open_alarms
+from app.features.record.cockpit.avatar_changes import avatar_changes_view
 from app.features.record.cockpit.phase_views import phase_views
 from app.features.record.cockpit.schemas import (
     CurrentView,
@@ -78,6 +79,7 @@ def session_view(
         phases=phase_views(db, session, blinded=blinded),
         notes=_notes(db, session),
         scores=stored_scores(db, session),
+        avatar_changes=avatar_changes_view(db, session),
     )
 
 
@@ -192,6 +194,7 @@ def _step(
         reason=reasons.get(step.index),
         consent=consent_form(step, "en"),
         until_completions=step.until_completions,
+        avatar_changes=step.avatar_changes,
     )
 
 

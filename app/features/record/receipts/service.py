@@ -1,5 +1,6 @@
 """Compute the receipt of a session from its record whenever it is requested."""
 
+import json
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Self
 
@@ -26,6 +27,21 @@ _WHAT = {
 
 
 @dataclass(frozen=True)
+class AvatarChangeReceipt:
+    """A change of the avatar by the operator, which the protocol does not provide for.
+
+    `event`: its number in the event log. `phase_id`: the phase in which it was made, a `deviation`
+    from the protocol; None between phases. `applied`: whether the headset carried it out; None if
+    it never answered.
+    """
+
+    event: int
+    phase_id: int | None
+    deviation: bool
+    applied: bool | None
+
+
+@dataclass(frozen=True)
 class SessionReceipt:
     """The data that a session's record contains, and those that it lacks.
 
@@ -48,6 +64,7 @@ class SessionReceipt:
     completions: tuple[CompletionReceipt, ...]
     doubts: tuple[Doubt, ...]
     achieved_latency: tuple[LatencyReceipt, ...]
+    avatar_changes: tuple[AvatarChangeReceipt, ...] = ()
 
     def as_json(self) -> dict[str, Any]:
         """Return the receipt as a dictionary for JSON output."""
@@ -89,6 +106,21 @@ def receipt_of(db: Session, session_id: str) -> SessionReceipt:
         completions=completions,
         doubts=doubts,
         achieved_latency=latency_receipts(db, session_id),
+        avatar_changes=_avatar_changes(db, session_id),
+    )
+
+
+def _avatar_changes(db: Session, session_id: str) -> tuple[AvatarChangeReceipt, ...]:
+    log = [(row.seq, row.type, json.loads(row.payload)) for row in events_of(db, session_id)]
+    applied = {
+        payload["revision"]: payload["applied"]
+        for _, kind, payload in log
+        if kind == "avatar_change_reported"
+    }
+    return tuple(
+        AvatarChangeReceipt(seq, payload["phase_id"], payload["deviation"], applied.get(seq))
+        for seq, kind, payload in log
+        if kind == "avatar_changed" and payload["by"] == "operator"
     )
 
 
@@ -174,6 +206,7 @@ def receipt_text(receipt: SessionReceipt) -> str:
         + ("every hash follows from the one before" if receipt.chain_ok else "CHANGED"),
         _completions_line(receipt),
     ]
+    lines += [_avatar_change_line(one) for one in receipt.avatar_changes]
     if receipt.achieved_latency:
         lines += ["", f"{'phase':<8}{'':<12}{'ordered':>10}{'achieved (95 %)':>28}"]
         lines += [_latency_line(one) for one in receipt.achieved_latency]
@@ -184,6 +217,12 @@ def _completions_line(receipt: SessionReceipt) -> str:
     stored = sum(one.stored for one in receipt.completions)
     rederived = sum(one.rederived for one in receipt.completions)
     return f"completions  {stored} stored, {rederived} follow from the contacts"
+
+
+def _avatar_change_line(one: AvatarChangeReceipt) -> str:
+    where = f"in phase {one.phase_id}, not in the protocol" if one.deviation else "between phases"
+    done = {True: "carried out", False: "NOT carried out", None: "NOT confirmed"}[one.applied]
+    return f"avatar changed by the operator  event {one.event}, {where}, {done} by the headset"
 
 
 def _latency_line(one: LatencyReceipt) -> str:

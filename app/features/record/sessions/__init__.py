@@ -4,6 +4,7 @@ from app.features.record.sessions.avatar_changes import (
     AVATAR_CHANGE,
     AvatarInForce,
     avatar_in_force,
+    changed_phases,
     changes_from,
 )
 from app.features.record.sessions.closed_sessions import (
@@ -106,6 +107,7 @@ __all__ = [
     "apply_command",
     "avatar_in_force",
     "canonical",
+    "changed_phases",
     "changes_from",
     "closed_sessions",
     "commands",

@@ -1,6 +1,7 @@
 """Determine how the running avatar of a session differs from its configuration now."""
 
-from collections.abc import Mapping
+import json
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,7 +10,7 @@ from sqlalchemy.orm import Session
 from app.features.movement.avatar import configuration_by_hash
 from app.features.record.sessions.contents import content_body
 from app.features.record.sessions.service import state_of
-from app.models import SessionContent, StudySession
+from app.models import SessionContent, SessionEvent, StudySession
 from app.protocol import AvatarChanges, settings_in_force
 from app.science.avatar.configuration import RunningSettings, as_configured
 
@@ -61,6 +62,33 @@ def avatar_in_force(db: Session, session: StudySession) -> AvatarInForce | None:
         report=AvatarReport(changes.applied is True, said.get("problem")) if is_current else None,
         held_rad=said.get("held_rad", {}),
     )
+
+
+def changed_phases(log: Iterable[SessionEvent]) -> dict[int, list[str]]:
+    """Return who had changed the avatar in each phase of a session: `study`, `operator` or both.
+
+    The operator's changes count in every phase in which they were in force, or were made or taken
+    back. `log` is the event log of one session from its start; only these events matter:
+    avatar_changed, phase_prepared, phase_ended and phase_voided.
+    """
+    found: dict[int, set[str]] = {}
+    current: int | None = None
+    is_changed = False
+    for row in log:
+        event = json.loads(row.payload)
+        match row.type:
+            case "phase_prepared":
+                current = event["phase_id"]
+                if is_changed:
+                    found.setdefault(event["phase_id"], set()).add("operator")
+            case "phase_ended" | "phase_voided" if event["phase_id"] == current:
+                current = None
+            case "avatar_changed":
+                if event["phase_id"] is not None:
+                    found.setdefault(event["phase_id"], set()).add(event["by"])
+                if event["by"] == "operator":
+                    is_changed = bool(event["changes"])
+    return {phase_id: sorted(by, reverse=True) for phase_id, by in found.items()}
 
 
 def changes_from(content: Mapping[str, Any] | None) -> AvatarChanges | None:

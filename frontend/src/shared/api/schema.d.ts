@@ -1079,6 +1079,26 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/sessions/{session_id}/avatar-choices": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Avatar Choices
+         * @description Return what an operator can change about a session's avatar while it runs.
+         */
+        readonly get: operations["get_avatar_choices_api_sessions__session_id__avatar_choices_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/sessions/{session_id}/commands": {
         readonly parameters: {
             readonly query?: never;
@@ -3021,6 +3041,24 @@ export interface components {
             readonly subject: string;
         };
         /**
+         * AvatarChangeReceipt
+         * @description A change of the avatar by the operator, which the protocol does not provide for.
+         *
+         *     `event`: its number in the event log. `phase_id`: the phase in which it was made, a `deviation`
+         *     from the protocol; None between phases. `applied`: whether the headset carried it out; None if
+         *     it never answered.
+         */
+        readonly AvatarChangeReceipt: {
+            /** Applied */
+            readonly applied: boolean | null;
+            /** Deviation */
+            readonly deviation: boolean;
+            /** Event */
+            readonly event: number;
+            /** Phase Id */
+            readonly phase_id: number | null;
+        };
+        /**
          * AvatarChanges
          * @description Changes to an avatar that runs, compared with its configuration.
          *
@@ -3058,6 +3096,32 @@ export interface components {
             readonly self_collision?: boolean | null;
         };
         /**
+         * AvatarChangesView
+         * @description The changes to the avatar that are in force: those of the study, and those of the operator.
+         *
+         *     `applied`: whether the headset has carried them out, or null while it has not answered;
+         *     `problem`: why it could not. `gravity`, `self_collision`, parts in a cast (`held_parts`) and
+         *     parts without collider (`passing_parts`) are those that result, with the avatar's configuration.
+         */
+        readonly AvatarChangesView: {
+            /** Applied */
+            readonly applied: boolean | null;
+            /** Gravity */
+            readonly gravity: boolean;
+            /** Held Parts */
+            readonly held_parts: readonly string[];
+            readonly operator: components["schemas"]["AvatarChanges"] | null;
+            /** Passing Parts */
+            readonly passing_parts: readonly string[];
+            /** Problem */
+            readonly problem: string | null;
+            /** Revision */
+            readonly revision: number;
+            /** Self Collision */
+            readonly self_collision: boolean;
+            readonly study: components["schemas"]["AvatarChanges"] | null;
+        };
+        /**
          * AvatarCheck
          * @description Whether a file can be used; `known` lists each (key, version) with the same content.
          */
@@ -3080,6 +3144,31 @@ export interface components {
              * @default []
              */
             readonly problems: readonly components["schemas"]["ProblemView"][];
+        };
+        /**
+         * AvatarChoices
+         * @description Everything that can be changed about a session's avatar while it runs.
+         *
+         *     `gravity` and `self_collision` are as configured. `groups`: body groups and parts that colliders
+         *     can be chosen for; `driven`: those of them that a cast can hold and whose motors can be changed.
+         */
+        readonly AvatarChoices: {
+            /** Axes */
+            readonly axes: readonly components["schemas"]["AxisChoice"][];
+            /** Driven */
+            readonly driven: readonly string[];
+            /** Gravity */
+            readonly gravity: boolean;
+            /** Greatest Factor */
+            readonly greatest_factor: number;
+            /** Groups */
+            readonly groups: readonly string[];
+            /** Kinds */
+            readonly kinds: readonly ("simple" | "mesh" | "none")[];
+            /** Layers */
+            readonly layers: readonly components["schemas"]["LayerChoice"][];
+            /** Self Collision */
+            readonly self_collision: boolean;
         };
         /**
          * AvatarFile
@@ -3327,6 +3416,18 @@ export interface components {
             };
             /** Stature M */
             readonly stature_m: number;
+        };
+        /**
+         * AxisChoice
+         * @description An axis that a cast can hold, at an angle within these limits.
+         */
+        readonly AxisChoice: {
+            /** Axis */
+            readonly axis: string;
+            /** High Deg */
+            readonly high_deg: number;
+            /** Low Deg */
+            readonly low_deg: number;
         };
         /**
          * AxisFile
@@ -5704,6 +5805,19 @@ export interface components {
             ];
         };
         /**
+         * LayerChoice
+         * @description A pair of collision layers that can be switched, and whether it collides by default.
+         */
+        readonly LayerChoice: {
+            /** Collide */
+            readonly collide: boolean;
+            /** Layers */
+            readonly layers: readonly [
+                string,
+                string
+            ];
+        };
+        /**
          * LedgerView
          * @description The counterbalancing ledger for one kind of session.
          */
@@ -7506,6 +7620,11 @@ export interface components {
         readonly SessionReceipt: {
             /** Achieved Latency */
             readonly achieved_latency: readonly components["schemas"]["LatencyReceipt"][];
+            /**
+             * Avatar Changes
+             * @default []
+             */
+            readonly avatar_changes: readonly components["schemas"]["AvatarChangeReceipt"][];
             readonly chain: components["schemas"]["ChainCheck"];
             /** Chain Ok */
             readonly chain_ok: boolean;
@@ -7599,7 +7718,7 @@ export interface components {
          * @description Everything the cockpit shows of a session.
          *
          *     `sequence` and latencies are null if the reader is `blinded`. `alarms`: the open alarms, oldest
-         *     first.
+         *     first. `avatar_changes`: null until the running avatar is changed.
          */
         readonly SessionView: {
             /** Alarms */
@@ -7608,6 +7727,7 @@ export interface components {
             readonly allowed: readonly (("start" | "complete_step" | "begin_phase" | "materialise" | "pause" | "resume" | "redo" | "skip" | "abort" | "withdraw" | "override_stop" | "reopen_consent" | "change_avatar" | "note") | "enter_answers")[];
             /** Avatar */
             readonly avatar: string;
+            readonly avatar_changes?: components["schemas"]["AvatarChangesView"] | null;
             /** Avatar Configuration Hash */
             readonly avatar_configuration_hash: string | null;
             /** Blinded */
@@ -7869,6 +7989,7 @@ export interface components {
         readonly StepView: {
             /** Attempt */
             readonly attempt: number;
+            readonly avatar_changes?: components["schemas"]["AvatarChanges"] | null;
             /** Block */
             readonly block: number | null;
             /** Body */
@@ -8417,6 +8538,7 @@ export interface components {
          *     `text` and `title` are in the requested language. `condition_label` is that of the study.
          */
         readonly TimelineStep: {
+            readonly avatar_changes?: components["schemas"]["AvatarChanges"] | null;
             /** Block */
             readonly block: number | null;
             /** Condition */
@@ -11393,6 +11515,46 @@ export interface operations {
                 };
                 content: {
                     readonly "application/json": readonly components["schemas"]["StoredAnswers"][];
+                };
+            };
+            /** @description Cannot be stored now; nothing was stored. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_avatar_choices_api_sessions__session_id__avatar_choices_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly session_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the remedy. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["AvatarChoices"];
                 };
             };
             /** @description Cannot be stored now; nothing was stored. */

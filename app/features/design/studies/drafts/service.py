@@ -19,7 +19,7 @@ from app.features.design.studies.schemas import (
     TimelineView,
 )
 from app.features.design.studies.service import check_study
-from app.features.movement.avatar import newest_numbers
+from app.features.movement.avatar import configurations, newest_numbers
 from app.features.movement.humanoids import named_bodies
 from app.platform.config_problems import invalid_config, problem_views
 from app.protocol import (
@@ -92,7 +92,11 @@ def check(db: Session, text: str) -> CheckResult:
     tree, lines = _tree(text)
     try:
         loaded = load_study(
-            text, instruments=instruments, avatars=newest_numbers(db), bodies=named_bodies(db)
+            text,
+            instruments=instruments,
+            avatars=newest_numbers(db),
+            bodies=named_bodies(db),
+            configured=configurations(db),
         )
     except ConfigError as error:
         return CheckResult(ok=False, problems=problem_views(error), tree=tree, lines=lines)
@@ -195,6 +199,7 @@ def _step(protocol: StudyProtocol, timed: TimedStep, language: str) -> TimelineS
         length_s=timed.length_s,
         estimated=timed.estimated,
         text=None if words is None else words[language],
+        avatar_changes=step.avatar_changes,
     )
 
 

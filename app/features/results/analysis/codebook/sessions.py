@@ -79,6 +79,13 @@ PHASES: tuple[Column, ...] = (
         "How far the phase came.",
         "preparing, running, paused, walk_back, freezing, done, voided",
     ),
+    _P.text(
+        "avatar_changes",
+        "Who had changed settings of the avatar (gravity, collisions, casts, gains) in this phase. "
+        "A change by the operator is not part of the protocol. Empty where nothing was changed; "
+        "the events avatar_changed say what.",
+        "study, operator, study and operator",
+    ),
     _P.number("active_s", "Active time: pauses and walk-backs do not count.", "s", "0 and up"),
     _P.integer("paused_count", "How often it was paused.", levels="0 and up"),
     _P.integer("walk_back_count", "How often the participant walked back.", levels="0 and up"),

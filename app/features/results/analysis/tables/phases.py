@@ -1,10 +1,14 @@
 """The tables of phases, of the quality of their streams, of doubts and of alarms."""
 
+from itertools import groupby
+from operator import attrgetter
+
 import pandas as pd
 from sqlalchemy import case, func, select
 from sqlalchemy.orm import Session
 
 from app.features.design.studies import study_by_key
+from app.features.record.sessions import changed_phases
 from app.features.results.analysis.schemas import Kind
 from app.features.results.analysis.tables.context import (
     doubts_context,
@@ -22,6 +26,7 @@ from app.models import (
     Phase,
     PhaseLatency,
     PhaseQuality,
+    SessionEvent,
     Study,
     StudySession,
 )
@@ -32,6 +37,7 @@ _COUNTS = ("gaps", "gap_s", "longest_gap_s", "jumps", "frozen_s", "frozen_joints
 _BROKEN = ("non_unit", "non_finite", "backwards")
 _FIGURES = ("stream", "frames", "span_s", "frame_rate_hz", *_COUNTS, *_BROKEN)
 _ALARM = ("code", "severity", "state", "stream", "message", "value", "unit", "client_t_s", "at")
+_CHANGES = ("avatar_changed", "phase_prepared", "phase_ended", "phase_voided")
 _STREAMS = {"target": 0, "actual": 1}
 
 
@@ -39,7 +45,7 @@ def phases_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
     """Return one row per phase, by session and phase."""
     study = study_by_key(db, study_key)
     frame = phases_context(db, study_key, kind)
-    for more in (_details, _completions, _red, _latencies):
+    for more in (_details, _completions, _red, _latencies, _avatar_changes):
         frame = frame.merge(more(db, study, kind), on=_KEYS, how="left")
     for name in ("completions", "side_contacts", "side_red_s"):
         frame[name] = [0 if pd.isna(value) else value for value in frame[name]]
@@ -68,6 +74,26 @@ def _details(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
     names = ("step_key", "body", "active_s", "paused_count", "walk_back_count", "client_started_s")
     times = ("client_ended_s", "prepared_at_utc", "started_at_utc", "ended_at_utc")
     return read(db, query, (*_KEYS, *names, *times))
+
+
+def _avatar_changes(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
+    """Return who had changed the avatar, for the phases in which somebody had."""
+    changed = (
+        select(SessionEvent.session_id)
+        .join(StudySession, StudySession.id == SessionEvent.session_id)
+        .where(of_kind(study, kind), SessionEvent.type == "avatar_changed")
+    )
+    query = (
+        select(SessionEvent)
+        .where(SessionEvent.session_id.in_(changed), SessionEvent.type.in_(_CHANGES))
+        .order_by(SessionEvent.session_id, SessionEvent.seq)
+    )
+    rows = [
+        (session_id, phase_id, " and ".join(by))
+        for session_id, log in groupby(db.scalars(query), attrgetter("session_id"))
+        for phase_id, by in changed_phases(log).items()
+    ]
+    return pd.DataFrame(rows, columns=[*_KEYS, "avatar_changes"], dtype=object)
 
 
 def _completions(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
