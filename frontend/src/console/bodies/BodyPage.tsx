@@ -59,7 +59,10 @@ function Body({ body }: { readonly body: BodyView }): JSX.Element {
         </Button>
       </div>
       <div className={classes.body}>
-        <BodyViewer hash={body.content_hash} name={title} height="clamp(320px, 60vh, 640px)" />
+        <div className={classes.column}>
+          <BodyViewer hash={body.content_hash} name={title} height="clamp(320px, 60vh, 640px)" />
+          <UseCard body={body} canWrite={canWrite} />
+        </div>
         <div className={classes.column}>
           <NameCard body={body} canWrite={canWrite} />
           <section className={classes.panel} aria-labelledby="body-checks">
@@ -69,11 +72,8 @@ function Body({ body }: { readonly body: BodyView }): JSX.Element {
             <Checks checks={body.checks} />
             {body.triangles === null && canWrite && <MeasureAgain body={body} />}
           </section>
+          <Licence body={body} />
         </div>
-      </div>
-      <div className={classes.body}>
-        <UseCard body={body} canWrite={canWrite} />
-        <Licence body={body} />
       </div>
     </>
   );

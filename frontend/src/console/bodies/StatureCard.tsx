@@ -2,7 +2,7 @@
  * One body in the three statures of Degen et al. 2022, and beside it how a recorded walk changes on
  * them: what the paper prints, and what was computed for a capture of the lab.
  */
-import { Select, Table, Title } from "@mantine/core";
+import { Anchor, Select, Table, Title } from "@mantine/core";
 import type { CaptureListed } from "@shared/api/captures";
 import { captures } from "@shared/api/captures";
 import { decimals } from "@shared/format";
@@ -61,7 +61,9 @@ function Steps({ usable }: { readonly usable: readonly CaptureListed[] }): JSX.E
       {capture === undefined ? (
         <p className={classes.soft}>{t("bodies.statures.none")}</p>
       ) : (
-        <Link href={`/captures/${capture.id}/verification`}>{t("bodies.statures.all")}</Link>
+        <Anchor component={Link} href={`/captures/${capture.id}/verification`} size="sm">
+          {t("bodies.statures.all")}
+        </Anchor>
       )}
     </div>
   );

@@ -1,5 +1,5 @@
 /** Who wears a body, and how a study wears it: the lines of its file, and a configuration. */
-import { Button, CopyButton, Select, TextInput, Title } from "@mantine/core";
+import { Anchor, Button, CopyButton, Select, TextInput, Title } from "@mantine/core";
 import type { BodyUse, BodyView } from "@shared/api/bodies";
 import { Icon } from "@shared/ui/Icon";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
@@ -56,9 +56,15 @@ function Wearers({ found }: { readonly found: BodyUse }): JSX.Element {
           {found.studies.length === 0
             ? t("bodies.use.none")
             : found.studies.map(({ key, title }) => (
-                <Link key={key} href={`/studies/${key}`} className={classes.wearer ?? ""}>
+                <Anchor
+                  key={key}
+                  component={Link}
+                  href={`/studies/${key}`}
+                  className={classes.wearer ?? ""}
+                  size="sm"
+                >
                   {title}
-                </Link>
+                </Anchor>
               ))}
         </dd>
       </div>
