@@ -134,8 +134,11 @@ def no_touches(parts: Sequence[str]) -> tuple[Bools, Bools]:
 class AvatarSource(Protocol):
     """A source of the physics avatar of a session."""
 
-    async def request_avatar(self, stature_m: float) -> "PhysicsBody":
-        """Return the avatar for a participant of this stature."""
+    async def request_avatar(self, stature_m: float, body: str | None = None) -> "PhysicsBody":
+        """Return the avatar for a participant of this stature, with the body of this name.
+
+        Without a name it has the body of the avatar's configuration.
+        """
 
 
 @dataclass(frozen=True)
@@ -148,13 +151,13 @@ class FromServer:
     http: AsyncClient
     with_fingers: bool = False
 
-    async def request_avatar(self, stature_m: float) -> "PhysicsBody":
-        """Return the avatar for a participant of this stature.
+    async def request_avatar(self, stature_m: float, body: str | None = None) -> "PhysicsBody":
+        """Return the avatar for a participant of this stature, with the body of this name.
 
         Raises the errors of `call_with_retry`.
         """
         answer: Json = await call_with_retry(
-            self.http, "POST", "/api/vr/avatar", {"stature_m": stature_m}
+            self.http, "POST", "/api/vr/avatar", {"stature_m": stature_m, "body": body}
         )
         configuration = configuration_of(AvatarFile.model_validate(answer["configuration"]))
         # Loading the model and the compiled code takes a second or two.
@@ -199,6 +202,10 @@ class PhysicsBody:
         """Return the joints of the skeleton and, if it has any, the parts of its fingers."""
         return (*JOINT_NAMES, *FINGER_PARTS) if self._with_fingers else JOINT_NAMES
 
+    def put_on(self) -> None:
+        """Begin anew with the next frame, at rest in the participant's pose."""
+        self._began_s = None
+
     def set_latency(self, latency_s: float) -> None:
         """Set the delay of the motors' targets from now on."""
         self._follower.set_delay(latency_s)
@@ -224,7 +231,8 @@ class PhysicsBody:
         hips_m = self._hips_scale * pose.root_position_m
         given = None if fingers is None else dict(zip(FINGER_PARTS, fingers, strict=True))
         if self._began_s is None:
-            self._began_s = t_s
+            # Its clock stood still while another body was worn.
+            self._began_s = t_s - self.avatar.time_s
             self._follower.start(hips_m, pose.rotations, given)
         followed = self._follower.frame(t_s - self._began_s, hips_m, pose.rotations, given)
         if given is not None:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from app.client import TelemetryClient, TelemetryError
 from app.protocol import Tasks
-from app.rehearsal.avatars import AvatarSource, CannotChange, DelayedCopy, RemoteAvatar
+from app.rehearsal.avatars import AvatarSource, CannotChange, DelayedCopy, PhysicsBody, RemoteAvatar
 from app.rehearsal.body import FRAME_RATE_HZ, Person
 from app.rehearsal.goals import goal_of
 from app.rehearsal.task_run import BoxRun
@@ -126,6 +126,7 @@ class Headset:
         self._layouts = tasks.layouts()
         self._physics = physics
         self._avatar: RemoteAvatar | None = None
+        self._bodies: dict[str | None, PhysicsBody] = {}
         if physics is None:
             self._avatar = DelayedCopy(person.skeleton, with_fingers=person.fingers is not None)
         self._run: TimedRun | None = None
@@ -225,10 +226,18 @@ class Headset:
             await self.client.report(MaterialisedReport(t_s=self.t_s))
 
     async def _request_avatar(self, state: HeadsetState) -> None:
-        """Request the physics avatar, if there is one, for the recorded stature."""
-        if self._physics is not None:
-            stature_m = state.participant.stature_m or self._person.stature_m
-            self._avatar = await self._physics.request_avatar(stature_m)
+        """Request the physics avatar, if there is one, for the recorded stature.
+
+        All bodies of the study are requested at once: they are there when a block begins, and
+        neither when nor which one is requested says which is worn next.
+        """
+        if self._physics is None:
+            return
+        stature_m = state.participant.stature_m or self._person.stature_m
+        named = () if self.client.welcome is None else self.client.welcome.bodies
+        for body in (None, *named):
+            self._bodies[body] = await self._physics.request_avatar(stature_m, body)
+        self._avatar = self._bodies[None]
 
     async def _change_avatar(self, state: HeadsetState) -> None:
         """Bring the avatar to the changes in force, and report when they took effect."""
@@ -257,6 +266,7 @@ class Headset:
     async def _enter_phase(self, order: PhaseOrder) -> None:
         await self._flush()
         self._phase_id = order.phase_id
+        self._wear(order.body)
         self._follow_later(order.latency_ms / 1000.0)
         self._show_boxes(None if order.limb is None else self._layouts[Limb(order.limb)])
         if order.limb is None:
@@ -272,6 +282,16 @@ class Headset:
         self._run = None
         self._follow_later(0.0)
         self._show_boxes(None)
+
+    def _wear(self, body: str | None) -> None:
+        """Put on the body that a phase prescribes; it begins at rest, in the participant's pose."""
+        worn = self._bodies.get(body)
+        if worn is None or worn is self._avatar:
+            return
+        worn.put_on()
+        self._avatar = worn
+        # Changes in force apply to this body, too, once it has taken the participant's pose.
+        self._has_avatar_moved, self._revision = False, 0
 
     def _follow_later(self, latency_s: float) -> None:
         if self._avatar is not None:

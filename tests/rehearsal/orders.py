@@ -6,7 +6,14 @@ from typing import Any
 from app.rehearsal.avatars import no_touches
 from app.rehearsal.timed_run import FreeRun
 from app.wire import StreamName, decode_batch
-from app.wire.messages import HeadsetState, ParticipantInfo, PhaseOrder, PhaseReport, ReportBody
+from app.wire.messages import (
+    HeadsetState,
+    ParticipantInfo,
+    PhaseOrder,
+    PhaseReport,
+    ReportBody,
+    Welcome,
+)
 from tests.rehearsal.ledger import digests
 
 FRAME_S = 1 / 90
@@ -66,6 +73,7 @@ class InstantServer:
     connected: bool = True
     settled: bool = True
     status: str = "active"
+    welcome: Welcome | None = None
     digests: list[str] = field(default_factory=list)
     reports: list[ReportBody] = field(default_factory=list)
 

@@ -20,8 +20,9 @@ from tests.rehearsal.test_headset import AS_FAST_AS_IT_GOES
 class BuiltWithFingers:
     """A connection that builds the avatar in this process, which is given fingers."""
 
-    async def request_avatar(self, stature_m: float) -> PhysicsBody:
+    async def request_avatar(self, stature_m: float, body: str | None = None) -> PhysicsBody:
         """Return the avatar as the server would build it."""
+        assert body is None
         configuration = default_configuration()
         scene = scene_of(tuple(study().tasks.layouts().values()))
         built = avatar_model(configuration, stature_m, scene=scene)

@@ -54,8 +54,9 @@ def short() -> str:
 class BuiltHere:
     """A connection that builds the avatar in this process, with the shipped study's boxes."""
 
-    async def request_avatar(self, stature_m: float) -> PhysicsBody:
+    async def request_avatar(self, stature_m: float, body: str | None = None) -> PhysicsBody:
         """Return the avatar as the server would build it."""
+        assert body is None
         tasks = study().tasks
         configuration = default_configuration()
         scene = scene_of(tuple(tasks.layouts().values()))
