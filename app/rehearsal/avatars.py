@@ -204,7 +204,9 @@ class PhysicsBody:
 
     def put_on(self) -> None:
         """Begin anew with the next frame, at rest in the participant's pose."""
-        self._began_s = None
+        if self._began_s is not None:
+            self.avatar.rewind()
+            self._began_s = None
 
     def set_latency(self, latency_s: float) -> None:
         """Set the delay of the motors' targets from now on."""
@@ -231,8 +233,7 @@ class PhysicsBody:
         hips_m = self._hips_scale * pose.root_position_m
         given = None if fingers is None else dict(zip(FINGER_PARTS, fingers, strict=True))
         if self._began_s is None:
-            # Its clock stood still while another body was worn.
-            self._began_s = t_s - self.avatar.time_s
+            self._began_s = t_s
             self._follower.start(hips_m, pose.rotations, given)
         followed = self._follower.frame(t_s - self._began_s, hips_m, pose.rotations, given)
         if given is not None:

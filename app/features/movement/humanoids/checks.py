@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
-from app.features.movement.humanoids.licences import asked_terms, licence_of, permission_to_wear
+from app.features.movement.humanoids.licences import asked_terms, licence_of, term_of
 from app.features.movement.humanoids.schemas import BodyCheck
 from app.models import HumanoidRow
 from app.science.avatar.body import FINGER_PARTS, FINGERS, SIDES, Figure
@@ -29,7 +29,7 @@ def checks_of(row: HumanoidRow, figure: Figure) -> Iterator[BodyCheck]:
     yield _triangles(row.triangles)
     yield _hulls(figure)
     licence = licence_of(row)
-    known = licence is not None and (licence.name is not None or bool(licence.authors))
+    known = licence is not None and bool(licence.name or licence.authors or licence.copyright)
     yield BodyCheck(key="licence", status="good" if known else "unknown")
     yield _wearing(row)
 
@@ -81,6 +81,9 @@ def _wearing(row: HumanoidRow) -> BodyCheck:
     """Check whether the licence lets participants wear the body."""
     if asked_terms(row):
         return BodyCheck(key="wearing", status="warn")
-    statuses = {"allowed": "good", "forbidden": "note", "unknown": "unknown"}
-    # A restriction that was confirmed to be met is a remark, not an obstacle.
-    return BodyCheck.model_validate({"key": "wearing", "status": statuses[permission_to_wear(row)]})
+    if term_of(row) is not None:
+        # A restriction that was confirmed to be met is a remark, not an obstacle.
+        return BodyCheck(key="wearing", status="note")
+    licence = licence_of(row)
+    everyone = licence is not None and licence.wearers == "everyone"
+    return BodyCheck(key="wearing", status="good" if everyone else "unknown")

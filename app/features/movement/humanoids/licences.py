@@ -6,18 +6,29 @@ the term is met; the confirmation is stored with the body and in the audit trail
 says nothing is not restricted, and is shown as such.
 """
 
-from typing import Any
+from dataclasses import asdict
+from typing import Any, get_args
 
-from app.features.movement.humanoids.schemas import (
-    ConfirmationView,
-    LicenceView,
-    Permission,
-    Term,
-)
+from app.adapters.humanoids import ModelRights
+from app.features.movement.humanoids.schemas import ConfirmationView, LicenceView, Term, Use
 from app.models import HumanoidRow
 
-BY_EVERYBODY, BY_LICENSED = "wear_by_everybody", "wear_by_licensed_people"
-"""The permissions to wear a body, in `LicenceView.permissions`."""
+
+def stored_licence(rights: ModelRights) -> dict[str, Any]:
+    """Return what a file says of its terms as it is stored with the body, a `LicenceView`."""
+    said = asdict(rights)
+    return {
+        "title": rights.title,
+        "authors": list(rights.authors),
+        "contact": rights.contact,
+        "copyright": rights.copyright,
+        "name": rights.licence,
+        "url": rights.licence_url,
+        "other_url": rights.other_url,
+        "wearers": rights.wearers,
+        "permissions": {use: said[use] for use in get_args(Use)},
+        "credit_needed": rights.credit_needed,
+    }
 
 
 def licence_of(row: HumanoidRow) -> LicenceView | None:
@@ -30,25 +41,20 @@ def confirmations_of(row: HumanoidRow) -> list[ConfirmationView]:
     return [ConfirmationView.model_validate(one) for one in row.confirmed or []]
 
 
-def permission_to_wear(row: HumanoidRow) -> Permission:
-    """Return whether everybody may wear the body."""
+def term_of(row: HumanoidRow) -> Term | None:
+    """Return the term on which the body may be worn; None if its file restricts nobody."""
     licence = licence_of(row)
-    return "unknown" if licence is None else licence.permissions.get(BY_EVERYBODY, "unknown")
-
-
-def terms_of(row: HumanoidRow) -> tuple[Term, ...]:
-    """Return the terms on which the body may be worn; none if everybody may wear it."""
-    licence = licence_of(row)
-    if licence is None or licence.permissions.get(BY_EVERYBODY) != "forbidden":
-        return ()
-    by_licensed = licence.permissions.get(BY_LICENSED) == "allowed"
-    return ("only_licensed_people",) if by_licensed else ("only_author",)
+    if licence is None:
+        return None
+    terms: dict[str, Term] = {"author": "only_author", "licensed": "only_licensed_people"}
+    return terms.get(licence.wearers)
 
 
 def asked_terms(row: HumanoidRow) -> tuple[Term, ...]:
     """Return the terms that nobody has confirmed yet."""
+    term = term_of(row)
     confirmed = {one.term for one in confirmations_of(row)}
-    return tuple(term for term in terms_of(row) if term not in confirmed)
+    return () if term is None or term in confirmed else (term,)
 
 
 def confirmed_with(

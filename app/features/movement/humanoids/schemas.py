@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
+from app.adapters.humanoids import Permission, Wearers
 from app.protocol import BodyName
 
 BonesBy = Literal["vrm", "names"]
@@ -15,7 +16,9 @@ BodyTitle = Annotated[
         strip_whitespace=True, min_length=1, max_length=200, pattern=r"^[^\x00-\x1f\x7f]+$"
     ),
 ]
-Permission = Literal["allowed", "forbidden", "unknown"]
+Use = Literal[
+    "commercial", "modification", "redistribution", "violent", "sexual", "political", "antisocial"
+]
 Term = Literal["only_author", "only_licensed_people"]
 """A term of a licence that somebody has to confirm: only the author, or only people to whom the
 author has given permission, may wear the body."""
@@ -26,16 +29,23 @@ CheckStatus = Literal["good", "note", "warn", "unknown"]
 
 
 class LicenceView(BaseModel):
-    """What the file of a body says of its author and terms; empty or null where it says nothing.
+    """What the file of a body says of its author and terms; texts are empty where it says nothing.
 
-    `permissions`: what its author allows, by kind of use.
+    `name` is the licence's, `url` and `other_url` lead to its terms. `wearers`: who may wear it.
+    `permissions`: what its author allows, by kind of use. `credit_needed`: whether its authors must
+    be named.
     """
 
-    title: str | None
+    title: str
     authors: list[str]
-    name: str | None
-    url: str | None
-    permissions: dict[str, Permission]
+    contact: str
+    copyright: str
+    name: str
+    url: str
+    other_url: str
+    wearers: Wearers
+    permissions: dict[Use, Permission]
+    credit_needed: bool | None
 
 
 class ConfirmationView(BaseModel):

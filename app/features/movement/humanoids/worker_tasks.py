@@ -4,8 +4,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from app.adapters.humanoids import HumanoidFileError, Limits, read_humanoid
+from app.adapters.humanoids import HumanoidFileError, Limits, ReadHumanoid, read_humanoid
 from app.features.movement.files import compress, compressed_beside, stored_files
+from app.features.movement.humanoids.licences import stored_licence
 from app.features.movement.humanoids.schemas import BindingView
 from app.protocol.humanoid import figure_json
 from app.science.avatar.body import Figure, HumanoidError, figure_of
@@ -22,22 +23,26 @@ class Measured:
     pieces: int
     left_fingers: int
     right_fingers: int
-    licence: dict[str, Any] | None = None
-    triangles: int | None = None
-    vertices: int | None = None
-    textures: int | None = None
+    licence: dict[str, Any]
+    triangles: int
+    vertices: int
+    textures: int
 
 
-def measured(figure: Figure, bones_by: str) -> Measured:
-    """Return the measurements of a figure."""
+def measured(figure: Figure, read: ReadHumanoid) -> Measured:
+    """Return the measurements of a model and of its figure."""
     return Measured(
         figure=figure_json(figure),
-        bones_by=bones_by,
+        bones_by=read.bones_by,
         stature_m=figure.stature_m,
         parts=len(figure.places_m),
         pieces=len(figure.pieces),
         left_fingers=figure.finger_count("Left"),
         right_fingers=figure.finger_count("Right"),
+        licence=stored_licence(read.rights),
+        triangles=read.contents.triangles,
+        vertices=read.contents.vertices,
+        textures=len(read.contents.textures),
     )
 
 
@@ -74,4 +79,4 @@ def measure(max_bytes: int, path: Path) -> Measured | Refused:
     except HumanoidError as error:
         return Refused(str(error), "")
     compress(path, compressed_beside(path))
-    return measured(figure, read.bones_by)
+    return measured(figure, read)

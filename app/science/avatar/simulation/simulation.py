@@ -166,6 +166,11 @@ class PhysicsAvatar:
         self._soft_contacts.soften_all()
         self._reset_to(self._clamped(angles))
 
+    def rewind(self) -> None:
+        """Set the clock to zero and forget the latency buffer; call `start_at` next."""
+        self._mujoco.mj_resetData(self.model, self.data)
+        self._steps = 0
+
     def set_hips(self, position_m: FloatArray, rotation: FloatArray) -> None:
         """Set the pose of the hips at the time of the next `step_to`: (3,) and (4,) wxyz."""
         teleports = self.hips.teleports

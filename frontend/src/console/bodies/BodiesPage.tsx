@@ -81,7 +81,7 @@ function BodyCard({ body }: { readonly body: BodyListed }): JSX.Element {
     body.triangles === null
       ? null
       : t("bodies.triangles", { count: number(body.triangles, language) }),
-    body.licence?.name ?? null,
+    body.licence?.name || null,
   ];
   return (
     <li className={classes.card}>

@@ -4,7 +4,11 @@ import type { BodyView } from "@shared/api/bodies";
 import type { JSX } from "react";
 import { useTexts } from "../i18n";
 import classes from "./Bodies.module.css";
-import { isPermission } from "./texts";
+
+const USES = [
+  ...(["commercial", "modification", "redistribution"] as const),
+  ...(["violent", "sexual", "political", "antisocial"] as const),
+];
 
 export function Licence({ body }: { readonly body: BodyView }): JSX.Element {
   const { t } = useTexts();
@@ -19,18 +23,21 @@ export function Licence({ body }: { readonly body: BodyView }): JSX.Element {
       ) : (
         <dl className={classes.terms}>
           <Entry name={t("bodies.licence.title")}>{licence.title}</Entry>
-          <Entry name={t("bodies.licence.authors")}>{licence.authors.join(", ") || null}</Entry>
+          <Entry name={t("bodies.licence.authors")}>{licence.authors.join(", ")}</Entry>
+          <Entry name={t("bodies.licence.copyright")}>{licence.copyright}</Entry>
           <Entry name={t("bodies.licence.name")}>{licence.name}</Entry>
-          <Entry name={t("bodies.licence.url")}>{licence.url}</Entry>
-          {Object.entries(licence.permissions).map(([use, permission]) => (
-            <Entry
-              key={use}
-              name={isPermission(use) ? t(`bodies.use.${use}`) : use}
-              status={permission}
-            >
-              {t(`bodies.permission.${permission}`)}
+          <Entry name={t("bodies.licence.url")}>
+            {[licence.url, licence.other_url].filter((url) => url !== "").join(" ")}
+          </Entry>
+          <Entry name={t("bodies.licence.wearers")}>{t(`bodies.wearers.${licence.wearers}`)}</Entry>
+          {USES.map((use) => (
+            <Entry key={use} name={t(`bodies.use.${use}`)} status={licence.permissions[use]}>
+              {t(`bodies.permission.${licence.permissions[use] ?? "unknown"}`)}
             </Entry>
           ))}
+          <Entry name={t("bodies.licence.credit")}>
+            {t(`bodies.credit.${licence.credit_needed ?? "unknown"}`)}
+          </Entry>
         </dl>
       )}
     </section>
@@ -39,8 +46,8 @@ export function Licence({ body }: { readonly body: BodyView }): JSX.Element {
 
 interface EntryProps {
   readonly name: string;
-  readonly children: string | null;
-  readonly status?: string;
+  readonly children: string;
+  readonly status?: string | undefined;
 }
 
 function Entry({ name, children, status }: EntryProps): JSX.Element {
@@ -48,7 +55,13 @@ function Entry({ name, children, status }: EntryProps): JSX.Element {
   return (
     <div data-status={status}>
       <dt>{name}</dt>
-      <dd>{children ?? <span className={classes.soft}>{t("bodies.licence.nothing")}</span>}</dd>
+      <dd>
+        {children === "" ? (
+          <span className={classes.soft}>{t("bodies.licence.nothing")}</span>
+        ) : (
+          children
+        )}
+      </dd>
     </div>
   );
 }

@@ -113,15 +113,23 @@ export const bodiesEn = {
   "bodies.permission.allowed": "allowed",
   "bodies.permission.forbidden": "not allowed",
   "bodies.permission.unknown": "not stated",
-  "bodies.use.wear_by_everybody": "Worn by everybody",
-  "bodies.use.wear_by_licensed_people": "Worn by people with permission",
+  "bodies.licence.copyright": "Copyright",
+  "bodies.licence.wearers": "Who may wear it",
+  "bodies.licence.credit": "Naming the authors",
+  "bodies.wearers.author": "its author",
+  "bodies.wearers.licensed": "people with the author's permission",
+  "bodies.wearers.everyone": "everybody",
+  "bodies.wearers.unknown": "not stated",
+  "bodies.credit.true": "required",
+  "bodies.credit.false": "not required",
+  "bodies.credit.unknown": "not stated",
   "bodies.use.commercial": "Commercial use",
   "bodies.use.modification": "Changing it",
   "bodies.use.redistribution": "Passing it on",
-  "bodies.use.violence": "Violent scenes",
+  "bodies.use.violent": "Violent scenes",
   "bodies.use.sexual": "Sexual scenes",
-  "bodies.use.political_or_religious": "Political or religious use",
-  "bodies.use.hate": "Antisocial or hateful use",
+  "bodies.use.political": "Political or religious use",
+  "bodies.use.antisocial": "Antisocial or hateful use",
   "bodies.statures": "Three statures",
   "bodies.statures.lead":
     "The body neutral at 130, 165 and 190 cm, the avatars of Degen et al. 2022, and how long and how high their steps are when the same walk is transferred to them.",
@@ -137,15 +145,6 @@ export const bodiesEn = {
   "bodies.statures.caption":
     "Means over the steps of the walk; paper: figure 9 of Degen et al. 2022, another person's walk.",
 } as const;
-
-const PERMISSIONS = [
-  ...(["wear_by_everybody", "wear_by_licensed_people", "commercial", "modification"] as const),
-  ...(["redistribution", "violence", "sexual", "political_or_religious", "hate"] as const),
-];
-
-/** Whether there is a text for a kind of use. */
-export const isPermission = (use: string): use is (typeof PERMISSIONS)[number] =>
-  (PERMISSIONS as readonly string[]).includes(use);
 
 export const bodiesDe: Readonly<Record<keyof typeof bodiesEn, string>> = {
   "bodies.title": "Körper",
@@ -266,15 +265,23 @@ export const bodiesDe: Readonly<Record<keyof typeof bodiesEn, string>> = {
   "bodies.permission.allowed": "erlaubt",
   "bodies.permission.forbidden": "nicht erlaubt",
   "bodies.permission.unknown": "nicht angegeben",
-  "bodies.use.wear_by_everybody": "Von allen getragen",
-  "bodies.use.wear_by_licensed_people": "Von Personen mit Erlaubnis getragen",
+  "bodies.licence.copyright": "Urheberrecht",
+  "bodies.licence.wearers": "Wer ihn tragen darf",
+  "bodies.licence.credit": "Nennung der Urheber",
+  "bodies.wearers.author": "sein Urheber",
+  "bodies.wearers.licensed": "Personen mit Erlaubnis des Urhebers",
+  "bodies.wearers.everyone": "alle",
+  "bodies.wearers.unknown": "nicht angegeben",
+  "bodies.credit.true": "erforderlich",
+  "bodies.credit.false": "nicht erforderlich",
+  "bodies.credit.unknown": "nicht angegeben",
   "bodies.use.commercial": "Kommerzielle Nutzung",
   "bodies.use.modification": "Verändern",
   "bodies.use.redistribution": "Weitergeben",
-  "bodies.use.violence": "Gewaltszenen",
+  "bodies.use.violent": "Gewaltszenen",
   "bodies.use.sexual": "Sexuelle Szenen",
-  "bodies.use.political_or_religious": "Politische oder religiöse Nutzung",
-  "bodies.use.hate": "Menschenfeindliche Nutzung",
+  "bodies.use.political": "Politische oder religiöse Nutzung",
+  "bodies.use.antisocial": "Menschenfeindliche Nutzung",
   "bodies.statures": "Drei Körpergrößen",
   "bodies.statures.lead":
     "Der Körper neutral mit 130, 165 und 190 cm, die Avatare von Degen et al. 2022, und wie lang und wie hoch ihre Schritte sind, wenn derselbe Gang auf sie übertragen wird.",

@@ -12,6 +12,8 @@ import { AVATAR_MAP, rolesFrom } from "../captures/bodyJoints";
 const LARGEST_BYTES = 24 * 1024 ** 2;
 const WIDTH_PX = 320;
 const HEIGHT_PX = 360;
+/** Distance of the camera relative to the usual one: heads may be larger than a person's. */
+const ROOM = 1.15;
 
 const drawn = new Map<string, Promise<string | null>>();
 let last: Promise<unknown> = Promise.resolve();
@@ -56,6 +58,8 @@ async function draw(hash: string): Promise<string | null> {
       const figure = { key: hash, motion, tone: "solid", roles, worn } as const;
       stage.setFigures([figure], paletteOf(document.body));
       stage.show(0 as Seconds);
+      stage.placeCamera("front");
+      stage.zoom(ROOM);
       // Draws immediately.
       stage.resize(WIDTH_PX, HEIGHT_PX);
       return canvas.toDataURL("image/webp", 0.9);

@@ -5880,23 +5880,38 @@ export interface components {
         };
         /**
          * LicenceView
-         * @description What the file of a body says of its author and terms; empty or null where it says nothing.
+         * @description What the file of a body says of its author and terms; texts are empty where it says nothing.
          *
-         *     `permissions`: what its author allows, by kind of use.
+         *     `name` is the licence's, `url` and `other_url` lead to its terms. `wearers`: who may wear it.
+         *     `permissions`: what its author allows, by kind of use. `credit_needed`: whether its authors must
+         *     be named.
          */
         readonly LicenceView: {
             /** Authors */
             readonly authors: readonly string[];
+            /** Contact */
+            readonly contact: string;
+            /** Copyright */
+            readonly copyright: string;
+            /** Credit Needed */
+            readonly credit_needed: boolean | null;
             /** Name */
-            readonly name: string | null;
+            readonly name: string;
+            /** Other Url */
+            readonly other_url: string;
             /** Permissions */
             readonly permissions: {
                 readonly [key: string]: "allowed" | "forbidden" | "unknown";
             };
             /** Title */
-            readonly title: string | null;
+            readonly title: string;
             /** Url */
-            readonly url: string | null;
+            readonly url: string;
+            /**
+             * Wearers
+             * @enum {string}
+             */
+            readonly wearers: "author" | "licensed" | "everyone" | "unknown";
         };
         /**
          * LookRequest

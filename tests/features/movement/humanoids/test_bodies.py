@@ -5,6 +5,8 @@ from dataclasses import replace
 import pytest
 from sqlalchemy import update
 
+from app.adapters.humanoids import ModelRights
+from app.features.movement.humanoids.licences import stored_licence
 from app.models import HumanoidRow
 from tests.api.people import sign_in
 from tests.features.lab import Json, Lab, error, ok
@@ -13,13 +15,7 @@ from tests.features.movement.avatar.test_avatars import SHIPPED, as_json, new
 from tests.features.movement.avatar.test_studies import KEY, study
 from tests.features.movement.humanoids.test_humanoids import FOUR, HASH, PATH, upload
 
-STRICT = {
-    "title": "Strict",
-    "authors": ["A. Author"],
-    "name": None,
-    "url": None,
-    "permissions": {"wear_by_everybody": "forbidden", "wear_by_licensed_people": "forbidden"},
-}
+STRICT = stored_licence(ModelRights(title="Strict", authors=("A. Author",), wearers="author"))
 
 
 def change(lab: Lab, content_hash: str = HASH, **fields: object) -> Json:
@@ -136,4 +132,6 @@ def test_a_body_is_measured_again(fresh_lab: Lab) -> None:
     set_columns(fresh_lab, triangles=None, vertices=None, textures=None, licence=None)
     after = ok(fresh_lab.operator.post(f"{PATH}/{HASH}/measure"))
     assert after == before
+    assert after["triangles"] > 0
+    assert after["licence"]["wearers"] == "unknown"
     error(fresh_lab.operator.post(f"{PATH}/{'0' * 64}/measure"), 404, "not_found")
