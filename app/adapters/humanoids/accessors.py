@@ -47,7 +47,8 @@ class Tables:
     def scaled(self, number: int, table: npt.NDArray[Any]) -> FloatArray:
         """Return the numbers of a table as an accessor says; raises the same errors as `floats`."""
         accessor, place = self._accessor(number)
-        values = table.astype(np.float64)
+        with np.errstate(invalid="ignore"):  # a signalling NaN is refused below as any other
+            values = table.astype(np.float64)
         if accessor.normalized and table.dtype.kind in "iu":
             values = np.maximum(values / float(np.iinfo(table.dtype).max), -1.0)
         if not np.isfinite(values).all():

@@ -3,6 +3,7 @@
 import contextlib
 import json
 import warnings
+from collections import Counter
 from typing import Any
 
 import pytest
@@ -11,6 +12,8 @@ from hypothesis import strategies as st
 
 from app.adapters.humanoids import HumanoidFileError, Limits, read_humanoid
 from app.science.avatar.body import HumanoidError, figure_of
+from tests.adapters.humanoids.fuzzing import attempt
+from tests.adapters.humanoids.fuzzing import damaged as damaged_model
 from tests.support.humanoid_files import glb, humanoid_file, taken_apart
 from tests.support.humanoid_model import Model, without
 from tests.support.repetitions import usually
@@ -101,3 +104,17 @@ def test_damaged_bytes_are_read_or_rejected(data: bytes) -> None:
 def test_many_damaged_models_are_read_or_rejected(data: bytes) -> None:
     """Ten times as many damaged models as in the short test are read or rejected."""
     survives(data)
+
+
+def test_models_damaged_in_every_way_are_read_or_rejected() -> None:
+    """Plain and compressed models with lying sizes, changed streams and structures, and cut ones.
+
+    `python -m tests.adapters.humanoids.fuzzing --long` does the same 3,000 times, also to published
+    models, in a process with the server's limits.
+    """
+    outcomes = Counter(
+        attempt(damaged_model(number, published=False).data, _LIMITS).outcome
+        for number in range(60)
+    )
+    assert outcomes["read"] >= 3
+    assert outcomes["refused"] >= 20
