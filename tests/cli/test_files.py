@@ -43,7 +43,15 @@ ALIKE = {
     "walk evaluate people",
     "restore erasures",
 }
-WRITTEN = {"export to", "backup file", "retarget out", "tune out", "walk fit out", "rehearse data"}
+WRITTEN = {
+    "export to",
+    "backup file",
+    "retarget out",
+    "figure out",
+    "tune out",
+    "walk fit out",
+    "rehearse data",
+}
 """Files and folders that a command creates."""
 
 

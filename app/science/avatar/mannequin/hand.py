@@ -51,7 +51,8 @@ def sew_hand(work: Patchwork, body: Proportions, form: Form, wrist: IndexArray) 
     """Sew the right hand onto the wrist's ring, which begins at the lower front."""
     work.region, work.tone = "palm", "skin"
     unit = body.stature_m / TABLE_STATURE_MM
-    thick = unit * form.hand
+    longer = body.segments_m["hand"] / (0.108 * body.stature_m)
+    thick = unit * form.hand * longer
     places = {name: np.array(place) for name, place in body.places_m().items()}
     palm = [work.add(row) for row in _palm(body, places, unit, thick)]
     # The wrist's ring runs from the lower front to the back; the palm's from the upper front.

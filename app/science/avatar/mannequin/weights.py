@@ -81,7 +81,8 @@ class _Shares:
         stature = self._stature
         x, y, z = self._points[rows].T
         # The neck is inclined: a level through the chin passes below the back of the head.
-        level = y - 0.4 * z * _rise((y / stature - 0.80) / 0.03)
+        above = (y - self._places["RightUpperArm"][1]) / stature  # the shoulders
+        level = y - 0.4 * z * _rise((above + 0.018) / 0.03)
         trunk = ("Hips", "Spine", "Chest", "UpperChest", "Neck", "Head")
         heights = [self._places[part][1] for part in trunk[1:]]
         widths = [share * stature for share in (0.024, 0.024, 0.026, 0.016, 0.014)]
@@ -90,7 +91,7 @@ class _Shares:
             self._places[f"Right{part}"][0] for part in ("UpperArm", "LowerArm", "Hand")
         )
         inwards = (x - 0.25 * shoulder) / (0.40 * shoulder)
-        upwards = (y / stature - 0.765) / 0.04
+        upwards = (above + 0.053) / 0.04
         below_neck = 1.0 - _rise((level - heights[3]) / (0.03 * stature))
         lateral = np.maximum(arm, _rise(inwards) * _rise(upwards) * below_neck)
         arms = _chain(
