@@ -6,11 +6,14 @@
   then         float32: joint errors in radians, [frame][joint]
   then         int16, only on request: 32767 times w, x, y, z of every joint's rotation in its
                parent's frame, [body][frame][joint][wxyz]; zeros where it is unknown
+  then         int16, if these were asked for and fingers were recorded: the same of every finger
+               part, [body][frame][part][wxyz]
 
 The header has `names` and `parents` of the J joints, `bodies` ("target", the participant, and
 "actual", the avatar), the number of `frames` N and their `rate_hz`, from the phase's time 0,
 `error_joints`, `error_frames` and `error_rate_hz`, and `gaps`: spans (begin, end) of the phase's
-time in which nothing was recorded. `rotations` is true if they follow.
+time in which nothing was recorded. `rotations` is true if they follow. `finger_parts`
+names the parts of fingers if those follow, too.
 
 Positions are computed by forward kinematics from the stored frame nearest to each moment, without
 smoothing or interpolation. In gaps, and for invalid rotations, they are NaN. Errors are the angles
@@ -29,7 +32,7 @@ from numpy.typing import NDArray
 from sqlalchemy.orm import Session
 
 from app.database import Database
-from app.features.record.telemetry import Frames, hinges_of, iter_frames
+from app.features.record.telemetry import Frames, epochs_of, hinges_of, iter_frames
 from app.features.results.replay.errors import RunErrors, no_errors
 from app.features.results.replay.grid import Grid, Sampling, uncovered
 from app.features.results.replay.service import USUAL_STATURE_M, stature_of
@@ -40,6 +43,8 @@ from app.science.avatar.targets import HingeReference
 from app.science.joint_error import ERROR_JOINTS
 from app.science.rotations import is_unit
 from app.science.skeleton import (
+    FINGER_COUNT,
+    FINGER_PARTS,
     JOINT_COUNT,
     JOINT_NAMES,
     PARENTS,
@@ -47,7 +52,7 @@ from app.science.skeleton import (
     build_skeleton,
     forward_kinematics,
 )
-from app.wire import StreamName
+from app.wire import BODY_STREAMS, FINGER_STREAMS, StreamName
 
 MAX_HZ = 30.0
 ERROR_HZ = 10.0
@@ -57,6 +62,7 @@ ROTATION_SCALE = 32767.0
 """What stored components of rotations are multiplied by: they are exact to 0.004 degrees."""
 Places = NDArray[np.float32]
 Rotations = NDArray[np.int16]
+_FINGERS_OF = dict(zip(BODY_STREAMS, FINGER_STREAMS, strict=True))
 
 
 @dataclass(frozen=True)
@@ -87,6 +93,7 @@ class Movement:
         errors_rad: (M, 21); no rows if there is only one body.
         gaps: Spans of the phase's time without a frame of the participant.
         rotations: By body, (N, 22, 4) local rotations times `ROTATION_SCALE`; empty unless asked.
+        fingers: By body, the same of its fingers (N, 30, 4); empty if none were recorded.
     """
 
     grid: Grid
@@ -95,12 +102,15 @@ class Movement:
     errors_rad: NDArray[np.float32]
     gaps: list[tuple[float, float]] = field(default_factory=list)
     rotations: dict[StreamName, Rotations] = field(default_factory=dict)
+    fingers: dict[StreamName, Rotations] = field(default_factory=dict)
 
 
 def movement_of(db: Session, recording: Recording) -> Movement:
     """Read a phase's frames and compute the positions of its bodies."""
     bodies = 2 if recording.full else 1
-    grid = Grid.over(recording.duration_s, _rate_hz(recording, bodies))
+    fingers = recording.rotations and _has_fingers(db, recording)
+    rate_hz = _rate_hz(recording, bodies, FINGER_COUNT if fingers else 0)
+    grid = Grid.over(recording.duration_s, rate_hz)
     error_grid = Grid.over(recording.duration_s, ERROR_HZ if recording.full else 0.0)
     movement = Movement(grid, error_grid, {}, no_errors(error_grid))
     tracks = {
@@ -116,7 +126,27 @@ def movement_of(db: Session, recording: Recording) -> Movement:
             track.fill(movement.errors_rad, recording.hinges)
     else:
         movement.errors_rad = movement.errors_rad[:0]
+    if fingers:
+        movement.fingers = {
+            body: _fingers(db, recording, _FINGERS_OF[body], grid) for body in movement.positions_m
+        }
     return movement
+
+
+def _has_fingers(db: Session, recording: Recording) -> bool:
+    return any(epochs_of(db, recording.session_id, stream) for stream in FINGER_STREAMS)
+
+
+def _fingers(db: Session, recording: Recording, stream: StreamName, grid: Grid) -> Rotations:
+    """Return the rotations of a body's fingers at the grid's moments, zeros where unknown."""
+    turns = np.zeros((grid.count, FINGER_COUNT, 4), np.int16)
+    for epoch, offset_s in recording.offsets_s.items():
+        sampling = Sampling(grid, offset_s)
+        for piece in _pieces(db, recording, stream, epoch):
+            at, frames = sampling.take(piece)
+            if len(at):
+                turns[at] = _in_16_bits(frames)
+    return turns
 
 
 def _fill(
@@ -162,7 +192,7 @@ def _placed(skeleton: Skeleton, frames: Frames) -> Places:
 
 
 def _in_16_bits(frames: Frames) -> Rotations:
-    """Return local rotations (n, 22, 4) times `ROTATION_SCALE`, zeros for an invalid one."""
+    """Return local rotations (n, 22 or 30, 4) times `ROTATION_SCALE`, zeros for an invalid one."""
     usable = np.where(is_unit(frames.rotations)[..., np.newaxis], frames.rotations, 0.0)
     length = np.linalg.norm(usable, axis=-1, keepdims=True)
     scaled: Rotations = np.rint(usable / np.maximum(length, 1.0) * ROTATION_SCALE).astype(np.int16)
@@ -185,22 +215,24 @@ def encode(movement: Movement) -> bytes:
             "error_rate_hz": movement.error_grid.rate_hz,
             "gaps": [[round(a, 4), round(b, 4)] for a, b in movement.gaps],
             **({"rotations": True} if movement.rotations else {}),
+            **({"finger_parts": FINGER_PARTS} if movement.fingers else {}),
         }
     ).encode()
     header += b" " * (-len(header) % 4)
     places = [np.ascontiguousarray(movement.positions_m[body], dtype="<f4") for body in bodies]
     parts = (place.tobytes() for place in places)
     turns = (
-        movement.rotations[body].astype("<i2").tobytes()
-        for body in bodies[: len(movement.rotations)]
+        of_parts[body].astype("<i2").tobytes()
+        for of_parts in (movement.rotations, movement.fingers)
+        for body in bodies[: len(of_parts)]
     )
     return b"".join((struct.pack("<I", len(header)), header, *parts, errors.tobytes(), *turns))
 
 
-def _rate_hz(recording: Recording, bodies: int) -> float:
+def _rate_hz(recording: Recording, bodies: int, finger_parts: int) -> float:
     # Four components of 16 bits take as much as two numbers.
-    numbers_a_joint = 5 if recording.rotations else 3
-    numbers_a_second = numbers_a_joint * JOINT_COUNT * bodies * max(recording.duration_s, 1e-3)
+    numbers_a_frame = (5 if recording.rotations else 3) * JOINT_COUNT + 2 * finger_parts
+    numbers_a_second = numbers_a_frame * bodies * max(recording.duration_s, 1e-3)
     return min(MAX_HZ, MAX_NUMBERS / numbers_a_second)
 
 

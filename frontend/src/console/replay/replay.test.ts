@@ -154,17 +154,25 @@ describe("joint errors", () => {
 });
 
 describe("the bytes of a movement", () => {
-  const bytesOf = (bodies: readonly string[], numbers: readonly number[]): ArrayBuffer => {
+  const bytesOf = (
+    bodies: readonly string[],
+    numbers: readonly number[],
+    more: object = {},
+    integers: readonly number[] = [],
+  ): ArrayBuffer => {
     const header = {
       ...{ names: ["Hips"], parents: [-1], bodies, frames: 1, rate_hz: 30, gaps: [[1, 2]] },
       ...{ error_joints: ["Head"], error_frames: bodies.length - 1, error_rate_hz: 10 },
+      ...more,
     };
     const text = JSON.stringify(header);
     const padded = text + " ".repeat((4 - (text.length % 4)) % 4);
-    const bytes = new Uint8Array(4 + padded.length + 4 * numbers.length);
+    const integersAt = 4 + padded.length + 4 * numbers.length;
+    const bytes = new Uint8Array(integersAt + 2 * integers.length);
     new DataView(bytes.buffer).setUint32(0, padded.length, true);
     bytes.set(new TextEncoder().encode(padded), 4);
     bytes.set(new Uint8Array(Float32Array.from(numbers).buffer), 4 + padded.length);
+    bytes.set(new Uint8Array(Int16Array.from(integers).buffer), integersAt);
     return bytes.buffer;
   };
 
@@ -175,6 +183,19 @@ describe("the bytes of a movement", () => {
     expect([...both.errors.values]).toEqual([7]);
     expect(both.gaps).toEqual([[1, 2]]);
     expect(decodeMovement(bytesOf(["target"], [1, 2, 3])).avatar).toBeNull();
+  });
+
+  it("contain the rotations of joints and fingers where they were asked for", () => {
+    const asked = { rotations: true, finger_parts: ["LeftThumbProximal"] };
+    const integers = [1, 0, 0, 0, 2, 0, 0, 0, 3, 0, 0, 0, 4, 0, 0, 0];
+    const { participant, avatar, errors } = decodeMovement(
+      bytesOf(["target", "actual"], [1, 2, 3, 4, 5, 6, 7], asked, integers),
+    );
+    expect([...errors.values]).toEqual([7]);
+    expect([participant.rotations?.[0], avatar?.rotations?.[0]]).toEqual([1, 2]);
+    expect([...(participant.fingers ?? [])]).toEqual([3, 0, 0, 0]);
+    expect([...(avatar?.fingers ?? [])]).toEqual([4, 0, 0, 0]);
+    expect(decodeMovement(bytesOf(["target"], [1, 2, 3])).participant.fingers).toBeUndefined();
   });
 
   it("are rejected if they are truncated", () => {

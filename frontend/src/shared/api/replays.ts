@@ -40,6 +40,7 @@ interface Header {
   readonly error_rate_hz: number;
   readonly gaps: readonly Span[];
   readonly rotations?: boolean;
+  readonly finger_parts?: readonly string[];
 }
 
 export const replays = {
@@ -69,15 +70,19 @@ const countOf = (header: Header): number =>
 const rotationsOfBody = ({ frames, names, rotations }: Header): number =>
   rotations === true ? 4 * frames * names.length : 0;
 
+const fingersOfBody = ({ frames, finger_parts: parts = [] }: Header): number =>
+  4 * frames * parts.length;
+
 /**
  * Decode the server's format: the header's length, the header as JSON, then as little-endian
  * float32 the positions of each body, followed by the joint errors, then as integers of 16 bits the
- * rotations of each body if there are any.
+ * rotations of each body, and of each body's fingers, if there are any.
  *
  * Throws MotionError if the bytes do not match the header.
  */
 export function decodeMovement(bytes: ArrayBuffer): ReplayMovement {
-  const integersOf = (header: Header) => header.bodies.length * rotationsOfBody(header);
+  const integersOf = (header: Header) =>
+    header.bodies.length * (rotationsOfBody(header) + fingersOfBody(header));
   const { header, numbers: all, integers } = splitMovement(bytes, countOf, integersOf);
   const ofBody = numbersOfBody(header);
   const body = (name: string): PointMotion | null => {
@@ -86,11 +91,14 @@ export function decodeMovement(bytes: ArrayBuffer): ReplayMovement {
     const positions = all.subarray(at * ofBody, (at + 1) * ofBody);
     const { names, parents, frames, rate_hz: rateHz } = header;
     const turned = rotationsOfBody(header);
+    const bent = fingersOfBody(header);
+    const fingersAt = header.bodies.length * turned + at * bent;
     return {
       ...({ kind: "skeleton", names, parents, frames, rateHz } as const),
       recordedRateHz: rateHz,
       positions,
       ...(turned > 0 ? { rotations: integers.subarray(at * turned, (at + 1) * turned) } : {}),
+      ...(bent > 0 ? { fingers: integers.subarray(fingersAt, fingersAt + bent) } : {}),
     };
   };
   const participant = body("target");

@@ -23,6 +23,11 @@ export interface PointMotion {
    * unknown: [frame][joint][wxyz]. Left out where only positions are known.
    */
   readonly rotations?: Float32Array | Int16Array;
+  /**
+   * The same of the finger parts (`FINGER_PARTS`), [frame][part][wxyz], relative to the part above
+   * and to the T-pose, where they were recorded; zeros where unknown.
+   */
+  readonly fingers?: Float32Array | Int16Array;
 }
 
 /** Thrown if the bytes are not a movement: truncated, or of another format. */

@@ -10,11 +10,18 @@ from numpy.typing import NDArray
 from sqlalchemy import delete, select
 
 from app.features.record.telemetry.frames import phase_frames
-from app.features.results.replay.movement import placed_movement
+from app.features.results.replay.movement import (
+    ROTATION_SCALE,
+    Recording,
+    encode,
+    movement_of,
+    placed_movement,
+)
 from app.models import Phase, StudySession, TelemetryChunk, TelemetryStream
 from app.science.joint_error import joint_errors
+from app.science.rotations import normalise
 from app.science.skeleton import JOINT_COUNT, build_skeleton, forward_kinematics
-from app.wire import BODY_STREAMS, StreamName
+from app.wire import BODY_STREAMS, FINGER_STREAMS, StreamName
 from tests.api.people import sign_in
 from tests.features.builders import SessionSpec, build_session
 from tests.features.lab import STUDY, Json, Lab, error, ok
@@ -131,6 +138,39 @@ def test_replayed_errors_are_the_joint_errors_of_the_frames(lab: Lab, phase: Pha
     expected = angles[::every]
     np.testing.assert_allclose(shown.errors_rad[: len(expected)], expected, atol=1e-6)
     assert shown.errors_rad.max() > 0.05
+
+
+@pytest.mark.one_engine
+def test_fingers_are_those_of_the_nearest_stored_frame(lab: Lab, phase: Phase) -> None:
+    """A replay has the rotations of both bodies' fingers, on request and where recorded."""
+    begin_s = phase.client_started_s or 0.0
+    skeleton = build_skeleton(STATURE_M)
+    asked = Recording(
+        *(phase.session_id, phase.phase_id, {1: -begin_s}, DURATION_S, skeleton), rotations=True
+    )
+    with lab.database.reading() as db:
+        assert movement_of(db, asked).fingers == {}
+        ((_, body),) = phase_frames(db, phase.session_id, StreamName.ACTUAL, phase.phase_id)
+    turned = normalise(np.random.default_rng(2).normal(size=(len(body), 30, 4)))
+    values = turned.reshape(len(body), -1).astype(np.float32)
+    values[90:, :60] = np.nan
+    seqs = range(round(begin_s * RATE_HZ), round(begin_s * RATE_HZ) + len(body))
+    with lab.database.writing() as db:
+        for stream in FINGER_STREAMS:
+            store_chunks(db, phase.session_id, stream, seqs, values, phase_id=phase.phase_id)
+    with lab.database.reading() as db:
+        movement = movement_of(db, asked)
+        plain = movement_of(db, replace(asked, rotations=False))
+    assert plain.fingers == {}
+    shown = movement.fingers[StreamName.ACTUAL]
+    np.testing.assert_allclose(shown[0] / ROTATION_SCALE, turned[0], atol=1e-4)
+    # The left hand is not tracked after a second.
+    late = round(2.0 * movement.grid.rate_hz)
+    assert not shown[late, :15].any()
+    assert shown[late, 15:].any()
+    encoded = encode(movement)
+    assert encoded.endswith(movement.fingers[StreamName.ACTUAL].astype("<i2").tobytes())
+    assert b"RightLittleDistal" in encoded
 
 
 @pytest.mark.one_engine
