@@ -6,6 +6,10 @@ with an actual stream that follows its target through a critically damped filter
 late, with its own noise of 0.01 degrees and 0.1 mm; and from a synthetic movement, with all joints
 swinging, tracked with a noise of 0.05 degrees and 0.5 mm and followed likewise. Times are CPU times
 of one thread, medians over the chunks. Every decoded chunk is compared with its input, bit by bit.
+
+The part `fingers` compares the bytes of a finger part with those of a body's joint, both streams
+together: generated hands that make a fist, pinch, oppose the thumb or do all in turn, next to the
+synthetic body, tracked with the same noise and followed likewise.
 """
 
 import sys
@@ -17,6 +21,7 @@ from numpy.typing import NDArray
 
 from app.features.record.telemetry.encodings import f32_predicted
 from app.features.record.telemetry.encodings.columns import Columns
+from app.science.skeleton import FINGER_COUNT, JOINT_COUNT
 from tests.benchmarks.codecs import Codec, own_codecs
 from tests.benchmarks.report import Figure, Report
 from tests.benchmarks.rival_codecs import rival_codecs
@@ -28,17 +33,20 @@ from tests.features.record.telemetry.followed_movement import (
     Streams,
     captured_movement,
     followed,
+    followed_fingers,
+    made_fingers,
     made_movement,
 )
 from tests.support.shared_data import shared_data_folder
 
-PARTS = ("codecs", "noise", "lengths")
+PARTS = ("codecs", "noise", "lengths", "fingers")
 CAPTURES = shared_data_folder() / "motion" / "cmu_bvh"
 MADE_S, REPEATS = 20.0, 3
 LIMIT_MB, LIMIT_MS = 3.0, 2.0
 IN_USE = f"{f32_predicted.NAME}, zstd {f32_predicted.LEVEL}"
 NOISES_DEG = (0.0, 0.01, 0.1, 1.0)
 LENGTHS = (9, 30, 90, 180, 450)
+HANDS = ("fist", "pinch", "thumb opposition")
 Movements = Mapping[str, Sequence[Streams]]
 
 
@@ -63,6 +71,8 @@ def measure(parts: frozenset[str]) -> Report:
         report.add(*_by_noise(ours))
     if "lengths" in parts:
         report.add(*_by_length(ours, movements))
+    if "fingers" in parts:
+        report.add(*_by_joint(ours))
     return report
 
 
@@ -163,6 +173,28 @@ def _together_mb(ours: Codec, streams: Streams) -> float:
         root = Columns(np.zeros(len(both)), actual.flags, actual.values[:, :3])
         sizes.append(sum(len(ours.encode(one)) for one in (_with_values(target, both), root)))
     return sum(sizes) * 60.0 / (len(sizes) * CHUNK_FRAMES / RATE_HZ) / 1e6
+
+
+def _by_joint(ours: Codec) -> Iterator[Figure]:
+    """Measure the bytes a frame of joints and of finger parts, without and with tracking noise."""
+    for noise_deg in (0.0, TRACKING_NOISE_DEG):
+        own_deg = min(noise_deg, OWN_NOISE_DEG)
+        body = _bytes_a_joint(ours, _made(noise_deg, own_deg), JOINT_COUNT)
+        tracked = f"tracked with {noise_deg:g} degrees of noise"
+        yield Figure("fingers", f"body, {tracked}", body, "B/joint/frame")
+        for gesture in (*HANDS, None):
+            rng = np.random.default_rng(0)
+            hands = made_fingers(MADE_S, rng, noise_deg=noise_deg, gesture=gesture)
+            streams = followed_fingers(hands, rng, own_deg)
+            name = f"{gesture or 'gestures in turn'} (generated), {tracked}"
+            found = _bytes_a_joint(ours, streams, FINGER_COUNT)
+            yield Figure("fingers", name, found, "B/joint/frame", "limit", body)
+
+
+def _bytes_a_joint(ours: Codec, streams: Streams, joints: int) -> float:
+    pairs = list(streams.chunks())
+    size = sum(len(ours.encode(one)) for pair in pairs for one in pair)
+    return size / (len(pairs) * 2 * CHUNK_FRAMES * joints)
 
 
 def _with_values(columns: Columns, values: NDArray[np.float32]) -> Columns:

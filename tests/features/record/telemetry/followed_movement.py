@@ -16,7 +16,9 @@ from scipy.signal import lfilter
 from app.features.record.telemetry.encodings.columns import Columns
 from app.rehearsal.body import FRAME_RATE_HZ
 from app.rehearsal.body import captured_movement as on_skeleton
+from app.science.avatar.targets import finger_rotations
 from app.science.rotations import normalise
+from app.science.simulation import SimulatedFingers, gesture_angles
 from app.science.skeleton import Movement, build_skeleton, continuous, resample
 
 RATE_HZ = FRAME_RATE_HZ
@@ -53,9 +55,20 @@ def followed(
 ) -> Streams:
     """Return both streams of a movement at 90 Hz, the actual one with `noise_deg` of noise."""
     count = movement.frame_count
-    times_s = 1000.0 + np.arange(count) / RATE_HZ + rng.normal(0.0, TIME_JITTER_S, count)
     turns = continuous(movement.rotations).reshape(count, -1)
-    target = np.concatenate((movement.root_positions_m, turns), axis=1)
+    return _followed(np.concatenate((movement.root_positions_m, turns), axis=1), rng, noise_deg)
+
+
+def followed_fingers(
+    rotations: NDArray[np.float64], rng: np.random.Generator, noise_deg: float
+) -> Streams:
+    """Return both streams of fingers (n, 30, 4) at 90 Hz, the actual one with noise of its own."""
+    return _followed(continuous(rotations).reshape(len(rotations), -1), rng, noise_deg)
+
+
+def _followed(target: NDArray[np.float64], rng: np.random.Generator, noise_deg: float) -> Streams:
+    count = len(target)
+    times_s = 1000.0 + np.arange(count) / RATE_HZ + rng.normal(0.0, TIME_JITTER_S, count)
     late = np.maximum(np.arange(count) - round(LATENCY_S * RATE_HZ), 0)
     actual = noisy(_filtered(target[late]), rng, noise_deg)
     return Streams(times_s, target.astype(np.float32), actual.astype(np.float32))
@@ -79,6 +92,31 @@ def made_movement(
     return Movement(RATE_HZ, values[:, :3], values[:, 3:].reshape(count, 22, 4))
 
 
+def made_fingers(
+    duration_s: float,
+    rng: np.random.Generator,
+    *,
+    noise_deg: float = TRACKING_NOISE_DEG,
+    gesture: str | None = None,
+) -> NDArray[np.float64]:
+    """Return generated fingers (n, 30, 4), tracked with noise in every direction.
+
+    Both hands close into a gesture and relax once a second, or make all gestures in turn.
+    """
+    times_s = np.arange(round(duration_s * RATE_HZ)) / RATE_HZ
+    if gesture is None:
+        hands = SimulatedFingers(rng)
+        rotations = np.stack([hands.pose(time_s) for time_s in times_s])
+    else:
+        share = (0.5 - 0.5 * np.cos(2.0 * np.pi * times_s))[:, np.newaxis]
+        closed, open_ = (
+            gesture_angles(name, "Left") + gesture_angles(name, "Right")
+            for name in (gesture, "relaxed")
+        )
+        rotations = finger_rotations(open_ + share * (closed - open_))
+    return noisy(rotations.reshape(len(times_s), -1), rng, noise_deg).reshape(-1, 30, 4)
+
+
 def captured_movement(capture: Path) -> Movement:
     """Return a capture on our skeleton at 90 Hz, as the rehearsal uses it but not looped."""
     return resample(on_skeleton(capture, build_skeleton(STATURE_M)), RATE_HZ)
@@ -87,11 +125,14 @@ def captured_movement(capture: Path) -> Movement:
 def noisy(
     values: NDArray[np.float64], rng: np.random.Generator, noise_deg: float
 ) -> NDArray[np.float64]:
-    """Return values (n, 91) with white noise: `noise_deg` about joint axes, and the root's."""
-    count = len(values)
+    """Return values (n, 91) with white noise: `noise_deg` about joint axes, and the root's.
+
+    Values of fingers (n, 120) have no root.
+    """
+    count, before = len(values), values.shape[1] % 4
     move_m = NOISE_MM_PER_DEG * noise_deg / 1000.0
-    root = values[:, :3] + rng.normal(0.0, move_m, (count, 3))
-    turns = normalise(values[:, 3:].reshape(count, 22, 4))
+    root = values[:, :before] + rng.normal(0.0, move_m, (count, before))
+    turns = normalise(values[:, before:].reshape(count, -1, 4))
     # A turn by a small angle moves a unit quaternion by half that angle, perpendicular to itself.
     turned = normalise(turns + rng.normal(0.0, np.radians(noise_deg) / 2.0, turns.shape))
     return np.concatenate((root, turned.reshape(count, -1)), axis=1)
