@@ -105,7 +105,8 @@ function anglesAt(kind: ExamplePose, phase: number): Angles {
 function arm(side: "Left" | "Right", swing: number, bend: number): Angles {
   const down = side === "Left" ? 1 : -1;
   return {
-    [`${side}UpperArm`]: multiply(about(X, swing), about(Z, 76 * down)),
+    [`${side}Shoulder`]: about(Z, 7 * down),
+    [`${side}UpperArm`]: multiply(about(X, swing), about(Z, 66 * down)),
     [`${side}LowerArm`]: about(Y, -bend * down),
   };
 }

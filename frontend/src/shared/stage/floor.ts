@@ -1,6 +1,7 @@
 /** The extent of the floor and its division into squares, so that lengths can be read from it. */
 import type { Block, Figure } from "./figure";
 import { type Box, boxOf } from "./motion";
+import type { Worn } from "./skin/worn";
 
 export interface FloorPlan {
   readonly min: readonly [x: number, z: number];
@@ -52,10 +53,24 @@ const boxOfBlock = ({ center, halfSize }: Block): Box => ({
   max: [center[0] + halfSize[0], center[1] + halfSize[1], center[2] + halfSize[2]],
 });
 
+/** The box of a body's joints with room for its skin. */
+function withSkin({ min, max }: Box, { model, statureM }: Worn): Box {
+  const above = (model.aboveJointsM * statureM) / model.binding.stature_m;
+  const around = SKIN_AROUND * statureM;
+  return {
+    min: [min[0] - around, min[1], min[2] - around],
+    max: [max[0] + around, max[1] + above, max[2] + around],
+  };
+}
+
+/** Half the depth of a trunk, in statures. */
+const SKIN_AROUND = 0.08;
+
 function boxOfAll(figures: readonly Figure[], blocks: readonly Block[]): Box {
-  const boxes = figures.flatMap(({ motion, offset = [0, 0] }) => {
-    const box = boxOf(motion);
-    if (box === null) return [];
+  const boxes = figures.flatMap(({ motion, offset = [0, 0], worn }) => {
+    const bare = boxOf(motion);
+    if (bare === null) return [];
+    const box = worn === undefined ? bare : withSkin(bare, worn);
     const moved = ([x, y, z]: Box["min"]): Box["min"] => [x + offset[0], y, z + offset[1]];
     return [{ min: moved(box.min), max: moved(box.max) }];
   });

@@ -46,7 +46,10 @@ export abstract class Space3d {
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     const sun = new DirectionalLight("#ffffff", 2.1);
     sun.position.set(2, 6, 3);
-    this.scene.add(new AmbientLight("#ffffff", 1.5), sun);
+    // Bodies usually face away from the sun, -z: this light keeps faces from lying in the dark.
+    const fill = new DirectionalLight("#ffffff", 1.1);
+    fill.position.set(-2, 3, -5);
+    this.scene.add(new AmbientLight("#ffffff", 1.3), sun, fill);
   }
 
   /** Show the blocks in their current tones; those that are not listed are plain. */

@@ -7,13 +7,14 @@ import {
   BufferGeometry,
   type InterleavedBufferAttribute,
   type Material,
-  type Matrix4,
+  Matrix4,
   type Mesh,
   type Object3D,
   type Skeleton,
   type SkinnedMesh,
   Texture,
   Uint8BufferAttribute,
+  Vector3,
 } from "three";
 import type { BodyBinding } from "./pose";
 
@@ -56,6 +57,7 @@ export class BodyModel {
   readonly skins: readonly BodySkin[];
   readonly meshes: readonly BodyMesh[];
   readonly #headless = new Map<BufferGeometry, BufferGeometry>();
+  #aboveJointsM: number | null = null;
 
   /** `objects` are the nodes of the file, by their index in it. */
   constructor(
@@ -96,6 +98,12 @@ export class BodyModel {
     this.meshes = meshes;
   }
 
+  /** How far the skin reaches above the highest joint in the T-pose, in the model's own size. */
+  get aboveJointsM(): number {
+    this.#aboveJointsM ??= this.#topM() - Math.max(...this.binding.joints_m.map(([, y = 0]) => y));
+    return this.#aboveJointsM;
+  }
+
   get triangles(): number {
     return this.meshes.reduce((sum, { geometry }) => {
       const corners = geometry.index?.count ?? geometry.getAttribute("position").count;
@@ -111,6 +119,37 @@ export class BodyModel {
     const made = without(geometry, new Set(head));
     this.#headless.set(geometry, made);
     return made;
+  }
+
+  /** The height of the skin in the T-pose, each vertex placed by the first bone that moves it. */
+  #topM(): number {
+    const { joints_m, part_from_node } = this.binding;
+    const worlds: Matrix4[] = [];
+    for (const { part, parent, local } of this.nodes) {
+      const world = new Matrix4();
+      if (part < 0) world.multiplyMatrices(worlds[parent] ?? world, local);
+      else {
+        const [x = 0, y = 0, z = 0] = joints_m[part] ?? [];
+        const rows = part_from_node[part] ?? [];
+        world.makeTranslation(x, y, z).multiply(new Matrix4().fromArray([...rows]).transpose());
+      }
+      worlds.push(world);
+    }
+    const at = new Vector3();
+    const placed = new Matrix4();
+    let top = 0;
+    for (const { geometry, skin, node } of this.meshes) {
+      const positions = geometry.getAttribute("position");
+      const indices = geometry.attributes.skinIndex as Attribute | undefined;
+      const { joints = [], inverses = [] } = this.skins[skin] ?? {};
+      for (let vertex = 0; vertex < positions.count; vertex++) {
+        const joint = indices?.getX(vertex) ?? 0;
+        placed.copy(worlds[skin < 0 ? node : (joints[joint] ?? 0)] ?? placed.identity());
+        if (skin >= 0) placed.multiply(inverses[joint] ?? new Matrix4());
+        top = Math.max(top, at.fromBufferAttribute(positions, vertex).applyMatrix4(placed).y);
+      }
+    }
+    return top;
   }
 
   /** Release geometries, materials and textures; figures must not wear the body any more. */

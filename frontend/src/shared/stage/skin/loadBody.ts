@@ -2,11 +2,12 @@
  * Load bodies: the file and the binding of a model, by the hash of its content. A body that several
  * figures wear is loaded once. This module imports three.js: import it lazily.
  */
-import { type Object3D, TextureLoader } from "three";
-import { type GLTF, GLTFLoader, type GLTFParser } from "three/addons/loaders/GLTFLoader.js";
+import { TextureLoader } from "three";
+import { GLTFLoader, type GLTFParser } from "three/addons/loaders/GLTFLoader.js";
 import { bodies } from "../../api/bodies";
-import { BodyModel, type MeshView } from "./bodyModel";
+import type { BodyModel } from "./bodyModel";
 import { makeDecoders } from "./decoders";
+import { bodyOfGltf } from "./gltfBody";
 import type { BodyBinding } from "./pose";
 
 /** How long a body that nobody wears is kept, so that another page need not load it again. */
@@ -70,8 +71,7 @@ export async function readBody(file: ArrayBuffer, binding: BodyBinding): Promise
       const { VRMLoaderPlugin } = await import("@pixiv/three-vrm");
       loader.register((parser) => new VRMLoaderPlugin(parser));
     }
-    const gltf = await loader.parseAsync(file, "");
-    return new BodyModel(binding, gltf.scene, nodesOf(gltf), viewsOf(gltf));
+    return bodyOfGltf(await loader.parseAsync(file, ""), binding);
   } finally {
     decoders.dispose();
   }
@@ -110,30 +110,3 @@ function namesVrm(file: ArrayBuffer): boolean {
 }
 
 const GLB_MAGIC = 0x46546c67;
-
-/** The nodes of the file by their index in it. */
-function nodesOf({ parser, scene }: GLTF): ReadonlyMap<number, Object3D> {
-  const nodes = new Map<number, Object3D>();
-  scene.traverse((object) => {
-    const index = parser.associations.get(object)?.nodes;
-    if (index !== undefined && !nodes.has(index)) nodes.set(index, object);
-  });
-  return nodes;
-}
-
-interface VrmViews {
-  readonly meshAnnotations: readonly {
-    readonly meshes: readonly Object3D[];
-    readonly type: MeshView;
-  }[];
-}
-
-/** Who sees which mesh, as a VRM says. */
-function viewsOf({ userData }: GLTF): (mesh: Object3D) => MeshView {
-  const { firstPerson } = (userData.vrm ?? {}) as { readonly firstPerson?: VrmViews };
-  const views = new Map<Object3D, MeshView>();
-  for (const { meshes, type } of firstPerson?.meshAnnotations ?? []) {
-    for (const mesh of meshes) views.set(mesh, type);
-  }
-  return (mesh) => views.get(mesh) ?? "auto";
-}
