@@ -1,5 +1,6 @@
 """Tests that compressed and quantised models are the same bodies as plain ones."""
 
+import sys
 from collections.abc import Callable
 
 import numpy as np
@@ -164,3 +165,24 @@ def test_draco_sizes_must_agree_with_the_file(accessor: str, place: str) -> None
     document["accessors"][number]["count"] //= 4
     with pytest.raises(HumanoidFileError, match=f"Draco data have .*{place}"):
         read_humanoid(glb(document, binary))
+
+
+def test_draco_is_refused_with_a_remedy_where_its_decoder_is_not_installed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Without DracoPy a model compressed by Draco is refused, saying what to install or export."""
+    data = draco_file(humanoid_file())
+    monkeypatch.setitem(sys.modules, "DracoPy", None)
+    with pytest.raises(HumanoidFileError, match=r"reembody\[draco\]") as caught:
+        read_humanoid(data)
+    assert caught.value.place == "meshes.0.primitives.0"
+
+
+def test_a_plain_copy_beside_the_compressed_one_is_used(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A file with plain tables as well, for programs without Draco, needs no decoder."""
+    document, binary = taken_apart(draco_file(humanoid_file()))
+    plain, tables = taken_apart(humanoid_file())
+    document["accessors"] = plain["accessors"]
+    assert binary.startswith(tables.rstrip(b"\0"))
+    monkeypatch.setitem(sys.modules, "DracoPy", None)
+    assert len(read_humanoid(glb(document, binary)).humanoid.parts) == len(PART_NAMES)
