@@ -14,6 +14,7 @@ import { AlarmDrawer } from "./alarms/AlarmDrawer";
 import { titleKey, useAlarms } from "./alarms/alarms";
 import { SignalStrip } from "./alarms/SignalStrip";
 import { TelemetryCard } from "./alarms/TelemetryCard";
+import { AvatarPanel, isChangeable } from "./avatar/AvatarPanel";
 import classes from "./Cockpit.module.css";
 import { DevicesPanel } from "./devices/DevicesPanel";
 import { Header } from "./Header";
@@ -66,6 +67,7 @@ function Cockpit({ session, live: direct }: CockpitProps): JSX.Element {
   const [entry, entries] = useDisclosure();
   const [history, histories] = useDisclosure();
   const [list, lists] = useDisclosure();
+  const [avatar, avatars] = useDisclosure();
   const isPlanned = can("run") && session.status === "planned";
   const flight = usePreflight(session, direct, isPlanned || list);
   // A start checks the pre-flight list first; every other command is sent directly.
@@ -99,6 +101,7 @@ function Cockpit({ session, live: direct }: CockpitProps): JSX.Element {
     log: logs.toggle,
     help: helps.toggle,
     alarms: histories.toggle,
+    avatar: () => (session.allowed.includes("change_avatar") ? avatars.open() : undefined),
     checks: () => (isPlanned || ended || !can("run") ? undefined : lists.toggle()),
     step: `${session.current?.index} ${session.current?.status}`,
   });
@@ -141,6 +144,15 @@ function Cockpit({ session, live: direct }: CockpitProps): JSX.Element {
       </div>
       <aside className={classes.side} data-tour="side" aria-label={t("side.label")}>
         {!ended && can("run") && <DevicesPanel session={session} />}
+        {!ended && isChangeable(session) && (
+          <AvatarPanel
+            session={session}
+            live={live}
+            opened={avatar}
+            onOpen={avatars.open}
+            onClose={avatars.close}
+          />
+        )}
         {session.kind === "expert" && <SuggestionsPanel session={session} />}
         <NotesPanel session={session} send={live.send} sending={live.sending} />
         <ScoresPanel session={session} />

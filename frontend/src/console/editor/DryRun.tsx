@@ -7,6 +7,7 @@ import { Notice } from "@shared/ui/Notice";
 import { milliseconds, seconds } from "@shared/units";
 import { keepPreviousData, useQuery } from "@tanstack/react-query";
 import { type CSSProperties, type JSX, useState } from "react";
+import { changeWords } from "../avatarChanges/words";
 import { useTexts } from "../i18n";
 import { Loaded } from "../ui/Loaded";
 import { Order } from "../ui/Order";
@@ -155,7 +156,8 @@ function Bars({ timeline }: { readonly timeline: Timeline }): JSX.Element {
 }
 
 function Steps({ timeline }: { readonly timeline: Timeline }): JSX.Element {
-  const { t } = useTexts();
+  const texts = useTexts();
+  const { t } = texts;
   return (
     <div className={classes.scroll}>
       <table className={`${classes.table} numbers`}>
@@ -176,6 +178,12 @@ function Steps({ timeline }: { readonly timeline: Timeline }): JSX.Element {
               <td>
                 {step.title}
                 <div className={classes.small}>{step.key}</div>
+                {step.avatar_changes != null && (
+                  <div className={classes.small}>
+                    {t("avatarChanges.inPhase")}{" "}
+                    {changeWords(texts, step.avatar_changes).join(" · ")}
+                  </div>
+                )}
               </td>
               <td>
                 {step.condition_label !== null && (

@@ -5,6 +5,7 @@ import {
   type Texts,
   useTranslations,
 } from "@shared/i18n/i18n";
+import { avatarChangesDe, avatarChangesEn } from "../avatarChanges/texts";
 import { bodiesDe, bodiesEn } from "../bodies/texts";
 import { bodyViewDe, bodyViewEn } from "../bodyView/texts";
 import { jointMapDe, jointMapEn } from "../captures/jointMapTexts";
@@ -45,6 +46,7 @@ import { registryDe, registryEn } from "./registries.generated";
 
 const allEn = {
   ...en,
+  ...avatarChangesEn,
   ...peopleEn,
   ...joinEn,
   ...auditEn,
@@ -83,6 +85,7 @@ const allEn = {
 };
 const allDe = {
   ...de,
+  ...avatarChangesDe,
   ...peopleDe,
   ...joinDe,
   ...auditDe,

@@ -5,6 +5,7 @@ import type {
   Account,
   Administration,
   Alarm,
+  AvatarChoices,
   Check,
   CheckResult,
   CodebookColumn,
@@ -68,15 +69,24 @@ export const studies = {
     answer<readonly CodebookColumn[]>(server.GET("/api/studies/{key}/codebook", study(key))),
 };
 
+const UNCHANGED = { casts: [], colliders: [], gains: [], layers: [], released: [] } as const;
+
 export const sessions = {
   get: (id: string) => answer<SessionView>(server.GET("/api/sessions/{session_id}", session(id))),
-  command: (id: string, expectedVersion: number, command: Command) =>
+  command: (id: string, expectedVersion: number, { avatar_changes, ...command }: Command) =>
     answer<SessionView>(
       server.POST("/api/sessions/{session_id}/commands", {
         ...session(id),
-        body: { command_id: uuid(), expected_version: expectedVersion, ...command },
+        body: {
+          command_id: uuid(),
+          expected_version: expectedVersion,
+          ...command,
+          ...(avatar_changes && { avatar_changes: { ...UNCHANGED, ...avatar_changes } }),
+        },
       }),
     ),
+  avatarChoices: (id: string) =>
+    answer<AvatarChoices>(server.GET("/api/sessions/{session_id}/avatar-choices", session(id))),
   events: (id: string) =>
     answer<readonly SessionEvent[]>(server.GET("/api/sessions/{session_id}/events", session(id))),
   alarms: (id: string) =>

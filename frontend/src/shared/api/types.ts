@@ -124,6 +124,10 @@ export type Slot = Schemas["SlotRow"];
 export type SlotState = Slot["state"];
 export type Ledger = Schemas["LedgerView"];
 
+export type AvatarChanges = Partial<NonNullable<Schemas["CommandRequest"]["avatar_changes"]>>;
+export type AvatarChangesInForce = NonNullable<SessionView["avatar_changes"]>;
+export type AvatarChoices = Schemas["AvatarChoices"];
+
 export interface Command {
   readonly type: CommandType;
   readonly reason?: string;
@@ -132,6 +136,7 @@ export interface Command {
   readonly step_index?: number;
   readonly height_m?: { readonly stated: number; readonly matched: number };
   readonly paper_consent?: { readonly place: string; readonly reason: string };
+  readonly avatar_changes?: AvatarChanges;
 }
 
 /** What the headset reports several times a second; not part of the OpenAPI description. */

@@ -3,8 +3,10 @@ import { Button, Loader, SegmentedControl } from "@mantine/core";
 import { useLocalStorage } from "@mantine/hooks";
 import type { PoseTouch } from "@shared/api/poses";
 import type { SessionView } from "@shared/api/types";
+import { type BodyMarks, NO_MARKS } from "@shared/stage/marks";
 import { Icon } from "@shared/ui/Icon";
 import { type JSX, useEffect, useRef } from "react";
+import { MarksLegend } from "../../avatarChanges/MarksLegend";
 import { BodyNotice } from "../../bodyView/BodyNotice";
 import { DrawnAs } from "../../bodyView/DrawnAs";
 import { type Key, useTexts } from "../../i18n";
@@ -72,7 +74,8 @@ export function LiveCard({ session, store }: LiveCardProps): JSX.Element {
 function Picture({ session, store, view }: LiveCardProps & { readonly view: View }): JSX.Element {
   const { t } = useTexts();
   const root = useRef<HTMLDivElement>(null);
-  const live = useLiveScene(root, session.id, store, view);
+  const marks = marksOf(session);
+  const live = useLiveScene(root, session.id, store, view, marks);
   const isBlinded = live.setup?.blinded ?? true;
   return (
     <>
@@ -88,6 +91,7 @@ function Picture({ session, store, view }: LiveCardProps & { readonly view: View
         {!isBlinded && (
           <div className={classes.overlay}>
             <LastTouch touch={live.last} />
+            <MarksLegend marks={marks} />
             <Legend />
           </div>
         )}
@@ -160,6 +164,9 @@ function Legend(): JSX.Element {
     </span>
   );
 }
+
+const marksOf = ({ avatar_changes: changes }: SessionView): BodyMarks =>
+  changes == null ? NO_MARKS : { cast: changes.held_parts, passing: changes.passing_parts };
 
 /** Whether there is movement to show: from the moment the participant enters the body. */
 export const hasMovement = ({ status, steps }: SessionView): boolean =>

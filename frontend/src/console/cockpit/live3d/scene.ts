@@ -4,6 +4,8 @@
  */
 import type { PoseSetup, PoseStream } from "@shared/api/poses";
 import type { BodyRoles, Figure, StagePalette } from "@shared/stage/figure";
+import { type BodyMarks, NO_MARKS } from "@shared/stage/marks";
+import { BodyMarks3d } from "@shared/stage/marks3d";
 import type { BodyModel } from "@shared/stage/skin/bodyModel";
 import { type LivePose, livePose } from "@shared/stage/skin/pose";
 import { bodyOf, Space3d, type StageBody } from "@shared/stage/space3d";
@@ -31,6 +33,8 @@ export class LiveScene extends Space3d {
   #players: ReadonlyMap<PoseStream, Player> = new Map();
   #setup: PoseSetup | null = null;
   #view: View = "third";
+  #marks: BodyMarks3d | null = null;
+  #marked: BodyMarks = NO_MARKS;
 
   /** Throws if the browser has no WebGL. */
   constructor(canvas: HTMLCanvasElement) {
@@ -50,6 +54,7 @@ export class LiveScene extends Space3d {
       ]),
     );
     this.standBodies([...this.#players.values()].map(({ body }) => body));
+    this.#standMarks(setup);
     const blocks = setup.surfaces.map(({ key, kind, center_m, half_size_m }) => ({
       key,
       wall: kind === "side",
@@ -73,7 +78,33 @@ export class LiveScene extends Space3d {
     place(this.#setup, values, player.placed);
     player.pose.values.set(values);
     player.body.show(NOW);
+    if (stream === "actual") this.#marks?.show(player.placed.positions);
     this.#moved();
+  }
+
+  /** Mark the parts of the avatar that are in a cast or have no collider. */
+  mark(marks: BodyMarks): void {
+    this.#marked = marks;
+    if (this.#marks !== null) this.#marks.marks = marks;
+    const avatar = this.#players.get("actual");
+    if (avatar?.received) this.#marks?.show(avatar.placed.positions);
+    this.requestPicture();
+  }
+
+  override dispose(): void {
+    this.#marks?.dispose();
+    super.dispose();
+  }
+
+  /** A blinded reader does not see the avatar, and so no marks. */
+  #standMarks(setup: PoseSetup): void {
+    if (this.#marks !== null) {
+      this.scene.remove(this.#marks.group);
+      this.#marks.dispose();
+    }
+    this.#marks = setup.blinded ? null : new BodyMarks3d(setup.joints, setup.parents);
+    if (this.#marks !== null) this.scene.add(this.#marks.group);
+    this.mark(this.#marked);
   }
 
   /** Colour the avatar by its joint errors, degrees. */

@@ -8,6 +8,7 @@ import { sessions } from "@shared/api/endpoints";
 import type { FeedState } from "@shared/api/live";
 import { openPoses, type PoseSetup, type PoseTouch } from "@shared/api/poses";
 import { paletteOf } from "@shared/stage/figure";
+import type { BodyMarks } from "@shared/stage/marks";
 import { type DrawingState, useDrawing } from "@shared/stage/useDrawing";
 import { type RefObject, useEffect, useRef, useState } from "react";
 import { useDrawnAs } from "../../bodyView/DrawnAs";
@@ -33,6 +34,7 @@ export function useLiveScene(
   id: string,
   store: TelemetryStore,
   view: View,
+  marks: BodyMarks,
 ): Live {
   const scheme = useComputedColorScheme("light");
   const isPageVisible = useDocumentVisibility() === "visible";
@@ -62,6 +64,10 @@ export function useLiveScene(
   }, [root, scene, setup, scheme, store, model]);
 
   useEffect(() => scene?.setView(view), [scene, view]);
+
+  // By their content: the session is a new object whenever anything in it changes.
+  const marked = JSON.stringify(marks);
+  useEffect(() => scene?.mark(JSON.parse(marked) as BodyMarks), [scene, marked]);
 
   useEffect(() => {
     if (scene === null || !isPageVisible) return;

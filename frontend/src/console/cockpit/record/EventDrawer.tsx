@@ -1,9 +1,10 @@
 /** The session's event log, event by event, as the server appended it. */
-import type { SessionEvent, SessionView } from "@shared/api/types";
+import type { AvatarChanges, SessionEvent, SessionView } from "@shared/api/types";
 import { timeOfDay } from "@shared/format";
 import { Notice } from "@shared/ui/Notice";
 import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
+import { changeWords } from "../../avatarChanges/words";
 import { useTexts } from "../../i18n";
 import { eventsQuery } from "../../queries";
 import { Loaded } from "../../ui/Loaded";
@@ -58,6 +59,7 @@ function EventTable({ events }: { readonly events: readonly SessionEvent[] }): J
                   ? t("log.blinding_lifted")
                   : event.type.replaceAll("_", " ")}
                 <div className={classes.empty}>{detailsOf(event)}</div>
+                {event.type === "avatar_changed" && <Changed event={event} />}
               </td>
               <td className={classes.nowrap}>{actorName(event.by)}</td>
             </tr>
@@ -66,6 +68,12 @@ function EventTable({ events }: { readonly events: readonly SessionEvent[] }): J
       </table>
     </>
   );
+}
+
+function Changed({ event }: { readonly event: SessionEvent }): JSX.Element {
+  const texts = useTexts();
+  const words = changeWords(texts, event.data.changes as AvatarChanges);
+  return <div>{words.length === 0 ? texts.t("avatarChanges.back") : words.join(" · ")}</div>;
 }
 
 /** Identifiers and hashes are for the export, so they are not shown here. */

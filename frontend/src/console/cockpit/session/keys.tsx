@@ -14,6 +14,7 @@ export interface Keys {
   readonly help: () => void;
   readonly alarms: () => void;
   readonly checks: () => void;
+  readonly avatar: () => void;
   /** Changes whenever the primary action changes its meaning. */
   readonly step: string;
 }
@@ -34,6 +35,7 @@ const BINDINGS: Readonly<Record<string, Exclude<keyof Keys, "step">>> = {
   l: "log",
   a: "alarms",
   c: "checks",
+  b: "avatar",
   "?": "help",
 };
 
@@ -88,6 +90,7 @@ export function KeyboardHelp(props: KeyboardHelpProps): JSX.Element {
     [["L"], t("keys.log")],
     [["A"], t("alarm.open")],
     [["C"], t("preflight.open")],
+    [["B"], t("avatarChanges.key")],
     [["1 2 3"], t("live3d.keys")],
     [["?"], t("keys.help")],
     [["Esc"], t("keys.close")],

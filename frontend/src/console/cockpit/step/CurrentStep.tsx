@@ -6,6 +6,7 @@ import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { milliseconds } from "@shared/units";
 import type { JSX } from "react";
+import { changeWords } from "../../avatarChanges/words";
 import { useTexts } from "../../i18n";
 import { isForm, isTimed, stepIcon, stepName } from "../../steps";
 import { Key } from "../../ui/Key";
@@ -86,7 +87,8 @@ export function CurrentStep(props: CurrentStepProps): JSX.Element {
 }
 
 function StepPosition({ session, step }: { readonly session: SessionView; readonly step: Step }) {
-  const { t } = useTexts();
+  const texts = useTexts();
+  const { t } = texts;
   const parts = [t("step.of", { number: step.index + 1, total: session.steps.length })];
   if (step.block !== null) {
     const blocks = new Set(session.steps.map((other) => other.block).filter((b) => b !== null));
@@ -98,6 +100,10 @@ function StepPosition({ session, step }: { readonly session: SessionView; readon
   } else if (step.block !== null) parts.push(t("step.latencyHidden"));
   if (step.until_completions != null) {
     parts.push(t("practice.until", { count: step.until_completions }));
+  }
+  if (step.avatar_changes != null) {
+    const words = changeWords(texts, step.avatar_changes).join(" · ");
+    parts.push(`${t("avatarChanges.inPhase")} ${words}`);
   }
   if (step.attempt > 1) parts.push(t("timeline.attempt", { number: step.attempt }));
   return (
