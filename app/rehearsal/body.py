@@ -7,15 +7,31 @@ import numpy as np
 
 from app.adapters.captures import CaptureError, read_capture_file
 from app.errors import file_problem
-from app.science.retargeting import movement_in_place, propose_joint_map
+from app.science.retargeting import (
+    captured_fingers,
+    has_fingers,
+    movement_in_place,
+    propose_joint_map,
+)
 from app.science.rig import RigError, RigMotion
+from app.science.rotations import FloatArray
 from app.science.simulation import (
+    LoopedFingers,
     SimulatedFingers,
     SimulatedParticipant,
     idle_movement,
     pointing,
 )
-from app.science.skeleton import Movement, Skeleton, SkeletonError, build_skeleton, loop, resample
+from app.science.skeleton import (
+    JOINT_COUNT,
+    Movement,
+    Skeleton,
+    SkeletonError,
+    build_skeleton,
+    continuous,
+    loop,
+    resample,
+)
 
 FRAME_RATE_HZ = 90.0
 CROSSFADE_S, SHORTEST_CROSSFADE_S = 0.4, 0.1
@@ -35,10 +51,19 @@ def captured_movement(path: Path, skeleton: Skeleton) -> Movement:
     Raises:
         UnusableCapture: the file cannot be read, or its movement cannot be transferred to a body.
     """
+    return _captured(path, skeleton)[0]
+
+
+def _captured(path: Path, skeleton: Skeleton) -> tuple[Movement, FloatArray | None]:
+    """Return the capture's movement and that of its fingers (N, 30, 4), None if it has none."""
     try:
         source = skeleton_motion(path)
         joint_map = propose_joint_map(source.rig).joint_map
-        return movement_in_place(source, joint_map, skeleton)
+        movement = movement_in_place(source, joint_map, skeleton)
+        fingers = (
+            captured_fingers(source, joint_map) if has_fingers(source.rig, joint_map) else None
+        )
+        return movement, fingers
     except OSError as error:
         raise UnusableCapture(file_problem(error)) from error
     except (CaptureError, RigError, SkeletonError) as error:
@@ -67,7 +92,7 @@ def skeleton_motion(path: Path) -> RigMotion:
 class Person:
     """The simulated participant of a rehearsal, with properties drawn from the seed.
 
-    `fingers`: their generated movement; None if fingers are not recorded.
+    `fingers`: their movement, from the capture or generated; None if they are not recorded.
     """
 
     stature_m: float
@@ -76,7 +101,7 @@ class Person:
     age: int
     skeleton: Skeleton
     participant: SimulatedParticipant
-    fingers: SimulatedFingers | None = None
+    fingers: SimulatedFingers | LoopedFingers | None = None
 
 
 def make_person(
@@ -84,11 +109,16 @@ def make_person(
 ) -> Person:
     """Make a participant that moves like `capture`, or synthetically; raise UnusableCapture.
 
-    `with_fingers`: with generated movement of the fingers, and an index finger that points.
+    `with_fingers`: with the fingers of the capture or, if it has none, generated ones, and an index
+    finger that points.
     """
     stature_m = float(np.clip(rng.normal(1.72, 0.09), 1.52, 1.95))
     skeleton = build_skeleton(stature_m)
-    movement = idle_movement(skeleton, rng) if capture is None else _looped(capture, skeleton)
+    fingers: FloatArray | None = None
+    if capture is None:
+        movement = idle_movement(skeleton, rng)
+    else:
+        movement, fingers = _looped(capture, skeleton, with_fingers=with_fingers)
     person = Person(
         stature_m=stature_m,
         handedness="left" if rng.random() < 0.1 else "right",
@@ -99,16 +129,32 @@ def make_person(
             pointing(skeleton) if with_fingers else skeleton, movement, rng
         ),
     )
-    # Fingers have randomness of their own, so that a person moves the same with and without them.
-    own = np.random.default_rng(rng.bit_generator.random_raw() if with_fingers else 0)
-    return replace(person, fingers=SimulatedFingers(own)) if with_fingers else person
+    if not with_fingers:
+        return person
+    if fingers is not None:
+        offset_s = person.participant.base_offset_s
+        return replace(person, fingers=LoopedFingers(fingers, FRAME_RATE_HZ, offset_s))
+    # A generator of their own, so that a person's body moves the same with and without fingers.
+    return replace(person, fingers=SimulatedFingers(rng.spawn(1)[0]))
 
 
-def _looped(capture: Path, skeleton: Skeleton) -> Movement:
-    """Return the capture in place, scaled to the stature, and looped with a cross-fade."""
-    movement = captured_movement(capture, skeleton)
+def _looped(
+    capture: Path, skeleton: Skeleton, *, with_fingers: bool
+) -> tuple[Movement, FloatArray | None]:
+    """Return the capture in place, scaled to the stature, and looped with a cross-fade.
+
+    With its fingers (N, 30, 4) if they are asked for and it has any; else None.
+    """
+    movement, fingers = _captured(capture, skeleton)
+    if with_fingers and fingers is not None:
+        movement = replace(
+            movement, rotations=np.concatenate((movement.rotations, continuous(fingers)), axis=1)
+        )
     try:
         crossfade_s = min(CROSSFADE_S, (movement.duration_s - SHORTEST_LOOP_S) / 2.0)
-        return loop(resample(movement, FRAME_RATE_HZ), max(crossfade_s, SHORTEST_CROSSFADE_S))
+        whole = loop(resample(movement, FRAME_RATE_HZ), max(crossfade_s, SHORTEST_CROSSFADE_S))
     except SkeletonError as error:
         raise UnusableCapture(f"{capture} cannot be used: {error}") from error
+    body = replace(whole, rotations=whole.rotations[:, :JOINT_COUNT])
+    looped = whole.rotations[:, JOINT_COUNT:]
+    return body, looped if looped.shape[1] else None

@@ -5,6 +5,8 @@ an avatar, optionally with feet locked to the ground, and `Retargeter` does so f
 `verify` and `check_table1` check the result.
 """
 
+from app.science.retargeting.finger_names import finger_bones_of
+from app.science.retargeting.fingers import captured_fingers, has_fingers
 from app.science.retargeting.gait import Walk
 from app.science.retargeting.ground import Flat, Ground, Ramp, Steps
 from app.science.retargeting.in_place import movement_in_place
@@ -53,8 +55,11 @@ __all__ = [
     "Verification",
     "Walk",
     "Walks",
+    "captured_fingers",
     "check_joint_map",
     "check_table1",
+    "finger_bones_of",
+    "has_fingers",
     "is_below",
     "movement_in_place",
     "named_avatar",

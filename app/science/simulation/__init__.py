@@ -7,7 +7,12 @@ from app.science.simulation.answers import (
     simulated_answers,
 )
 from app.science.simulation.finger_capsules import FingerCapsules, pointing
-from app.science.simulation.fingers import GESTURES_DEG, SimulatedFingers, gesture_angles
+from app.science.simulation.fingers import (
+    GESTURES_DEG,
+    LoopedFingers,
+    SimulatedFingers,
+    gesture_angles,
+)
 from app.science.simulation.goal import Goal, GoalKind, SimulationError
 from app.science.simulation.idle import idle_movement, relaxed_pose
 from app.science.simulation.participant import SimulatedParticipant
@@ -19,6 +24,7 @@ __all__ = [
     "FingerCapsules",
     "Goal",
     "GoalKind",
+    "LoopedFingers",
     "MovementTraits",
     "SimulatedFingers",
     "SimulatedItem",

@@ -37,6 +37,11 @@ class BaseMovement:
         self._gains, self._rest = gains, (1.0 - gains) * mean
         self._middle = root.mean(axis=0)
 
+    @property
+    def offset_s(self) -> float:
+        """The place in the loop at time 0."""
+        return self._offset_s
+
     def _frame_at(self, time_s: float) -> tuple[int, float]:
         place = ((time_s + self._offset_s) * self._rate_hz) % self._frames
         frame = min(int(place), self._frames - 1)

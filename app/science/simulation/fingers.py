@@ -20,9 +20,9 @@ import numpy.typing as npt
 
 from app.science.avatar.body import AXIS_NAMES
 from app.science.avatar.targets import finger_rotations
-from app.science.rotations import FloatArray
+from app.science.rotations import FloatArray, slerp
 from app.science.simulation.paths import minimum_jerk
-from app.science.skeleton import FINGERS
+from app.science.skeleton import FINGERS, PARTS_PER_HAND
 
 Angles = npt.NDArray[np.float64]
 _SIDES = ("Left", "Right")
@@ -138,3 +138,34 @@ class SimulatedFingers:
             np.zeros(len(AXIS_NAMES)),
         )
         return finger_rotations(angles)
+
+
+class LoopedFingers:
+    """The fingers of a capture, played in a loop together with its body.
+
+    A hand that reaches for something points with its index finger instead.
+
+    Args:
+        rotations: (N, 30, 4) local rotations of a loop.
+        rate_hz: frames per second.
+        offset_s: the place in the loop at time 0: that of the body.
+    """
+
+    def __init__(self, rotations: FloatArray, rate_hz: float, offset_s: float) -> None:
+        self._rotations, self._rate_hz, self._offset_s = rotations, rate_hz, offset_s
+        self._point = finger_rotations(
+            gesture_angles("point", "Left") + gesture_angles("point", "Right")
+        )
+        self._share = np.zeros(len(_SIDES))
+        self._time_s: float | None = None
+
+    def pose(self, time_s: float, pointing: str | None = None) -> FloatArray:
+        """Return the local rotations (30, 4) of the finger parts; call in order of time."""
+        passed_s = 0.0 if self._time_s is None else time_s - self._time_s
+        self._time_s = time_s
+        goal = np.array([pointing == f"{side}Hand" for side in _SIDES], dtype=np.float64)
+        most = passed_s / _POINT_WITHIN_S
+        self._share += np.clip(goal - self._share, -most, most)
+        frame = round((time_s + self._offset_s) * self._rate_hz) % len(self._rotations)
+        share = np.repeat([minimum_jerk(float(one)) for one in self._share], PARTS_PER_HAND)
+        return slerp(self._rotations[frame], self._point, share)

@@ -78,6 +78,11 @@ class SimulatedParticipant:
         self._task = 0.0
 
     @property
+    def base_offset_s(self) -> float:
+        """The place of the looping background movement at time 0."""
+        return self._base.offset_s
+
+    @property
     def aimed_m(self) -> Vector | None:
         """The end point of the present goal's movement, with scatter; None before it starts."""
         if self._goal is None or self._goal.effector is None:
