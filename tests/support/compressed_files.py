@@ -105,39 +105,82 @@ def _table(document: Json, binary: bytes, number: int) -> npt.NDArray[Any]:
     return values.reshape(-1, width)
 
 
-def attributes_stream(table: npt.NDArray[np.uint8]) -> bytes:
-    """Return (N, stride) elements as a stream, each group with the fewest bits that it needs."""
+def attributes_stream(table: npt.NDArray[np.uint8], *, channel: int | None = None) -> bytes:
+    """Return (N, stride) elements as a stream, each group with the fewest bits that it needs.
+
+    Args:
+        table: the elements.
+        channel: the kind of difference, for version 1: 0 of bytes, 1 of pairs of bytes, 2 + 16 r of
+            four by exclusive or, turned by r bits; None for version 0.
+    """
     count, stride = table.shape
-    first = table[0].astype(np.int64)
-    before = np.vstack((first, table[:-1].astype(np.int64)))
-    differences = (table.astype(np.int64) - before + 128) % 256 - 128
-    codes = np.where(differences < 0, -2 * differences - 1, 2 * differences)
-    stream = bytearray(b"\xa0")
+    columns = _differences(table, channel or 0)
+    stream = bytearray(b"\xa0" if channel is None else b"\xa1")
     most = min((8192 // stride) & ~15, 256)
     for start in range(0, count, most):
-        block = codes[start : start + most]
-        for column in block.T:
-            groups = np.append(column, np.zeros(-len(column) % 16, dtype=np.int64)).reshape(-1, 16)
-            modes = [_mode(group) for group in groups]
-            header = bytearray((len(modes) + 3) // 4)
-            for number, mode in enumerate(modes):
-                header[number // 4] |= mode << (2 * (number % 4))
-            stream += header + b"".join(map(_group, groups, modes))
+        block = columns[start : start + most].T
+        if channel is None:
+            stream += b"".join(_column(column, (0, 2, 4, 8)) for column in block)
+            continue
+        control, packed = bytearray(stride // 4), bytearray()
+        for number, column in enumerate(block):
+            forms = (
+                _column(column, (0, 1, 2, 4)),
+                _column(column, (1, 2, 4, 8)),
+                None if column.any() else b"",
+                bytes(column.tolist()),
+            )
+            kind, form = min(
+                ((kind, form) for kind, form in enumerate(forms) if form is not None),
+                key=lambda one: len(one[1]),
+            )
+            control[number // 4] |= kind << (2 * (number % 4))
+            packed += form
+        stream += control + packed
     tail = table[0].tobytes()
-    return bytes(stream + bytes(max(0, 32 - stride)) + tail)
+    if channel is None:
+        return bytes(stream + bytes(max(0, 32 - stride)) + tail)
+    tail += bytes([channel]) * (stride // 4)
+    return bytes(stream + bytes(max(0, 24 - len(tail))) + tail)
 
 
-def _mode(group: npt.NDArray[np.int64]) -> int:
-    return min(range(0 if not group.any() else 1, 4), key=lambda mode: len(_group(group, mode)))
+def _differences(table: npt.NDArray[np.uint8], channel: int) -> npt.NDArray[np.int64]:
+    """Return the coded differences of elements to the ones before, (N, stride) bytes."""
+    wide = 1 << (channel & 3)
+    bits = 8 * wide
+    numbers = table.view(f"<u{wide}").astype(np.int64)
+    before = np.vstack((numbers[0], numbers[:-1]))
+    if wide == 4:
+        changed, turn = numbers ^ before, channel >> 4
+        codes = (changed << turn | changed >> (32 - turn)) & 0xFFFFFFFF
+    else:
+        half = 1 << (bits - 1)
+        difference = (numbers - before + half) % (1 << bits) - half
+        codes = np.where(difference < 0, -2 * difference - 1, 2 * difference)
+    found: npt.NDArray[np.int64] = codes.astype(f"<u{wide}").view(np.uint8).astype(np.int64)
+    return found.reshape(table.shape)
 
 
-def _group(group: npt.NDArray[np.int64], mode: int) -> bytes:
-    if mode in (0, 3):
-        return b"" if mode == 0 else bytes(group.tolist())
-    bits = 2 * mode
+def _column(column: npt.NDArray[np.int64], widths: Sequence[int]) -> bytes:
+    """Return a column of bytes in groups of 16, each in the shortest of four widths."""
+    groups = np.append(column, np.zeros(-len(column) % 16, dtype=np.int64)).reshape(-1, 16)
+    header, packed = bytearray((len(groups) + 3) // 4), bytearray()
+    for number, group in enumerate(groups):
+        usable = [row for row, bits in enumerate(widths) if bits or not group.any()]
+        mode = min(usable, key=lambda row: len(_group(group, widths[row])))
+        header[number // 4] |= mode << (2 * (number % 4))
+        packed += _group(group, widths[mode])
+    return bytes(header + packed)
+
+
+def _group(group: npt.NDArray[np.int64], bits: int) -> bytes:
+    if bits in (0, 8):
+        return b"" if bits == 0 else bytes(group.tolist())
     full = (1 << bits) - 1
+    # Single bits begin with the lowest of a byte.
+    order = group.reshape(2, 8)[:, ::-1].ravel() if bits == 1 else group
     packed = 0
-    for code in group.tolist():
+    for code in order.tolist():
         packed = packed << bits | min(code, full)
     return packed.to_bytes(2 * bits, "big") + bytes(code for code in group.tolist() if code >= full)
 

@@ -1,14 +1,15 @@
-"""Decode the compressed buffer views of `EXT_meshopt_compression`.
+"""Decode the buffer views of `EXT_meshopt_compression` and `KHR_meshopt_compression`.
 
 Three codecs: columns of bytes for vertices, a pair of queues for triangles, and differences for
 other indices. They are written here, because the only package for Python has no wheels and is an
 alpha version. Every read is checked against the data, and loops are bounded by the number of
 elements, so a damaged stream gives an error or wrong numbers, and nothing else.
 
-Version 0 of the vertex codec is read, which is the only one of `EXT_meshopt_compression`;
-`KHR_meshopt_compression` may use version 1.
+Versions 0 and 1 of the vertex codec are read: `EXT_meshopt_compression` has the first,
+`KHR_meshopt_compression` both.
 
-Source: Khronos, EXT_meshopt_compression, sections "Bitstream" and "Filters".
+Source: Khronos, EXT_meshopt_compression and KHR_meshopt_compression, sections "Bitstream" and
+"Filters".
 """
 
 import numpy as np
@@ -67,34 +68,65 @@ def _filtered(elements: Bytes, filter_: str) -> bytes:
 
 
 @compiled_checked
-def _column(data: Bytes, at: int, groups: int, deltas: Bytes) -> int:
-    """Decode the differences of a block's column, in groups of 16; return where the next begins.
+def _column(data: Bytes, at: int, groups: int, narrowest: int, column: Bytes) -> int:
+    """Decode one byte of each element of a block, in groups of 16; return where the next begins.
 
-    Two bits say for each group how many bits a difference has: 0, 2, 4 or 8. One of 2 or 4 bits
-    that are all set stands for a byte after the group.
+    Two bits say for each group how wide its bytes are stored: `narrowest` and the three next of 0,
+    1, 2, 4 and 8 bits, in version 0 without 1. What fills all bits of a narrow byte stands for a
+    whole one after the group.
     """
     header = at
     at += (groups + 3) // 4
     for group in range(groups):
-        bits = 2 * ((data[header + group // 4] >> (2 * (group % 4))) & 3)
+        mode = (data[header + group // 4] >> (2 * (group % 4))) & 3
+        bits = (0, 2, 4, 8, 0, 1, 2, 4, 8)[narrowest + mode]
         start = group * _GROUP
         if bits == 0:
-            deltas[start : start + _GROUP] = 0
-        elif bits == 6:
+            column[start : start + _GROUP] = 0
+        elif bits == 8:
             for k in range(_GROUP):
-                deltas[start + k] = data[at + k]
+                column[start + k] = data[at + k]
             at += _GROUP
         else:
             full, per_byte = (1 << bits) - 1, 8 // bits
             extra = at + _GROUP // per_byte
             for k in range(_GROUP):
-                shift = 8 - bits * (k % per_byte + 1)
+                within = k % per_byte
+                # Single bits begin with the lowest, all others with the highest.
+                shift = within if bits == 1 else 8 - bits * (within + 1)
                 value = (data[at + k // per_byte] >> shift) & full
                 if value == full:
                     value = data[extra]
                     extra += 1
-                deltas[start + k] = value
+                column[start + k] = value
             at = extra
+    return at
+
+
+@compiled_checked
+def _block_columns(
+    data: Bytes, at: int, size: int, stride: int, version: int, columns: Bytes
+) -> int:
+    """Decode the columns of a block of `size` elements; return where the next block begins.
+
+    Version 1 has two bits for each column: narrow or wide groups, all zero, or as it is.
+    """
+    groups = (size + _GROUP - 1) // _GROUP
+    control = at
+    at += version * (stride // 4)
+    for number in range(stride):
+        kind = 0
+        if version > 0:
+            kind = (data[control + number // 4] >> (2 * (number % 4))) & 3
+        if kind == 3:
+            for k in range(size):
+                columns[number, k] = data[at + k]
+            at += size
+        elif kind == 2:
+            columns[number] = 0
+        else:
+            narrowest = 0 if version == 0 else 4 + kind
+            at = _column(data, at, groups, narrowest, columns[number])
     return at
 
 
@@ -102,32 +134,60 @@ def _column(data: Bytes, at: int, groups: int, deltas: Bytes) -> int:
 def _attributes(data: Bytes, count: int, stride: int) -> Bytes:
     """Decode `count` elements of `stride` bytes, (count, stride).
 
-    They are in blocks; a block has one column after the other, each as differences from one element
-    to the next. The first element's are to the last bytes of the stream.
+    They are in blocks; a block has one column of bytes after the other, as differences from one
+    element to the next. The first element's are to one at the end of the stream. Differences are
+    of bytes; in version 1 a byte at the very end says for every four of them whether they are of
+    bytes, of pairs, or of all four by exclusive or.
     """
-    if len(data) < 1 + max(_TAIL_BYTES, stride):
+    version = data[0] & 15 if len(data) else 0
+    channels = version * (stride // 4)
+    tail = max(24 if version > 0 else _TAIL_BYTES, stride + channels)
+    if len(data) < 1 + tail:
         raise ValueError("the compressed vertices are shorter than their beginning and end")
-    if data[0] != _ATTRIBUTES:
+    if data[0] & 240 != _ATTRIBUTES or version > 1:
         raise ValueError("the compressed vertices are of an unknown version")
     elements = np.zeros((count, stride), dtype=np.uint8)
-    last = data[len(data) - stride :].copy()
-    end = len(data) - max(_TAIL_BYTES, stride)
+    last = data[len(data) - stride - channels : len(data) - channels].copy()
     most = min((8192 // stride) & ~15, 256)
-    deltas = np.zeros(256, dtype=np.uint8)
+    columns = np.zeros((stride, 256), dtype=np.uint8)
     at = 1
     for first in range(0, count, most):
         size = min(most, count - first)
-        for column in range(stride):
-            at = _column(data, at, (size + _GROUP - 1) // _GROUP, deltas)
-            value = last[column]
-            for k in range(size):
-                delta = deltas[k]
-                value = np.uint8((value + ((delta >> 1) ^ (0 - (delta & 1)))) & 255)
-                elements[first + k, column] = value
-            last[column] = value
-        if at > end:
+        at = _block_columns(data, at, size, stride, version, columns)
+        if at > len(data) - tail:
             raise ValueError("the compressed vertices end too early")
+        for four in range(0, stride, 4):
+            channel = 0 if version == 0 else int(data[len(data) - channels + four // 4])
+            if channel & 3 == 3:
+                raise ValueError("the compressed vertices have an unknown kind of difference")
+            wide = 1 << (channel & 3)
+            for column in range(four, four + 4, wide):
+                _add(columns, column, wide, channel, elements[first : first + size], last)
     return elements
+
+
+@compiled_checked
+def _add(
+    columns: Bytes, column: int, wide: int, channel: int, elements: Bytes, last: Bytes
+) -> None:
+    """Add up the differences of numbers of 1, 2 or 4 bytes, lowest first, from `last` on."""
+    every = (1 << (8 * wide)) - 1
+    turn = channel >> 4
+    value = 0
+    for byte in range(wide):
+        value |= int(last[column + byte]) << (8 * byte)
+    for k in range(len(elements)):
+        code = 0
+        for byte in range(wide):
+            code |= int(columns[column + byte, k]) << (8 * byte)
+        if wide == 4:
+            value ^= ((code >> turn) | (code << (32 - turn))) & every
+        else:
+            value = (value + ((code >> 1) ^ -(code & 1))) & every
+        for byte in range(wide):
+            elements[k, column + byte] = (value >> (8 * byte)) & 255
+    for byte in range(wide):
+        last[column + byte] = (value >> (8 * byte)) & 255
 
 
 def _indices(data: bytes, count: int) -> list[int]:

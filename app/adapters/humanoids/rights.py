@@ -5,6 +5,8 @@ most `asset.copyright`, and what programs and sites write into `asset.extras` (S
 licence and source). What a file does not say is unknown, except in VRM 1.0, whose specification
 forbids what is not allowed.
 
+VRoid Hub, from which many VRM 0 files come, writes its terms into the address of the licence.
+
 Where two statements of a file disagree, as those of a licence without commercial use and of a
 permission for it, the stricter one counts.
 
@@ -14,6 +16,7 @@ Source: VRM consortium, VRM 0.0 `meta`; VRM 1.0 `VRMC_vrm` `meta`; Creative Comm
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Final, Literal
+from urllib.parse import parse_qsl, urlsplit
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -123,7 +126,9 @@ _WEARERS_0: Final[Mapping[str, Wearers]] = {
 _WEARERS_1: Final[Mapping[str, Wearers]] = {
     "onlyAuthor": "author", "onlySeparatelyLicensedPerson": "licensed", "everyone": "everyone",
 }  # fmt: skip
-_USES: Final[Mapping[str, Permission]] = {"Allow": "allowed", "Disallow": "forbidden"}
+_CREDIT: Final[Mapping[str, bool]] = {
+    "necessary": True, "required": True, "unnecessary": False,
+}  # fmt: skip
 _CC_URLS: Final[Mapping[str, str]] = {
     "CC0": "https://creativecommons.org/publicdomain/zero/1.0/",
     **{
@@ -143,8 +148,7 @@ def rights_of(asset: Asset, vrm0: Vrm0Meta | None, vrm1: Vrm1Meta | None) -> Mod
 def _of_vrm0(meta: Vrm0Meta, asset: Asset) -> ModelRights:
     licence = meta.licenseName
     terms = set(licence.split("_")) if licence in _CC_URLS else set()
-    forbids_passing_on = licence == "Redistribution_Prohibited"
-    commercial = _USES.get(meta.commercialUssageName, "unknown")
+    hub = _hub_terms(meta.otherPermissionUrl) or _hub_terms(meta.otherLicenseUrl)
     return ModelRights(
         title=_short(meta.title),
         authors=_authors(meta.author),
@@ -154,13 +158,38 @@ def _of_vrm0(meta: Vrm0Meta, asset: Asset) -> ModelRights:
         licence_url=_short(meta.otherLicenseUrl) or _CC_URLS.get(licence, ""),
         other_url=_short(meta.otherPermissionUrl),
         wearers=_WEARERS_0.get(meta.allowedUserName, "unknown"),
-        violent=_USES.get(meta.violentUssageName, "unknown"),
-        sexual=_USES.get(meta.sexualUssageName, "unknown"),
-        commercial="forbidden" if "NC" in terms else commercial,
-        redistribution="forbidden" if forbids_passing_on else "allowed" if terms else "unknown",
-        modification="forbidden" if "ND" in terms else "allowed" if terms else "unknown",
-        credit_needed="BY" in terms if terms else None,
+        violent=_stricter(meta.violentUssageName, hub.get("violent_expression")),
+        sexual=_stricter(meta.sexualUssageName, hub.get("sexual_expression")),
+        commercial=_stricter(
+            meta.commercialUssageName,
+            hub.get("corporate_commercial_use"),
+            "disallow" if "NC" in terms else None,
+        ),
+        redistribution=_stricter(
+            hub.get("redistribution"),
+            "disallow" if licence == "Redistribution_Prohibited" else "allow" if terms else None,
+        ),
+        modification=_stricter(
+            hub.get("modification"),
+            "disallow" if "ND" in terms else "allow" if terms else None,
+        ),
+        credit_needed="BY" in terms if terms else _CREDIT.get(hub.get("credit", "")),
     )
+
+
+def _hub_terms(url: str) -> Mapping[str, str]:
+    """Return the terms in the address of a licence at VRoid Hub; none for any other address."""
+    try:
+        parts = urlsplit(url)
+    except ValueError:
+        return {}
+    return dict(parse_qsl(parts.query)) if parts.hostname == "hub.vroid.com" else {}
+
+
+def _stricter(*statements: str | None) -> Permission:
+    """Return what several statements about a use come to: forbidden if one of them says so."""
+    said = {(statement or "").lower() for statement in statements}
+    return "forbidden" if "disallow" in said else "allowed" if "allow" in said else "unknown"
 
 
 def _of_vrm1(meta: Vrm1Meta, asset: Asset) -> ModelRights:
@@ -190,7 +219,7 @@ def _of_vrm1(meta: Vrm1Meta, asset: Asset) -> ModelRights:
         commercial=selling.get(meta.commercialUsage, "unknown"),
         redistribution=_allowed(meta.allowRedistribution),
         modification=changing.get(meta.modification, "unknown"),
-        credit_needed={"required": True, "unnecessary": False}.get(meta.creditNotation),
+        credit_needed=_CREDIT.get(meta.creditNotation),
     )
 
 

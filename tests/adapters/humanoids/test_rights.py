@@ -62,6 +62,27 @@ def test_a_licence_of_vrm_0_says_what_is_allowed(
     assert found.licence_url.startswith("https://creativecommons.org/") == ("CC" in licence)
 
 
+def test_terms_of_vroid_hub_are_in_an_address() -> None:
+    """A VRM 0 file of VRoid Hub has its terms in the address of its licence, and only there."""
+    terms = "modification=allow&redistribution=disallow&credit=necessary&violent_expression=allow"
+    for url, modification, redistribution, credit in (
+        (f"https://hub.vroid.com/license?{terms}", "allowed", "forbidden", True),
+        (f"https://hub.vroid.com.example.org/license?{terms}", "unknown", "unknown", None),
+        ("https://[", "unknown", "unknown", None),
+    ):
+        found = rights(
+            {
+                "licenseName": "Other",
+                "otherPermissionUrl": url,
+                "allowedUserName": "OnlyAuthor",
+                "violentUssageName": "Disallow",
+            },
+            vrm=0,
+        )
+        assert (found.modification, found.redistribution) == (modification, redistribution)
+        assert (found.credit_needed, found.violent) == (credit, "forbidden")
+
+
 def test_vrm_1_forbids_what_it_does_not_allow() -> None:
     """A `meta` of VRM 1.0 without permissions forbids them; each can be given."""
     strict = rights({"name": "F", "authors": ["A", "B"], "licenseUrl": "https://x"}, vrm=1)
