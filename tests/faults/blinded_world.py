@@ -2,8 +2,8 @@
 
 Each status has its own study. The keys, names and latencies of its conditions are canaries: they
 occur nowhere else, so anything found in a response can be traced to one session, even where a
-response mixes studies. The search covers the conditions' keys and names, latencies in ms and s,
-joint errors that were set equal to the latency (in degrees), and the hashes of the event log,
+response mixes studies. The search covers the conditions' keys, names and bodies, latencies
+in ms and s, joint errors that were set equal to the latency (in degrees), and the hashes of the event log,
 against which a guessed latency could be checked. It does not cover that a delay can be computed
 from frames; instead, the avatar's frames themselves count as a leak.
 """
@@ -127,6 +127,7 @@ def build_world(lab: Lab, worlds: Sequence[str] = WORLDS) -> list[Canaried]:
 
 def _build(lab: Lab, db: Session, number: int, world: str) -> Canaried:
     name = world.replace(" ", "-")
+    body = f"canary{number}body"
     small, large = 137.25 + number, 262.75 + number
     words = [f"canary{number}small", f"canary{number}large"]
     text = edited(
@@ -141,9 +142,9 @@ def _build(lab: Lab, db: Session, number: int, world: str) -> Canaried:
     )
     key = f"blinded-{name}"
     create_study(db, text, NOW)
-    sessions = [_session(db, key, world)]
+    sessions = [_session(db, key, world, body)]
     if world == TAKEN_AGAIN:
-        sessions.append(_session(db, key, "active", code="P-0002"))
+        sessions.append(_session(db, key, "active", body, code="P-0002"))
     if world == REVEALED:
         _reveal(lab, db, sessions[0])
     db.flush()
@@ -158,11 +159,11 @@ def _build(lab: Lab, db: Session, number: int, world: str) -> Canaried:
         key,
         tuple(one.id for one in sessions),
         tuple(one.participant_id for one in sessions),
-        canaries((small, large), more=[*words, *hashes, *degrees]),
+        canaries((small, large), more=[*words, body, *hashes, *degrees]),
     )
 
 
-def _session(db: Session, key: str, world: str, code: str = "P-0001") -> StudySession:
+def _session(db: Session, key: str, world: str, body: str, code: str = "P-0001") -> StudySession:
     ended = {"completed", "aborted", "withdrawn"}
     status = {TAKEN_AGAIN: "aborted", REVEALED: "active"}.get(world, world)
     stored = status if status in {*ended, "planned"} else "active"
@@ -176,9 +177,18 @@ def _session(db: Session, key: str, world: str, code: str = "P-0001") -> StudySe
         state = replace(state, current=7, phase=phase)
     if status == "held":
         state = replace(state, current=7, held=Hold(rule=0, submission_id=NOBODY))
+    phases = list(db.scalars(select(Phase).where(Phase.session_id == session.id)))
+    for row in phases:
+        row.body = body
     prepared = [
-        e.PhasePrepared(step=row.step_index, phase_id=row.phase_id, attempt=1, latency_ms=latency)
-        for row in db.scalars(select(Phase).where(Phase.session_id == session.id))
+        e.PhasePrepared(
+            step=row.step_index,
+            phase_id=row.phase_id,
+            attempt=1,
+            latency_ms=latency,
+            body=body,
+        )
+        for row in phases
         if (latency := row.latency_ms)
     ]
     clock = Clock(utc_now=lambda: NOW, monotonic_ns=lambda: 2_500_000_000)

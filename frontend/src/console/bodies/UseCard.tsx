@@ -130,7 +130,8 @@ function NewConfiguration({ body, avatars }: NewConfigurationProps): JSX.Element
   const queries = useQueryClient();
   const usual = avatars.find(({ key }) => key === USUAL) ?? avatars[0];
   const [base, setBase] = useState(usual?.key ?? USUAL);
-  const [key, setKey] = useState(body.name ?? "");
+  const [written, setKey] = useState<string | null>(null);
+  const key = written ?? body.name ?? "";
   const save = useMutation({
     mutationFn: () => saveWearing(base, key, body.content_hash, avatars),
     onSuccess: () =>

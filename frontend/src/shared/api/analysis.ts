@@ -22,6 +22,8 @@ export interface Filter {
   readonly since: string | null;
   readonly until: string | null;
   readonly limb: "hand" | "foot" | null;
+  /** The body whose phases are drawn; null for the first if there are several to choose from. */
+  readonly body: string | null;
 }
 
 /** The filter as URL query parameters; defaults are left out. */
@@ -30,7 +32,7 @@ export function searchOf(filter: Filter): URLSearchParams {
   if (filter.kind !== "people") search.set("kind", filter.kind);
   for (const code of filter.participant) search.append("participant", code);
   if (filter.rows !== "valid") search.set("rows", filter.rows);
-  for (const name of ["order", "since", "until", "limb"] as const) {
+  for (const name of ["order", "since", "until", "limb", "body"] as const) {
     const value = filter[name];
     if (value !== null && value !== "") search.set(name, value);
   }
@@ -51,6 +53,7 @@ export function filterFrom(search: URLSearchParams): Filter {
     since: day("since"),
     until: day("until"),
     limb: one("limb", ["hand", "foot"]),
+    body: search.get("body"),
   };
 }
 

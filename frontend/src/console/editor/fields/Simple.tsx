@@ -8,7 +8,9 @@ import {
   Textarea,
   TextInput,
 } from "@mantine/core";
+import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
+import { bodiesQuery } from "../../bodies/queries";
 import { useCommitted, useForm, useLabels, useProblem, useValue } from "../formContext";
 import { isList, isObject, type Json, type Path } from "../paths";
 import type { NumberSpec } from "../schema";
@@ -76,6 +78,9 @@ export function WordsField({
 /** The keys that exist elsewhere in the file or in the library, for fields that refer to one. */
 function useExistingKeys(path: Path): readonly string[] | null {
   const { tree, instruments } = useForm();
+  const isBody = path[0] === "conditions" && path.at(-1) === "body";
+  const bodies = useQuery({ ...bodiesQuery, enabled: isBody });
+  if (isBody) return (bodies.data?.humanoids ?? []).flatMap(({ name }) => name ?? []).toSorted();
   switch (path.at(-1)) {
     case "text":
       return isObject(tree.texts) ? Object.keys(tree.texts) : [];

@@ -91,6 +91,7 @@ export const fieldsEn = {
   "field.languages": "Languages",
   "field.conditions": "Conditions",
   "field.latency_ms": "Added latency (ms)",
+  "field.body": "Body",
   "field.label": "Label",
   "field.latency": "How latency is applied",
   "field.undelayed_parts": "Body parts without delay",
@@ -159,6 +160,8 @@ export const fieldsEn = {
   "field.signature": "Signature",
   "field.statements": "Statements to tick",
   "field.optional": "May be left out",
+  "hint.body":
+    "What participants wear in this condition, by its name on the page Bodies. Left out, it is the body of the avatar's configuration.",
   "hint.seed": "Determines how the orders are shuffled; any number.",
   "hint.replicates": "How many participants get each order at first.",
 };
@@ -203,6 +206,7 @@ export const fieldsDe: Readonly<Record<keyof typeof fieldsEn, string>> = {
   "field.languages": "Sprachen",
   "field.conditions": "Bedingungen",
   "field.latency_ms": "Zusätzliche Latenz (ms)",
+  "field.body": "Körper",
   "field.label": "Bezeichnung",
   "field.latency": "Wie die Latenz angewandt wird",
   "field.undelayed_parts": "Körperteile ohne Verzögerung",
@@ -271,6 +275,8 @@ export const fieldsDe: Readonly<Record<keyof typeof fieldsEn, string>> = {
   "field.signature": "Unterschrift",
   "field.statements": "Anzukreuzende Aussagen",
   "field.optional": "Darf ausgelassen werden",
+  "hint.body":
+    "Was Teilnehmende in dieser Bedingung tragen, mit dem Namen von der Seite Körper. Ohne Angabe ist es der Körper der Avatar-Konfiguration.",
   "hint.seed": "Bestimmt, wie die Reihenfolgen gemischt werden; eine beliebige Zahl.",
   "hint.replicates": "Wie viele Personen jede Reihenfolge zunächst erhalten.",
 };

@@ -53,6 +53,17 @@ export function FilterBar({ filter, choices, onChange }: FilterBarProps): JSX.El
           size="xs"
         />
       )}
+      {choices.bodies.length > 0 && (
+        <Select
+          label={t("figures.body")}
+          data={[...choices.bodies]}
+          value={filter.body ?? choices.bodies[0] ?? null}
+          onChange={(body) => change({ body })}
+          className={classes.short ?? ""}
+          allowDeselect={false}
+          size="xs"
+        />
+      )}
       {(["since", "until"] as const).map((name) => (
         <TextInput
           key={name}
