@@ -1,13 +1,14 @@
 """Measure how much faster than real time the avatar runs, and what its control costs.
 
 `speed` lets an avatar with the product's own settings swing its limbs next to the eight boxes of a
-study, frame by frame at 90 Hz, with fingers and without, and measures the seconds simulated in one
-second, compared with bare `mj_step` of the same model on the same inputs in the same run. The
-difference is our own code: converting poses to angles, setting targets at every step, moving the
-hips, watching contacts, reading the body back; at least 0.8 of the bare rate must remain. Time is
-processor time, and the two alternate, so that other programs on the machine affect the result as
-little as possible. `control` is one such frame without any simulation: a pose converted to angles,
-and the body converted to joints. Rates are those of the fastest round.
+study, frame by frame at 90 Hz, without fingers, with them, and as the standard avatar with mesh
+colliders, and measures the seconds simulated in one second, compared with bare `mj_step` of the
+same model on the same inputs in the same run. The difference is our own code: converting poses to
+angles, setting targets at every step, moving the hips, watching contacts, reading the body back; at
+least 0.8 of the bare rate must remain. Time is processor time, and the two alternate, so that other
+programs on the machine affect the result as little as possible. `control` is one such frame without
+any simulation: a pose converted to angles, and the body converted to joints. Rates are those of the
+fastest round.
 
 `bullet` is PyBullet with the same body, boxes and inputs (`peers.bullet_body` describes the
 differences): with its defaults, 50 solver iterations and targets at every step as ours, and with 10
@@ -19,6 +20,7 @@ PyBullet is installed on first use, and left out if that fails.
 import time
 from collections.abc import Callable, Iterator
 from functools import cache
+from typing import Literal
 
 import mujoco
 import numpy as np
@@ -32,8 +34,10 @@ from tests.benchmarks.clips import shared_file
 from tests.benchmarks.peers.bullet import bullet_avatar, bullet_humanoid_steps_per_s
 from tests.benchmarks.report import Figure, Report
 from tests.science.avatar.captured import RATE_HZ
-from tests.science.avatar.simulated import EIGHT_BOXES, model, target_angles
+from tests.science.avatar.simulated import EIGHT_BOXES, model, standard_model, target_angles
 
+Kind = Literal["plain", "fingers", "mesh"]
+KINDS: tuple[Kind, ...] = ("plain", "fingers", "mesh")
 PARTS = ("speed", "control", "bullet", "humanoid")
 ROUNDS, FRAMES, CALLS = 9, 270, 2000
 BULLET_ROUNDS, HUMANOID_STEPS, HUMANOID_STEP_S = 5, 5000, 0.002
@@ -45,38 +49,38 @@ def measure(parts: frozenset[str], duration_s: float | None = None) -> Report:
     """Measure the named parts; `duration_s` has no effect."""
     report = Report("avatar")
     if "speed" in parts:
-        for fingers in (False, True):
-            report.add(_speed(fingers=fingers))
+        for kind in KINDS:
+            report.add(_speed(kind=kind))
     if "control" in parts:
         report.add(*_control())
     if "bullet" in parts:
-        for fingers in (False, True):
-            report.add(*_beside_bullet(fingers=fingers))
+        for kind in KINDS[:2]:
+            report.add(*_beside_bullet(kind=kind))
     if "humanoid" in parts:
         report.add(*_humanoids())
     return report
 
 
-def _speed(*, fingers: bool) -> Figure:
-    rounds = [(_followed_s(fingers=fingers), _bare_s(fingers=fingers)) for _ in range(ROUNDS)]
+def _speed(*, kind: Kind) -> Figure:
+    rounds = [(_followed_s(kind=kind), _bare_s(kind=kind)) for _ in range(ROUNDS)]
     simulated_s = FRAMES / RATE_HZ
-    told = _told(fingers=fingers)
+    told = _told(kind=kind)
     ours, bare = (simulated_s / min(column) for column in zip(*rounds, strict=True))
     return Figure("speed", f"{told}, 8 boxes", ours, "x real time", "bare mj_step", bare)
 
 
-def _followed_s(*, fingers: bool) -> float:
-    follower, poses = _started(model(EIGHT_BOXES, fingers=fingers))[1], _poses()
+def _followed_s(*, kind: Kind) -> float:
+    follower, poses = _started(_model(kind))[1], _poses()
     start_s = time.process_time()
     for frame in range(FRAMES):
         follower.frame((frame + 1) / RATE_HZ, HIPS_M, poses[frame])
     return time.process_time() - start_s
 
 
-def _bare_s(*, fingers: bool) -> float:
+def _bare_s(*, kind: Kind) -> float:
     """Return the processor time of bare `mj_step` on the same steps, model and targets."""
-    built = model(EIGHT_BOXES, fingers=fingers)
-    inputs = _inputs(built, fingers=fingers)
+    built = _model(kind)
+    inputs = _inputs(built, kind=kind)
     body = _started(built)[0]
     step, bare, data = mujoco.mj_step, body.model, body.data
     start_s = time.process_time()
@@ -87,9 +91,9 @@ def _bare_s(*, fingers: bool) -> float:
 
 
 @cache
-def _recorded(*, fingers: bool) -> FloatArray:
+def _recorded(*, kind: Kind) -> FloatArray:
     """Return (FRAMES + 1, n) commands: the one at the beginning, and one at each frame's end."""
-    built = model(EIGHT_BOXES, fingers=fingers)
+    built = _model(kind)
     body, follower = _started(built)
     poses = _poses()
     states = [body.state()]
@@ -100,9 +104,9 @@ def _recorded(*, fingers: bool) -> FloatArray:
     return np.stack([state.command_rad[columns] for state in states])
 
 
-def _inputs(built: AvatarModel, *, fingers: bool) -> FloatArray:
+def _inputs(built: AvatarModel, *, kind: Kind) -> FloatArray:
     """Return (steps, nu) motor inputs for each step, interpolated between commands."""
-    commands = _recorded(fingers=fingers)
+    commands = _recorded(kind=kind)
     body = PhysicsAvatar(built.mjcf)
     step_s = body.model.opt.timestep
     ends = np.round(np.arange(FRAMES + 1) / RATE_HZ / step_s)
@@ -132,16 +136,16 @@ def _poses() -> FloatArray:
     return from_rotation_vector(vectors)
 
 
-def _beside_bullet(*, fingers: bool) -> Iterator[Figure]:
-    built = model(EIGHT_BOXES, fingers=fingers)
+def _beside_bullet(*, kind: Kind) -> Iterator[Figure]:
+    built = _model(kind)
     body = PhysicsAvatar(built.mjcf)
-    controls = _inputs(built, fingers=fingers)
+    controls = _inputs(built, kind=kind)
     steps = round(1.0 / RATE_HZ / body.model.opt.timestep)
     peers = bullet_avatar(body.model, controls, steps_per_frame=steps, rounds=BULLET_ROUNDS)
     if not peers:
         return
-    told, simulated_s = _told(fingers=fingers), FRAMES / RATE_HZ
-    ours = simulated_s / min(_followed_s(fingers=fingers) for _ in range(BULLET_ROUNDS))
+    told, simulated_s = _told(kind=kind), FRAMES / RATE_HZ
+    ours = simulated_s / min(_followed_s(kind=kind) for _ in range(BULLET_ROUNDS))
     error = _mean_error_deg(body, controls)
     for peer in peers:
         rate = simulated_s / peer.fastest_s
@@ -182,8 +186,16 @@ def _limp_s(humanoid: mujoco.MjModel) -> float:
     return time.process_time() - start_s
 
 
-def _told(*, fingers: bool) -> str:
-    return "52 parts" if fingers else "without fingers"
+def _told(*, kind: Kind) -> str:
+    return {"plain": "without fingers", "fingers": "52 parts", "mesh": "52 parts, mesh colliders"}[
+        kind
+    ]
+
+
+def _model(kind: Kind) -> AvatarModel:
+    if kind == "mesh":
+        return standard_model(EIGHT_BOXES)
+    return model(EIGHT_BOXES, fingers=kind == "fingers")
 
 
 def _control() -> Iterator[Figure]:

@@ -1,10 +1,14 @@
 """Simulated avatars for tests, and helpers that move them."""
 
+import json
 from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
 
+from app.protocol.avatar import parse_avatar_json
+from app.protocol.humanoid import parse_figure
+from app.resources import bodies_dir
 from app.science.avatar.body.parts import AXES, AXIS_NAMES, FINGER_PARTS
 from app.science.avatar.configuration.configuration import Configuration, Hips
 from app.science.avatar.mjcf.gains import default_configuration
@@ -36,6 +40,15 @@ def model(scene: Scene = EMPTY, *, hips: Hips = "carried", fingers: bool = False
         if fingers or axis.part not in FINGER_PARTS
     }
     return avatar_model(Configuration(axes, hips=hips), STATURE_M, scene=scene)
+
+
+@cache
+def standard_model(scene: Scene = EMPTY) -> AvatarModel:
+    """Return the model of the shipped standard avatar: the neutral body with mesh colliders."""
+    configuration = parse_avatar_json((bodies_dir() / "standard.json").read_text(encoding="utf-8"))
+    measures = json.loads((bodies_dir() / "neutral.json").read_text(encoding="utf-8"))
+    figure = parse_figure(measures["figure"])
+    return avatar_model(configuration, STATURE_M, figure=figure, scene=scene)
 
 
 def avatar(scene: Scene = EMPTY, *, hips: Hips = "carried", fingers: bool = False) -> PhysicsAvatar:
