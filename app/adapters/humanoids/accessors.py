@@ -164,7 +164,7 @@ class Tables:
                 place,
             )
         # Bytes that nobody asks for count as well: a view is decompressed as a whole.
-        self.take(packed.count * packed.byteStride // 4, place)
+        self.take(packed.count * max(1, packed.byteStride // 4), place)
         stream = self._slice(packed.buffer, packed.byteOffset, packed.byteLength, place)
         # Imported here because it loads a compiler, which few files need.
         from app.adapters.humanoids.meshopt import StreamError, decoded

@@ -12,6 +12,8 @@ Source: Khronos, EXT_meshopt_compression and KHR_meshopt_compression, sections "
 "Filters".
 """
 
+from array import array
+
 import numpy as np
 import numpy.typing as npt
 
@@ -51,7 +53,7 @@ def decoded(mode: str, stream: bytes, count: int, stride: int, filter_: str) -> 
         raise
     except ValueError as error:
         raise StreamError(str(error)) from error
-    words = np.array(found, dtype=np.int64)
+    words = np.frombuffer(found, dtype=np.uintc)
     if stride == 2 and words.max(initial=0) > np.iinfo(np.uint16).max:
         raise StreamError("an index does not fit into its 2 bytes")
     return words.astype("<u2" if stride == 2 else "<u4").tobytes()
@@ -190,13 +192,13 @@ def _add(
         last[column + byte] = (value >> (8 * byte)) & 255
 
 
-def _indices(data: bytes, count: int) -> list[int]:
+def _indices(data: bytes, count: int) -> "array[int]":
     """Decode a sequence of indices, each the difference to one of two earlier ones."""
     if len(data) < 1 + count + 4:
         raise StreamError("the compressed indices are shorter than their number")
     if data[0] != _INDICES:
         raise StreamError("the compressed indices are of an unknown version")
-    found = []
+    found = array("I")
     last = [0, 0]
     at = 1
     for _ in range(count):
@@ -207,7 +209,7 @@ def _indices(data: bytes, count: int) -> list[int]:
     return found
 
 
-def _triangles(data: bytes, count: int) -> list[int]:
+def _triangles(data: bytes, count: int) -> "array[int]":
     """Decode triangles: each continues at one of the last 16 edges, or begins anew."""
     if count % 3 or len(data) < 1 + count // 3 + _CODES:
         raise StreamError("the compressed triangles are shorter than their number")
@@ -227,11 +229,11 @@ class _TriangleDecoder:
         self._edge = self._corner = 0
         self._next = self._last = 0
 
-    def decoded(self, triangles: int) -> list[int]:
-        found: list[int] = []
+    def decoded(self, triangles: int) -> "array[int]":
+        found = array("I")
         for code in self._data[1 : 1 + triangles]:
             a, b, c = self._continued(code) if code < 0xF0 else self._anew(code)
-            found += (a, b, c)
+            found.extend((a, b, c))
             self._push_edge(c, b)
             self._push_edge(a, c)
             if self._at > self._table:
