@@ -5,6 +5,8 @@ from collections.abc import Callable
 
 from playwright.sync_api import Locator, Page, expect
 
+from app.features.movement.avatar import SHIPPED, version_of
+from app.models import StudySession
 from tests.e2e.people import PATIENCE_MS, Experimenter
 from tests.e2e.test_first_study import STUDY, short_study
 from tests.e2e.wearer import Wearer
@@ -20,11 +22,15 @@ def test_a_start_needs_a_reason_and_the_movement_is_drawn(
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
 ) -> None:
-    """Starting without a tablet asks for a reason, and avatar and boxes are drawn as they move."""
+    """Starting without a tablet asks for a reason; boxes and a body with skin move on the page."""
     if headset_site.operator.get(f"/api/studies/{STUDY}").status_code == 404:
         ok(headset_site.operator.post("/api/studies", json={"yaml": short_study()}))
     view = ok(headset_site.operator.post(f"/api/studies/{STUDY}/sessions", json={}))
     session_id = str(view["id"])
+    with headset_site.database.writing() as db:
+        # The scripted headset does not simulate; the console draws the body all the same.
+        newest = version_of(db, SHIPPED, None)
+        db.get_one(StudySession, session_id).avatar_configuration_hash = newest.content_hash
     code = ok(
         headset_site.operator.post(
             f"/api/sessions/{session_id}/pairings", json={"device": "headset"}
@@ -55,6 +61,7 @@ def test_a_start_needs_a_reason_and_the_movement_is_drawn(
         lit = page.locator('[data-lit*="hand/"]')
         expect(lit).to_be_visible(timeout=PATIENCE_MS)
         expect(picture).to_have_attribute("data-pictures", re.compile(r"^[1-9]"))
+        expect(page.locator("[data-drawn=skin]")).to_be_visible(timeout=PATIENCE_MS)
         page.keyboard.press("1")
         expect(page.get_by_role("radio", name="First person")).to_be_checked()
         assert axe(page) == []

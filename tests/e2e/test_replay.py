@@ -9,7 +9,7 @@ from sqlalchemy import select
 
 from app.models import Phase
 from tests.e2e.people import PATIENCE_MS, Experimenter
-from tests.features.builders import SessionSpec, build_session
+from tests.features.builders import SessionSpec, as_physics, build_session
 from tests.features.latency_builders import HISTORY_S, store_movement
 from tests.features.record.headset.site import Site
 
@@ -21,6 +21,7 @@ def phases(headset_site: Site) -> list[Phase]:
     """Provide two hand phases of a completed session, each with twelve seconds of movement."""
     with headset_site.database.writing() as db:
         session = build_session(db, SessionSpec("P-replay"))
+        as_physics(db, session)
         found = db.scalars(
             select(Phase)
             .where(Phase.session_id == session.id, Phase.limb == "hand")
@@ -42,7 +43,7 @@ def test_a_replay_is_synchronised_with_its_events(
     page_factory: Callable[..., Page],
     axe: Callable[[Page], list[str]],
 ) -> None:
-    """A replay is synchronised with its events, and a link reopens a moment or a pair of phases."""
+    """A replay wears the session's body, follows its events, and a link reopens a moment or two."""
     first, second = phases
     url = headset_site.server.url
     page = page_factory()
@@ -50,6 +51,7 @@ def test_a_replay_is_synchronised_with_its_events(
     page.goto(f"{url}/#/sessions/{first.session_id}")
     page.get_by_role("link", name="Replay Hand task").first.click()
     expect(page.locator("[data-way=space]")).to_be_visible(timeout=PATIENCE_MS)
+    expect(page.locator("[data-drawn=skin]")).to_be_visible(timeout=PATIENCE_MS)
     times = page.locator("[data-time]")
     expect(times).to_have_attribute("data-time", "0.000")
     for key, time in (("L", "1.000"), (".", "1.033"), ("ArrowRight", "2.033"), ("]", "5.000")):
@@ -65,10 +67,14 @@ def test_a_replay_is_synchronised_with_its_events(
     page.keyboard.press("Space")
     page.get_by_role("tab", name="Answers after this phase").click()
     expect(page.get_by_role("tabpanel").get_by_role("heading").first).to_be_visible()
+    page.get_by_text("Stick figure", exact=True).click()
+    expect(page.locator("[data-drawn=skeleton]")).to_be_visible()
+    page.get_by_text("Body", exact=True).click()
     page.goto(
         f"{url}/#/sessions/{first.session_id}/replay?phase={first.phase_id}&t=3.5&with={second.phase_id}"
     )
     expect(page.locator("canvas")).to_have_count(2, timeout=PATIENCE_MS)
+    expect(page.locator("[data-drawn=skin]")).to_have_count(2, timeout=PATIENCE_MS)
     expect(times).to_have_attribute("data-time", "3.500")
     for canvas in page.locator("canvas").all():
         expect(canvas).to_have_attribute("data-frame", "105")

@@ -48,7 +48,10 @@ export function Viewer({ figures, title, children }: ViewerProps): JSX.Element {
         stage={stage}
         onMode={setMode}
       />
-      <div className={classes.stage}>
+      <div
+        className={classes.stage}
+        data-drawn={figures[0]?.worn === undefined ? "skeleton" : "skin"}
+      >
         <Stage
           handle={stage}
           figures={figures}

@@ -49,7 +49,7 @@ export function LaneStage(props: LaneStageProps): JSX.Element {
       {motion === undefined ? (
         <NoMovement lane={lane} />
       ) : (
-        <div className={classes.stage} data-drawn={body.model === null ? "skeleton" : "skin"}>
+        <div className={classes.stage} data-drawn={figures[0]?.worn === undefined ? "skeleton" : "skin"}>
           <Stage
             {...(handle === undefined ? {} : { handle })}
             figures={figures}
@@ -63,7 +63,7 @@ export function LaneStage(props: LaneStageProps): JSX.Element {
           />
           {isGap && <span className={classes.gap}>{t("replay.nothing")}</span>}
           <BodyNotice body={body} instead />
-          <StageLegend ghost={figures.length > 1} sides={body.model === null} />
+          <StageLegend ghost={figures.length > 1} sides={figures[0]?.worn === undefined} />
         </div>
       )}
     </section>
