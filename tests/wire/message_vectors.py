@@ -38,6 +38,20 @@ COMPLETION: Json = {
     "order": [4, 3, 2, 1],
     "out_of_order_touches": 0,
 }
+AVATAR_CHANGED: Json = {
+    "kind": "avatar_changes",
+    "revision": 41,
+    "t_s": 20.5,
+    "applied": True,
+    "problem": None,
+    "held_rad": {"LeftLowerArmX": 0.125, "LeftLowerArmY": 1.5},
+}
+AVATAR_NOT_CHANGED: Json = {
+    **AVATAR_CHANGED,
+    "applied": False,
+    "problem": "the model has no convex piece of LeftHand",
+    "held_rad": {},
+}
 PROBED: Json = {
     "type": "probed",
     "client_sent_s": 3.0,
@@ -91,6 +105,19 @@ FROM_CLIENT: list[tuple[str, Json]] = [
             "streams": {**PRODUCED["streams"], "target_fingers": 540, "actual_fingers": 534},
         },
     ),
+    (
+        "hello_of_one_that_changes_its_avatar",
+        {
+            "type": "hello",
+            "protocol": 1,
+            "client": "my client 0.5",
+            "epoch": None,
+            "avatars": ["physics"],
+            "changes_avatar": True,
+        },
+    ),
+    ("avatar_changes", report(AVATAR_CHANGED)),
+    ("avatar_changes_that_failed", report(AVATAR_NOT_CHANGED)),
     ("materialised", report({"kind": "materialised", "t_s": 10.125})),
     ("phase_started", report(PHASE)),
     ("phase_paused", report({**PHASE, "what": "paused", "cause": "disconnected"})),
@@ -158,6 +185,20 @@ STATE_OF_PRACTICE: Json = {
     "step_kind": "practice",
     "phase": {**STATE["phase"], "kind": "practice", "latency_ms": 0.0, "until_completions": 2},
 }
+STATE_OF_A_CHANGED_AVATAR: Json = {
+    **STATE,
+    "avatar_changes": {
+        "revision": 41,
+        "gravity": False,
+        "self_collision": None,
+        "colliders": {"LeftHand": "none"},
+        "layers": [{"layers": ["left_hand", "torso"], "collide": False}],
+        "held_rad": {"LeftLowerArmX": None, "LeftLowerArmY": 1.5},
+        "motors": {
+            "HeadX": {"kp_nm_per_rad": 40.5, "kd_nm_s_per_rad": 1.25, "max_torque_nm": 30.0}
+        },
+    },
+}
 POSITIONS: list[Json] = [
     {"stream": "target", "epoch": 1, "next_seq": 540},
     {"stream": "reports", "epoch": 1, "next_seq": 3},
@@ -204,6 +245,7 @@ FROM_SERVER: list[tuple[str, Json]] = [
     ("welcome", WELCOME),
     ("state", STATE),
     ("state_of_a_practice", STATE_OF_PRACTICE),
+    ("state_of_a_changed_avatar", STATE_OF_A_CHANGED_AVATAR),
     ("state_before_the_start", STATE_BEFORE),
     ("ack", {"type": "ack", "positions": POSITIONS}),
     ("resend", {"type": "resend", **POSITIONS[0]}),
@@ -230,6 +272,8 @@ REFUSED_CLIENT: list[tuple[str, Json]] = [
         "hello_with_too_many_avatars",
         {"type": "hello", "protocol": 1, "client": "x", "epoch": None, "avatars": ["y"] * 11},
     ),
+    ("held_angle_is_beyond_range", report({**AVATAR_CHANGED, "held_rad": {"HeadX": 7.5}})),
+    ("revision_is_negative", report({**AVATAR_CHANGED, "revision": -1})),
     ("time_is_null", report({"kind": "materialised", "t_s": None})),
     ("time_is_negative", report({**CONTACT, "end_s": -1.0})),
     ("time_is_beyond_range", report({**PHASE, "t_s": 1.0e9 + 1.0})),

@@ -27,6 +27,7 @@ export const Count = whole(0, 2 ** 31 - 1);
 export const Name20 = name(20);
 export const Name40 = name(40);
 export const Name120 = name(120);
+export const Name300 = name(300);
 export const CompletionNumber = whole(1, 10_000);
 
 /**

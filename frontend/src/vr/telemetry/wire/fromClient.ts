@@ -13,6 +13,7 @@ import {
   Name20,
   Name40,
   Name120,
+  Name300,
   narrowed,
   PROTOCOL_VERSION,
   Seconds,
@@ -28,6 +29,8 @@ const Hello = v.strictObject({
   avatars: v.optional(v.pipe(v.array(Name40), v.maxLength(10))),
   /** Whether this run sends the streams of fingers with every frame; it does not by default. */
   fingers: v.optional(v.boolean()),
+  /** Whether it can change a physics avatar while it runs; it cannot by default. */
+  changes_avatar: v.optional(v.boolean()),
 });
 
 /** What the headset did to the clock of a phase, at its own monotonic time. */
@@ -78,7 +81,23 @@ const CompletionReport = v.strictObject({
   out_of_order_touches: Count,
 });
 
-const Body = v.variant("kind", [PhaseReport, MaterialisedReport, ContactReport, CompletionReport]);
+/** The avatar follows the changes of this revision, or why it does not; angles of casts. */
+const AvatarChangeReport = v.strictObject({
+  kind: v.literal("avatar_changes"),
+  revision: Count,
+  t_s: Seconds,
+  applied: v.boolean(),
+  problem: v.nullable(Name300),
+  held_rad: v.record(Name40, v.pipe(v.number(), v.minValue(-7), v.maxValue(7))),
+});
+
+const Body = v.variant("kind", [
+  AvatarChangeReport,
+  PhaseReport,
+  MaterialisedReport,
+  ContactReport,
+  CompletionReport,
+]);
 export type ReportBody = v.InferOutput<typeof Body>;
 
 const Report = v.strictObject({ type: v.literal("report"), epoch: Epoch, seq: Seq, body: Body });

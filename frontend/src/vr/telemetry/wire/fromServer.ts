@@ -33,6 +33,28 @@ const PhaseOrder = v.object({
 });
 export type PhaseOrder = v.InferOutput<typeof PhaseOrder>;
 
+/**
+ * How the avatar differs from its configuration now; the client brings its body to it. Only sent
+ * once something was changed.
+ */
+const AvatarOrder = v.object({
+  revision: whole,
+  gravity: v.nullable(v.boolean()),
+  self_collision: v.nullable(v.boolean()),
+  colliders: v.record(v.string(), v.picklist(["simple", "mesh", "none"])),
+  layers: v.array(v.object({ layers: v.tuple([v.string(), v.string()]), collide: v.boolean() })),
+  held_rad: v.record(v.string(), v.nullable(v.number())),
+  motors: v.record(
+    v.string(),
+    v.object({
+      kp_nm_per_rad: v.number(),
+      kd_nm_s_per_rad: v.number(),
+      max_torque_nm: v.number(),
+    }),
+  ),
+});
+export type AvatarOrder = v.InferOutput<typeof AvatarOrder>;
+
 /** The state of the session, as the headset needs it. */
 const HeadsetState = v.object({
   type: v.literal("state"),
@@ -48,6 +70,7 @@ const HeadsetState = v.object({
     footedness: v.nullable(v.string()),
     stature_m: v.nullable(v.number()),
   }),
+  avatar_changes: v.optional(AvatarOrder),
 });
 export type HeadsetState = v.InferOutput<typeof HeadsetState>;
 
