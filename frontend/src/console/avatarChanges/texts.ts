@@ -115,7 +115,7 @@ export const avatarChangesDe: Readonly<Record<keyof typeof avatarChangesEn, stri
   "avatarChanges.asStudy": "Wie in der Studie",
   "avatarChanges.on": "An",
   "avatarChanges.off": "Aus",
-  "avatarChanges.casts": "Gipsverbände",
+  "avatarChanges.casts": "Gips",
   "avatarChanges.casts.hint": "Werden da gehalten, wo sie beim Anlegen sind.",
   "avatarChanges.released": "Ohne Gips",
   "avatarChanges.released.hint": "Nimmt einen Gips ab, den die Studie anlegt.",
