@@ -12,6 +12,7 @@ from tests.e2e.test_first_study import STUDY, short_study
 from tests.e2e.wearer import Wearer
 from tests.features.lab import ok
 from tests.features.record.headset.site import Site
+from tests.protocol.helpers import edited
 
 PRESSED_EVERY_MS = 800.0
 
@@ -66,6 +67,53 @@ def test_a_start_needs_a_reason_and_the_movement_is_drawn(
         expect(page.get_by_role("radio", name="First person")).to_be_checked()
         assert axe(page) == []
         screenshot(page, "cockpit-live")
+        headset_site.command(session_id, "abort", reason="seen enough")
+    assert wearer.error is None
+
+
+def test_an_operator_changes_the_avatar_by_keyboard(
+    headset_site: Site,
+    page_factory: Callable[..., Page],
+    axe: Callable[[Page], list[str]],
+    screenshot: Callable[[Page, str], object],
+) -> None:
+    """An operator puts an arm in a cast; the panel says that the headset has done it.
+
+    The event log has the change in words, and going back to the study's settings takes it back.
+    """
+    key = "avatar-in-a-cast"
+    physics = "avatar: physics\navatar_configuration: {key: standard, version: 1}"
+    text = edited(("key: reembodiment-latency", f"key: {key}"), ("avatar: delayed_copy", physics))
+    ok(headset_site.operator.post("/api/studies", json={"yaml": text}))
+    session_id = str(ok(headset_site.operator.post(f"/api/studies/{key}/sessions", json={}))["id"])
+    pairing = headset_site.operator.post(
+        f"/api/sessions/{session_id}/pairings", json={"device": "headset"}
+    )
+    page = page_factory((1280, 800))
+    console = Experimenter(page, headset_site.server.url)
+    console.log_in()
+    with Wearer(headset_site.server.url, ok(pairing)["code"]) as wearer:
+        headset_site.skip_to(session_id, "materialise")
+        page.goto(f"{headset_site.server.url}/#/sessions/{session_id}")
+        panel = page.get_by_role("region", name="Avatar settings")
+        # Loading the simulation takes a while.
+        expect(panel).to_contain_text("As the study configures them", timeout=4 * PATIENCE_MS)
+        page.keyboard.press("b")
+        dialog = page.get_by_role("dialog", name="Change the avatar's settings")
+        dialog.get_by_role("button", name="Add").first.click()
+        dialog.get_by_role("combobox", name="Body group or part").fill("left arm")
+        page.keyboard.press("Enter")
+        assert axe(page) == []
+        screenshot(page, "avatar-settings")
+        dialog.get_by_role("button", name="Apply").click()
+        expect(panel).to_contain_text("cast: left arm")
+        expect(panel).to_contain_text("In force on the headset", timeout=PATIENCE_MS)
+        expect(page.locator("[data-tour=live]")).to_contain_text("In a cast")
+        page.keyboard.press("l")
+        expect(page.get_by_role("dialog", name="Event log")).to_contain_text("cast: left arm")
+        page.keyboard.press("Escape")
+        panel.get_by_role("button", name="Back to the study's settings").click()
+        expect(panel).to_contain_text("As the study configures them")
         headset_site.command(session_id, "abort", reason="seen enough")
     assert wearer.error is None
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from app.client.telemetry import TelemetryClient
 from app.protocol import Tasks
+from app.rehearsal.avatars import FromServer
 from app.rehearsal.body import make_person
 from app.rehearsal.headset import FrameClock, Headset
 
@@ -40,13 +41,22 @@ class Wearer:
             f"{self._url}/api/devices/pair", json={"code": self._code, "name": "headset"}
         ).json()
         clock = FrameClock(1.0)
-        async with TelemetryClient(
-            url=f"{self._url.replace('http', 'ws', 1)}/api/vr/stream",
-            token=paired["token"],
-            name="test headset",
-            monotonic_s=clock.now_s,
-        ) as client:
+        device = httpx2.AsyncClient(
+            base_url=self._url, headers={"authorization": f"Bearer {paired['token']}"}, timeout=30.0
+        )
+        async with (
+            device,
+            TelemetryClient(
+                url=f"{self._url.replace('http', 'ws', 1)}/api/vr/stream",
+                token=paired["token"],
+                name="test headset",
+                avatars=("delayed_copy", "physics"),
+                changes_avatar=True,
+                monotonic_s=clock.now_s,
+            ) as client,
+        ):
             assert client.welcome is not None
             tasks = Tasks.model_validate_json(json.dumps(client.welcome.tasks))
             person = make_person(np.random.default_rng(7), None)
-            await Headset(client, person, tasks, clock).run()
+            physics = FromServer(device) if client.welcome.avatar == "physics" else None
+            await Headset(client, person, tasks, clock, physics).run()

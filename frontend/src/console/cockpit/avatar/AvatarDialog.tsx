@@ -84,6 +84,11 @@ function Form({ session, live, prepared, choices, onClose }: FormProps): JSX.Ele
     >
       <Stack>
         <Text c="dimmed">{t("avatarChanges.dialog.body")}</Text>
+        {isInPhase && (
+          <Notice tone="warn" title={t("avatarChanges.deviation")}>
+            {t("avatarChanges.deviation.body")}
+          </Notice>
+        )}
         <div className={classes.two}>
           <Choice
             label={t("avatarChanges.gravity")}
@@ -112,15 +117,11 @@ function Form({ session, live, prepared, choices, onClose }: FormProps): JSX.Ele
           onChange={(event) => setReason(event.currentTarget.value)}
         />
         {isInPhase && (
-          <Notice tone="warn" title={t("avatarChanges.deviation")}>
-            {t("avatarChanges.deviation.body")}
-            <Checkbox
-              mt="xs"
-              label={t("avatarChanges.confirm")}
-              checked={isSure}
-              onChange={(event) => setSure(event.currentTarget.checked)}
-            />
-          </Notice>
+          <Checkbox
+            label={t("avatarChanges.confirm")}
+            checked={isSure}
+            onChange={(event) => setSure(event.currentTarget.checked)}
+          />
         )}
         <NewFailure live={live} />
         <Group justify="flex-end">
