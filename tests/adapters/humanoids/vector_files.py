@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from app.adapters.humanoids import read_humanoid, read_skin
+from app.adapters.humanoids import ReadSkin, read_humanoid, read_skin
 from app.science.avatar.body import Binding, SkinPiece, posed_nodes, posed_vertices
 from app.science.rotations import FloatArray, from_rotation_vector
 from tests.support.humanoid_files import humanoid_file
@@ -67,21 +67,16 @@ def vectors(data: bytes) -> Json:
                 "stature_m": stature_m,
                 "hips_m": hips_m.tolist(),
                 "rotations": turns.tolist(),
-                "vertices": [
-                    _rows(
-                        piece,
-                        posed_nodes(
-                            skin.tree,
-                            binding,
-                            binding.scaled(stature_m).world_from_nodes(hips_m.tolist(), turns),
-                        ),
-                    )
-                    for piece in skin.pieces
-                ],
+                "vertices": _places(skin, binding.scaled(stature_m), hips_m, turns),
             }
             for name, (stature_m, hips_m, turns) in poses(binding).items()
         ],
     }
+
+
+def _places(skin: ReadSkin, binding: Binding, hips_m: FloatArray, turns: FloatArray) -> list[Json]:
+    world = posed_nodes(skin.tree, binding, binding.world_from_nodes(hips_m.tolist(), turns))
+    return [_rows(piece, world) for piece in skin.pieces]
 
 
 def _rows(piece: SkinPiece, world: FloatArray) -> Json:
