@@ -2,7 +2,7 @@
 
 `speed` lets an avatar with the product's own settings swing its limbs next to the eight boxes of a
 study, frame by frame at 90 Hz, without fingers, with them, and as the standard avatar with mesh
-colliders, and measures the seconds simulated in one second, compared with bare `mj_step` of the
+colliders, whose fingers rest or follow generated ones, and measures the seconds simulated in one second, compared with bare `mj_step` of the
 same model on the same inputs in the same run. The difference is our own code: converting poses to
 angles, setting targets at every step, moving the hips, watching contacts, reading the body back; at
 least 0.8 of the bare rate must remain. Time is processor time, and the two alternate, so that other
@@ -18,7 +18,7 @@ PyBullet is installed on first use, and left out if that fails.
 """
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from typing import Literal
 
@@ -28,16 +28,18 @@ import numpy as np
 from app.science.avatar.body import AXIS_NAMES
 from app.science.avatar.mjcf import AvatarModel
 from app.science.avatar.simulation import Follower, PhysicsAvatar
+from app.science.avatar.targets import finger_rotations
 from app.science.rotations import FloatArray, from_rotation_vector
-from app.science.skeleton import JOINT_COUNT
+from app.science.simulation import SimulatedFingers
+from app.science.skeleton import FINGER_PARTS, JOINT_COUNT
 from tests.benchmarks.clips import shared_file
 from tests.benchmarks.peers.bullet import bullet_avatar, bullet_humanoid_steps_per_s
 from tests.benchmarks.report import Figure, Report
 from tests.science.avatar.captured import RATE_HZ
 from tests.science.avatar.simulated import EIGHT_BOXES, model, standard_model, target_angles
 
-Kind = Literal["plain", "fingers", "mesh"]
-KINDS: tuple[Kind, ...] = ("plain", "fingers", "mesh")
+Kind = Literal["plain", "fingers", "mesh", "driven"]
+KINDS: tuple[Kind, ...] = ("plain", "fingers", "mesh", "driven")
 PARTS = ("speed", "control", "bullet", "humanoid")
 ROUNDS, FRAMES, CALLS = 9, 270, 2000
 BULLET_ROUNDS, HUMANOID_STEPS, HUMANOID_STEP_S = 5, 5000, 0.002
@@ -70,10 +72,13 @@ def _speed(*, kind: Kind) -> Figure:
 
 
 def _followed_s(*, kind: Kind) -> float:
-    follower, poses = _started(_model(kind))[1], _poses()
+    follower, poses, hands = _started(_model(kind))[1], _poses(), _hands(kind)
     start_s = time.process_time()
     for frame in range(FRAMES):
-        follower.frame((frame + 1) / RATE_HZ, HIPS_M, poses[frame])
+        given = hands[frame]
+        state = follower.frame((frame + 1) / RATE_HZ, HIPS_M, poses[frame], given).state
+        if given is not None:
+            finger_rotations(np.nan_to_num(state.angles_rad))
     return time.process_time() - start_s
 
 
@@ -95,10 +100,11 @@ def _recorded(*, kind: Kind) -> FloatArray:
     """Return (FRAMES + 1, n) commands: the one at the beginning, and one at each frame's end."""
     built = _model(kind)
     body, follower = _started(built)
-    poses = _poses()
+    poses, hands = _poses(), _hands(kind)
     states = [body.state()]
     states += [
-        follower.frame((frame + 1) / RATE_HZ, HIPS_M, poses[frame]).state for frame in range(FRAMES)
+        follower.frame((frame + 1) / RATE_HZ, HIPS_M, poses[frame], hands[frame]).state
+        for frame in range(FRAMES)
     ]
     columns = [AXIS_NAMES.index(name) for name in body.axis_names]
     return np.stack([state.command_rad[columns] for state in states])
@@ -187,15 +193,28 @@ def _limp_s(humanoid: mujoco.MjModel) -> float:
 
 
 def _told(*, kind: Kind) -> str:
-    return {"plain": "without fingers", "fingers": "52 parts", "mesh": "52 parts, mesh colliders"}[
-        kind
-    ]
+    return {
+        "plain": "without fingers",
+        "fingers": "52 parts",
+        "mesh": "52 parts, mesh colliders",
+        "driven": "52 parts, mesh colliders, fingers driven",
+    }[kind]
 
 
 def _model(kind: Kind) -> AvatarModel:
-    if kind == "mesh":
+    if kind in ("mesh", "driven"):
         return standard_model(EIGHT_BOXES)
     return model(EIGHT_BOXES, fingers=kind == "fingers")
+
+
+@cache
+def _hands(kind: Kind) -> list[Mapping[str, FloatArray] | None]:
+    """Return the generated rotations of all finger parts in each frame, None if they rest."""
+    if kind != "driven":
+        return [None] * FRAMES
+    hands = SimulatedFingers(np.random.default_rng(1))
+    poses = [hands.pose(frame / RATE_HZ) for frame in range(FRAMES)]
+    return [dict(zip(FINGER_PARTS, pose, strict=True)) for pose in poses]
 
 
 def _control() -> Iterator[Figure]:

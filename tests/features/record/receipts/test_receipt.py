@@ -6,7 +6,9 @@ import pytest
 from sqlalchemy import delete, update
 
 from app.features.record.receipts.service import receipt_text
+from app.features.record.telemetry import assign_epoch
 from app.models import Phase, SessionEvent, TelemetryChunk
+from tests.features.builders import NOW
 from tests.features.lab import Lab, ok
 from tests.features.record.receipts.conftest import StoredSession
 
@@ -32,6 +34,18 @@ def test_a_phase_without_movement_is_reported(stored: StoredSession) -> None:
     assert "phase 2: no frames of the actual body" in stored.receipt().problems
     stored.change(lambda db: db.execute(update(Phase).values(status="voided")))
     assert not any("no frames" in problem for problem in stored.receipt().problems)
+
+
+@pytest.mark.one_engine
+def test_announced_fingers_that_are_missing_are_reported(stored: StoredSession) -> None:
+    """A phase without fingers is a problem only if a headset has announced that it sends them."""
+    assert not any("fingers" in problem for problem in stored.receipt().problems)
+    stored.change(lambda db: assign_epoch(db, stored.session_id, NOW, fingers=True))
+    receipt = stored.receipt()
+    announced = "phase 2: no frames of the target fingers, which the headset announced"
+    assert announced in receipt.problems
+    assert {"target_fingers", "actual_fingers"} < {one.stream for one in receipt.streams}
+    assert "actual_fingers       3         0         0        0" in receipt_text(receipt)
 
 
 @pytest.mark.one_engine

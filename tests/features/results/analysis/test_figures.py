@@ -15,8 +15,10 @@ from app.features.results.analysis.figures import (
 )
 from app.features.results.analysis.figures.by_latency import mean_interval
 from app.features.results.analysis.figures.drawing import Drawing, limb_note
+from app.features.results.analysis.figures.fingers import joint_error_fingers_drawings
 from app.features.results.analysis.figures.joint_errors import BODY_PARTS, JOINTS_BY_PART
 from app.science.joint_error import ERROR_JOINTS
+from app.science.skeleton import FINGER_PARTS
 
 
 def _phases(completions: dict[str, dict[float, int]], limb: str = "hand") -> pd.DataFrame:
@@ -189,6 +191,44 @@ def test_contact_time_of_a_side_is_the_union_over_parts() -> None:
     sides, parts = _traces(contacts_drawing(phases, pd.DataFrame(contacts)), "0 ms")
     assert dict(zip(sides["x"], sides["y"], strict=True)) == {"left": 3.0}
     assert dict(zip(parts["x"], parts["y"], strict=True)) == {"LeftHand": 2.0, "LeftLowerArm": 2.0}
+
+
+def test_the_contact_time_of_a_finger_is_the_union_over_its_parts() -> None:
+    """The three parts of a finger are one finger, whose overlapping contacts count once."""
+    phases = _phases({"P-1": {0.0: 1}, "P-2": {0.0: 1}})
+    contacts = [
+        _contact(code, 0.0, part, begin_s, begin_s + 2.0)
+        for code in ("P-1", "P-2")
+        for part, begin_s in (
+            ("RightThumbProximal", 1.0),
+            ("RightThumbDistal", 2.0),
+            ("RightHand", 1.0),
+        )
+    ]
+    _, parts = _traces(contacts_drawing(phases, pd.DataFrame(contacts)), "0 ms")
+    assert dict(zip(parts["x"], parts["y"], strict=True)) == {"RightHand": 2.0, "RightThumb": 3.0}
+
+
+def test_fingers_have_a_figure_of_their_own_and_change_no_other() -> None:
+    """Joint errors of fingers are drawn by finger and enter no mean over the body's joints."""
+    body = pd.DataFrame([*_errors(10.0, "P-1", 125.0), *_errors(20.0, "P-2", 125.0)])
+    fingers = pd.DataFrame(
+        [
+            {**row, "joint": part, "mean_deg": 40.0 if part.startswith("LeftThumb") else 2.0}
+            for code in ("P-1", "P-2")
+            for row in _errors(0.0, code, 125.0)[:1]
+            for part in FINGER_PARTS
+        ]
+    )
+    both = pd.concat((body, fingers), ignore_index=True)
+    assert joint_error_map_drawing(both).as_json() == joint_error_map_drawing(body).as_json()
+    assert list(joint_error_fingers_drawings(body)) == []
+    (drawing,) = joint_error_fingers_drawings(both)
+    figure = drawing.as_json()
+    assert figure is not None
+    (heat,) = figure["data"]
+    assert dict(zip(heat["x"], heat["z"][0], strict=True))["LeftThumb"] == 40.0
+    assert (len(heat["x"]), max(heat["z"][0][1:])) == (10, 2.0)
 
 
 def test_a_phase_without_a_contact_counts_as_zero() -> None:

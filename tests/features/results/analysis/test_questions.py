@@ -1,6 +1,7 @@
 """Tests of the study's questions, answered from sessions with known answers."""
 
 import pytest
+from sqlalchemy import update
 
 from app.database import Database
 from app.features.design.studies import add_version, study_by_key
@@ -10,6 +11,7 @@ from app.features.results.analysis.questions.answers import DECLARED
 from app.features.results.analysis.questions.relations import group_of
 from app.features.results.analysis.questions.words import bounded, p_words
 from app.features.results.analysis.schemas import MeasureView, ResultView, StatisticsResults
+from app.models import Contact
 from app.protocol.plan import Step
 from tests.features.builders import NOW, STUDY, SessionSpec, build_session
 from tests.protocol.helpers import STUDY as FILE
@@ -64,6 +66,30 @@ def test_identical_participants_give_the_smallest_possible_p(database: Database)
         ("hand", "p < .001, W = 1.00", None, "p < .001", "falls"),
         ("foot", "p < .001, W = 1.00", None, "p < .001", "falls"),
     ]
+
+
+@pytest.mark.one_engine
+def test_the_time_of_the_thumb_at_each_side_is_stated(database: Database) -> None:
+    """Contacts by finger give a row for the thumb at every latency; without any there is none."""
+    without = _found(database, 3)
+    assert not any(one.key == "contact_fingers_hand" for one in _shares(without))
+    with database.writing() as db:
+        own = (Contact.surface_kind == "side", Contact.surface.like("hand/%"))
+        db.execute(update(Contact).where(*own).values(body_part="RightThumbDistal"))
+    with database.reading() as db:
+        found = answers_of(read_material(db, STUDY, "people"))
+    (stated,) = (one for one in _shares(found) if one.key == "contact_fingers_hand")
+    thumb = {row[0]: row for row in stated.rows if row[1] == "thumb"}
+    assert list(thumb) == ["0", "125", "350"]
+    assert stated.columns[:2] == ["latency (ms)", "finger"]
+    for row in thumb.values():
+        assert float(row[-1]) == pytest.approx(sum(map(float, row[2:-1])), abs=0.02)
+        assert float(row[-1]) > 0.0
+
+
+def _shares(found: StatisticsResults) -> list[ResultView]:
+    shares = [one for one in found.measures if one.key == "contact_shares"]
+    return [result for one in shares for result in one.results]
 
 
 @pytest.mark.one_engine

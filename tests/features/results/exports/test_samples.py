@@ -11,7 +11,7 @@ from app.database import Database
 from app.features.results.analysis.codebook import columns_of
 from app.features.results.exports.writing.samples import SampleFile
 from app.models import StudySession
-from app.wire import StreamName
+from app.wire import FINGER_STREAMS, StreamName
 from tests.features.builders import SessionSpec, build_session
 from tests.features.movement_builders import moving_values, store_batch, store_chunks
 
@@ -137,3 +137,29 @@ def test_at_most_a_second_of_each_stream_is_in_memory(
     with database.reading() as db:
         pieces = list(SampleFile(db, session.id, simulated=False, avatar="x").pieces())
     assert max(piece.count(b"\n") for piece in pieces) <= 90
+
+
+@pytest.mark.one_engine
+def test_fingers_are_exported_in_a_file_of_their_own(
+    database: Database, session: StudySession
+) -> None:
+    """Every exported value of the fingers reads back as the stored one, and NaN as NaN."""
+    names = [column.name for column in columns_of("fingers")]
+    values = np.random.default_rng(4).normal(size=(90, 120)).astype(np.float32)
+    values[40:, 60:] = np.nan
+    with database.writing() as db:
+        for stream in FINGER_STREAMS:
+            store_chunks(db, session.id, stream, range(90), values)
+    with database.reading() as db:
+        file = SampleFile(db, session.id, simulated=False, avatar=session.avatar, fingers=True)
+        rows = list(csv.DictReader(io.StringIO(b"".join(file.pieces()).decode())))
+        blinded = SampleFile(*(db, session.id, False, session.avatar), blinded=True, fingers=True)
+        first = next(csv.DictReader(io.StringIO(b"".join(blinded.pieces()).decode())))
+    assert list(rows[0]) == names
+    for stream in ("target", "actual"):
+        own = [name for name in names if name.startswith(f"{stream}_")]
+        found = np.array([[float(row[name]) for name in own] for row in rows]).astype(np.float32)
+        assert np.array_equal(found, values, equal_nan=True)
+    # The avatar's would reveal its latency.
+    assert first["target_LeftThumbDistal_qw"]
+    assert not first["actual_LeftThumbDistal_qw"]

@@ -57,7 +57,7 @@ def joint_error_fingers_drawings(errors: pd.DataFrame) -> Iterator[Drawing]:
         go.Heatmap(
             x=[str(finger) for finger in table.index],
             y=[f"{latency:g}" for latency in table.columns],
-            z=table.T.to_numpy(),
+            z=[[None if pd.isna(one) else float(one) for one in row] for row in table.T.to_numpy()],
             texttemplate="%{z:.1f}",
             colorscale="Cividis",
             zmin=0.0,
