@@ -2,13 +2,13 @@
 
 `speed` lets an avatar with the product's own settings swing its limbs next to the eight boxes of a
 study, frame by frame at 90 Hz, without fingers, with them, and as the standard avatar with mesh
-colliders, whose fingers rest or follow generated ones, and measures the seconds simulated in one second, compared with bare `mj_step` of the
-same model on the same inputs in the same run. The difference is our own code: converting poses to
-angles, setting targets at every step, moving the hips, watching contacts, reading the body back; at
-least 0.8 of the bare rate must remain. Time is processor time, and the two alternate, so that other
-programs on the machine affect the result as little as possible. `control` is one such frame without
-any simulation: a pose converted to angles, and the body converted to joints. Rates are those of the
-fastest round.
+colliders, whose fingers rest or follow generated ones, and measures the seconds simulated in one
+second, compared with bare `mj_step` of the same model on the same inputs in the same run. The
+difference is our own code: converting poses to angles, setting targets at every step, moving the
+hips, watching contacts, reading the body back; at least 0.8 of the bare rate must remain. Time is
+processor time, and the two alternate, so that other programs on the machine affect the result as
+little as possible. `control` is one such frame without any simulation: a pose converted to angles,
+and the body converted to joints. Rates are those of the fastest round.
 
 `bullet` is PyBullet with the same body, boxes and inputs (`peers.bullet_body` describes the
 differences): with its defaults, 50 solver iterations and targets at every step as ours, and with 10

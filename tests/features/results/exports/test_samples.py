@@ -156,8 +156,8 @@ def test_fingers_are_exported_in_a_file_of_their_own(
         blinded = SampleFile(*(db, session.id, False, session.avatar), blinded=True, fingers=True)
         first = next(csv.DictReader(io.StringIO(b"".join(blinded.pieces()).decode())))
     assert list(rows[0]) == names
-    for stream in ("target", "actual"):
-        own = [name for name in names if name.startswith(f"{stream}_")]
+    for prefix in ("target", "actual"):
+        own = [name for name in names if name.startswith(f"{prefix}_")]
         found = np.array([[float(row[name]) for name in own] for row in rows]).astype(np.float32)
         assert np.array_equal(found, values, equal_nan=True)
     # The avatar's would reveal its latency.
