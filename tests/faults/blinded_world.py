@@ -2,10 +2,10 @@
 
 Each status has its own study. The keys, names and latencies of its conditions are canaries: they
 occur nowhere else, so anything found in a response can be traced to one session, even where a
-response mixes studies. The search covers the conditions' keys, names and bodies, latencies
-in ms and s, joint errors that were set equal to the latency (in degrees), and the hashes of the event log,
-against which a guessed latency could be checked. It does not cover that a delay can be computed
-from frames; instead, the avatar's frames themselves count as a leak.
+response mixes studies. The search covers the conditions' keys, names and bodies, latencies in ms
+and s, joint errors that were set equal to the latency (in degrees), and the hashes of the event
+log, against which a guessed latency could be checked. It does not cover that a delay can be
+computed from frames; instead, the avatar's frames themselves count as a leak.
 """
 
 import asyncio

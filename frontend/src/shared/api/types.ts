@@ -71,6 +71,8 @@ export interface ConfigProblem {
 export interface Condition {
   readonly key: string;
   readonly latency_ms: number;
+  /** The body that participants wear in it; without it that of the avatar's configuration. */
+  readonly body?: string;
   readonly label: Text;
 }
 

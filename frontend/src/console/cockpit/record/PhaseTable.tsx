@@ -86,6 +86,7 @@ function PhaseRow({ session, phase }: PhaseRowProps): JSX.Element {
       </td>
       <td>
         {phase.latency_ms === null ? t("timeline.hidden") : latency(milliseconds(phase.latency_ms))}
+        {phase.body !== null && ` · ${phase.body}`}
       </td>
       <td>
         <AchievedLatency phase={phase} />

@@ -98,6 +98,7 @@ function StepPosition({ session, step }: { readonly session: SessionView; readon
   if (step.latency_ms !== null) {
     parts.push(t("step.latency", { latency: latency(milliseconds(step.latency_ms)) }));
   } else if (step.block !== null) parts.push(t("step.latencyHidden"));
+  if (step.body !== null) parts.push(t("overview.body", { body: step.body }));
   if (step.until_completions != null) {
     parts.push(t("practice.until", { count: step.until_completions }));
   }

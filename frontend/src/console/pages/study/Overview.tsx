@@ -82,7 +82,12 @@ function Conditions({ protocol }: { readonly protocol: StudyProtocol }): JSX.Ele
       <tbody>
         {protocol.conditions.map((condition) => (
           <tr key={condition.key}>
-            <td>{inLanguage(condition.label, language)}</td>
+            <td>
+              {inLanguage(condition.label, language)}
+              {condition.body !== undefined && (
+                <span className={classes.body}>{t("overview.body", { body: condition.body })}</span>
+              )}
+            </td>
             <td className="numbers">{latency(milliseconds(condition.latency_ms))}</td>
             <td aria-hidden="true" width="40%">
               <div
