@@ -8,6 +8,7 @@ once the participant's stature is known and the T-pose is held.
 import asyncio
 import time
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -136,6 +137,7 @@ class Headset:
         self._materialised = False
         self._revision = 0
         self._has_avatar_moved = False
+        self._is_unchanged = False
 
     @property
     def _goes_on_alone(self) -> bool:
@@ -242,10 +244,16 @@ class Headset:
     async def _change_avatar(self, state: HeadsetState) -> None:
         """Bring the avatar to the changes in force, and report when they took effect."""
         order = state.avatar_changes
-        if order is None or order.revision == self._revision:
+        if order is None or (order.revision == self._revision and not self._is_unchanged):
             return
         if self._avatar is None or not self._has_avatar_moved:
             # A cast is put on a body that has taken the participant's pose.
+            return
+        self._is_unchanged = False
+        if order.revision == self._revision:
+            # It was reported with another body: to report it again would tell that it is another.
+            with suppress(CannotChange):
+                self._avatar.change(order)
             return
         self._revision = order.revision
         try:
@@ -291,7 +299,7 @@ class Headset:
         worn.put_on()
         self._avatar = worn
         # Changes in force apply to this body, too, once it has taken the participant's pose.
-        self._has_avatar_moved, self._revision = False, 0
+        self._has_avatar_moved, self._is_unchanged = False, True
 
     def _follow_later(self, latency_s: float) -> None:
         if self._avatar is not None:
