@@ -129,6 +129,8 @@ def test_a_whole_session_is_rehearsed_in_a_physics_avatar(tmp_path: Path) -> Non
         report: RehearsalReport = asyncio.run(rehearsed_with_a_change(plan))
         session = f"/api/sessions/{report.session_id}"
         view, events = ok(api.get(session)), ok(api.get(f"{session}/events"))
+        feet = [one["phase_id"] for one in report.phases if one["limb"] == "foot"]
+        replay = ok(api.get(f"{session}/phases/{feet[0]}/replay"))
         standard: Json = ok(api.get("/api/avatars/standard"))
         errors = summarised(f"sqlite:///{server.data_dir / 'reembody.sqlite'}", report)
     assert (view["status"], view["avatar"], report.avatar) == ("completed", "physics", "physics")
@@ -141,9 +143,10 @@ def test_a_whole_session_is_rehearsed_in_a_physics_avatar(tmp_path: Path) -> Non
     assert 0.0 < np.median(errors["command"]) < np.radians(5.0)
     assert np.median(errors["present"]) >= np.median(errors["command"])
     changed = [one for one in events if one["type"] == "avatar_changed"]
-    feet = [one["phase_id"] for one in report.phases if one["limb"] == "foot"]
     by_study = [one["data"]["phase_id"] for one in changed if one["data"]["by"] == "study"]
     assert by_study == feet
+    arm = ["LeftUpperArm", "LeftLowerArm", "LeftHand"]
+    assert replay["avatar_settings"][-1]["held_parts"] == arm
     assert [one["data"]["changes"] for one in changed if one["data"]["by"] == "operator"] == [
         {"gravity": False}
     ]

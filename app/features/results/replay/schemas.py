@@ -105,6 +105,14 @@ class ReplaySurface(BaseModel):
     half_size_m: Vector
 
 
+class ReplayAvatarSettings(BaseModel):
+    """From `t_s` on: parts of the avatar that were in a cast, and parts without a collider."""
+
+    t_s: float
+    held_parts: list[str]
+    passing_parts: list[str]
+
+
 class Replay(BaseModel):
     """One phase; a `participant` view has no latency, contacts, completions and scene.
 
@@ -131,6 +139,7 @@ class Replay(BaseModel):
     stature_m: float
     stature_known: bool
     humanoid: str | None = None
+    avatar_settings: list[ReplayAvatarSettings] = []
     has_movement: bool
     runs: list[ClientRun]
     active: list[ActiveStretch]

@@ -15,6 +15,7 @@ from app.features.record.sessions import (
     plan_of,
     protocol_of_session,
 )
+from app.features.results.replay.avatar_settings import avatar_settings
 from app.features.results.replay.clock import PhaseClock
 from app.features.results.replay.schemas import (
     ActiveStretch,
@@ -61,6 +62,7 @@ def replay_of(db: Session, phase_view: Replayable) -> Replay:
         stature_m=stature_m or USUAL_STATURE_M,
         stature_known=stature_m is not None,
         humanoid=worn_humanoid(db, session, phase.body) if phase_view.full else None,
+        avatar_settings=(avatar_settings(db, session, phase, clock) if phase_view.full else []),
         has_movement=frames_stored(db, phase) > 0,
         runs=[ClientRun(**vars(run)) for run in clock.runs],
         active=[ActiveStretch(**vars(one)) for one in clock.active],

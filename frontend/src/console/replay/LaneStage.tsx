@@ -6,6 +6,7 @@ import { durationOf } from "@shared/stage/motion";
 import { Stage, type StageHandle } from "@shared/stage/Stage";
 import { type Seconds, seconds } from "@shared/units";
 import { type JSX, type Ref, useRef } from "react";
+import { MarksLegend } from "../avatarChanges/MarksLegend";
 import { BodyNotice } from "../bodyView/BodyNotice";
 import { useDrawnAs } from "../bodyView/DrawnAs";
 import { useBody } from "../bodyView/useBody";
@@ -15,7 +16,7 @@ import { useTexts } from "../i18n";
 import { EmptyState } from "../ui/EmptyState";
 import { tonesAt } from "./events";
 import classes from "./Replay.module.css";
-import { type Lane, useBlocksOf, useFiguresOf } from "./useLane";
+import { type Lane, marksAt, useBlocksOf, useFiguresOf } from "./useLane";
 
 interface LaneStageProps {
   readonly lane: Lane;
@@ -49,7 +50,10 @@ export function LaneStage(props: LaneStageProps): JSX.Element {
       {motion === undefined ? (
         <NoMovement lane={lane} />
       ) : (
-        <div className={classes.stage} data-drawn={figures[0]?.worn === undefined ? "skeleton" : "skin"}>
+        <div
+          className={classes.stage}
+          data-drawn={figures[0]?.worn === undefined ? "skeleton" : "skin"}
+        >
           <Stage
             {...(handle === undefined ? {} : { handle })}
             figures={figures}
@@ -63,6 +67,9 @@ export function LaneStage(props: LaneStageProps): JSX.Element {
           />
           {isGap && <span className={classes.gap}>{t("replay.nothing")}</span>}
           <BodyNotice body={body} instead />
+          <span className={classes.marks}>
+            <MarksLegend marks={marksAt(lane.replay.avatar_settings, time)} />
+          </span>
           <StageLegend ghost={figures.length > 1} sides={figures[0]?.worn === undefined} />
         </div>
       )}

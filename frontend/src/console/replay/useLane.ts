@@ -2,6 +2,7 @@
 import { type Replay, type ReplayMovement, replays } from "@shared/api/replays";
 import type { SessionView } from "@shared/api/types";
 import type { Block, Figure } from "@shared/stage/figure";
+import { type BodyMarks, NO_MARKS } from "@shared/stage/marks";
 import type { PointMotion } from "@shared/stage/motion";
 import type { BodyModel } from "@shared/stage/skin/bodyModel";
 import { queryOptions, useQuery } from "@tanstack/react-query";
@@ -54,6 +55,7 @@ export function useFiguresOf(
   model: BodyModel | null,
 ): readonly Figure[] {
   const statureM = replay?.stature_m ?? null;
+  const settings = replay?.avatar_settings ?? UNCHANGED;
   return useMemo(() => {
     if (movement === null) return [];
     const person = (key: string, motion: PointMotion, tone: Figure["tone"]): Figure => ({
@@ -65,9 +67,18 @@ export function useFiguresOf(
     });
     const { participant, avatar } = movement;
     if (avatar === null) return [person("participant", participant, "solid")];
-    const body = person("avatar", avatar, "solid");
+    const marks = (time: number) => marksAt(settings, time);
+    const body = { ...person("avatar", avatar, "solid"), ...(settings.length > 0 && { marks }) };
     return ghost ? [body, person("participant", participant, "ghost")] : [body];
-  }, [movement, ghost, model, statureM]);
+  }, [movement, ghost, model, statureM, settings]);
+}
+
+const UNCHANGED: Replay["avatar_settings"] = [];
+
+/** The marks of parts whose settings were changed, at a time of the phase. */
+export function marksAt(settings: Replay["avatar_settings"], time: number): BodyMarks {
+  const now = settings.findLast(({ t_s }) => t_s <= time);
+  return now === undefined ? NO_MARKS : { cast: now.held_parts, passing: now.passing_parts };
 }
 
 export function useBlocksOf({ replay }: Lane): readonly Block[] {

@@ -7245,6 +7245,11 @@ export interface components {
             readonly administrations: readonly string[];
             /** Attempt */
             readonly attempt: number;
+            /**
+             * Avatar Settings
+             * @default []
+             */
+            readonly avatar_settings: readonly components["schemas"]["ReplayAvatarSettings"][];
             /** Body */
             readonly body: string | null;
             /** Completions */
@@ -7298,6 +7303,18 @@ export interface components {
              * @enum {string}
              */
             readonly view: "full" | "participant";
+        };
+        /**
+         * ReplayAvatarSettings
+         * @description From `t_s` on: parts of the avatar that were in a cast, and parts without a collider.
+         */
+        readonly ReplayAvatarSettings: {
+            /** Held Parts */
+            readonly held_parts: readonly string[];
+            /** Passing Parts */
+            readonly passing_parts: readonly string[];
+            /** T S */
+            readonly t_s: number;
         };
         /**
          * ReplayCompletion

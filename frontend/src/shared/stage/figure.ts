@@ -1,4 +1,7 @@
 /** What is drawn on a stage, and how it is distinguished. */
+
+import type { Seconds } from "../units";
+import type { BodyMarks } from "./marks";
 import type { PointMotion } from "./motion";
 import type { Worn } from "./skin/worn";
 
@@ -23,6 +26,8 @@ export interface Figure {
   readonly highlighted?: number | null;
   /** The body to draw it with; without one it is drawn as a skeleton. */
   readonly worn?: Worn;
+  /** Parts that are marked at a time, because their settings were changed. */
+  readonly marks?: (time: Seconds) => BodyMarks;
 }
 
 /**

@@ -15,8 +15,10 @@ import {
   type StagePalette,
 } from "./figure";
 import { type FloorPlan, floorPlan } from "./floor";
+import { NO_MARKS } from "./marks";
+import { BodyMarks3d } from "./marks3d";
 import type { Placing } from "./placing";
-import { bodyOf, Space3d } from "./space3d";
+import { bodyOf, Space3d, type StageBody } from "./space3d";
 import { alongFloor, directionOf, fitting, lookThroughEyes } from "./views";
 
 /** What else is in the scene with the figures. */
@@ -37,6 +39,7 @@ export class Stage3d extends Space3d {
   #mode: CameraMode = "orbit";
   #time = 0 as Seconds;
   #followed: Vector3 | null = null;
+  #marks: readonly { readonly body: StageBody; readonly marks: BodyMarks3d }[] = [];
 
   /** Throws if the browser has no WebGL. */
   constructor(canvas: HTMLCanvasElement) {
@@ -55,6 +58,7 @@ export class Stage3d extends Space3d {
     { blocks = [], comparedFigures = [] }: Surroundings = {},
   ): void {
     this.standBodies(figures.map((figure) => bodyOf(figure, palette)));
+    this.#standMarks();
     this.standBlocks(blocks, palette);
     const plan = floorPlan([...figures, ...comparedFigures], blocks);
     const isElsewhere = JSON.stringify(plan) !== JSON.stringify(this.#plan);
@@ -79,9 +83,27 @@ export class Stage3d extends Space3d {
       body.headless = this.#mode === "eyes";
       return body.show(time);
     });
+    for (const { body, marks } of this.#marks) {
+      marks.marks = body.figure.marks?.(time) ?? NO_MARKS;
+      marks.show(body.placing.placed);
+    }
     this.#moveCamera();
     this.renderer.domElement.dataset.frame = String(frames[0] ?? 0);
     this.requestPicture();
+  }
+
+  #standMarks(): void {
+    for (const { marks } of this.#marks) {
+      this.scene.remove(marks.group);
+      marks.dispose();
+    }
+    this.#marks = this.bodies
+      .filter(({ figure }) => figure.marks !== undefined)
+      .map((body) => {
+        const { names, parents } = body.figure.motion;
+        return { body, marks: new BodyMarks3d(names, parents) };
+      });
+    for (const { marks } of this.#marks) this.scene.add(marks.group);
   }
 
   setMode(mode: CameraMode): void {
@@ -132,6 +154,7 @@ export class Stage3d extends Space3d {
   }
 
   override dispose(): void {
+    for (const { marks } of this.#marks) marks.dispose();
     this.#controls.dispose();
     super.dispose();
   }

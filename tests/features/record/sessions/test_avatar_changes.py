@@ -9,6 +9,8 @@ from typing import Any
 import pytest
 from starlette.testclient import WebSocketTestSession
 
+from app.features.record.receipts import receipt_of, receipt_text
+from app.features.results.analysis.tables import phases_table
 from tests.features.lab import Json, Lab, error, ok
 from tests.features.movement.avatar.test_avatars import new
 from tests.features.movement.avatar.test_studies import KEY, study
@@ -173,6 +175,13 @@ def test_the_studys_cast_lasts_as_long_as_its_phase(fresh_lab: Lab) -> None:
         assert after["avatar_changes"]["revision"] > told["revision"]
         view = fresh_lab.command(view, "change_avatar")
         assert of_type(fresh_lab, view["id"], "avatar_changed")[-1]["data"]["changes"] == {}
+    with fresh_lab.database.reading() as db:
+        phases = phases_table(db, KEY, "test")
+        receipt = receipt_of(db, view["id"])
+    assert phases["avatar_changes"].tolist() == ["study and operator"]
+    changes = [(one.phase_id, one.deviation, one.applied) for one in receipt.avatar_changes]
+    assert changes == [(1, True, None), (None, False, None)]
+    assert "in phase 1, not in the protocol, NOT confirmed by the headset" in receipt_text(receipt)
 
 
 @pytest.mark.one_engine

@@ -255,6 +255,7 @@ function GroupSelect({ groups, value, onChange }: GroupSelectProps): JSX.Element
       aria-label={texts.t("avatarChanges.group")}
       placeholder={texts.t("avatarChanges.group")}
       searchable
+      selectFirstOptionOnChange
       allowDeselect={false}
       data={groups.map((one) => ({ value: one, label: groupName(texts, one) }))}
       value={value === "" ? null : value}

@@ -73,7 +73,13 @@ function EventTable({ events }: { readonly events: readonly SessionEvent[] }): J
 function Changed({ event }: { readonly event: SessionEvent }): JSX.Element {
   const texts = useTexts();
   const words = changeWords(texts, event.data.changes as AvatarChanges);
-  return <div>{words.length === 0 ? texts.t("avatarChanges.back") : words.join(" · ")}</div>;
+  const who = event.data.by === "study" ? "avatarChanges.study" : "avatarChanges.operator";
+  if (words.length === 0) return <div>{texts.t("avatarChanges.back")}</div>;
+  return (
+    <div>
+      {texts.t(who)}: {words.join(" · ")}
+    </div>
+  );
 }
 
 /** Identifiers and hashes are for the export, so they are not shown here. */
