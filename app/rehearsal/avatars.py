@@ -14,7 +14,7 @@ from app.protocol.avatar import AvatarFile, configuration_of
 from app.science.avatar.configuration import Configuration, RunningSettings, as_configured
 from app.science.avatar.mjcf import SimulationError
 from app.science.avatar.simulation import Follower, PhysicsAvatar, SurfaceTouches
-from app.science.avatar.targets import TargetAngles, finger_rotations
+from app.science.avatar.targets import TargetAngles
 from app.science.delay import DelayBuffer
 from app.science.simulation import FingerCapsules
 from app.science.skeleton import (
@@ -231,14 +231,12 @@ class PhysicsBody:
     def frame(self, t_s: float, pose: Pose, fingers: FloatArray | None = None) -> Pose:
         """Simulate up to this frame and return the body's pose."""
         hips_m = self._hips_scale * pose.root_position_m
-        given = None if fingers is None else dict(zip(FINGER_PARTS, fingers, strict=True))
         if self._began_s is None:
             self._began_s = t_s
-            self._follower.start(hips_m, pose.rotations, given)
-        followed = self._follower.frame(t_s - self._began_s, hips_m, pose.rotations, given)
-        if given is not None:
-            # A part without a hinge keeps its place on the part above it.
-            self.fingers = finger_rotations(np.nan_to_num(followed.state.angles_rad))
+            self._follower.start(hips_m, pose.rotations, fingers)
+        followed = self._follower.frame(t_s - self._began_s, hips_m, pose.rotations, fingers)
+        if fingers is not None:
+            self.fingers = self.avatar.finger_rotations()
         return Pose(followed.state.root_position_m, followed.state.rotations)
 
     def touches(self) -> tuple[Bools, Bools]:

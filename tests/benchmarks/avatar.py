@@ -18,7 +18,7 @@ PyBullet is installed on first use, and left out if that fails.
 """
 
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from functools import cache
 from typing import Literal
 
@@ -28,10 +28,9 @@ import numpy as np
 from app.science.avatar.body import AXIS_NAMES
 from app.science.avatar.mjcf import AvatarModel
 from app.science.avatar.simulation import Follower, PhysicsAvatar
-from app.science.avatar.targets import finger_rotations
 from app.science.rotations import FloatArray, from_rotation_vector
 from app.science.simulation import SimulatedFingers
-from app.science.skeleton import FINGER_PARTS, JOINT_COUNT
+from app.science.skeleton import JOINT_COUNT
 from tests.benchmarks.clips import shared_file
 from tests.benchmarks.peers.bullet import bullet_avatar, bullet_humanoid_steps_per_s
 from tests.benchmarks.report import Figure, Report
@@ -72,13 +71,13 @@ def _speed(*, kind: Kind) -> Figure:
 
 
 def _followed_s(*, kind: Kind) -> float:
-    follower, poses, hands = _started(_model(kind))[1], _poses(), _hands(kind)
+    (body, follower), poses, hands = _started(_model(kind)), _poses(), _hands(kind)
     start_s = time.process_time()
     for frame in range(FRAMES):
         given = hands[frame]
-        state = follower.frame((frame + 1) / RATE_HZ, HIPS_M, poses[frame], given).state
+        follower.frame((frame + 1) / RATE_HZ, HIPS_M, poses[frame], given)
         if given is not None:
-            finger_rotations(np.nan_to_num(state.angles_rad))
+            body.finger_rotations()
     return time.process_time() - start_s
 
 
@@ -208,13 +207,12 @@ def _model(kind: Kind) -> AvatarModel:
 
 
 @cache
-def _hands(kind: Kind) -> list[Mapping[str, FloatArray] | None]:
+def _hands(kind: Kind) -> list[FloatArray | None]:
     """Return the generated rotations of all finger parts in each frame, None if they rest."""
     if kind != "driven":
         return [None] * FRAMES
     hands = SimulatedFingers(np.random.default_rng(1))
-    poses = [hands.pose(frame / RATE_HZ) for frame in range(FRAMES)]
-    return [dict(zip(FINGER_PARTS, pose, strict=True)) for pose in poses]
+    return [hands.pose(frame / RATE_HZ) for frame in range(FRAMES)]
 
 
 def _control() -> Iterator[Figure]:

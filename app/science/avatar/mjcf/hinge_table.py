@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from app.science.avatar.body import AXIS_NAMES, PART_NAMES
+from app.science.avatar.body import AXIS_NAMES, FINGER_PARTS, PARENT_OF, PART_NAMES
 from app.science.avatar.configuration import HIPS_TARGET
 from app.science.skeleton import JOINT_NAMES, PARENTS
 
@@ -39,6 +39,9 @@ class HingeTable:
             joint's own part, the body of the part above it.
         parent_bodies: (22,) the body that carries each joint's parent; the world's, 0, for the
             hips.
+        finger_bodies: (30,) body of each finger part; where the model lacks it, that of the part
+            above it.
+        above_fingers: (30,) body of the part above each of them.
         mocap: row of the body whose pose is set: the hips themselves, or the body they are welded
             to.
         root_angles: first index of welded hips in `qpos`; None where the hips are carried.
@@ -54,6 +57,8 @@ class HingeTable:
     bodies: dict[str, int]
     joint_bodies: IndexArray
     parent_bodies: IndexArray
+    finger_bodies: IndexArray
+    above_fingers: IndexArray
     mocap: int
     root_angles: int | None
     root_speeds: int | None
@@ -85,10 +90,19 @@ def hinge_table(model: "mujoco.MjModel") -> HingeTable:
         bodies=parts,
         joint_bodies=joint_bodies,
         parent_bodies=np.array([0 if above < 0 else joint_bodies[above] for above in PARENTS]),
+        finger_bodies=np.array([_carrier(part, parts) for part in FINGER_PARTS]),
+        above_fingers=np.array([_carrier(PARENT_OF[part], parts) for part in FINGER_PARTS]),
         mocap=int(model.body_mocapid[placed]),
         root_angles=None if root is None else int(model.jnt_qposadr[root]),
         root_speeds=None if root is None else int(model.jnt_dofadr[root]),
     )
+
+
+def _carrier(part: str | None, parts: dict[str, int]) -> int:
+    """Return the body of a part or, if the model lacks it, of the nearest part above it."""
+    while part is not None and part not in parts:
+        part = PARENT_OF[part]
+    return 0 if part is None else parts[part]
 
 
 def _joint_bodies(parts: dict[str, int]) -> IndexArray:

@@ -24,7 +24,6 @@ simulation. In both cases the hips are not delayed, and a latency of zero passes
 """
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,7 +31,7 @@ import numpy as np
 from app.science.avatar.body import AXES
 from app.science.avatar.configuration import TargetSpace
 from app.science.avatar.simulation.simulation import AvatarState, PhysicsAvatar
-from app.science.avatar.targets import TargetAngles, Targets
+from app.science.avatar.targets import Fingers, TargetAngles, Targets
 from app.science.delay import DelayBuffer
 from app.science.rotations import (
     IDENTITY,
@@ -107,7 +106,7 @@ class Follower:
         self,
         position_m: FloatArray,
         rotations: FloatArray,
-        fingers: Mapping[str, FloatArray] | None = None,
+        fingers: Fingers | None = None,
     ) -> None:
         """Put the avatar into a pose immediately: hips (3,), local rotations (22, 4), fingers."""
         self._angles.forget()
@@ -120,7 +119,7 @@ class Follower:
         time_s: float,
         position_m: FloatArray,
         rotations: FloatArray,
-        fingers: Mapping[str, FloatArray] | None = None,
+        fingers: Fingers | None = None,
     ) -> FollowedFrame:
         """Simulate the avatar up to the time of a frame.
 
@@ -153,14 +152,16 @@ class Follower:
         poses: DelayBuffer,
         time_s: float,
         rotations: FloatArray,
-        fingers: Mapping[str, FloatArray] | None,
-    ) -> tuple[FloatArray, Mapping[str, FloatArray] | None]:
+        fingers: Fingers | None,
+    ) -> tuple[FloatArray, Fingers | None]:
         """Return delayed copies of a body and its fingers, if these are given with every frame."""
-        names = tuple(fingers or ())
-        given = [rotations, *(q[np.newaxis] for q in (fingers or {}).values())]
-        delayed = poses.push(time_s, np.concatenate(given)).copy()
-        count = len(rotations)
-        return delayed[:count], dict(zip(names, delayed[count:], strict=True))
+        if fingers is None:
+            return poses.push(time_s, rotations).copy(), None
+        named = None if isinstance(fingers, np.ndarray) else tuple(fingers)
+        given = fingers if isinstance(fingers, np.ndarray) else np.stack([*fingers.values()])
+        delayed = poses.push(time_s, np.concatenate((rotations, given))).copy()
+        body, late = delayed[: len(rotations)], delayed[len(rotations) :]
+        return body, late if named is None else dict(zip(named, late, strict=True))
 
 
 def _deviation(target_rad: FloatArray, actual_rad: FloatArray) -> FloatArray:

@@ -232,6 +232,17 @@ class PhysicsAvatar:
             command,
         )
 
+    def finger_rotations(self) -> FloatArray:
+        """Return the current local rotations (30, 4) of the fingers, wxyz.
+
+        A part that the model lacks, or that has no hinge, does not turn.
+        """
+        return np.asarray(
+            self._kernels.local_rotations(
+                self.data.xquat, self._table.above_fingers, self._table.finger_bodies
+            )
+        )
+
     def contacts(self) -> tuple[Contact, ...]:
         """Return the body's contacts in the last step."""
         return read_contacts(self.model, self.data)

@@ -7,6 +7,7 @@ the motors of an avatar aimed at, the reference of joint errors.
 
 from app.science.avatar.targets.hinge_reference import HingeReference
 from app.science.avatar.targets.targets import (
+    Fingers,
     TargetAngles,
     Targets,
     finger_rotations,
@@ -14,6 +15,7 @@ from app.science.avatar.targets.targets import (
 )
 
 __all__ = [
+    "Fingers",
     "HingeReference",
     "TargetAngles",
     "Targets",

@@ -37,7 +37,7 @@ from app.science.avatar.targets.targets import (
 )
 from app.science.joint_error import ERROR_JOINTS_WITH_FINGERS, Clipping, ReferenceMotion
 from app.science.rotations import FloatArray, is_unit
-from app.science.skeleton import FINGER_PARTS, JOINT_COUNT
+from app.science.skeleton import JOINT_COUNT
 
 GAP_S = 0.25
 """Longest gap between two frames; after a longer one, hinges restart, as the direction in which
@@ -87,14 +87,14 @@ class HingeReference:
                 target_rotations, self._clipping(np.zeros((0, *columns.shape), np.bool_))
             )
         usable = _usable(rotations)
-        body, fingers = usable[:, :JOINT_COUNT], usable[:, JOINT_COUNT:]
-        given = dict(zip(FINGER_PARTS, np.moveaxis(fingers, 1, 0), strict=False))
-        targets = self._angles.batch(body, given, restarts=_gaps(times_s))
+        body = usable[:, :JOINT_COUNT]
+        fingers = usable[:, JOINT_COUNT:] if usable.shape[1] > JOINT_COUNT else None
+        targets = self._angles.batch(body, fingers, restarts=_gaps(times_s))
         for first in range(0, len(rotations), _CHUNK_FRAMES):
             at = slice(first, first + _CHUNK_FRAMES)
             angles_rad = targets.unclamped_rad[at]
             target_rotations[at, :JOINT_COUNT] = joint_rotations(angles_rad, rotations[at, 0])
-            if given:
+            if fingers is not None:
                 target_rotations[at, JOINT_COUNT:] = finger_rotations(angles_rad)
         return ReferenceMotion(target_rotations, self._clipping(targets.clipped[:, columns]))
 

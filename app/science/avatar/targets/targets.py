@@ -43,12 +43,19 @@ rounding is a tenth of it: an elbow held straight, at its limit, is not clipped 
 frame."""
 _CHUNK_FRAMES = 512
 """Frames of a recording per call of the compiled code, which does not let other threads run."""
+_FINGER_ROWS = np.array([PART_NAMES.index(name) for name in FINGER_PARTS])
+_ROW_OF = {name: row for row, name in enumerate(PART_NAMES)}
 _JOINT_ROWS = np.array([PART_NAMES.index(name) for name in JOINT_INDEX])
 _DIRECTIONS: FloatArray = np.array([axis.direction for axis in AXES])
 # Every finger part has one axis; those at the knuckles have a second one.
 _FIRST_AXES = np.array([AXES.index(AXES_OF[part][0]) for part in FINGER_PARTS])
 _TWO_AXES = np.array([row for row, part in enumerate(FINGER_PARTS) if len(AXES_OF[part]) == 2])
 _SECOND_AXES = _FIRST_AXES[_TWO_AXES] + 1
+
+
+Fingers = FloatArray | Mapping[str, FloatArray]
+"""Rotations parent_from_part of fingers: of all in the order of `FINGER_PARTS`, (..., 30, 4), or of
+some by name, (..., 4)."""
 
 
 class TargetError(ValueError):
@@ -141,7 +148,7 @@ class TargetAngles:
     def batch(
         self,
         rotations: FloatArray,
-        fingers: Mapping[str, FloatArray] | None = None,
+        fingers: Fingers | None = None,
         *,
         restarts: npt.NDArray[np.bool_] | None = None,
     ) -> Targets:
@@ -151,7 +158,7 @@ class TargetAngles:
 
         Args:
             rotations: (N, 22, 4) rotations as for `follow`, with N above zero.
-            fingers: (N, 4) rotations parent_from_part of fingers, by part name.
+            fingers: as for `follow`, of N frames.
             restarts: (N,) whether to `forget` before each frame; None for the first one only.
 
         Raises:
@@ -161,9 +168,8 @@ class TargetAngles:
             raise TargetError(f"Rotations {rotations.shape} are not (N, 22, 4) with N above zero.")
         starts = np.zeros(rotations.shape[0], np.bool_) if restarts is None else restarts.copy()
         starts[0] = True
-        given = fingers or {}
         chunks = [
-            self._follow(rotations[at], {name: q[at] for name, q in given.items()}, starts[at])
+            self._follow(rotations[at], _at(fingers, at), starts[at])
             for at in (
                 slice(first, first + _CHUNK_FRAMES)
                 for first in range(0, len(rotations), _CHUNK_FRAMES)
@@ -175,28 +181,26 @@ class TargetAngles:
             np.concatenate([frames.residual_rad for frames in chunks]),
         )
 
-    def follow(
-        self, rotations: FloatArray, fingers: Mapping[str, FloatArray] | None = None
-    ) -> Targets:
+    def follow(self, rotations: FloatArray, fingers: Fingers | None = None) -> Targets:
         """Return the target angles of one frame.
 
         Args:
             rotations: (22, 4) unit quaternions wxyz, parent_from_joint; the hips' row is not read.
                 Where one is not finite, neither are the angles that depend on it, and the next
                 frame is followed from the previous one.
-            fingers: parent_from_part (4,) of fingers by part name; others are at rest.
+            fingers: rotations of the fingers; others are at rest.
 
         Raises:
             TargetError: a shape does not fit.
         """
-        given = {name: q[np.newaxis] for name, q in (fingers or {}).items()}
+        given = _at(fingers, np.newaxis)
         target = self._follow(rotations[np.newaxis], given, np.array([self._restart]))
         return Targets(target.angles_rad[0], target.unclamped_rad[0], target.residual_rad[0])
 
     def _follow(
         self,
         rotations: FloatArray,
-        fingers: Mapping[str, FloatArray],
+        fingers: Fingers | None,
         restarts: npt.NDArray[np.bool_],
     ) -> Targets:
         count = rotations.shape[0]
@@ -205,8 +209,11 @@ class TargetAngles:
         local = np.empty((count, len(PART_NAMES), 4))
         local[:] = self._at_rest
         local[:, _JOINT_ROWS] = rotations
-        for name, q in fingers.items():
-            local[:, PART_NAMES.index(name)] = q
+        if isinstance(fingers, np.ndarray):
+            local[:, _FINGER_ROWS] = fingers
+        elif fingers is not None:
+            for name, q in fingers.items():
+                local[:, _ROW_OF[name]] = q
         angles, unclamped = np.empty((2, count, AXIS_COUNT))
         residual = np.empty((count, len(PART_NAMES)))
         plan = self._plan
@@ -217,6 +224,13 @@ class TargetAngles:
         )  # fmt: skip
         self._restart = False
         return Targets(angles, unclamped, residual)
+
+
+def _at(fingers: Fingers | None, at: slice | None) -> Fingers | None:
+    """Return the fingers in some of N frames, or of one frame as of N = 1."""
+    if fingers is None or isinstance(fingers, np.ndarray):
+        return None if fingers is None else fingers[at]
+    return {name: q[at] for name, q in fingers.items()}
 
 
 def rotations_of(
