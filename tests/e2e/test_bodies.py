@@ -51,8 +51,12 @@ def test_a_body_is_uploaded_checked_and_named(
     expect(page.get_by_text("Saved as worn_once, version 1.")).to_be_visible(timeout=PATIENCE_MS)
     expect(page.get_by_text("worn_once, version 1", exact=True)).to_be_visible()
     assert axe(page) == []
-    screenshot(page, "body")
     page.get_by_role("link", name="Bodies").first.click()
     expect(page.get_by_role("list", name="Bodies")).to_contain_text("worn_once")
     assert axe(page) == []
+    page.evaluate("scrollTo(0, 0)")
     screenshot(page, "bodies")
+    page.get_by_role("link", name="neutral").click()
+    expect(page.locator("[data-way=space]")).to_be_visible(timeout=PATIENCE_MS)
+    expect(page.get_by_text("Its author lets everybody wear it.")).to_be_visible()
+    screenshot(page, "body")

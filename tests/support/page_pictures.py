@@ -88,6 +88,8 @@ CONSOLE = (
     ),
     Page("capture-joints-light", "Its joints", "Which joint is which part of the body."),
     Page("capture-verification-light", "Verification", "The same walk on small and tall avatars."),
+    Page("bodies", "Bodies", "What participants wear, with the paper's three statures."),
+    Page("body", "A body", "From all sides, with its checks, its licence, and who wears it."),
     Page("walking", "Walking", "How long a walk takes, and how differently people walk it."),
     Page("equipment", "Equipment", "The measured latency of the lab's own equipment."),
     Page("network-1280-light", "Network", "How tablets and headsets reach this machine."),

@@ -1,7 +1,7 @@
 /** One body: from all sides, what was checked, its name, and who wears it. */
 import { Button, Title } from "@mantine/core";
 import { type BodyView, bodies } from "@shared/api/bodies";
-import { dateTime, decimals, number } from "@shared/format";
+import { bytes, dateTime, decimals, number } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import type { JSX } from "react";
@@ -89,7 +89,7 @@ function Facts({ body }: { readonly body: BodyView }): JSX.Element {
       {body.triangles !== null && (
         <span>{t("bodies.triangles", { count: number(body.triangles, language) })}</span>
       )}
-      <span>{t("bodies.size", { value: decimals(body.size_bytes / 1e6, language, 1) })}</span>
+      <span>{bytes(body.size_bytes, language)}</span>
       <span>
         {dateTime(body.at, language)} {t("captures.by", { by: nameOf(body.by) })}
       </span>
