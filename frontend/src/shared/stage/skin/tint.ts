@@ -3,7 +3,7 @@ import { Color, type Material, Vector4 } from "three";
 import { PART_ATTRIBUTE } from "./bodyModel";
 
 /** How much of the skin's own colour a tint covers. */
-const STRENGTH = 0.72;
+const STRENGTH = 0.6;
 
 /** The tints of the parts of one body: red, green, blue and how much they cover. */
 export class Tints {
