@@ -70,6 +70,20 @@ def embedded(uri: str, place: str) -> bytes:
         raise HumanoidFileError(f"The buffer is not base64: {error}.", place) from None
 
 
+def varint(data: bytes, at: int) -> tuple[int, int]:
+    """Return a number of 32 bits, stored as 7 bits a byte, lowest first, and where the next begins.
+
+    Raises IndexError if the data end before.
+    """
+    value = 0
+    for k in range(5):
+        byte = data[at + k]
+        value |= (byte & 127) << (7 * k)
+        if byte < 128:
+            break
+    return value & 0xFFFFFFFF, at + k + 1
+
+
 def _plain(data: bytes) -> bytes:
     text = data.removeprefix(b"\xef\xbb\xbf")
     if text[:100].lstrip()[:1] == b"{":

@@ -16,14 +16,13 @@ import numpy as np
 import numpy.typing as npt
 
 from app.adapters.humanoids.accessors import IndexArray, Tables
-from app.adapters.humanoids.container import HumanoidFileError
+from app.adapters.humanoids.container import HumanoidFileError, varint
 from app.adapters.humanoids.document import Primitive
 from app.science.rotations import FloatArray
 
 _HEADER = struct.Struct("<5sBBBBH")
 _VERSION = (2, 2)
 _MESH, _EDGEBREAKER = 1, 1
-_MAX_NUMBER_BYTES = 5
 _WITHOUT = "Export the model without compression, or compressed by meshopt."
 _AXES = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}
 
@@ -120,26 +119,16 @@ def _check_sizes(stream: bytes, *, faces: int, vertices: int) -> None:
         raise ValueError(f"The Draco data contain metadata, which are not read. {_WITHOUT}")
     at = _HEADER.size
     if method == _EDGEBREAKER:  # the kind of traversal, then vertices and faces
-        has_vertices, at = _number(stream, at + 1)
-        has_faces, at = _number(stream, at)
+        has_vertices, at = varint(stream, at + 1)
+        has_faces, at = varint(stream, at)
     else:
-        has_faces, at = _number(stream, at)
-        has_vertices, at = _number(stream, at)
+        has_faces, at = varint(stream, at)
+        has_vertices, at = varint(stream, at)
     if has_faces != faces or has_vertices > vertices:
         raise ValueError(
             f"The Draco data have {has_faces} triangles and {has_vertices} vertices; the file says"
             f" {faces} and {vertices}."
         )
-
-
-def _number(data: bytes, at: int) -> tuple[int, int]:
-    """Return a number of 7 bits a byte, lowest first, and where the next one begins."""
-    value = 0
-    for k in range(_MAX_NUMBER_BYTES):
-        value |= (data[at + k] & 127) << (7 * k)
-        if data[at + k] < 128:
-            return value, at + k + 1
-    raise ValueError("The Draco data have a number that does not end.")
 
 
 def _decoded(stream: bytes, place: str) -> DracoMesh:

@@ -17,6 +17,7 @@ from array import array
 import numpy as np
 import numpy.typing as npt
 
+from app.adapters.humanoids.container import varint
 from app.science.compiled import compiled_checked
 
 Bytes = npt.NDArray[np.uint8]
@@ -202,7 +203,7 @@ def _indices(data: bytes, count: int) -> "array[int]":
     last = [0, 0]
     at = 1
     for _ in range(count):
-        value, at = _number(data, at)
+        value, at = varint(data, at)
         which = value & 1
         last[which] = _changed(last[which], value >> 1)
         found.append(last[which])
@@ -290,7 +291,7 @@ class _TriangleDecoder:
         return self._next - 1
 
     def _spelled(self) -> int:
-        value, self._at = _number(self._data, self._at)
+        value, self._at = varint(self._data, self._at)
         self._last = _changed(self._last, value)
         return self._last
 
@@ -301,17 +302,6 @@ class _TriangleDecoder:
     def _push_edge(self, start: int, end: int) -> None:
         self._edges[self._edge & 15] = (start, end)
         self._edge += 1
-
-
-def _number(data: bytes, at: int) -> tuple[int, int]:
-    """Return a number of 7 bits a byte, lowest first, and where the next one begins."""
-    value = 0
-    for k in range(5):
-        byte = data[at + k]
-        value |= (byte & 127) << (7 * k)
-        if byte < 128:
-            return value & _LARGEST, at + k + 1
-    return value & _LARGEST, at + 5
 
 
 def _changed(last: int, value: int) -> int:
