@@ -13,8 +13,7 @@ from dataclasses import asdict, replace
 from pathlib import Path
 
 from app.cli.figure.run import make
-from app.features.movement.humanoids.shipped import SHIPPED_BODIES
-from app.features.movement.humanoids.worker_tasks import Refused, measure
+from app.features.movement.humanoids import SHIPPED_BODIES, Refused, measure
 from app.protocol.avatar import avatar_text
 from app.protocol.humanoid import parse_figure
 from app.resources import bodies_dir

@@ -9,15 +9,19 @@ from app.features.movement.humanoids.service import (
     named_bodies,
     parsed_figure,
 )
-from app.features.movement.humanoids.shipped import add_shipped_bodies
+from app.features.movement.humanoids.shipped import SHIPPED_BODIES, add_shipped_bodies
+from app.features.movement.humanoids.worker_tasks import Refused, measure
 
 __all__ = [
+    "SHIPPED_BODIES",
+    "Refused",
     "add_shipped_bodies",
     "asked_terms",
     "body_by_name",
     "figure_by_hash",
     "humanoid_by_hash",
     "is_known",
+    "measure",
     "named_bodies",
     "parsed_figure",
 ]
