@@ -2,6 +2,7 @@
 
 import sys
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -46,6 +47,22 @@ def test_a_compressed_model_is_the_same_body(
         assert np.abs(highs[0] - highs[1]).max() < within_m, part
     weights = [read_skin(data).pieces[0].weights for data in (plain, packed)]
     assert np.abs(weights[0] - weights[1]).max() < 1e-6
+
+
+def test_textures_of_any_kind_do_not_hinder_reading() -> None:
+    """A file that needs WebP and KTX2 textures has its body read; unknown images have no size."""
+
+    def edit(document: dict[str, Any]) -> None:
+        document["extensionsRequired"] = ["EXT_texture_webp", "KHR_texture_basisu"]
+        document["images"] = [
+            {"bufferView": 0, "mimeType": "image/ktx2"},
+            {"uri": "skin.webp"},
+            {"bufferView": 10**6},
+        ]
+
+    read = read_humanoid(humanoid_file(Model(edit=edit)))
+    assert len(read.humanoid.parts) == len(PART_NAMES)
+    assert [(one.width, one.height) for one in read.contents.textures] == [(0, 0)] * 3
 
 
 @needs_valid
