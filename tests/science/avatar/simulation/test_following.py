@@ -9,7 +9,7 @@ from app.science.avatar.body.parts import AXIS_NAMES
 from app.science.avatar.configuration.configuration import TargetSpace
 from app.science.avatar.simulation.following import Follower
 from app.science.rotations import geodesic_angle, identity
-from app.science.skeleton import JOINT_INDEX
+from app.science.skeleton import FINGER_PARTS, JOINT_INDEX
 from tests.science.avatar.captured import RATE_HZ
 from tests.science.avatar.simulated import angles, avatar, model, target_angles
 
@@ -72,3 +72,27 @@ def test_a_body_starts_in_its_start_pose_without_moving() -> None:
     expected = angles(RightLowerArmY=0.8)
     present = ~np.isnan(state.angles_rad)
     np.testing.assert_allclose(state.angles_rad[present], expected[present], atol=0.01)
+
+
+@pytest.mark.parametrize("target_space", ["local", "world"])
+def test_latency_delays_the_fingers_in_both_spaces(target_space: TargetSpace) -> None:
+    """With a delay of 0.2 s a thumb is at rest after 0.1 s and follows, all at once or by name."""
+    built = model(fingers=True)
+    bend = AXIS_NAMES.index("RightThumbDistalY")
+    pose, resting, bent = identity(len(JOINT_INDEX)), identity(30), identity(30)
+    half = math.radians(20.0)
+    bent[FINGER_PARTS.index("RightThumbDistal")] = (math.cos(half), 0.0, -math.sin(half), 0.0)
+    for named in (False, True):
+        body = avatar(fingers=True)
+        follower = Follower(body, target_angles(built), target_space=target_space, delay_s=0.2)
+        given = [dict(zip(FINGER_PARTS, q, strict=True)) if named else q for q in (resting, bent)]
+        follower.start(HIPS_M, pose, given[0])
+        follower.frame(1 / RATE_HZ, HIPS_M, pose, given[0])
+        seen = [
+            follower.frame((frame + 1) / RATE_HZ, HIPS_M, pose, given[1]).state.angles_rad[bend]
+            for frame in range(1, 60)
+        ]
+        assert abs(seen[9]) < 0.02
+        assert seen[-1] == pytest.approx(2.0 * half, abs=0.02)
+        turned = geodesic_angle(body.finger_rotations(), bent)
+        assert np.degrees(turned).max() < 1.5
