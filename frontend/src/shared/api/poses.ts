@@ -60,18 +60,11 @@ export interface Pose {
 /** The fingers of a body, in sessions that record them. */
 export interface FingerPose extends Omit<Pose, "values"> {
   /**
-   * For each finger part (`FINGER_PARTS`) a rotation wxyz in its parent's frame, relative to the
+   * For each of the `FINGER_PARTS` a rotation wxyz in its parent's frame, relative to the
    * T-pose; NaN throughout for a hand that is not tracked.
    */
   readonly values: Float32Array;
 }
-
-/** The 30 finger parts in the order of their values: left hand, then right, from the thumb on. */
-export const FINGER_PARTS: readonly string[] = ["Left", "Right"].flatMap((side) =>
-  ["Thumb", "Index", "Middle", "Ring", "Little"].flatMap((finger) =>
-    ["Proximal", "Intermediate", "Distal"].map((segment) => `${side}${finger}${segment}`),
-  ),
-);
 
 const HEADER_BYTES = 28;
 const MAGIC = "RMP1";

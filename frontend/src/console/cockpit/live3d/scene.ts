@@ -4,10 +4,11 @@
  */
 import type { PoseSetup, PoseStream } from "@shared/api/poses";
 import type { BodyRoles, Figure, StagePalette } from "@shared/stage/figure";
+import { withFingers, writeFingers } from "@shared/stage/fingers";
 import { type BodyMarks, NO_MARKS } from "@shared/stage/marks";
 import { BodyMarks3d } from "@shared/stage/marks3d";
 import type { BodyModel } from "@shared/stage/skin/bodyModel";
-import { type LivePose, livePose } from "@shared/stage/skin/pose";
+import { type LivePose, livePose, numbersOf } from "@shared/stage/skin/pose";
 import { bodyOf, Space3d, type StageBody } from "@shared/stage/space3d";
 import { seconds } from "@shared/units";
 import { PerspectiveCamera } from "three";
@@ -82,6 +83,13 @@ export class LiveScene extends Space3d {
     this.#moved();
   }
 
+  /** Bend the fingers of a body; the next pose of the body shows them. */
+  bend(stream: PoseStream, rotations: Float32Array): void {
+    const player = this.#players.get(stream);
+    if (player === undefined || this.#setup === null) return;
+    writeFingers(rotations, 0, player.pose.values, numbersOf(this.#setup.joints));
+  }
+
   /** Mark the parts of the avatar that are in a cast or have no collider. */
   mark(marks: BodyMarks): void {
     this.#marked = marks;
@@ -152,6 +160,9 @@ export class LiveScene extends Space3d {
   }
 }
 
+/** Fingers about which nothing is known: they are straight. */
+const NO_FINGERS: readonly number[] = [];
+
 function makePlayer(
   setup: PoseSetup,
   stream: PoseStream,
@@ -161,8 +172,10 @@ function makePlayer(
   const placed = makePlaced(setup.joints.length);
   const rest = restValues(setup);
   place(setup, rest, placed);
-  const pose = livePose(setup.joints, setup.parents);
+  const { joints, parents } = withFingers(setup.joints, setup.parents);
+  const pose = livePose(joints, parents);
   pose.values.set(rest);
+  writeFingers(NO_FINGERS, 0, pose.values, numbersOf(setup.joints));
   const figure: Figure = {
     key: stream,
     motion: {

@@ -98,6 +98,7 @@ export function useLiveScene(
         }
         scene.show(stream, values);
       },
+      onFingers: ({ stream, values }) => scene.bend(stream, values),
       onTouches: (touches) => {
         lights.current = withTouches(lights.current, touches, performance.now());
         setLast(lights.current.last);

@@ -3,6 +3,7 @@
  * body's own joints (`app/science/avatar/body/binding.py` describes the model).
  */
 
+import { FINGER_PARTS, withFingers, writeFingers } from "../fingers";
 import type { PointMotion } from "../motion";
 
 /**
@@ -60,7 +61,7 @@ export function restPose(
 
 /** The pose in a movement with rotations; null if only positions are known. */
 export function poseOf(motion: PointMotion): PoseSource | null {
-  const { names: joints, parents, positions, rotations } = motion;
+  const { names: joints, parents, positions, rotations, fingers } = motion;
   if (rotations === undefined) return null;
   const read = (frame: number, values: Float32Array): void => {
     const place = 3 * frame * joints.length;
@@ -69,8 +70,12 @@ export function poseOf(motion: PointMotion): PoseSource | null {
     for (let at = 0; at < 4 * joints.length; at++) {
       values[3 + at] = rotations[from + at] ?? Number.NaN;
     }
+    if (fingers === undefined) return;
+    writeFingers(fingers, 4 * frame * FINGER_PARTS.length, values, numbersOf(joints));
   };
-  return { joints, parents, read };
+  return fingers === undefined
+    ? { joints, parents, read }
+    : { ...withFingers(joints, parents), read };
 }
 
 /**
