@@ -27,6 +27,8 @@ TABLET_WORKER = "/tablet-worker.js"
 # so pages need not be allowed to run WebAssembly; and these may fetch nothing from anywhere.
 WASM_WORKERS = "wasm/"
 WASM_POLICY = "default-src 'none'; script-src 'self' blob: 'wasm-unsafe-eval'"
+# The transcoder of KTX2 textures (Basis Universal) also makes functions from text when it starts.
+TEXTURE_WORKER = "wasm/textureWorker-"
 _NOT_BUILT = """<!doctype html><html lang="en"><meta charset="utf-8"><title>Reembody</title>
 <h1>The pages are not built yet</h1><p>The interface under /api works. Start the server with
 <code>./run</code>, which builds the pages.</p></html>"""
@@ -47,7 +49,7 @@ class Assets(StaticFiles):
     async def get_response(self, path: str, scope: Scope) -> Response:
         """Return the file, compressed if the client accepts gzip."""
         response = await super().get_response(path, scope)
-        policy = {"content-security-policy": WASM_POLICY} if path.startswith(WASM_WORKERS) else {}
+        policy = _policy(path)
         response.headers.update(policy)
         if not isinstance(response, FileResponse) or not _is_worth_it(response):
             return response
@@ -62,6 +64,14 @@ class Assets(StaticFiles):
             **policy,
         }
         return Response(body, headers=headers, media_type=response.media_type)
+
+
+def _policy(path: str) -> dict[str, str]:
+    """Return the policy of a worker for WebAssembly; nothing for any other file."""
+    if not path.startswith(WASM_WORKERS):
+        return {}
+    more = " 'unsafe-eval'" if path.startswith(TEXTURE_WORKER) else ""
+    return {"content-security-policy": WASM_POLICY + more}
 
 
 def _is_worth_it(response: FileResponse) -> bool:

@@ -7,7 +7,7 @@ import pytest
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
 
-from app.api.pages import Assets
+from app.api.pages import WASM_POLICY, Assets
 
 SCRIPT = "export const words = 'a script of some length';\n" * 100
 
@@ -53,7 +53,7 @@ def test_small_and_compressed_files_are_not_compressed(client: TestClient, name:
 
 
 def test_only_the_workers_for_webassembly_may_run_it(client: TestClient, tmp_path: Path) -> None:
-    """Only files of the folder of WebAssembly's workers get a policy that allows it to run."""
+    """Only workers for WebAssembly may run it, and only that of textures code made from text."""
     (tmp_path / "wasm").mkdir()
     for script in ("short.js", "long.js"):
         (tmp_path / "wasm" / script).write_text(SCRIPT if script == "long.js" else "1;\n")
@@ -61,4 +61,7 @@ def test_only_the_workers_for_webassembly_may_run_it(client: TestClient, tmp_pat
         assert "'wasm-unsafe-eval'" in policy
         assert "'unsafe-eval'" not in policy
         assert "default-src 'none'" in policy
+    (tmp_path / "wasm" / "textureWorker-1.js").write_text("1;\n")
+    policy = client.get("/assets/wasm/textureWorker-1.js").headers["content-security-policy"]
+    assert policy == f"{WASM_POLICY} 'unsafe-eval'"
     assert "content-security-policy" not in client.get("/assets/page.js").headers

@@ -8,12 +8,14 @@ import { KTX2Loader } from "three/addons/loaders/KTX2Loader.js";
 import codeWorker from "./codeWorker?worker&url";
 import type { MeshoptRequest, MeshoptResult } from "./meshoptWorker";
 import meshoptWorker from "./meshoptWorker?worker&url";
+import textureWorker from "./textureWorker?worker&url";
 
 /**
  * The URL of a worker that runs the code at a blob's URL under the worker's own policy. The
  * development server has no policy, and workers of another kind.
  */
-const running = (code: string): string => (import.meta.env.DEV ? code : `${codeWorker}#${code}`);
+const running = (worker: string, code: string): string =>
+  import.meta.env.DEV ? code : `${worker}#${code}`;
 
 /** Three's loader starts the workers of these libraries by the URL in `workerSourceURL`. */
 interface WithWorkers {
@@ -27,7 +29,7 @@ class Draco extends DRACOLoader {
     if (self.decoderPending !== null) return self.decoderPending;
     const above = DRACOLoader.prototype as unknown as { _initDecoder(): Promise<void> };
     const pending = above._initDecoder.call(this).then(() => {
-      self.workerSourceURL = running(self.workerSourceURL);
+      self.workerSourceURL = running(codeWorker, self.workerSourceURL);
     });
     (this as unknown as { decoderPending: Promise<void> }).decoderPending = pending;
     return pending;
@@ -42,7 +44,7 @@ class Ktx2 extends KTX2Loader {
     const above = KTX2Loader.prototype as unknown as { init(): Promise<void> };
     this.#ready ??= above.init.call(this).then(() => {
       // Workers are created later, from this address.
-      self.workerSourceURL = running(self.workerSourceURL);
+      self.workerSourceURL = running(textureWorker, self.workerSourceURL);
     });
     return this.#ready;
   }
