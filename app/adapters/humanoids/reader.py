@@ -48,7 +48,8 @@ class ReadHumanoid:
     """A model in the T-pose, and how the nodes of its file follow its parts.
 
     `bones_by` is how its bones were identified. `rights` are what the file says about its author
-    and its use, `contents` what it costs to draw.
+    and its use, `contents` what it costs to draw. `arms_turned_deg`: how far its arms were turned
+    into the T-pose.
     """
 
     humanoid: Humanoid
@@ -56,6 +57,7 @@ class ReadHumanoid:
     binding: Binding
     rights: ModelRights
     contents: Contents
+    arms_turned_deg: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,6 +92,7 @@ def read_humanoid(data: bytes, limits: Limits | None = None) -> ReadHumanoid:
         binding,
         _rights(document),
         contents_of(document, tables),
+        posed.arms_turned_deg,
     )
 
 

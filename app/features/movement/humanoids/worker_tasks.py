@@ -1,6 +1,6 @@
 """Parse models' files, in the worker process for captures and within its limits."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +10,9 @@ from app.features.movement.humanoids.licences import stored_licence
 from app.features.movement.humanoids.schemas import BindingView
 from app.protocol.humanoid import figure_json
 from app.science.avatar.body import Figure, HumanoidError, figure_of
+
+TURNED_DEG = 5.0
+"""Arms that are turned further than this into the T-pose are mentioned."""
 
 
 @dataclass(frozen=True)
@@ -79,4 +82,7 @@ def measure(max_bytes: int, path: Path) -> Measured | Refused:
     except HumanoidError as error:
         return Refused(str(error), "")
     compress(path, compressed_beside(path))
+    if read.arms_turned_deg > TURNED_DEG:
+        turned = f"The arms were turned by {read.arms_turned_deg:.0f} degrees into the T-pose."
+        figure = replace(figure, notes=(*figure.notes, turned))
     return measured(figure, read)

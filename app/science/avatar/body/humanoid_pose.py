@@ -59,10 +59,13 @@ class TPosed:
         moves: (J, 4, 4) of each bone of the rig: the similarity from where the file has the bone
             and what is fixed to it, in the file's world, to where they are in the T-pose; with
             rotation, change of unit and translation.
+        arms_turned_deg: how far the upper arm that was further from it was turned into the T-pose,
+            relative to the hips.
     """
 
     humanoid: Humanoid
     moves: FloatArray
+    arms_turned_deg: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,7 +115,15 @@ def humanoid_of(mesh: RiggedMesh) -> TPosed:
     moves = np.tile(np.eye(4), (mesh.rig.joint_count, 1, 1))
     moves[:, :3, :3] = matrices(multiply(turns, upwards)) * factor
     moves[:, :3, 3] = joints - origin - rotate(turns, mesh.rig.rest_world()[0])
-    return TPosed(Humanoid(stature_m, MappingProxyType(parts), tuple(notes)), moves)
+    humanoid = Humanoid(stature_m, MappingProxyType(parts), tuple(notes))
+    return TPosed(humanoid, moves, _arms_turned_deg(mesh, turns))
+
+
+def _arms_turned_deg(mesh: RiggedMesh, turns: FloatArray) -> float:
+    arms = turns[[mesh.bones["LeftUpperArm"], mesh.bones["RightUpperArm"]]]
+    relative = multiply(arms, conjugate(turns[mesh.bones["Hips"]]))
+    cosines = np.clip(np.abs(relative[:, 0]), 0.0, 1.0)
+    return float(np.degrees(2.0 * np.arccos(cosines)).max())
 
 
 def _upright(mesh: RiggedMesh, notes: list[str]) -> tuple[RiggedMesh, FloatArray]:

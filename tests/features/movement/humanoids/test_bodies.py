@@ -1,5 +1,6 @@
 """Tests of bodies: named once, confirmed where their licence asks for it, checked, and worn."""
 
+import math
 from dataclasses import replace
 
 import pytest
@@ -14,6 +15,8 @@ from tests.features.movement.avatar.test_avatars import PATH as AVATARS
 from tests.features.movement.avatar.test_avatars import SHIPPED, as_json, new
 from tests.features.movement.avatar.test_studies import KEY, study
 from tests.features.movement.humanoids.test_humanoids import FOUR, HASH, PATH, upload
+from tests.support.humanoid_files import humanoid_file
+from tests.support.humanoid_model import Model
 
 STRICT = stored_licence(ModelRights(title="Strict", authors=("A. Author",), wearers="author"))
 
@@ -102,6 +105,18 @@ def test_a_body_is_checked(fresh_lab: Lab) -> None:
     set_columns(fresh_lab, four, triangles=20_001)
     checks = {one["key"]: one for one in ok(fresh_lab.operator.get(f"{PATH}/{four}"))["checks"]}
     assert (checks["triangles"]["status"], checks["triangles"]["value"]) == ("warn", 20_001.0)
+
+
+@pytest.mark.one_engine
+def test_a_rest_pose_with_lowered_arms_is_mentioned(fresh_lab: Lab) -> None:
+    """The checks say how far the arms of a model in an A-pose were turned into the T-pose."""
+    lowered = humanoid_file(Model(arms_down_rad=math.radians(40.0)))
+    view = upload(fresh_lab, lowered, "a-pose.glb").json()
+    checks = {one["key"]: one for one in view["checks"]}
+    assert checks["rest_pose"]["status"] == "note"
+    assert checks["rest_pose"]["notes"] == ["The arms were turned by 40 degrees into the T-pose."]
+    upright = {one["key"]: one for one in upload(fresh_lab).json()["checks"]}
+    assert upright["rest_pose"]["status"] == "good"
 
 
 @pytest.mark.one_engine
