@@ -9,7 +9,7 @@ import pandas as pd
 import plotly.graph_objects as go
 
 from app.features.results.analysis.figures.drawing import Drawing, count_note, drawn, participants
-from app.features.results.analysis.figures.joint_errors import error_definition
+from app.features.results.analysis.figures.joint_errors import HEAT, error_definition
 from app.features.results.analysis.figures.theme import new_figure
 from app.protocol import COUNTED_KINDS
 from app.science.skeleton import FINGER_PARTS, FINGERS, finger_of
@@ -58,13 +58,8 @@ def joint_error_fingers_drawings(errors: pd.DataFrame) -> Iterator[Drawing]:
             x=[str(finger) for finger in table.index],
             y=[f"{latency:g}" for latency in table.columns],
             z=[[None if pd.isna(one) else float(one) for one in row] for row in table.T.to_numpy()],
-            texttemplate="%{z:.1f}",
-            colorscale="Cividis",
-            zmin=0.0,
-            xgap=1,
-            ygap=1,
-            colorbar={"title": {"text": "deg"}},
             hovertemplate="%{x} at %{y} ms: %{z:.2f} deg<extra></extra>",
+            **HEAT,
         )
     )
     figure.update_xaxes(title_text="finger", tickangle=-40)

@@ -1,5 +1,7 @@
 """Figures of the mean joint error at each latency, by body part and by joint."""
 
+from typing import Any
+
 import pandas as pd
 import plotly.graph_objects as go
 
@@ -55,6 +57,15 @@ HINGES = (
 )
 SHIFTED = "Points are shifted sideways to be visible."
 INTERVAL = "Points are means over participants with 95 % confidence intervals (t distribution)."
+HEAT: dict[str, Any] = {
+    "texttemplate": "%{z:.1f}",
+    "colorscale": "Cividis",
+    "zmin": 0.0,
+    "xgap": 1,
+    "ygap": 1,
+    "colorbar": {"title": {"text": "deg"}},
+}
+"""The style of heat maps of joint errors."""
 _COLOURS = {"head": BLUE, "spine": GREEN, "arm": VERMILLION, "leg": ORANGE}
 
 
@@ -108,13 +119,8 @@ def _heat(table: pd.DataFrame, shares: pd.DataFrame) -> go.Heatmap:
         y=[f"{latency:g}" for latency in table.columns],
         z=[[None if pd.isna(value) else float(value) for value in row] for row in numbers],
         customdata=[[_clipped_words(share) for share in row] for row in shares.T.to_numpy()],
-        texttemplate="%{z:.1f}",
-        colorscale="Cividis",
-        zmin=0.0,
-        xgap=1,
-        ygap=1,
-        colorbar={"title": {"text": "deg"}},
         hovertemplate="%{x} at %{y} ms: %{z:.2f} deg%{customdata}<extra></extra>",
+        **HEAT,
     )
 
 
