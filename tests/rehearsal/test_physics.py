@@ -146,7 +146,8 @@ def test_a_whole_session_is_rehearsed_in_a_physics_avatar(tmp_path: Path) -> Non
     by_study = [one["data"]["phase_id"] for one in changed if one["data"]["by"] == "study"]
     assert by_study == feet
     arm = ["LeftUpperArm", "LeftLowerArm", "LeftHand"]
-    assert replay["avatar_settings"][-1]["held_parts"] == arm
+    (settings,) = replay["avatar_settings"]
+    assert settings == {"t_s": 0.0, "held_parts": arm, "passing_parts": []}
     assert [one["data"]["changes"] for one in changed if one["data"]["by"] == "operator"] == [
         {"gravity": False}
     ]

@@ -32,14 +32,14 @@ def avatar_settings(
     applied_s = _applied_s(db, session, clock)
     found: list[ReplayAvatarSettings] = []
     for row, by in _changes(log, phase.phase_id):
-        at_s = applied_s.get(row.seq)
-        if at_s is None:
-            at_s = clock.of_utc(row.recorded_at) or 0.0
+        at_s = _time_of(row, phase, clock, applied_s)
+        # The settings follow each other as they were recorded, however the clocks are placed.
+        at_s = max(at_s, found[-1].t_s if found else 0.0)
         settings = settings_in_force(
             configuration, changes_from(by["study"]), changes_from(by["operator"])
         )
         settled = ReplayAvatarSettings(
-            t_s=min(max(0.0, at_s), clock.duration_s),
+            t_s=min(at_s, clock.duration_s),
             held_parts=list(settings.held_parts),
             passing_parts=list(settings.passing_parts),
         )
@@ -48,6 +48,16 @@ def avatar_settings(
         found.append(settled)
     nothing = all(not (one.held_parts or one.passing_parts) for one in found)
     return [] if nothing else found
+
+
+def _time_of(
+    row: SessionEvent, phase: Phase, clock: PhaseClock, applied_s: Mapping[int, float]
+) -> float:
+    """Return the phase's time of a change; 0 if it was made before the phase's clock ran."""
+    if phase.started_at is None or row.recorded_at <= phase.started_at:
+        return 0.0
+    at_s = applied_s.get(row.seq)
+    return clock.of_utc(row.recorded_at) or 0.0 if at_s is None else at_s
 
 
 def _changes(
