@@ -217,7 +217,12 @@ def _vrm(name: str) -> dict[str, Any]:
             "copyrightInformation": f"Reembody, {LICENCE}",
             "licenseUrl": _VRM_LICENCE_URL,
             "otherLicenseUrl": _LICENCE_URL,
+            # The licence restricts no use; left out, VRM would take these for forbidden.
             "avatarPermission": "everyone",
+            "allowExcessivelyViolentUsage": True,
+            "allowExcessivelySexualUsage": True,
+            "allowPoliticalOrReligiousUsage": True,
+            "allowAntisocialOrHateUsage": True,
             "commercialUsage": "corporation",
             "creditNotation": "unnecessary",
             "allowRedistribution": True,

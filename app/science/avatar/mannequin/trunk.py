@@ -190,7 +190,7 @@ def _shape_face(points: FloatArray, form: Form, unit: float) -> None:
     points[..., 2] -= np.where(front, out, 0.0) * unit
     # An ear: a shell behind the jaw, highest at its rear edge.
     z = points[..., 2] / unit
-    reach = np.exp(-(((z - 14.0) / 15.0) ** 4) - ((y - 1622.0 + 0.1 * z) / 31.0) ** 4)
-    shell = reach * np.clip((z + 6.0) / 22.0, 0.0, 1.0) * (x > 40.0)
-    points[..., 0] += 15.0 * shell * unit
-    points[..., 2] += 6.0 * shell * unit
+    reach = np.exp(-(((z - 13.0) / 14.0) ** 4) - ((y - 1622.0 + 0.1 * z) / 30.0) ** 4)
+    shell = reach * np.clip((z + 2.0) / 18.0, 0.0, 1.0) * (x > 40.0)
+    points[..., 0] += 20.0 * shell * unit
+    points[..., 2] += 8.0 * shell * unit

@@ -163,8 +163,10 @@ class _Shares:
         length = float(np.linalg.norm(bone))
         along = (points - root) @ (bone / length)
         aside = np.linalg.norm(points - root - np.outer(along, bone / length), axis=1)
-        near = _rise(1.6 - aside / (0.016 * self._stature))
-        share: FloatArray = near * _rise((along / length - 0.05) / 0.6)
+        near = _rise(1.6 - aside / (0.013 * self._stature))
+        # It ends before the knuckle of the index finger, which must not follow the thumb.
+        between = _rise((along / length - 0.05) / 0.6) * _rise((1.3 - along / length) / 0.5)
+        share: FloatArray = near * between
         return share
 
     def _finger(self, finger: str) -> None:
