@@ -10,10 +10,13 @@ import pytest
 from starlette.testclient import WebSocketTestSession
 from starlette.websockets import WebSocketDisconnect
 
+from app.features.movement.avatar import SHIPPED, configuration_by_hash, version_of
 from app.features.record.headset.poses import HEADER, PoseFeed
 from app.features.record.poses.endpoints import MAX_UNDRAWN
+from app.models import StudySession
 from app.science.skeleton import JOINT_NAMES, build_skeleton
 from app.wire import Batch, StreamName, decode_batch
+from tests.features.builders import as_physics
 from tests.features.lab import STUDY, Json, Lab, ok
 from tests.features.record.poses.test_feed import contact
 from tests.wire.samples import message, standing
@@ -75,6 +78,21 @@ def test_a_console_receives_the_body_and_the_tasks_surfaces(lab: Lab) -> None:
         kinds = [surface["kind"] for surface in setup["surfaces"]]
         assert {"panel", "side", "target"} == set(kinds)
         assert all(surface["key"].startswith("hand/") for surface in setup["surfaces"])
+
+
+def test_only_a_console_that_is_not_blinded_learns_the_body(lab: Lab) -> None:
+    """The setup names the model that the avatar wears, but not to a blinded console."""
+    open_session, blinded = str(lab.join()["id"]), blinded_session(lab)
+    with lab.database.writing() as db:
+        for session_id in (open_session, blinded):
+            as_physics(db, db.get_one(StudySession, session_id))
+        worn = configuration_by_hash(db, version_of(db, SHIPPED, None).content_hash).humanoid
+        assert worn is not None
+    with watching(lab, open_session) as socket:
+        assert socket.receive_json()["body"] == {"hash": worn}
+    with watching(lab, blinded) as socket:
+        setup = socket.receive_json()
+        assert (setup["blinded"], setup["body"]) == (True, None)
 
 
 def test_both_figures_and_the_touches_reach_an_open_console(lab: Lab) -> None:
