@@ -30,6 +30,7 @@ from app.models import (
     Study,
     StudySession,
 )
+from app.wire import StreamName
 
 MS_PER_S = 1000.0
 _KEYS = ["session_id", "phase_id"]
@@ -38,7 +39,7 @@ _BROKEN = ("non_unit", "non_finite", "backwards")
 _FIGURES = ("stream", "frames", "span_s", "frame_rate_hz", *_COUNTS, *_BROKEN)
 _ALARM = ("code", "severity", "state", "stream", "message", "value", "unit", "client_t_s", "at")
 _CHANGES = ("avatar_changed", "phase_prepared", "phase_ended", "phase_voided")
-_STREAMS = {"target": 0, "actual": 1}
+_STREAMS = {str(stream): place for place, stream in enumerate(StreamName)}
 
 
 def phases_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
