@@ -71,6 +71,7 @@ const SENTENCES: Readonly<Record<string, Key>> = {
   "avatar.created": "act.avatar.created",
   "avatar.version": "act.avatar.version",
   "humanoid.added": "act.humanoid.added",
+  "humanoid.measured": "act.humanoid.measured",
   "walking.scene_added": "act.walking.scene_added",
   "walking.scene_removed": "act.walking.scene_removed",
   "walking.walks_added": "act.walking.walks_added",
