@@ -1,8 +1,8 @@
 """Locate the files that are read but not imported: migrations, studies, bodies, built pages.
 
-A checkout has migrations, study configs and bodies in top-level folders, where people look for
-them. A wheel has no top level of its own, so the build puts copies under `app/_bundled/`. The built
-pages are in `app/static/` in both.
+A checkout has migrations and study configs, bodies among them, in top-level folders, where people
+look for them. A wheel has no top level of its own, so the build puts copies under `app/_bundled/`.
+The built pages are in `app/static/` in both.
 """
 
 from pathlib import Path
@@ -16,13 +16,13 @@ def migrations_dir() -> Path:
 
 
 def study_configs_dir() -> Path:
-    """Return the folder of the shipped studies and instruments, as YAML files."""
+    """Return the folder of the shipped studies, instruments and bodies."""
     return _shipped("study_configs")
 
 
 def bodies_dir() -> Path:
     """Return the folder of the shipped bodies, as models with their measures."""
-    return _shipped("bodies")
+    return study_configs_dir() / "bodies"
 
 
 def static_dir() -> Path:
