@@ -2,8 +2,8 @@
 
 A walk plays on an avatar in headless Chromium, drawn by turns as capsules and as the shipped body,
 which has up to 12,000 triangles. Scripting is the processor time that Chromium counts for the
-page's scripts (`ScriptDuration`), everything included that both do alike. Calls that draw do nothing: they would
-wait for a graphics card, which this machine imitates in software.
+page's scripts (`ScriptDuration`), everything included that both do alike. Calls that draw do
+nothing: they would wait for a graphics card, which this machine imitates in software.
 """
 
 import tempfile

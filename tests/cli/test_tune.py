@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from app.adapters.humanoids import read_humanoid
 from app.cli.installation import opened_database
 from app.clock import Clock
 from app.features.movement.avatar import (
@@ -21,6 +22,8 @@ from app.science.avatar.body import AXIS_NAMES
 from app.science.avatar.mjcf import default_configuration
 from tests.cli.invoked import Invoked
 from tests.science.avatar.figures import HASH, figure
+from tests.support.humanoid_files import humanoid_file
+from tests.support.humanoid_model import Model
 
 _HELD = ("trunk_head", "left_leg", "right_leg", "right_arm", "left_fingers", "right_fingers")
 _COMMAND = Invoked("tune")
@@ -132,7 +135,7 @@ def test_an_avatar_with_a_humanoid_model_is_tuned() -> None:
                 hash=HASH,
                 file_name="four.glb",
                 by="test",
-                **asdict(measured(figure("Little"), "vrm")),
+                **asdict(measured(figure("Little"), read_humanoid(humanoid_file(Model())))),
                 at=Clock().utc_now(),
             )
         )

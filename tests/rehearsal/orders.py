@@ -1,10 +1,12 @@
 """Simulate a headset's server without a network: phase orders by hand and a minimal server."""
 
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 from app.rehearsal.avatars import no_touches
 from app.rehearsal.timed_run import FreeRun
+from app.science.skeleton import JOINT_NAMES
 from app.wire import StreamName, decode_batch
 from app.wire.messages import (
     HeadsetState,
@@ -52,7 +54,9 @@ class Timeline:
         end_s = self.t_s + seconds
         while self.t_s + FRAME_S < end_s + 1e-9:
             self.t_s += FRAME_S
-            self.told += self.run.frame(self.t_s, no_touches, connected=connected)
+            self.told += self.run.frame(
+                self.t_s, partial(no_touches, JOINT_NAMES), connected=connected
+            )
 
     def follow(self, told: PhaseOrder) -> None:
         """Apply the server's newest order."""

@@ -1,9 +1,8 @@
 /** The upload of capture files: dropped, or chosen with a button. */
-import { Button, FileButton } from "@mantine/core";
-import { Icon } from "@shared/ui/Icon";
-import { type DragEvent, type JSX, useState } from "react";
+import type { JSX } from "react";
 import { useTexts } from "../i18n";
 import { CAPTURE_EXTENSIONS, CAPTURE_FORMATS } from "../i18n/registries.generated";
+import { DropArea } from "../ui/Uploads";
 import classes from "./Captures.module.css";
 
 /** A table may have been saved as text. */
@@ -15,39 +14,15 @@ export function DropZone({
   readonly onFiles: (files: readonly File[]) => void;
 }): JSX.Element {
   const { t } = useTexts();
-  const [isDraggedOver, setIsDraggedOver] = useState(false);
   const formats = CAPTURE_FORMATS.map((format) => t(`format.${format}`)).join(", ");
-  const stop = (event: DragEvent, isOver: boolean) => {
-    event.preventDefault();
-    setIsDraggedOver(isOver);
-  };
   return (
-    <section
-      className={classes.drop}
-      data-over={isDraggedOver || undefined}
-      aria-label={t("captures.choose")}
-      onDragOver={(event) => stop(event, true)}
-      onDragLeave={(event) => stop(event, false)}
-      onDrop={(event) => {
-        stop(event, false);
-        onFiles([...event.dataTransfer.files]);
-      }}
-    >
-      <Icon name="upload" size={28} />
-      <div className={classes.dropWords}>
-        <div className={classes.dropRow}>
-          <span>{t("captures.drop")}</span>
-          <FileButton multiple accept={ACCEPTED} onChange={onFiles}>
-            {(props) => (
-              <Button {...props} size="xs">
-                {t("captures.choose")}
-              </Button>
-            )}
-          </FileButton>
-        </div>
-        <span className={classes.soft}>{t("captures.drop.hint", { formats })}</span>
-      </div>
-    </section>
+    <DropArea
+      accept={ACCEPTED}
+      drop={t("captures.drop")}
+      choose={t("captures.choose")}
+      hint={t("captures.drop.hint", { formats })}
+      onFiles={onFiles}
+    />
   );
 }
 

@@ -82,7 +82,8 @@ def test_rotations_follow_on_request(lab: Lab, walk: Json) -> None:
     count = header["frames"] * len(header["names"])
     local = np.frombuffer(turned[-16 * count :], "<f4").reshape(header["frames"], -1, 4)
     assert turned[-28 * count : -16 * count] == plain[-12 * count :]
-    moved_m, _ = to_world(reference_avatar(1.65), positions_m[:, 0], local.astype(np.float64))
+    hips_m = positions_m[:, 0].astype(np.float64)
+    moved_m, _ = to_world(reference_avatar(1.65), hips_m, local.astype(np.float64))
     np.testing.assert_allclose(moved_m, positions_m, atol=1e-5)
 
 

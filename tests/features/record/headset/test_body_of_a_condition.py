@@ -7,11 +7,11 @@ from app.features.record.sessions.contents import content_body, contents_of
 from app.features.results.analysis.material import read_material
 from app.features.results.analysis.schemas import FigureFilter
 from app.models import Phase, StudySession
-from app.wire import PhaseOrder
 from tests.features.builders import SessionSpec, build_session
 from tests.features.lab import Json, Lab, error, ok
 from tests.features.movement.avatar.test_studies import KEY, study
 from tests.features.movement.humanoids.test_humanoids import FIVE, FOUR
+from tests.features.record.alarms.watched import order
 from tests.features.record.headset.test_avatar import greet, request_avatar
 
 
@@ -79,22 +79,8 @@ def test_the_avatar_of_a_named_body_is_built_and_recorded(
 
 def test_an_order_without_a_body_is_what_it_was() -> None:
     """An order to wear the configuration's body has no field that older clients do not know."""
-    order = PhaseOrder(
-        phase_id=1,
-        kind="task",
-        limb="hand",
-        status="preparing",
-        latency_ms=0.0,
-        preparation_s=5.0,
-        duration_s=60.0,
-        freeze_s=5.0,
-        active_s=0.0,
-        completions=0,
-        pausing=False,
-        resuming=False,
-    )
-    assert "body" not in order.model_dump()
-    assert order.model_copy(update={"body": "five"}).model_dump()["body"] == "five"
+    assert "body" not in order().model_dump()
+    assert order().model_copy(update={"body": "five"}).model_dump()["body"] == "five"
 
 
 @pytest.mark.one_engine

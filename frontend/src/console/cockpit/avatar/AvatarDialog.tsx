@@ -3,7 +3,6 @@ import {
   ActionIcon,
   Button,
   Checkbox,
-  Group,
   Loader,
   Modal,
   MultiSelect,
@@ -22,6 +21,7 @@ import { useQuery } from "@tanstack/react-query";
 import { type JSX, type ReactNode, useState } from "react";
 import { groupName, layerName } from "../../avatarChanges/words";
 import { type Key, useTexts } from "../../i18n";
+import { DialogButtons } from "../../ui/DialogButtons";
 import { Loaded } from "../../ui/Loaded";
 import { NewFailure } from "../session/CommandFailure";
 import type { useSession } from "../session/useSession";
@@ -124,19 +124,13 @@ function Form({ session, live, prepared, choices, onClose }: FormProps): JSX.Ele
           />
         )}
         <NewFailure live={live} />
-        <Group justify="flex-end">
-          <Button variant="default" onClick={onClose}>
-            {t("action.cancel")}
-          </Button>
-          <Button
-            type="submit"
-            color={isInPhase ? "red" : "petrol"}
-            disabled={!isReady}
-            loading={live.sending}
-          >
-            {t("avatarChanges.save")}
-          </Button>
-        </Group>
+        <DialogButtons
+          label={t("avatarChanges.save")}
+          isGrave={isInPhase}
+          isReady={isReady}
+          isSending={live.sending}
+          onCancel={onClose}
+        />
       </Stack>
     </form>
   );

@@ -2,11 +2,12 @@
  * A dialog that asks for the reason of an exception, which is recorded; common reasons are one key
  * away.
  */
-import { Button, Group, Modal, Select, Stack, Text } from "@mantine/core";
+import { Modal, Select, Stack, Text } from "@mantine/core";
 import type { SessionView } from "@shared/api/types";
 import { type JSX, useState } from "react";
 import { useTexts } from "../../i18n";
 import { stepName } from "../../steps";
+import { DialogButtons } from "../../ui/DialogButtons";
 import { useShown } from "../../ui/page";
 import { ReasonField } from "../../ui/ReasonField";
 import {
@@ -71,19 +72,13 @@ function ReasonForm({ type, session, live, onClose }: ReasonFormProps): JSX.Elem
           onChange={setReason}
         />
         <NewFailure live={live} />
-        <Group justify="flex-end">
-          <Button variant="default" onClick={onClose}>
-            {t("action.cancel")}
-          </Button>
-          <Button
-            type="submit"
-            color={grave ? "red" : "petrol"}
-            disabled={reason.trim() === ""}
-            loading={stops({ type }) ? live.stopping : live.sending}
-          >
-            {t(`do.${type}`)}
-          </Button>
-        </Group>
+        <DialogButtons
+          label={t(`do.${type}`)}
+          isGrave={grave}
+          isReady={reason.trim() !== ""}
+          isSending={stops({ type }) ? live.stopping : live.sending}
+          onCancel={onClose}
+        />
       </Stack>
     </form>
   );
