@@ -7,7 +7,8 @@ export const bodyViewEn = {
   "bodyView.picture": "The body {{name}} in 3-D",
   "bodyView.loading": "Loading the body",
   "bodyView.failed": "The body cannot be shown: {{reason}}",
-  "bodyView.failed.skeleton": "The body cannot be shown, so the stick figure stays: {{reason}}",
+  "bodyView.failed.skeleton":
+    "The body cannot be shown, so the stick figure is drawn instead: {{reason}}",
   "bodyView.drawn": "Drawn as",
   "bodyView.drawn.skin": "Body",
   "bodyView.drawn.skeleton": "Stick figure",
@@ -20,9 +21,9 @@ export const bodyViewDe: Readonly<Record<keyof typeof bodyViewEn, string>> = {
   "bodyView.pose.walk": "Gehen (erzeugt)",
   "bodyView.picture": "Der Körper {{name}} in 3-D",
   "bodyView.loading": "Der Körper wird geladen",
-  "bodyView.failed": "Der Körper kann nicht gezeigt werden: {{reason}}",
+  "bodyView.failed": "Der Körper kann nicht angezeigt werden: {{reason}}",
   "bodyView.failed.skeleton":
-    "Der Körper kann nicht gezeigt werden, deshalb bleibt die Strichfigur: {{reason}}",
+    "Der Körper kann nicht angezeigt werden; stattdessen wird die Strichfigur gezeichnet: {{reason}}",
   "bodyView.drawn": "Gezeichnet als",
   "bodyView.drawn.skin": "Körper",
   "bodyView.drawn.skeleton": "Strichfigur",
