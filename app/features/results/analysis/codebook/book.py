@@ -45,7 +45,7 @@ TABLES: dict[str, str] = {
     "calibrations": "One row per measurement of the equipment's own delay; of no one session.",
     "codebook": "One row per column of the other files.",
     "samples": "One file per session, one row per frame: target and actual body side by side.",
-    "fingers": "One file per session that recorded fingers, one row per frame, as in samples.",
+    "fingers": "One file per session that recorded fingers; one row per frame, as in samples.",
 }
 """The description of each table's rows, in the order of the export."""
 
@@ -68,7 +68,7 @@ CODEBOOK: tuple[Column, ...] = (
     *CALIBRATIONS,
     _B.text(
         "table",
-        "The file the column is in; samples and fingers stand for all files in these folders.",
+        "The file that the column is in; samples and fingers stand for all files in these folders.",
     ),
     _B.text("column", "Name of the column."),
     _B.text("meaning", "What it holds."),

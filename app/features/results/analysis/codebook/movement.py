@@ -27,7 +27,7 @@ CONTACTS: tuple[Column, ...] = (
     _C.text(
         "body_part",
         "The body part, by its Unity HumanBodyBones name: a finger part, such as "
-        "RightThumbDistal, in sessions that record fingers; else the hand stands for them.",
+        "RightThumbDistal, in sessions that record fingers; otherwise fingers count as the hand.",
     ),
     _C.text(
         "effect",
@@ -120,7 +120,7 @@ JOINT_ERROR_COURSE: tuple[Column, ...] = (
         "mean_deg",
         "Mean whole angle over all samples in the bin, a sample being one joint of the body, not "
         "of its fingers, in one frame. "
-        "Weighted by samples, the bins have the mean of the phase: that of the angles in "
+        "The mean of the bins, weighted by samples, is the mean of the phase: that of the angles in "
         "joint_errors, each joint weighted by its samples.",
         "deg",
         "0 to 180",
@@ -156,7 +156,10 @@ def _frame_columns(describe: Describe) -> tuple[Column, ...]:
             "avatar", "How the body that the participant saw was moved.", "delayed_copy, physics"
         ),
         describe.integer("epoch", "Run of the client: a restart takes a new one."),
-        describe.integer("seq", "Frame within the epoch; all streams of a moment carry the same."),
+        describe.integer(
+            "seq",
+            "Frame within the epoch; the frames of all streams at one moment have the same seq.",
+        ),
         describe.integer("phase_id", "The phase; 0 outside phases.", levels="0 and up"),
         describe.number("t_s", "Time of the frame on the client's monotonic clock.", "s"),
         describe.boolean("active", "Whether the phase's clock ran."),

@@ -17,8 +17,8 @@ QUALITY: tuple[Column, ...] = (
     *phase_columns("quality"),
     _Q.text(
         "stream",
-        "What the tracking asks for, or the body that is seen; and of their fingers, where these "
-        "are recorded.",
+        "What the tracking asks for (target), or the body that is seen (actual); streams of their "
+        "fingers where fingers are recorded.",
         "target, actual, target_fingers, actual_fingers",
     ),
     _Q.integer("frames", "Frames of active time.", levels="0 and up"),

@@ -34,8 +34,8 @@ SESSIONS: tuple[Column, ...] = (
     _S.text("language", "Language of the participant's texts.", "ISO 639-1 code"),
     _S.text(
         "order",
-        "Added latencies in the order of the blocks, ms, separated by spaces; the keys of the "
-        "conditions in a study whose conditions share latencies.",
+        "Added latencies in the order of the blocks, ms, separated by spaces; if conditions of the "
+        "study share latencies, the keys of the conditions instead.",
     ),
     _S.integer("slot_index", "Row of the counterbalancing ledger.", levels="0 and up"),
     _S.integer(
@@ -72,7 +72,7 @@ PHASES: tuple[Column, ...] = (
     _P.text(
         "body",
         "Body that the condition prescribes, by the name that it was given in the lab; empty if "
-        "the participant wore that of the avatar's configuration.",
+        "the participant wore the body of the avatar's configuration.",
     ),
     _P.text(
         "status",
@@ -82,8 +82,8 @@ PHASES: tuple[Column, ...] = (
     _P.text(
         "avatar_changes",
         "Who had changed settings of the avatar (gravity, collisions, casts, gains) in this phase. "
-        "A change by the operator is not part of the protocol. Empty where nothing was changed; "
-        "the events avatar_changed say what.",
+        "A change by the operator is not part of the protocol. Empty if nothing was changed. "
+        "The events avatar_changed say what was changed.",
         "study, operator, study and operator",
     ),
     _P.number("active_s", "Active time: pauses and walk-backs do not count.", "s", "0 and up"),

@@ -31,7 +31,7 @@ Reading the files
   the right, y up, -z ahead), quaternions w, x, y, z. Frames stand as they came: NaN and Infinity
   are values that were sent, and such rows are flagged.
   fingers/, where it is there, holds the same for the fingers of sessions that recorded them, joined
-  on the same epoch and seq. A hand that was not tracked is NaN.
+  on the same epoch and seq. The values of a hand that was not tracked are NaN.
   receipts/ holds one file per session that says how many frames were made, stored and are missing,
   whether the event log was changed, whether the completions follow from the contacts, and which
   latency the avatar really had. "complete": true means that nothing is missing.
