@@ -24,7 +24,7 @@ PAGES = {"/": "console/index.html", "/tablet": "tablet/index.html"}
 # A service worker controls the addresses next to and below its own, which identifies it.
 TABLET_WORKER = "/tablet-worker.js"
 # Workers that decode compressed models with WebAssembly. A worker has the policy of its own file,
-# so pages need not be allowed to run WebAssembly; and these may fetch nothing from anywhere.
+# so pages need no permission to run WebAssembly. These workers may fetch nothing from anywhere.
 WASM_WORKERS = "wasm/"
 WASM_POLICY = "default-src 'none'; script-src 'self' blob: 'wasm-unsafe-eval'"
 # The transcoder of KTX2 textures (Basis Universal) also makes functions from text when it starts.

@@ -153,7 +153,9 @@ def rehearse(
     ] = False,
     fingers: Annotated[
         bool,
-        typer.Option("--fingers", help="Record fingers, too; their movement is generated."),
+        typer.Option(
+            "--fingers", help="Record fingers, too: those of the capture, or generated ones."
+        ),
     ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the reports as JSON.")] = False,
 ) -> None:

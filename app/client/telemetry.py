@@ -139,8 +139,8 @@ class TelemetryClient:
             await client.drained()  # everything is on the server's disk
 
     `url`: ws://HOST/api/vr/stream. `monotonic_s`: the client's own clock. `avatars`: the kinds of
-    avatar that it can show. `fingers`: it sends the streams of fingers with every frame.
-    `changes_avatar`: whether it can change a physics avatar that runs.
+    avatar that it can show. `fingers`: whether it sends the streams of fingers with
+    every frame. `changes_avatar`: whether it can change a physics avatar while it runs.
     """
 
     url: str

@@ -17,7 +17,7 @@ class HumanoidRow(Base):
     show. `bones_by` is how its bones were mapped to body parts.
 
     `name`: how studies refer to it, unique and never changed once given. `licence`: what its file
-    says of its author and terms, `confirmed`: what somebody confirmed because the terms ask for it
+    says of its author and terms, `confirmed`: the terms that somebody has confirmed to be met
     (`app.features.movement.humanoids`). Licence, triangles, vertices and textures are null until
     the file is measured by a release that reads them.
     """

@@ -1,10 +1,10 @@
-"""Changes to an avatar that runs: gravity, collisions, casts and gains, as a frozen value.
+"""Define the changes to a running avatar: gravity, collisions, casts and gains, as a frozen value.
 
-A study gives them to one of its phases, and an operator makes them during a session; both use this
-value. It says how the avatar differs from its configuration while the changes are in force. What is
-left out stays as it is. If a part, an axis or a pair of layers is named more than once, the later
-entry applies. `settings_in_force` applies several changes one after the other: those of the study,
-then those of the operator.
+A study gives changes to one of its phases, and an operator makes them during a session; both use
+this value. It says how the avatar differs from its configuration while the changes are in force.
+What is left out stays as it is. If a part, an axis or a pair of layers is named more than once, the
+later entry applies. `settings_in_force` applies several changes one after the other: those of the
+study, then those of the operator.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -32,24 +32,26 @@ from app.science.avatar.configuration import (
 )
 
 MAX_FACTOR: Final = 8.0
-"""How many times as strong as configured a motor can be made: with steps of 2 ms, motors of eight
-times the usual gains are still stable when their target jumps over the full range."""
+"""How many times stronger than configured a motor can be made. With steps of 2 ms, motors with
+eight times the usual gains are still stable when their target jumps over the full range."""
 MAX_ENTRIES: Final = 100
 
 
 def _known_group(name: str) -> str:
-    return _one_of(name, GROUP_NAMES, "There is no body group {0!r}.", "Name a group, or a part.")
+    return _one_of(name, GROUP_NAMES, "There is no body group {0!r}.", "Name a body group or part.")
 
 
 def _known_motor(name: str) -> str:
     names = (*GROUP_NAMES, *AXIS_NAMES)
     return _one_of(
-        name, names, "There is no body group or axis {0!r}.", "Name a group, a part or an axis."
+        name, names, "There is no body group or axis {0!r}.", "Name a body group, part or axis."
     )
 
 
 def _known_axis(name: str) -> str:
-    return _one_of(name, AXIS_NAMES, "There is no axis {0!r}.", "Name it as in LeftUpperLegX.")
+    return _one_of(
+        name, AXIS_NAMES, "There is no axis {0!r}.", "Name an axis such as LeftUpperLegX."
+    )
 
 
 def _known_layer(name: str) -> str:
@@ -104,8 +106,8 @@ class LayerChange(Strict):
 class Cast(Strict):
     """A cast around a body group, which holds its axes.
 
-    `held_deg`: axis -> angle at which it is held, to which it is moved first. Axes without an angle
-    are held where they are when the cast is put on.
+    `held_deg`: axis -> the angle to which the axis is moved, and at which it is then held. Axes
+    without an angle are held where they are when the cast is put on.
     """
 
     group: BodyGroup
@@ -119,7 +121,7 @@ class Cast(Strict):
 class GainChange(Strict):
     """The gains and greatest torque of the motors of a group, part or axis.
 
-    Each is a factor of the configuration's value, or a value for every axis that is meant.
+    Each is a factor of the configuration's value, or a value for each of these axes.
     """
 
     motors: Motor
@@ -132,9 +134,9 @@ class GainChange(Strict):
 
 
 class AvatarChanges(Strict):
-    """Changes to an avatar that runs, compared with its configuration.
+    """Changes to a running avatar, compared with its configuration.
 
-    `released`: body groups without a cast, such as one that the study has put on.
+    `released`: body groups whose cast is taken off, such as one that the study has put on.
     """
 
     gravity: Annotated[bool | None, _IF_SET] = None
@@ -166,7 +168,7 @@ class AvatarChanges(Strict):
 def settings_in_force(
     configuration: Configuration, *changes: AvatarChanges | None
 ) -> RunningSettings:
-    """Return the settings of an avatar to which changes were made, one after the other.
+    """Return the settings of an avatar after several changes, made one after the other.
 
     Raises:
         AvatarSettingsError: a change cannot be made to this avatar; the error lists every problem.
@@ -264,7 +266,7 @@ def _collider_problems(
         if one.kind == "mesh" and not configuration.uses_pieces:
             yield AvatarProblem(
                 f"colliders[{at}].kind",
-                "The avatar has no mesh colliders: its configuration names no model with them.",
+                "The avatar has no mesh colliders: its configuration names no model that has them.",
                 value="mesh",
                 valid=["simple", "none"],
                 remedy="Choose 'simple', or a configuration with a model and mesh colliders.",
@@ -276,8 +278,8 @@ def _layer_problems(layers: Iterable[LayerChange]) -> Iterator[AvatarProblem]:
         if frozenset(one.layers) not in SWITCHABLE_LAYERS:
             yield AvatarProblem(
                 f"layers[{at}].layers",
-                f"The collisions of {one.layers[0]} with {one.layers[1]} cannot be switched: they "
-                "are one layer, or overlap in usual poses.",
+                f"Collisions of {one.layers[0]} with {one.layers[1]} cannot be switched: they"
+                " are the same layer, or overlap in usual poses.",
                 value=list(one.layers),
                 valid=[sorted(pair) for pair in sorted(map(sorted, SWITCHABLE_LAYERS))],
                 remedy="Choose one of the valid pairs.",
@@ -298,7 +300,7 @@ def _cast_problems(configuration: Configuration, casts: Iterable[Cast]) -> Itera
                     f"{axis} is not a driven axis of {cast.group}, so this cast cannot hold it.",
                     value=axis,
                     valid=list(driven),
-                    remedy="Name an axis of the group that has a motor, or take the angle out.",
+                    remedy="Name an axis of the group that has a motor, or remove the angle.",
                 )
                 continue
             limits = configuration.axes[axis]
@@ -325,7 +327,7 @@ def _gain_problems(
                 path,
                 f"Nothing is said about the motors of {gain.motors}.",
                 valid=sorted(set(GainChange.model_fields) - {"motors"}),
-                remedy="Give a factor or a value, or take the entry out.",
+                remedy="Give a factor or a value, or remove the entry.",
             )
         for factor, value in (*((f"{a}_factor", b) for a, b in fields), _TORQUE):
             if factor in given and value in given:
@@ -351,8 +353,8 @@ def _gain_problems(
                 most = MAX_FACTOR * getattr(configuration.axes[too_stiff[0]], name)
                 yield AvatarProblem(
                     f"{path}.{field}",
-                    f"{asked:g} is more than {MAX_FACTOR:g} times what is configured for "
-                    f"{too_stiff[0]}: the simulation could become unstable.",
+                    f"{asked:g} is more than {MAX_FACTOR:g} times the configured value of "
+                    f"{too_stiff[0]}; the simulation could become unstable.",
                     value=asked,
                     valid=f"from 0 to {most:g}",
                     remedy="Give a smaller value, or save a configuration with stronger motors.",
@@ -366,7 +368,8 @@ def _not_driven(configuration: Configuration, path: str, name: str) -> AvatarPro
     valid = [one for one in GROUP_NAMES if driven_axes_of(configuration, one)]
     return AvatarProblem(
         path,
-        f"No axis of {name} is driven in this configuration: it is missing, locked, or has none.",
+        f"No axis of {name} is driven in this configuration: {name} is missing or locked, or has "
+        "no axes.",
         value=name,
         valid=valid,
         remedy="Choose a body group or part with a motor.",

@@ -43,7 +43,7 @@ BodyName = Annotated[
 class Condition(Strict):
     """One level of the factor: the latency added to the target of every delayed body part.
 
-    `body`: the body that participants wear in it; left out, that of the avatar's configuration.
+    `body`: the body that participants wear in it; if left out, the avatar configuration's body.
     """
 
     key: Key
@@ -69,7 +69,7 @@ def _distinct(conditions: tuple[Condition, ...]) -> tuple[Condition, ...]:
                     f"The conditions {earlier.key!r} and {condition.key!r} both add "
                     f"{condition.latency_ms:g} ms, so no analysis can tell them apart.",
                     value=condition.latency_ms,
-                    valid="a latency or a body of its own for each condition",
+                    valid="a different latency or a different body for each condition",
                     remedy="Change or remove one of them, or give them different bodies.",
                     at=(index, "latency_ms"),
                 )

@@ -27,7 +27,7 @@ from app.science.instruments import DefinitionProblem, Instrument, text_problems
 from app.texts import LANGUAGES
 
 ConfigurationOf = Callable[[str, int], Configuration | None]
-"""Returns the configuration of an avatar's key and version, or None if there is none."""
+"""A function from an avatar's key and version to its configuration, or None if there is none."""
 _AVATAR_KEY = "avatar_configuration"
 _AVATAR_AT: Path = (_AVATAR_KEY,)
 _USUAL_AVATAR = "standard"
@@ -318,7 +318,7 @@ def changed_avatar_problems(
         if tree.get("avatar") == "delayed_copy":
             yield DefinitionProblem(
                 here,
-                "A delayed copy has no motors and no colliders: there is nothing to change.",
+                "A delayed copy has no motors or colliders, so there is nothing to change.",
                 None,
                 "left out, or avatar: physics",
                 "Remove it, or write avatar: physics.",
@@ -356,7 +356,7 @@ def _parts_of_path(path: str) -> Path:
 def worn_body_problems(
     tree: Mapping[str, Plain], bodies: Collection[str] | None
 ) -> Iterator[DefinitionProblem]:
-    """Yield a problem for each body of a condition that does not exist or would not be worn.
+    """Yield a problem for each condition whose body does not exist or would not be worn.
 
     Args:
         tree: the tree of the study file.
@@ -370,7 +370,7 @@ def worn_body_problems(
         if tree.get("avatar") == "delayed_copy":
             yield DefinitionProblem(
                 path,
-                "A delayed copy wears no body of its own: this one would have no effect.",
+                "A delayed copy wears no body, so this setting would have no effect.",
                 name,
                 "left out, or avatar: physics",
                 "Remove it, or write avatar: physics.",

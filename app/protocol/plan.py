@@ -33,7 +33,7 @@ class Step:
     that the condition prescribes, None for that of the avatar's configuration. `text` is the key
     of a text of the study. `until_completions`: a practice ends early after this many tasks.
     `consent`: the requirements of a consent step in addition to its text. `avatar_changes`: how a
-    timed step changes the physics avatar while it lasts.
+    timed step changes the physics avatar while the step lasts.
     """
 
     index: int

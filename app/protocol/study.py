@@ -143,7 +143,7 @@ class StudyProtocol(Strict):
     def levels(self) -> dict[str, str]:
         """What orders call each condition: its latency in ms, or its key if some share latencies.
 
-        By the keys of the conditions.
+        The keys of the mapping are those of the conditions.
         """
         apart = self.has_latencies_apart
         return {one.key: f"{one.latency_ms:g}" if apart else one.key for one in self.conditions}

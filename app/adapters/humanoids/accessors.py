@@ -47,7 +47,7 @@ class Tables:
     def scaled(self, number: int, table: npt.NDArray[Any]) -> FloatArray:
         """Return the numbers of a table as an accessor says; raises the same errors as `floats`."""
         accessor, place = self._accessor(number)
-        with np.errstate(invalid="ignore"):  # a signalling NaN is refused below as any other
+        with np.errstate(invalid="ignore"):  # a signalling NaN is refused below like any other
             values = table.astype(np.float64)
         if accessor.normalized and table.dtype.kind in "iu":
             values = np.maximum(values / float(np.iinfo(table.dtype).max), -1.0)
@@ -84,8 +84,8 @@ class Tables:
             )
         if accessor.bufferView is None or accessor.sparse is not None:
             raise HumanoidFileError(
-                "It has no data of its own: the table is sparse, or compressed in a way that is not"
-                " read. Export the model without sparse tables, or compressed by meshopt or Draco.",
+                "It has no data of its own: the table is sparse, or compressed in an unknown way."
+                " Export the model without sparse tables, or compressed by meshopt or Draco.",
                 place,
             )
         width = _WIDTHS[kind]
@@ -142,7 +142,9 @@ class Tables:
         data = self._buffer(buffer, place)
         end = start + length
         if end > len(data):
-            raise HumanoidFileError(f"It ends at byte {end} of a buffer of {len(data)}.", place)
+            raise HumanoidFileError(
+                f"It ends at byte {end}, but the buffer has {len(data)} bytes.", place
+            )
         return memoryview(data)[start:end]
 
     def _decompressed(self, number: int, packed: Meshopt) -> bytes:
@@ -159,11 +161,11 @@ class Tables:
         valid = packed.byteStride % 4 == 0 if packed.mode == "ATTRIBUTES" else packed.byteStride < 5
         if not valid or packed.byteStride == 3:
             raise HumanoidFileError(
-                f"Its elements cannot have {packed.byteStride} bytes; valid are 2 or 4 for indices"
-                " and multiples of 4 for others.",
+                f"Its elements cannot have {packed.byteStride} bytes each; 2 or 4 are valid for"
+                " indices, and multiples of 4 for others.",
                 place,
             )
-        # Bytes that nobody asks for count as well: a view is decompressed as a whole.
+        # Bytes that nobody asks for count as well, because a view is decompressed as a whole.
         self.take(packed.count * max(1, packed.byteStride // 4), place)
         stream = self._slice(packed.buffer, packed.byteOffset, packed.byteLength, place)
         # Imported here because it loads a compiler, which few files need.

@@ -71,9 +71,9 @@ def embedded(uri: str, place: str) -> bytes:
 
 
 def varint(data: bytes, at: int) -> tuple[int, int]:
-    """Return a number of 32 bits, stored as 7 bits a byte, lowest first, and where the next begins.
+    """Return a 32-bit number, stored in 7 bits per byte, lowest first, and the place after it.
 
-    Raises IndexError if the data end before.
+    Raises IndexError if the data end before the number does.
     """
     value = 0
     for k in range(5):

@@ -31,9 +31,9 @@ class Texture:
 
 @dataclass(frozen=True)
 class Contents:
-    """What a file contains to be drawn.
+    """How much of a file has to be drawn.
 
-    A mesh counts once for each node that has it. Bytes of textures are as compressed in the file.
+    A mesh counts once for each node that has it. Textures count with their compressed bytes.
     """
 
     triangles: int
@@ -82,9 +82,9 @@ def _textures(document: Document, tables: Tables) -> list[Texture]:
 
 
 def size_of_image(data: bytes) -> tuple[str, int, int]:
-    """Return the media type, width and height in pixels that an image's header says.
+    """Return the media type, width and height in pixels that an image's header states.
 
-    The type is empty if it is none of those read, the sizes are 0 if they cannot be found.
+    The type is empty for unknown formats; the sizes are 0 if the header does not have them.
     """
     try:
         if data[:8] == b"\x89PNG\r\n\x1a\n":

@@ -36,9 +36,9 @@ class _Part(BaseModel):
 
 
 def _or_default(value: object, read: ValidatorFunctionWrapHandler, info: ValidationInfo) -> object:
-    """Return the field's default in place of what is not of its form.
+    """Return the field's default in place of a value that is not valid for it.
 
-    What a file says of its author must not hinder reading the body.
+    Invalid statements about the author must not keep the body from being read.
     """
     try:
         return read(value)
@@ -82,7 +82,7 @@ class Meshopt(_Part):
 
 
 class ViewExtensions(_Part):
-    """The extensions of a view; a file may have either name of the same compression."""
+    """The extensions of a view; either name may stand for the same compression."""
 
     ext_meshopt: Meshopt | None = Field(None, alias="EXT_meshopt_compression")
     khr_meshopt: Meshopt | None = Field(None, alias="KHR_meshopt_compression")
@@ -119,7 +119,7 @@ class Accessor(_Part):
 class Draco(_Part):
     """The compressed form of a primitive, `KHR_draco_mesh_compression`.
 
-    It is a view with the stream, and the number that each attribute has in it.
+    It has the view with the stream, and the number of each attribute in the stream.
     """
 
     bufferView: Index  # noqa: N815

@@ -67,11 +67,13 @@ class PrimitiveTables:
         if found is None:
             return self._tables.whole(self._primitive.attributes[name], kind)
         if found.dtype.kind != "u":
-            raise HumanoidFileError(f"{name} has numbers with a sign.", self._place)
+            raise HumanoidFileError(
+                f"{name} has signed numbers; only unsigned ones are valid.", self._place
+            )
         return found.astype(np.int64)
 
     def corners(self) -> IndexArray | None:
-        """Return the vertex of every corner of the triangles; None if they just follow in order."""
+        """Return the vertex of every triangle corner; None if the vertices are used in order."""
         if self._draco is not None:
             return self._draco.corners
         if self._primitive.indices is None:
@@ -107,7 +109,7 @@ class PrimitiveTables:
 
 
 def _check_sizes(stream: bytes, *, faces: int, vertices: int) -> None:
-    """Raise ValueError if a stream has more than it should, or IndexError if it is too short."""
+    """Raise ValueError if the sizes in a header are wrong, IndexError if it is too short."""
     if len(stream) < _HEADER.size:
         raise ValueError("The Draco data are shorter than their header.")
     mark, major, minor, kind, method, flags = _HEADER.unpack_from(stream)
@@ -144,7 +146,9 @@ def _decoded(stream: bytes, place: str) -> DracoMesh:
     try:
         mesh = DracoPy.decode(stream)
     except MemoryError:
-        raise HumanoidFileError("The Draco data need too much memory.", place) from None
+        raise HumanoidFileError(
+            "Decompressing the Draco data needs too much memory.", place
+        ) from None
     except (DracoPy.FileTypeException, TypeError, ValueError, RuntimeError) as error:
         raise HumanoidFileError(f"The Draco data are damaged: {error}", place) from None
     faces = getattr(mesh, "faces", None)

@@ -31,7 +31,7 @@ class StreamError(ValueError):
 
 
 def decoded(mode: str, stream: bytes, count: int, stride: int, filter_: str) -> bytes:
-    """Return the `count` elements of `stride` bytes that a stream contains.
+    """Return the `count` elements, of `stride` bytes each, that a stream contains.
 
     Args:
         mode: ATTRIBUTES, TRIANGLES or INDICES.
@@ -41,7 +41,8 @@ def decoded(mode: str, stream: bytes, count: int, stride: int, filter_: str) -> 
         filter_: NONE or EXPONENTIAL. Others are for normals and rotations.
 
     Raises:
-        StreamError: the stream ends too early, is not of this mode, or refers to what is not there.
+        StreamError: the stream ends too early, is not of this mode, or refers to an element that
+            does not exist.
     """
     try:
         if mode == "ATTRIBUTES":
@@ -74,9 +75,9 @@ def _filtered(elements: Bytes, filter_: str) -> bytes:
 def _column(data: Bytes, at: int, groups: int, narrowest: int, column: Bytes) -> int:
     """Decode one byte of each element of a block, in groups of 16; return where the next begins.
 
-    Two bits say for each group how wide its bytes are stored: `narrowest` and the three next of 0,
-    1, 2, 4 and 8 bits, in version 0 without 1. What fills all bits of a narrow byte stands for a
-    whole one after the group.
+    For each group two bits say in how many bits its bytes are stored: `narrowest` or one of the
+    next three of 0, 1, 2, 4 and 8 (in version 0 without 1). A narrow byte whose bits are all set
+    means that the whole byte is stored after the group.
     """
     header = at
     at += (groups + 3) // 4
@@ -112,7 +113,7 @@ def _block_columns(
 ) -> int:
     """Decode the columns of a block of `size` elements; return where the next block begins.
 
-    Version 1 has two bits for each column: narrow or wide groups, all zero, or as it is.
+    Version 1 has two bits for each column: narrow groups, wide groups, all zero, or not packed.
     """
     groups = (size + _GROUP - 1) // _GROUP
     control = at
@@ -137,10 +138,10 @@ def _block_columns(
 def _attributes(data: Bytes, count: int, stride: int) -> Bytes:
     """Decode `count` elements of `stride` bytes, (count, stride).
 
-    They are in blocks; a block has one column of bytes after the other, as differences from one
-    element to the next. The first element's are to one at the end of the stream. Differences are
-    of bytes; in version 1 a byte at the very end says for every four of them whether they are of
-    bytes, of pairs, or of all four by exclusive or.
+    A block holds one column of bytes after the other, as differences from each element to the
+    next. The first element is stored as its difference to an element at the end of the stream.
+    Differences are between single bytes; in version 1 a byte at the very end says for every four
+    columns whether they are between bytes, between pairs, or the exclusive or of all four.
     """
     version = data[0] & 15 if len(data) else 0
     channels = version * (stride // 4)
@@ -194,7 +195,7 @@ def _add(
 
 
 def _indices(data: bytes, count: int) -> "array[int]":
-    """Decode a sequence of indices, each the difference to one of two earlier ones."""
+    """Decode a sequence of indices, each stored as its difference to one of two earlier ones."""
     if len(data) < 1 + count + 4:
         raise StreamError("the compressed indices are shorter than their number")
     if data[0] != _INDICES:
@@ -211,7 +212,7 @@ def _indices(data: bytes, count: int) -> "array[int]":
 
 
 def _triangles(data: bytes, count: int) -> "array[int]":
-    """Decode triangles: each continues at one of the last 16 edges, or begins anew."""
+    """Decode triangles: each shares one of the last 16 edges, or has three corners of its own."""
     if count % 3 or len(data) < 1 + count // 3 + _CODES:
         raise StreamError("the compressed triangles are shorter than their number")
     if data[0] != _TRIANGLES:
@@ -220,7 +221,7 @@ def _triangles(data: bytes, count: int) -> "array[int]":
 
 
 class _TriangleDecoder:
-    """The state of the triangle codec: its two queues, and the next and the last vertex."""
+    """The state of the triangle codec: two queues, the next new vertex, and the last one."""
 
     def __init__(self, data: bytes, at: int) -> None:
         self._data, self._at = data, at
@@ -242,7 +243,7 @@ class _TriangleDecoder:
         return found
 
     def _continued(self, code: int) -> tuple[int, int, int]:
-        """Return the triangle beyond an earlier edge."""
+        """Return a triangle that shares an earlier edge."""
         a, b = self._edges[(self._edge - 1 - (code >> 4)) & 15]
         which = code & 15
         if 0 < which < 13:
@@ -257,10 +258,10 @@ class _TriangleDecoder:
         return a, b, c
 
     def _anew(self, code: int) -> tuple[int, int, int]:
-        """Return a triangle of its own.
+        """Return a triangle that shares no edge.
 
-        Below 0xFE its corners are in the table of codes at the end, where 15 is an earlier corner
-        as any other. Otherwise they follow here, and 15 is a corner that is spelled out.
+        A code below 0xFE refers to the table of codes at the end, in which 15 means an earlier
+        corner like any other. Otherwise the corners follow here, and 15 means one in full.
         """
         here = code >= 0xFE
         if here:
@@ -271,7 +272,7 @@ class _TriangleDecoder:
         else:
             pair = self._data[self._table + (code & 15)]
         which = (15 if code == 0xFF else 0, pair >> 4, pair & 15)
-        # All that are taken from what came before, and only then all that are spelled out.
+        # First all corners that refer to earlier ones, and only then those stored in full.
         corners = [
             self._following() if one == 0 else self._corners[(self._corner - one) & 15]
             for one in which

@@ -1,13 +1,13 @@
 """Read who made a model, and what they allow others to do with it.
 
-VRM files say so in their `meta`, in a form of its own for each version. Other glTF files have at
+VRM files say so in their `meta`, in a different form for each version. Other glTF files have at
 most `asset.copyright`, and what programs and sites write into `asset.extras` (Sketchfab: author,
-licence and source). What a file does not say is unknown, except in VRM 1.0, whose specification
-forbids what is not allowed.
+licence and source). What a file does not state is unknown, except in VRM 1.0, whose specification
+forbids everything that is not allowed.
 
 VRoid Hub, from which many VRM 0 files come, writes its terms into the address of the licence.
 
-Where two statements of a file disagree, as those of a licence without commercial use and of a
+If two statements of a file disagree, such as a licence that excludes commercial use and a
 permission for it, the stricter one counts.
 
 Source: VRM consortium, VRM 0.0 `meta`; VRM 1.0 `VRMC_vrm` `meta`; Creative Commons 4.0 licences.
@@ -37,8 +37,8 @@ class ModelRights:
         licence: its name, such as `CC_BY`.
         licence_url, other_url: where its terms are, and further ones.
         wearers: who may wear it.
-        violent, sexual, political, antisocial: acts with it in excess, or in political or religious
-            contexts.
+        violent, sexual, political, antisocial: whether it may be used for excessively violent or
+            sexual acts, for political or religious purposes, and for antisocial or hateful ones.
         commercial: commercial use.
         redistribution: passing on the file.
         modification: changing the file.
@@ -73,7 +73,7 @@ class ModelRights:
 
 
 class _Meta(BaseModel):
-    # Statements of an unknown kind must not hinder reading the body, so all are optional texts.
+    # Statements of an unknown kind must not keep the body from being read: all are optional texts.
     model_config = ConfigDict(strict=True)
 
 
@@ -187,7 +187,7 @@ def _hub_terms(url: str) -> Mapping[str, str]:
 
 
 def _stricter(*statements: str | None) -> Permission:
-    """Return what several statements about a use come to: forbidden if one of them says so."""
+    """Return the strictest of several statements about a use: forbidden if any of them says so."""
     said = {(statement or "").lower() for statement in statements}
     return "forbidden" if "disallow" in said else "allowed" if "allow" in said else "unknown"
 

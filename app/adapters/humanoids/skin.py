@@ -105,7 +105,9 @@ def _used(corners: IndexArray | None, count: int, place: str) -> IndexArray:
         return np.arange(count)
     used = np.unique(corners)
     if len(used) and used[-1] >= count:
-        raise HumanoidFileError(f"A triangle wants vertex {used[-1]} of {count}.", place)
+        raise HumanoidFileError(
+            f"A triangle refers to vertex {used[-1]}, but there are only {count}.", place
+        )
     return used
 
 
@@ -122,7 +124,9 @@ def _influences(
         joints.append(attributes.whole(f"JOINTS_{more}", "VEC4"))
         weights.append(attributes.floats(f"WEIGHTS_{more}", "VEC4"))
     if any(len(table) != count for table in (*joints, *weights)):
-        raise HumanoidFileError(f"{count} vertices need as many bones and weights.", place)
+        raise HumanoidFileError(
+            f"There are {count} vertices, but not as many rows of bones and weights.", place
+        )
     shares = np.maximum(np.concatenate(weights, axis=1), 0.0)
     total = shares.sum(axis=1, keepdims=True)
     return np.concatenate(joints, axis=1), shares / np.where(total > 0.0, total, 1.0)

@@ -1,9 +1,10 @@
 """Write a skinned figure as binary glTF 2.0 with VRM 1.0's description of its bones.
 
-One mesh with one skin: positions, normals, colours, and four bones with weights a vertex; a node
-for each of the 52 parts, at rest in the T-pose, facing +z as both formats want it. Where two
-colours meet, the points of the border are written twice, at the same place with the same normal, so
-that the border is sharp and the shading is not. The same figure gives the same bytes.
+The file has one mesh with one skin (positions, normals, colours, and four bones with weights for
+each vertex) and a node for each of the 52 parts, at rest in the T-pose and facing +z, as both
+formats require. Where two colours meet, the points of the border are written twice, at the same
+place with the same normal: so the colours change abruptly and the shading smoothly. The same figure
+always gives the same bytes.
 
 Sources: Khronos, glTF 2.0 specification, sections 3.7 (meshes, skins) and 4 (GLB); VRM Consortium,
 VRM 1.0 specification, VRMC_vrm.
@@ -217,7 +218,7 @@ def _vrm(name: str) -> dict[str, Any]:
             "copyrightInformation": f"Reembody, {LICENCE}",
             "licenseUrl": _VRM_LICENCE_URL,
             "otherLicenseUrl": _LICENCE_URL,
-            # The licence restricts no use; left out, VRM would take these for forbidden.
+            # The licence restricts no use; VRM treats what is left out as forbidden.
             "avatarPermission": "everyone",
             "allowExcessivelyViolentUsage": True,
             "allowExcessivelySexualUsage": True,

@@ -1,1 +1,1 @@
-"""The command `figure`: make a skinned body for anybody's proportions."""
+"""The command `figure`: make a skinned body with the proportions of any person."""

@@ -11,7 +11,7 @@ from app.cli.errors import fail, reported, require_folder_of
 def figure(
     out: Annotated[Path, typer.Option(help="File to write, such as body.glb or body.vrm.")],
     population: Annotated[
-        str, typer.Option(help="Whose form it has: male, female or neutral.")
+        str, typer.Option(help="Shape of the body: male, female or neutral.")
     ] = "neutral",
     stature_m: Annotated[float, typer.Option(help="Body height in metres.")] = 1.75,
     segment: Annotated[
@@ -21,7 +21,7 @@ def figure(
         ),
     ] = None,
 ) -> None:
-    """Make a skinned body of any proportions, with five fingers a hand, as glTF and VRM 1.0."""
+    """Make a skinned body of any proportions, with fingers, as a file that is glTF and VRM 1.0."""
     from app.cli.figure.run import POPULATIONS, make
 
     if population not in POPULATIONS:

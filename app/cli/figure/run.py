@@ -8,13 +8,13 @@ from app.science.avatar.body import Population, proportions
 from app.science.avatar.mannequin import make_mannequin
 
 POPULATIONS: Mapping[str, Population] = {"male": "male", "female": "female", "neutral": "average"}
-"""What the command accepts, and whose form that is."""
+"""The populations that the command accepts, and the population whose form each has."""
 
 
 def make(out: Path, population: str, stature_m: float, segments: Sequence[str]) -> str:
-    """Write the body and return a sentence about it.
+    """Write the body to a file and return a sentence about it.
 
-    Raises ValueError for a stature or a length that no person has, OSError if nothing can be
+    Raises ValueError for a stature or a length that no person has, OSError if the file cannot be
     written.
     """
     body = proportions(stature_m, dict(_length(text) for text in segments))

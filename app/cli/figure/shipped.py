@@ -33,13 +33,13 @@ def make_shipped(folder: Path) -> None:
 
 
 def measures_of(model: Path) -> str:
-    """Return what the database stores of a model's file beside it, as JSON."""
+    """Return the measures that the database stores with a model's file, as JSON."""
     with tempfile.TemporaryDirectory() as scratch:
         copy = Path(scratch) / model.name
         copy.write_bytes(model.read_bytes())
         measured = measure(_MAX_BYTES, copy)
     if isinstance(measured, Refused):
-        raise ValueError(f"{model} is no valid body: {measured.reason}")
+        raise ValueError(f"{model} is not a valid body: {measured.reason}")
     return json.dumps(asdict(measured), indent=1) + "\n"
 
 

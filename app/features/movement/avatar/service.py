@@ -228,9 +228,9 @@ def checked(db: Session, file: AvatarFile) -> LoadedAvatar:
 
 
 def unknown_humanoid(db: Session, configuration: Configuration) -> Iterator[AvatarProblem]:
-    """Yield a problem if the configuration refers to a body that is not here or must not be worn.
+    """Yield a problem if the configuration refers to a body that is missing or must not be worn.
 
-    A body must not be worn before the terms of its licence that ask for it are confirmed.
+    A body must not be worn before the terms of its licence that restrict wearing are confirmed.
     """
     content_hash = configuration.humanoid
     if content_hash is None:
@@ -246,10 +246,11 @@ def unknown_humanoid(db: Session, configuration: Configuration) -> Iterator[Avat
     elif asked_terms(humanoid_by_hash(db, content_hash)):
         yield AvatarProblem(
             "humanoid",
-            "The licence of this body restricts who may wear it, and nobody has confirmed it.",
+            "The licence of this body restricts who may wear it, and nobody has confirmed that "
+            "participants may.",
             value=content_hash,
             valid="a body that participants may wear",
-            remedy="Open the body on the page Bodies and confirm it there, or choose another body.",
+            remedy="Confirm its terms on the page Bodies, or choose another body.",
         )
 
 

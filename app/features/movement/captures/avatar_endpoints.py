@@ -135,7 +135,7 @@ async def get_retargeted_motion(
 ) -> Response:
     """Return the positions of an avatar's joints over time, for a preview.
 
-    `rotations`: with the joints' rotations, which a body with skin is drawn by.
+    `rotations`: also the joints' rotations, which are needed to draw a body with skin.
     """
     mapped = await run_in_threadpool(mapped_capture, context, capture_id)
     return Response(

@@ -36,7 +36,7 @@ class Points:
     """Positions (N, J, 3) in metres at a constant rate, starting `start_s` into the recording.
 
     `parents` are indices as in a rig, -1 for none. `rotations`: (N, J, 4) parent_from_joint of the
-    joints of an avatar, whose T-pose is not rotated; None where they are not wanted.
+    joints of an avatar, whose T-pose is not rotated; None if they were not requested.
     """
 
     kind: str

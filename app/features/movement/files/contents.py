@@ -24,7 +24,7 @@ PIECE_BYTES = 256 * 1024
 LEVEL = 6
 """Compresses text to a fifth within a second or two; higher levels hardly improve on that."""
 FAST_LEVEL = 3
-"""For small files of a start, in a quarter of the time; meshes become no larger by it."""
+"""The level for small files stored at a start: a quarter of the time, and no larger for meshes."""
 
 
 def compress(file: Path, to: Path) -> None:

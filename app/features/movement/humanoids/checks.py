@@ -1,4 +1,4 @@
-"""What is checked about a body before somebody wears it, from its measures and its licence."""
+"""Check a body before somebody wears it, by its measures and its licence."""
 
 from collections.abc import Iterator, Sequence
 
@@ -8,19 +8,19 @@ from app.models import HumanoidRow
 from app.science.avatar.body import FINGER_PARTS, FINGERS, SIDES, Figure
 
 TRIANGLE_BUDGET = 20_000
-"""Triangles of a body that a standalone headset still draws twice, here and in the mirror.
+"""The most triangles of a body that a standalone headset can draw twice, once in the mirror.
 
 The limit is that of VRChat's lowest accepted performance rank for standalone headsets; its best
 rank ends at 7,500 (creators.vrchat.com, Avatar Performance Ranking System).
 """
 OUTSIDE_M = 0.006
-"""Skin that is further outside of its hull than this is reported: smooth trunks have 5 mm."""
+"""Skin farther outside its hull than this is reported; smooth trunks reach 5 mm."""
 _ABOUT_POSE = ("turned upright", "T-pose")
 _ABOUT_LENGTHS = ("unusual", "proportions")
 
 
 def checks_of(row: HumanoidRow, figure: Figure) -> Iterator[BodyCheck]:
-    """Yield what was found about a body, in the order in which it is read."""
+    """Yield the checks of a body in the order in which they are shown."""
     absent = [part for part in figure.absent if part not in FINGER_PARTS]
     yield BodyCheck(key="parts", status="note" if absent else "good", parts=absent)
     yield _fingers(figure)
@@ -65,7 +65,7 @@ def _triangles(count: int | None) -> BodyCheck:
 
 
 def _hulls(figure: Figure) -> BodyCheck:
-    """Check for parts without a hull, and for skin far outside of one."""
+    """Check for parts without a hull, and for skin far outside its hull."""
     loose = [part for part, piece in figure.pieces.items() if piece.outside_m > OUTSIDE_M]
     parts = [*figure.without_piece, *loose]
     return BodyCheck(

@@ -54,7 +54,7 @@ def get_humanoids(
 
 @router.get("/{content_hash}")
 def get_humanoid(content_hash: ContentHash, db: Reading, _: SignedIn) -> HumanoidView:
-    """Return one body: the parts it has and lacks, its lengths, convex pieces, licence, checks."""
+    """Return one body: parts it has and lacks, lengths, convex pieces, licence and checks."""
     return humanoid_view(db, content_hash)
 
 
@@ -62,7 +62,7 @@ def get_humanoid(content_hash: ContentHash, db: Reading, _: SignedIn) -> Humanoi
 async def get_humanoid_binding(
     content_hash: ContentHash, context: Context, _: SignedIn
 ) -> Response:
-    """Return how the nodes of a model's file follow the parts of its body, to draw it posed."""
+    """Return how the nodes of a model's file follow the parts of its body, for drawing poses."""
     return Response(
         await stored_binding(context, content_hash),
         media_type="application/json",
@@ -74,7 +74,7 @@ async def get_humanoid_binding(
 def patch_humanoid(
     content_hash: ContentHash, change: BodyChange, db: Writing, context: Context, caller: SignedIn
 ) -> HumanoidView:
-    """Name a body, which is possible once, give it a title, or confirm terms of its licence."""
+    """Name a body, which is possible only once, set its title, or confirm terms of its licence."""
     change_body(db, caller.actor, content_hash, change, context.clock.utc_now())
     return humanoid_view(db, content_hash)
 
@@ -83,14 +83,14 @@ def patch_humanoid(
 async def post_measure(
     content_hash: ContentHash, context: Context, caller: SignedIn
 ) -> HumanoidView:
-    """Read the stored file again for its licence and counts, which older releases did not read."""
+    """Read licence and counts of a body from its stored file; older releases did not read them."""
     await measure_again(context, caller, content_hash)
     return await run_in_threadpool(_view, context, content_hash)
 
 
 @router.get("/{content_hash}/use")
 def get_humanoid_use(content_hash: ContentHash, db: Reading, caller: SignedIn) -> BodyUse:
-    """Return the configurations and studies that wear a body."""
+    """Return the avatar configurations and the studies that use a body."""
     return use_of(db, caller, content_hash)
 
 

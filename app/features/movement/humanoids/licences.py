@@ -1,4 +1,4 @@
-"""What the licence of a body allows, and what somebody must confirm before it is worn.
+"""Determine what the licence of a body allows, and what must be confirmed before it is worn.
 
 VRM files say who may wear a model: everybody, only people to whom its author has given permission,
 or only the author. A server cannot know who its participants are, so a person has to confirm that
@@ -15,7 +15,7 @@ from app.models import HumanoidRow
 
 
 def stored_licence(rights: ModelRights) -> dict[str, Any]:
-    """Return what a file says of its terms as it is stored with the body, a `LicenceView`."""
+    """Return what a file says about its terms, as stored with the body (a `LicenceView`)."""
     said = asdict(rights)
     return {
         "title": rights.title,
@@ -32,12 +32,12 @@ def stored_licence(rights: ModelRights) -> dict[str, Any]:
 
 
 def licence_of(row: HumanoidRow) -> LicenceView | None:
-    """Return what the body's file says of its terms; None if it was not read yet."""
+    """Return what the body's file says about its terms; None if that has not been read yet."""
     return None if row.licence is None else LicenceView.model_validate(row.licence)
 
 
 def confirmations_of(row: HumanoidRow) -> list[ConfirmationView]:
-    """Return the terms that were confirmed, in the order of time."""
+    """Return the terms that were confirmed, in chronological order."""
     return [ConfirmationView.model_validate(one) for one in row.confirmed or []]
 
 
@@ -51,7 +51,7 @@ def term_of(row: HumanoidRow) -> Term | None:
 
 
 def asked_terms(row: HumanoidRow) -> tuple[Term, ...]:
-    """Return the terms that nobody has confirmed yet."""
+    """Return the terms that must be confirmed and that nobody has confirmed yet."""
     term = term_of(row)
     confirmed = {one.term for one in confirmations_of(row)}
     return () if term is None or term in confirmed else (term,)

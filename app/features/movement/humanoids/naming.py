@@ -1,7 +1,7 @@
-"""Name bodies, and confirm what their licences ask for.
+"""Name bodies, and confirm the terms that their licences ask for.
 
 A name is given once: studies and records refer to bodies by it, so it never comes to mean another
-body. The hash of the model's file stands beside it on every record.
+body. Every record has the hash of the model's file as well.
 """
 
 from datetime import datetime
@@ -25,10 +25,10 @@ _TERMS: dict[Term, str] = {
 def change_body(
     db: Session, actor: str, content_hash: str, change: BodyChange, now: datetime
 ) -> None:
-    """Name a body, retitle it, or confirm terms of its licence; everything or nothing.
+    """Name a body, retitle it, or confirm terms of its licence; all of it or nothing.
 
-    Raises NotFound, and Conflict if it has another name, if the name is another body's, or if a
-    term of its licence must be confirmed first.
+    Raises NotFound, and Conflict if the body has another name already, if another body has the
+    name, or if a term of the licence must be confirmed first.
     """
     row = humanoid_by_hash(db, content_hash, lock=True)
     _confirm(db, actor, row, change.confirmed, now)
@@ -46,7 +46,7 @@ def require_confirmed(row: HumanoidRow) -> None:
             f"the licence of {row.name or row.file_name!r} says that {_TERMS[asked[0]]}",
             value=row.hash,
             valid=list(asked),
-            remedy="Open the body on the page Bodies and confirm that this is so.",
+            remedy="Open the body on the page Bodies and confirm that this is the case.",
         )
 
 
@@ -65,7 +65,7 @@ def _give_name(db: Session, actor: str, row: HumanoidRow, name: str, now: dateti
             f"this body is called {row.name!r}, and names of bodies never change",
             value=name,
             valid=row.name,
-            remedy="Records refer to the body by its name. Give it another title instead.",
+            remedy="Records refer to the body by its name. Change its title instead.",
         )
     other = db.scalar(select(HumanoidRow.hash).where(HumanoidRow.name == name))
     if other is not None:

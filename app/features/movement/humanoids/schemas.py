@@ -29,7 +29,7 @@ CheckStatus = Literal["good", "note", "warn", "unknown"]
 
 
 class LicenceView(BaseModel):
-    """What the file of a body says of its author and terms; texts are empty where it says nothing.
+    """What the file of a body says about its author and terms; texts are empty if it says nothing.
 
     `name` is the licence's, `url` and `other_url` lead to its terms. `wearers`: who may wear it.
     `permissions`: what its author allows, by kind of use. `credit_needed`: whether its authors must
@@ -59,8 +59,8 @@ class ConfirmationView(BaseModel):
 class BodyCheck(BaseModel):
     """One thing that was checked about a body.
 
-    `parts`: the body parts it is about. `value` and `limit`: what was measured, and what it is
-    compared with. `notes` are sentences.
+    `parts`: the body parts that the check is about. `value` and `limit`: what was measured, and
+    what it was compared with. `notes` are sentences about the result.
     """
 
     key: CheckKey
@@ -72,7 +72,7 @@ class BodyCheck(BaseModel):
 
 
 class BodyChange(BaseModel):
-    """A change of a body: its name, which can be given only once, its title, confirmed terms."""
+    """A change of a body: a name, which can be given only once, a title, or confirmed terms."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -88,7 +88,7 @@ class HumanoidListed(BaseModel):
     studies call it, null until it is given. `stature_m` is its own; an avatar has that of its
     participant. `bones_by`: whether bones were identified by VRM's map or by their names. Counts
     are of body parts that the model has, and of those with a convex piece; those of triangles,
-    vertices and textures are null if an earlier release has measured it.
+    vertices and textures are null if an earlier release measured the body.
     """
 
     content_hash: str
@@ -124,8 +124,8 @@ class HumanoidView(HumanoidListed):
 
     `present` and `absent` are the body parts it has and lacks; those in `simple` have too little
     skin for a convex piece and keep capsules and boxes. `segments_m` are its lengths. `notes` are
-    sentences on anything unusual in the file. `asked`: the terms of its licence that must be
-    confirmed before it is worn, `confirmations` those that were.
+    sentences on anything unusual in the file. `asked`: the terms of its licence that must still
+    be confirmed before it is worn; `confirmations`: those that have been confirmed.
     """
 
     present: list[str]
@@ -140,7 +140,7 @@ class HumanoidView(HumanoidListed):
 
 
 class WornBy(BaseModel):
-    """A study whose newest version wears a body in its conditions or in its configuration."""
+    """A study whose newest version uses a body, in its conditions or in its configuration."""
 
     key: str
     title: str
@@ -148,7 +148,7 @@ class WornBy(BaseModel):
 
 
 class ConfigurationUse(BaseModel):
-    """A version of an avatar's configuration that has the body."""
+    """A version of an avatar configuration that uses the body."""
 
     key: str
     title: str
@@ -156,14 +156,14 @@ class ConfigurationUse(BaseModel):
 
 
 class BodyUse(BaseModel):
-    """Who wears a body: configurations of avatars, and studies that the reader may see."""
+    """Where a body is used: avatar configurations, and studies that the reader may see."""
 
     configurations: list[ConfigurationUse]
     studies: list[WornBy]
 
 
 class BindingView(BaseModel):
-    """How the nodes of a model's file follow the parts of its body; all in its own size.
+    """How the nodes of a model's file follow the parts of its body, all in the model's own size.
 
     World: x right, y up, facing -z, soles at height 0. The frame of a part has its origin in the
     part's joint and is parallel to the world in the T-pose. `parts` are those that the model has,
@@ -171,7 +171,7 @@ class BindingView(BaseModel):
     the T-pose. `nodes` are the glTF nodes that the parts move: world_from_node is world_from_part
     times `part_from_node`, each 16 numbers, row by row. Nodes below a part keep their local
     transform; nodes above the hips keep their place relative to the hips. For another stature,
-    multiply `joints_m` and the first three rows of each matrix by it / `stature_m`.
+    multiply `joints_m` and the first three rows of each matrix by that stature / `stature_m`.
     """
 
     stature_m: float

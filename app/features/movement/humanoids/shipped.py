@@ -1,6 +1,6 @@
-"""Store the bodies that come with the product: when a server first starts on a database.
+"""Store the bodies that come with the product when a server first starts on a database.
 
-Each has its model's file in the folder `bodies`, and beside it what measuring the file gives, so
+The folder `bodies` has the file of each model and, beside it, the measures taken from the file, so
 that a start needs neither to read nor to measure a model.
 """
 
@@ -25,8 +25,8 @@ _PRODUCT = "system"
 def add_shipped_bodies(db: Session, now: datetime) -> None:
     """Store the shipped bodies that the database does not have yet.
 
-    A body whose name the lab has given to another one, or to that of an earlier release, is stored
-    without a name: a name never comes to mean another body.
+    A body is stored without a name if another body has its name, given by the lab or by an earlier
+    release: a name never comes to mean another body.
     """
     models = {name: (bodies_dir() / f"{name}.glb").read_bytes() for name in SHIPPED_BODIES}
     hashes = {name: hashlib.sha256(data).hexdigest() for name, data in models.items()}

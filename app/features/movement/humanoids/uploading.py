@@ -1,4 +1,4 @@
-"""Parse humanoid models in the worker process for captures: new ones, which are stored, and old."""
+"""Parse humanoid models in the worker process for captures: uploaded ones and stored ones."""
 
 from collections.abc import AsyncIterator
 from dataclasses import asdict
@@ -49,7 +49,7 @@ async def stored_binding(context: AppContext, content_hash: str) -> bytes:
 
 
 async def measure_again(context: AppContext, caller: Caller, content_hash: str) -> None:
-    """Read the stored file of a body again for its licence and counts, and store them.
+    """Read the licence and counts of a body from its stored file again, and store them.
 
     Its figure stays as it is: avatars that were built from it do not change. Raises NotFound, and
     InvalidInput if this release cannot read the file any more.

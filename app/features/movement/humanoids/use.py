@@ -16,7 +16,8 @@ from app.platform.access import Caller, visible_to
 def use_of(db: Session, caller: Caller, content_hash: str) -> BodyUse:
     """Return the configurations that have a body, and the studies of the caller that wear it.
 
-    A study whose conditions are hidden from the caller is left out: its bodies may be conditions.
+    A study whose conditions are hidden from the caller is left out, because its conditions may
+    differ in their bodies.
     Raises NotFound if there is no such body.
     """
     row = humanoid_by_hash(db, content_hash)

@@ -12,7 +12,7 @@ from app.protocol.humanoid import figure_json
 from app.science.avatar.body import Figure, HumanoidError, figure_of
 
 TURNED_DEG = 5.0
-"""Arms that are turned further than this into the T-pose are mentioned."""
+"""Arms that were turned by more than this into the T-pose are mentioned in the notes."""
 
 
 @dataclass(frozen=True)

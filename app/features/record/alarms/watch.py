@@ -84,9 +84,9 @@ class QualityWatch:
         self.silence.frame_arrived(now.monotonic_s)
         self.backlog.submitted(now.monotonic_s)
         if header.stream in FINGER_STREAMS:
-            # They have the frames of the body's streams, whose gaps and rate are watched. A finger
-            # that jumps or rests is no fault: trackers lose and find hands all the time. Broken
-            # values are flagged and counted where they are stored.
+            # Streams of fingers have the same frames as those of the body, whose gaps and rate are
+            # watched. A finger that jumps or rests is no fault: trackers lose and find hands all
+            # the time. Broken values are flagged and counted where they are stored.
             return ()
         watch = self._stream_watch(header.stream, header.epoch)
         return self._report(watch.take(batch), now)

@@ -51,7 +51,7 @@ def avatar_choices(db: Session, session: StudySession) -> AvatarChoices:
         raise Conflict(
             "the avatar of this session is not moved by physics",
             value=session.avatar,
-            remedy="A delayed copy has nothing that could be changed while it runs.",
+            remedy="Use a version of the study with avatar: physics.",
         )
     configuration = configuration_by_hash(db, session.avatar_configuration_hash)
     settings = as_configured(configuration)

@@ -106,9 +106,9 @@ def _avatar_change(
     request: CommandRequest,
     store: "_Store",
 ) -> Command:
-    """Return the command that changes the avatar; raises InvalidInput if it has no such settings.
+    """Return the command that changes the avatar; raises InvalidInput if they do not fit.
 
-    They must fit the configuration, and what the study changes in the current phase.
+    The changes must fit the configuration and the study's changes in the current phase.
     """
     changes = request.avatar_changes or AvatarChanges()
     physics = session.avatar_configuration_hash

@@ -40,8 +40,8 @@ class AvatarWish(BaseModel):
     """A request for a physics avatar: the participant's stature and any other lengths measured.
 
     `segments_m`: lengths by the names of docs/avatar-configuration.md; lengths left out follow from
-    the stature. `body`: the body to wear, one of those that the study's conditions name; left out,
-    that of the avatar's configuration.
+    the stature. `body`: the body to wear, one of those that the study's conditions name; if left
+    out, the body of the avatar's configuration.
     """
 
     model_config = ConfigDict(extra="forbid")
@@ -164,7 +164,7 @@ def _with_body(
             f"no condition of this study wears the body {body!r}",
             value=body,
             valid=list(protocol.bodies),
-            remedy="Request one of these, or leave 'body' out for that of the configuration.",
+            remedy="Request one of these, or leave 'body' out for the body of the configuration.",
         )
     return replace(configuration, humanoid=body_by_name(db, body).hash)
 

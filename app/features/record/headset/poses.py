@@ -10,12 +10,12 @@ A pose message is little-endian binary:
     0       4 bytes  magic "RMP1"
     4       u8       stream: 1 target, 2 actual, 3 and 4 their fingers
     5       u8       frame flags (bit 0: the phase's clock ran)
-    6       u16      values that follow: 91 of a body, 120 of fingers
+    6       u16      number of values: 91 for a body, 120 for fingers
     8       u32      phase_id, 0 outside phases
     12      u64      seq of the frame
     20      f64      client monotonic time of the frame, s
-    28      f32[91]  root position x, y, z (m, world) then 22 local rotations w, x, y, z
-            f32[120] of fingers: 30 local rotations w, x, y, z
+    28      f32[91]  body: root position x, y, z (m, world) then 22 local rotations w, x, y, z
+            f32[120] fingers: 30 local rotations w, x, y, z
 """
 
 import struct

@@ -113,7 +113,7 @@ def _require_avatar(session: StudySession, hello: Hello) -> None:
 
 
 def _require_changes(db: Session, session: StudySession, hello: Hello) -> None:
-    """Raise Conflict if the study changes the avatar in a phase and the client could not."""
+    """Raise Conflict if the study changes the avatar in a phase and the client cannot do so."""
     if hello.changes_avatar or session.avatar_configuration_hash is None:
         return
     changing = [step.key for step in plan_of(db, session) if step.avatar_changes is not None]
@@ -148,8 +148,8 @@ def headset_state(db: Session, session: StudySession) -> HeadsetState:
 def _avatar_order(in_force: AvatarInForce | None) -> AvatarOrder | None:
     """Return how the avatar differs from its configuration, as sent to the headset.
 
-    An axis in a cast that was put on where it was is sent with the angle that the headset has
-    reported since, so that a headset that starts anew holds it there, too.
+    An axis that a cast holds where it was is sent with the angle that the headset has reported
+    since, so that a restarted headset holds it there, too.
     """
     if in_force is None:
         return None

@@ -129,7 +129,7 @@ class _Viewer:
 
 
 def _is_body(message: bytes) -> bool:
-    """Return whether a pose is a body's. Its fingers come with it and are not counted."""
+    """Return whether a pose is that of a body. Poses of fingers come with it, uncounted."""
     return message[_STREAM_BYTE] <= CODE_OF_STREAM[StreamName.ACTUAL]
 
 

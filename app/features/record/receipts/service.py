@@ -30,9 +30,9 @@ _WHAT = {
 class AvatarChangeReceipt:
     """A change of the avatar by the operator, which the protocol does not provide for.
 
-    `event`: its number in the event log. `phase_id`: the phase in which it was made, a `deviation`
-    from the protocol; None between phases. `applied`: whether the headset carried it out; None if
-    it never answered.
+    `event`: its number in the event log. `phase_id`: the phase in which it was made, which is a
+    `deviation` from the protocol; None between phases. `applied`: whether the headset carried it
+    out; None if it never answered.
     """
 
     event: int
@@ -159,7 +159,7 @@ def _phase_problems(db: Session, session_id: str) -> list[str]:
 
 
 def _announced_fingers(db: Session, session_id: str) -> list[StreamName]:
-    """Return the streams of fingers if a headset has said that it sends them."""
+    """Return the streams of fingers if a headset has announced them, else none."""
     query = select(TelemetryStream.stream).where(
         TelemetryStream.session_id == session_id, TelemetryStream.stream.in_(FINGER_STREAMS)
     )

@@ -15,7 +15,7 @@ from app.protocol import AvatarChanges, settings_in_force
 from app.science.avatar.configuration import RunningSettings, as_configured
 
 AVATAR_CHANGE = "avatar_change"
-"""The kind of stored content that has what a headset reported on a change of the avatar."""
+"""The kind of stored content for a headset's report on a change of the avatar."""
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,7 @@ def changes_from(content: Mapping[str, Any] | None) -> AvatarChanges | None:
 
 
 def _content(db: Session, content_id: str | None) -> dict[str, Any]:
-    """Return what a headset reported; empty if that was nothing, or was erased."""
+    """Return what a headset reported; empty if it reported nothing, or if the report was erased."""
     row = None if content_id is None else db.get(SessionContent, content_id)
     body = None if row is None else content_body(row)
     return body if isinstance(body, dict) else {}

@@ -27,8 +27,8 @@ class Frames:
     """Consecutive frames of a stream.
 
     `seq` (n,), `times_s` (n,) client monotonic s, `flags` (n,) bits, `values` as on the wire:
-    (n, 91) of a body, root position (m, world), then 22 local rotations w, x, y, z; (n, 120) of
-    fingers, 30 local rotations.
+    (n, 91) for a body: root position (m, world), then 22 local rotations w, x, y, z; (n, 120) for
+    fingers: 30 local rotations.
     """
 
     seq: NDArray[np.int64]
@@ -41,7 +41,7 @@ class Frames:
 
     @property
     def rotations(self) -> NDArray[np.float64]:
-        """Return the local rotations (n, 22, 4), of fingers (n, 30, 4), w x y z."""
+        """Return the local rotations w, x, y, z: (n, 22, 4) of a body, (n, 30, 4) of fingers."""
         with np.errstate(invalid="ignore"):  # the values may contain signalling NaNs
             joints, root = divmod(self.values.shape[1], 4)
             return self.values[:, root:].reshape(len(self), joints, 4).astype(np.float64)

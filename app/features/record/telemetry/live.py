@@ -59,7 +59,7 @@ class LiveTelemetry:
         """Process a batch of frames."""
         header = batch.header
         if header.stream in FINGER_STREAMS:
-            return  # the figures are those of the body
+            return  # only the body's frames enter the figures
         if header.phase_id != self._phase_id:
             self._phase_id, self._completions, self._side_contacts = header.phase_id, 0, 0
             self._red_until_s = {}

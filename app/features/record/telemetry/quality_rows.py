@@ -49,7 +49,7 @@ def quality_rows(phase: Phase, runs: Sequence[Run]) -> list[PhaseQuality]:
 
 
 def _in_phase(run: Run, target: Frames) -> NDArray[np.bool_]:
-    """Select the active frames of a target whose seqs are in the range of the actual body's."""
+    """Select the target's active frames whose seqs are in the range of the actual body's seqs."""
     seq = run.actual.seq
     of_phase = (target.seq >= seq[0]) & (target.seq <= seq[-1])
     return np.asarray(target.active & of_phase)

@@ -34,7 +34,7 @@ from app.protocol import StudyProtocol
 from app.science.instruments import Instrument
 
 OWN_BODY = "configuration"
-"""What the body of the avatar's configuration is called where a body has to be chosen."""
+"""The name that stands for the body of the avatar's configuration in the choice of a body."""
 MAX_CACHED = 3
 """Number of studies and kinds whose tables are cached; a thousand sessions take about 200 MB."""
 READ: Mapping[str, Callable[[Session, str, DashboardKind], pd.DataFrame]] = {
@@ -72,8 +72,8 @@ class Material:
     condition must stay blinded, whichever version of the study they ran. `worn`: the body of each
     condition of each version (number, key).
 
-    Figures and tests are over latency. If conditions share a latency and differ in their bodies,
-    they are made of one body at a time (`of_body`), so that no two conditions are ever mixed.
+    Figures and tests compare latencies. If conditions share a latency and differ in their bodies,
+    each figure or test covers one body (`of_body`), so that conditions are never mixed.
     """
 
     protocol: StudyProtocol
@@ -85,7 +85,7 @@ class Material:
 
     @property
     def bodies(self) -> tuple[str, ...]:
-        """Return the bodies to look at one at a time; none if latencies tell conditions apart."""
+        """Return the bodies to analyse one at a time; none if latencies tell conditions apart."""
         if self.protocol.has_latencies_apart:
             return ()
         return tuple(dict.fromkeys(one.body or OWN_BODY for one in self.protocol.conditions))
@@ -161,13 +161,13 @@ class Material:
         return found if chosen.body is None else found.of_body(chosen.body)
 
     def with_body(self, chosen: FigureFilter) -> FigureFilter:
-        """Return a filter that chooses a body where one has to be chosen."""
+        """Return the filter with a body chosen, if one has to be chosen."""
         if chosen.body is not None or not self.bodies:
             return chosen
         return chosen.model_copy(update={"body": self.bodies[0]})
 
     def of_body(self, body: str) -> "Material":
-        """Return the rows of phases in which a body was worn, and those outside of the blocks."""
+        """Return the rows of phases in which a body was worn, and those outside the blocks."""
         conditions = {place for place, worn in self.worn.items() if worn == body}
         tables = Tables(lambda name: _rows_of(self.tables[name], conditions))
         return replace(self, tables=tables)

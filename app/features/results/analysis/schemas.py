@@ -22,8 +22,8 @@ class FigureFilter(BaseModel):
     by the study's rules, superseded and skipped steps), "all" draws it too. `since` and `until`:
     the first and last day, in UTC, on which a session was created. `order`: added latencies in ms
     in the order of the blocks, as in "0 125 350". `body`: only phases in which this body was worn;
-    in a study whose conditions share latencies the first body if it is left out, because figures
-    are drawn over latency.
+    if it is left out in a study whose conditions share latencies, the first body is chosen,
+    because figures are drawn over latency.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -111,7 +111,7 @@ class FilterChoices(BaseModel):
     """The values that the filter can take.
 
     They are participant codes, orders as "0 125 350", limbs, bodies, and the first and last day in
-    UTC. There are bodies if conditions share latencies and differ in their bodies.
+    UTC. Bodies are listed only if conditions share latencies and differ in their bodies.
     """
 
     participants: list[str]

@@ -1,4 +1,4 @@
-"""Follow the changes that were made to the avatar in a phase, in the phase's time."""
+"""Follow the changes that were made to the avatar in a phase, on the phase's clock."""
 
 import json
 from collections.abc import Iterator, Mapping
@@ -53,7 +53,7 @@ def avatar_settings(
 def _time_of(
     row: SessionEvent, phase: Phase, clock: PhaseClock, applied_s: Mapping[int, float]
 ) -> float:
-    """Return the phase's time of a change; 0 if it was made before the phase's clock ran."""
+    """Return when a change was made on the phase's clock; 0 if that did not run yet."""
     if phase.started_at is None or row.recorded_at <= phase.started_at:
         return 0.0
     at_s = applied_s.get(row.seq)

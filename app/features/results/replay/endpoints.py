@@ -40,7 +40,7 @@ def get_movement(
 ) -> Response:
     """Return the positions of the joints of participant and avatar over time.
 
-    `rotations`: with the joints' rotations, which a body with skin is drawn by.
+    `rotations`: also the joints' rotations, which are needed to draw a body with skin.
     """
     with context.database.reading() as db:
         phase_view = replayable(db, caller, session_id, phase_id)

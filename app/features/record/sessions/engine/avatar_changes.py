@@ -1,7 +1,8 @@
-"""Decide changes to the avatar while it runs: by the study for a phase, or by the operator.
+"""Decide changes to the running avatar: by the study for a phase, or by the operator.
 
 The changes of a study hold from the preparation of a phase until it ends or is voided. Those of an
-operator are added to them, hold until they are changed or taken back, and end with the session.
+operator are added to them, hold until the operator changes them or takes them back, and end with
+the session.
 """
 
 from app.features.record.sessions.engine import commands as c
@@ -12,7 +13,7 @@ from app.protocol import Step
 
 
 def changes_of_study(step: Step, state: SessionState) -> list[e.Event]:
-    """Return the event of the changes that the study makes for the phase that is prepared."""
+    """Return the event of the study's changes for the phase being prepared."""
     if step.avatar_changes is None or step.avatar_changes.is_empty:
         return []
     changes = step.avatar_changes.as_json()
@@ -50,7 +51,7 @@ def _change(state: SessionState, command: c.ChangeAvatar) -> list[e.Event]:
 def _require_avatar(state: SessionState, command: c.ChangeAvatar) -> None:
     if not command.is_physics:
         raise Refused(
-            "the avatar of this session is a delayed copy, which nothing can be changed about",
+            "the avatar of this session is a delayed copy, which cannot be changed",
             value="delayed_copy",
             valid=["physics"],
             remedy="Use a version of the study whose avatar is moved by physics.",
@@ -64,22 +65,22 @@ def _require_avatar(state: SessionState, command: c.ChangeAvatar) -> None:
         )
     if command.headset_can is None:
         raise Refused(
-            "no headset is connected, so nothing could be changed",
+            "no headset is connected, so the avatar cannot be changed",
             value="headset not connected",
             valid=["headset connected"],
-            remedy="Wake the headset, or wait until it is back.",
+            remedy="Wake the headset, or wait until it is connected again.",
         )
     if not command.headset_can:
         raise Refused(
             "the program on the headset cannot change an avatar while it runs",
             value="changes_avatar: false",
             valid=["changes_avatar: true"],
-            remedy="Use a program that can; the protocol says how it reports that it can.",
+            remedy="Use a program that can, and says so with changes_avatar in its hello message.",
         )
 
 
 def _report(state: SessionState, command: c.ReportAvatarChange) -> list[e.Event]:
-    """Return the event of a headset's report; one of a revision that never was is refused."""
+    """Return the event of a headset's report; an unknown revision is refused."""
     changes = state.avatar_changes
     if changes is None or command.revision > changes.revision:
         raise Refused(

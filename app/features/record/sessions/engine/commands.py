@@ -160,7 +160,7 @@ class AddNote(Command):
 class RecordAvatar(Command):
     """Record that the headset uses a physics avatar; `content` contains its model.
 
-    `body`: the body it has, by name; None for that of the configuration.
+    `body`: the name of the body that it wears; None for that of the configuration.
     """
 
     configuration_hash: str
@@ -187,7 +187,7 @@ class ChangeAvatar(Command):
 class ReportAvatarChange(Command):
     """Record that the headset has changed the avatar, or that it could not.
 
-    `revision` is that of the order; the content has the angles of casts, or the headset's problem.
+    `revision` is that of the order. The content has the angles of casts, or the headset's problem.
     """
 
     revision: int

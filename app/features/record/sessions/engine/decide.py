@@ -265,7 +265,7 @@ def _decide_hold(
     state: SessionState,
     command: c.RefuseConsent | c.RetractRefusal | c.OverrideStop,
 ) -> list[e.Event]:
-    """Decide what holds a session, or lets it continue."""
+    """Decide a command that holds a session, or lets it continue."""
     if isinstance(command, c.OverrideStop):
         return decide_override(state, command)
     return _decide_refusal(plan, state, command)

@@ -239,8 +239,8 @@ class AvatarChanged(Event):
     """The settings of the running avatar were changed, by the `operator` or by the `study`.
 
     `changes`: the content of an `AvatarChanges`. Those of the operator hold until the next such
-    event, and if empty, were taken back; those of the study hold until its phase ends. `deviation`:
-    the operator changed something while the phase was in progress.
+    event; if empty, they were taken back. Those of the study hold until the phase ends.
+    `deviation`: the operator made the change while a phase was in progress.
     """
 
     type = "avatar_changed"
@@ -256,7 +256,7 @@ class AvatarChanged(Event):
 class AvatarChangeReported(Event):
     """The headset reported that changes took effect on the avatar, or that it could not apply them.
 
-    `revision`: the `seq` of the event since which they were in force. The content has the angles of
+    `revision`: the `seq` of the event since which they are in force. The content has the angles of
     casts, which reveal how the participant stood, or the headset's reason.
     """
 

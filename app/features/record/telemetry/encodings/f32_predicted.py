@@ -65,7 +65,7 @@ _BITS_TO_COMPRESS = 4
 
 
 def encode(columns: Columns, *, level: int = LEVEL) -> bytes:
-    """Encode a chunk of at least one frame of a root's 3 or no values, and 4 for each joint.
+    """Encode a chunk of at least one frame: 3 values of a root, or none, and 4 of each joint.
 
     Raises ValueError for other shapes.
 

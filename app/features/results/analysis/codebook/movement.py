@@ -119,9 +119,8 @@ JOINT_ERROR_COURSE: tuple[Column, ...] = (
     _K.number(
         "mean_deg",
         "Mean whole angle over all samples in the bin, a sample being one joint of the body, not "
-        "of its fingers, in one frame. "
-        "The mean of the bins, weighted by samples, is the mean of the phase: that of the angles in "
-        "joint_errors, each joint weighted by its samples.",
+        "of its fingers, in one frame. The mean of the bins, weighted by samples, is the mean of "
+        "the phase: that of the angles in joint_errors, each joint weighted by its samples.",
         "deg",
         "0 to 180",
     ),

@@ -1,6 +1,6 @@
-"""Figures of fingers, for studies whose headset recorded them: joint error by finger.
+"""Draw joint errors by finger, for studies in which fingers were recorded.
 
-Contact times by finger are in the figures of contacts, whose rows name fingers then (`by_finger`).
+Contact times by finger are in the figures of contacts, whose rows then name fingers (`by_finger`).
 """
 
 from collections.abc import Iterator
@@ -21,7 +21,7 @@ HAND_FINGERS: tuple[str, ...] = tuple(f"{side}{finger}" for side in _SIDES for f
 
 
 def hand_finger_of(part: str) -> str | None:
-    """Return hand and finger of a finger part, such as "LeftThumb"; None for any other part."""
+    """Return the hand and finger of a finger part, such as "LeftThumb"; None for any other part."""
     finger = finger_of(part)
     if finger is None:
         return None
@@ -31,7 +31,7 @@ def hand_finger_of(part: str) -> str | None:
 def by_finger(contacts: pd.DataFrame) -> pd.DataFrame:
     """Return contacts in which the three parts of a finger have the finger's name.
 
-    Their union is the time of the finger. Contacts of other parts stay as they are.
+    The union of their contacts is the time of the finger. Contacts of other parts stay as they are.
     """
     names = {part: hand_finger_of(part) for part in FINGER_PARTS}
     own = contacts["body_part"]
@@ -73,7 +73,7 @@ def joint_error_fingers_drawings(errors: pd.DataFrame) -> Iterator[Drawing]:
 def finger_angles(errors: pd.DataFrame) -> pd.DataFrame:
     """Return the rows of finger parts in task phases with the whole angle to the present pose.
 
-    The column `finger` has hand and finger.
+    The column `finger` names the hand and the finger.
     """
     chosen = errors["axis"].eq("angle") & errors["reference"].eq("present")
     chosen &= errors["phase_kind"].isin(COUNTED_KINDS) & errors["joint"].isin(FINGER_PARTS)

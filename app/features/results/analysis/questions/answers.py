@@ -35,7 +35,7 @@ DECLARED = (
     "The tests on this page were not preregistered and are exploratory."
 )
 BODIES = (
-    "Conditions of this study share latencies and differ in their bodies: each test is made for "
+    "Conditions of this study share latencies and differ in their bodies, so each test covers "
     "one body. A preregistered primary test compares all conditions."
 )
 OPEN = "Tests use valid completed sessions; open sessions may still change and are left out."

@@ -113,8 +113,8 @@ def _fingers_report(limb: str, tasks: pd.DataFrame, times: pd.DataFrame) -> Test
         rows=rows,
         method=(
             "The time of a finger at a side is the union over its three parts. Fingers may touch "
-            "at the same time, so their times must not be added. The palm is the hand without its "
-            "fingers."
+            "at the same time, so their times must not be added up. The palm is the hand without "
+            "its fingers."
         ),
         source="Karas 2020, section 7.1.3.",
     )
